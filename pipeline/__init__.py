@@ -1,0 +1,31 @@
+"""Kouros: the seismic risk of a museum's collection.
+
+The four public names are handed on lazily, so that ``import pipeline`` costs nothing::
+
+    from pipeline import Motion, read_motion, respond, transmit
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pipeline.motions import read_motion
+    from pipeline.records import Motion
+    from pipeline.response import respond, trace, transmit
+
+__version__ = "0.1.0"
+__all__ = ["Motion", "read_motion", "respond", "trace", "transmit"]
+
+_HOMES = {
+    "Motion": "pipeline.records",
+    "read_motion": "pipeline.motions",
+    "respond": "pipeline.response",
+    "trace": "pipeline.response",
+    "transmit": "pipeline.response",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'pipeline' has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)

@@ -1,0 +1,49 @@
+"""One way to a database: embedded SQLite by default, PostgreSQL where the museum has a server."""
+
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Engine, MetaData, create_engine, event
+from sqlalchemy.engine import URL, make_url
+
+METADATA = MetaData(
+    # Named constraints: a migration can drop what it can name.
+    naming_convention={
+        "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+        "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+        "ck": "ck_%(table_name)s_%(constraint_name)s",
+        "fk": "fk_%(table_name)s_%(column_0_N_name)s_%(referred_table_name)s",
+        "pk": "pk_%(table_name)s",
+    }
+)
+"""All of Kouros's own tables, the inventory's (here) and the results' (in store)."""
+
+
+def database_url(where: str | Path) -> URL:
+    """Turn a path or a URL into a database URL; a path means an SQLite file.
+
+    raises : ValueError for a URL of a kind that Kouros does not keep its own tables in
+    """
+    text = str(where)
+    url = make_url(text) if "://" in text else URL.create("sqlite", database=text)
+    if url.get_backend_name() not in {"sqlite", "postgresql"}:
+        raise ValueError(f"Kouros keeps its own tables in SQLite or PostgreSQL, not in {url.get_backend_name()!r}")
+    return url.set(drivername="postgresql+psycopg") if url.drivername == "postgresql" else url
+
+
+def open_database(where: str | Path) -> Engine:
+    """Open Kouros's own database, making the folder of an SQLite file where it is missing."""
+    url = database_url(where)
+    if url.get_backend_name() == "sqlite" and url.database:
+        Path(url.database).parent.mkdir(parents=True, exist_ok=True)
+    engine = create_engine(url)
+    if url.get_backend_name() == "sqlite":
+        event.listen(engine, "connect", _prepare_sqlite)
+    return engine
+
+
+def _prepare_sqlite(connection: Any, _record: Any) -> None:
+    cursor = connection.cursor()
+    cursor.execute("PRAGMA foreign_keys = ON")
+    cursor.execute("PRAGMA busy_timeout = 10000")
+    cursor.close()

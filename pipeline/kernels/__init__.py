@@ -1,0 +1,48 @@
+"""Compiled response models: SI arrays in, arrays out; no units, no defaults, no pandas.
+
+Each file holds the scalar integration of one object and the batch driver beside it.  Run with ``NUMBA_DISABLE_JIT=1``
+for coverage and debuggers.
+"""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numba
+
+
+def kernel_version() -> str:
+    """Return a hash of all kernel sources and of the compiler: the version that a stored result depends on."""
+    digest = hashlib.sha256(numba.__version__.encode())
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.name.encode())
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def _cache_folder(version: str) -> Path:
+    # numba serves an edited kernel stale when a cached driver imports it, so every state of the sources gets its own
+    # folder.
+    home = os.environ.get("KOUROS_CACHE") or os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    for base in (Path(home) / "kouros", Path(tempfile.gettempdir()) / f"kouros-{os.getuid() if os.name == 'posix' else 0}"):
+        folder = base / f"kernels-{version}"
+        try:
+            folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        except OSError:
+            continue
+        if os.access(folder, os.W_OK):
+            return folder
+    return Path(tempfile.mkdtemp(prefix="kouros-kernels-"))
+
+
+KERNEL_VERSION = kernel_version()
+if "NUMBA_CACHE_DIR" not in os.environ:
+    numba.config.CACHE_DIR = str(_cache_folder(KERNEL_VERSION))
+
+# error_model="numpy": a division by zero gives inf, as in the arrays around it.  No fastmath: the order of operations
+# decides overturning.
+kernel: Callable[..., Any] = numba.njit(cache=True, nogil=True, error_model="numpy")
+"""Decorator of every compiled function."""

@@ -1,0 +1,470 @@
+"""A body on dry friction in two directions, with or without a spring and a dashpot.
+
+u'' + 2 zeta w u' + w^2 u + mu_k N u'/|u'| = -a, N = max(0, g + a_z); at rest while |a + w^2 u| <= mu_s N.
+
+The direction of friction turns infinitely fast where the speed vanishes.  Onset and stop are therefore stepped over with
+their own expansions; in between, an embedded Runge-Kutta pair (Dormand and Prince 1980) follows the path, one sample
+interval at a time because the excitation has a kink at every sample.
+"""
+
+import math
+
+import numpy as np
+
+from pipeline.kernels import kernel
+from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
+from pipeline.kernels.friction_line import CAP
+from pipeline.kernels.quiet import largest, next_above
+from pipeline.quantities import Array, G
+
+START = 1e-5
+"""Speed, as a share of the scale of speeds, up to which the expansion at slip onset is used."""
+STOP = 1e-5
+"""Speed, as a share of the scale of speeds, below which a decelerating body is brought to rest in closed form."""
+
+
+@kernel
+def _rates(
+    ux: float, uy: float, vx: float, vy: float, ax: float, ay: float, grip: float, b: float, c: float
+) -> tuple[float, float, float]:
+    speed = math.hypot(vx, vy)
+    drag = c + (grip / speed if speed > 0.0 else 0.0)
+    return -ax - drag * vx - b * ux, -ay - drag * vy - b * uy, speed
+
+
+@kernel
+def _step(
+    state: Array, load: Array, t: float, h: float, b: float, c: float, after: Array
+) -> float:
+    # One Dormand-Prince step of (ux, uy, vx, vy, path) from t to t + h.  load: ax0, ax1, ay0, ay1, grip0, grip1.
+    # Returns the error of the velocity [m/s]; the error of the displacement is smaller by the step.
+    ux, uy, vx, vy, path = state[0], state[1], state[2], state[3], state[4]
+
+    s = t
+    kx1, ky1, p1 = _rates(
+        ux, uy, vx, vy, load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c
+    )
+    s = t + h / 5.0
+    x2, y2 = vx + h * kx1 / 5.0, vy + h * ky1 / 5.0
+    kx2, ky2, _p2 = _rates(
+        ux + h * vx / 5.0, uy + h * vy / 5.0, x2, y2,
+        load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c,
+    )
+    s = t + 0.3 * h
+    x3 = vx + h * (3.0 / 40.0 * kx1 + 9.0 / 40.0 * kx2)
+    y3 = vy + h * (3.0 / 40.0 * ky1 + 9.0 / 40.0 * ky2)
+    kx3, ky3, p3 = _rates(
+        ux + h * (3.0 / 40.0 * vx + 9.0 / 40.0 * x2), uy + h * (3.0 / 40.0 * vy + 9.0 / 40.0 * y2), x3, y3,
+        load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c,
+    )
+    s = t + 0.8 * h
+    x4 = vx + h * (44.0 / 45.0 * kx1 - 56.0 / 15.0 * kx2 + 32.0 / 9.0 * kx3)
+    y4 = vy + h * (44.0 / 45.0 * ky1 - 56.0 / 15.0 * ky2 + 32.0 / 9.0 * ky3)
+    kx4, ky4, p4 = _rates(
+        ux + h * (44.0 / 45.0 * vx - 56.0 / 15.0 * x2 + 32.0 / 9.0 * x3),
+        uy + h * (44.0 / 45.0 * vy - 56.0 / 15.0 * y2 + 32.0 / 9.0 * y3), x4, y4,
+        load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c,
+    )
+    s = t + 8.0 / 9.0 * h
+    x5 = vx + h * (19372.0 / 6561.0 * kx1 - 25360.0 / 2187.0 * kx2 + 64448.0 / 6561.0 * kx3 - 212.0 / 729.0 * kx4)
+    y5 = vy + h * (19372.0 / 6561.0 * ky1 - 25360.0 / 2187.0 * ky2 + 64448.0 / 6561.0 * ky3 - 212.0 / 729.0 * ky4)
+    kx5, ky5, p5 = _rates(
+        ux + h * (19372.0 / 6561.0 * vx - 25360.0 / 2187.0 * x2 + 64448.0 / 6561.0 * x3 - 212.0 / 729.0 * x4),
+        uy + h * (19372.0 / 6561.0 * vy - 25360.0 / 2187.0 * y2 + 64448.0 / 6561.0 * y3 - 212.0 / 729.0 * y4), x5, y5,
+        load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c,
+    )
+    s = t + h
+    x6 = vx + h * (
+        9017.0 / 3168.0 * kx1 - 355.0 / 33.0 * kx2 + 46732.0 / 5247.0 * kx3 + 49.0 / 176.0 * kx4
+        - 5103.0 / 18656.0 * kx5
+    )
+    y6 = vy + h * (
+        9017.0 / 3168.0 * ky1 - 355.0 / 33.0 * ky2 + 46732.0 / 5247.0 * ky3 + 49.0 / 176.0 * ky4
+        - 5103.0 / 18656.0 * ky5
+    )
+    kx6, ky6, p6 = _rates(
+        ux + h * (
+            9017.0 / 3168.0 * vx - 355.0 / 33.0 * x2 + 46732.0 / 5247.0 * x3 + 49.0 / 176.0 * x4
+            - 5103.0 / 18656.0 * x5
+        ),
+        uy + h * (
+            9017.0 / 3168.0 * vy - 355.0 / 33.0 * y2 + 46732.0 / 5247.0 * y3 + 49.0 / 176.0 * y4
+            - 5103.0 / 18656.0 * y5
+        ), x6, y6,
+        load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c,
+    )
+    b1, b3, b4, b5, b6 = 35.0 / 384.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0
+    x7 = vx + h * (b1 * kx1 + b3 * kx3 + b4 * kx4 + b5 * kx5 + b6 * kx6)
+    y7 = vy + h * (b1 * ky1 + b3 * ky3 + b4 * ky4 + b5 * ky5 + b6 * ky6)
+    ux7 = ux + h * (b1 * vx + b3 * x3 + b4 * x4 + b5 * x5 + b6 * x6)
+    uy7 = uy + h * (b1 * vy + b3 * y3 + b4 * y4 + b5 * y5 + b6 * y6)
+    kx7, ky7, _p7 = _rates(
+        ux7, uy7, x7, y7, load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c
+    )
+    after[0], after[1], after[2], after[3] = ux7, uy7, x7, y7
+    after[4] = path + h * (b1 * p1 + b3 * p3 + b4 * p4 + b5 * p5 + b6 * p6)
+    e1, e3, e4 = 71.0 / 57600.0, -71.0 / 16695.0, 71.0 / 1920.0
+    e5, e6, e7 = -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0
+    ex = e1 * kx1 + e3 * kx3 + e4 * kx4 + e5 * kx5 + e6 * kx6 + e7 * kx7
+    ey = e1 * ky1 + e3 * ky3 + e4 * ky4 + e5 * ky5 + e6 * ky6 + e7 * ky7
+    return h * math.hypot(ex, ey)
+
+
+@kernel
+def _felt(state: Array, grip: float, b: float, c: float) -> float:
+    # Absolute acceleration of a slipping body: what spring, dashpot and friction push it with.
+    vx, vy = state[2], state[3]
+    speed = math.hypot(vx, vy)
+    drag = c + (grip / speed if speed > 0.0 else 0.0)
+    return math.hypot(drag * vx + b * state[0], drag * vy + b * state[1])
+
+
+@kernel
+def _felt_rate(state: Array, ax: float, ay: float, grip: float, grip1: float, b: float, c: float) -> float:
+    # Half the rate of the squared absolute acceleration.
+    ux, uy, vx, vy = state[0], state[1], state[2], state[3]
+    speed = math.hypot(vx, vy)
+    if speed == 0.0:
+        return 0.0
+    qx, qy, _ = _rates(ux, uy, vx, vy, ax, ay, grip, b, c)
+    ex, ey = vx / speed, vy / speed
+    along = ex * qx + ey * qy
+    yx, yy = c * vx + b * ux + grip * ex, c * vy + b * uy + grip * ey
+    rx = c * qx + b * vx + grip1 * ex + grip * (qx - ex * along) / speed
+    ry = c * qy + b * vy + grip1 * ey + grip * (qy - ey * along) / speed
+    return yx * rx + yy * ry
+
+
+@kernel
+def _peaks(
+    state: Array, after: Array, trial: Array, load: Array, t: float, h: float, b: float, c: float, out: Array
+) -> None:
+    # Raise the running maxima by what happened inside an accepted step: the step is taken again to the instant at
+    # which the radius (or the felt acceleration) is stationary.
+    r0, r1 = math.hypot(state[0], state[1]), math.hypot(after[0], after[1])
+    out[0] = max(out[0], r1)
+    begin = state[0] * state[2] + state[1] * state[3]
+    end = after[0] * after[2] + after[1] * after[3]
+    if begin > 0.0 > end and max(r0, r1) + h * math.hypot(state[2], state[3]) > out[0]:
+        low, high, at_low, at_high = 0.0, h, begin, end
+        for k in range(12):
+            tau = (low * at_high - high * at_low) / (at_high - at_low) if k % 3 < 2 else 0.5 * (low + high)
+            _step(state, load, t, tau, b, c, trial)
+            value = trial[0] * trial[2] + trial[1] * trial[3]
+            if value > 0.0:
+                low, at_low = tau, value
+            else:
+                high, at_high = tau, value
+            if value == 0.0 or high - low < 1e-7 * h:
+                break
+        out[0] = max(out[0], math.hypot(trial[0], trial[1]))
+    g0, g1 = load[4] + load[5] * t, load[4] + load[5] * (t + h)
+    y0, y1 = _felt(state, g0, b, c), _felt(after, g1, b, c)
+    out[2] = max(out[2], y0, y1)
+    if b > 0.0 and 1.1 * max(y0, y1) > out[2]:
+        begin = _felt_rate(state, load[0] + load[1] * t, load[2] + load[3] * t, g0, load[5], b, c)
+        s = t + h
+        end = _felt_rate(after, load[0] + load[1] * s, load[2] + load[3] * s, g1, load[5], b, c)
+        if begin > 0.0 > end:
+            low, high, at_low, at_high = 0.0, h, begin, end
+            for k in range(12):
+                tau = (low * at_high - high * at_low) / (at_high - at_low) if k % 3 < 2 else 0.5 * (low + high)
+                _step(state, load, t, tau, b, c, trial)
+                s = t + tau
+                value = _felt_rate(
+                    trial, load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, load[5], b, c
+                )
+                if value > 0.0:
+                    low, at_low = tau, value
+                else:
+                    high, at_high = tau, value
+                if value == 0.0 or high - low < 1e-7 * h:
+                    break
+            out[2] = max(out[2], _felt(trial, load[4] + load[5] * (t + tau), b, c))
+
+
+@kernel
+def _onset(qx: float, qy: float, q1x: float, q1y: float, l0: float, l1: float, span: float) -> float:
+    # First time in [0, span] at which |q| > l, given |q| <= l at 0: |q| - l is convex, so there is at most one.
+    end = math.hypot(qx + q1x * span, qy + q1y * span) - (l0 + l1 * span)
+    if end <= 0.0:
+        return -1.0
+    a = q1x * q1x + q1y * q1y - l1 * l1
+    half = qx * q1x + qy * q1y - l0 * l1
+    c = min(0.0, (math.hypot(qx, qy) - l0) * (math.hypot(qx, qy) + l0))
+    # a t^2 + 2 half t + c = 0 with c <= 0: the root that is not negative, without cancellation.
+    root = math.sqrt(max(0.0, half * half - a * c))
+    if half >= 0.0:
+        t = -c / (half + root) if half + root > 0.0 else 0.0
+    else:
+        t = (root - half) / a if a > 0.0 else 0.0
+    return min(span, max(0.0, t))
+
+
+@kernel
+def _start(
+    state: Array, load: Array, t: float, left: float, qx: float, qy: float, scale: float, b: float, c: float
+) -> float:
+    # Slip from rest along the expansion v = (e t + j t^2 / 2) d, d = d0 + d1 t, up to START times the scale of speeds.
+    # Returns the time used.
+    size = math.hypot(qx, qy)
+    if size > 0.0:
+        dx, dy = -qx / size, -qy / size
+    else:
+        # Without any hold (no friction, no contact) the push may be zero now: its rate says where to.
+        rate = math.hypot(load[1], load[3])
+        dx, dy = (-load[1] / rate, -load[3] / rate) if rate > 0.0 else (0.0, 0.0)
+    grip = load[4] + load[5] * t
+    excess = max(0.0, size - grip)
+    jerk = -(load[1] * dx + load[3] * dy) - load[5] - c * excess
+    target = START * scale
+    if jerk > 0.0:
+        used = 2.0 * target / (excess + math.sqrt(excess * excess + 2.0 * jerk * target))
+    elif excess > 0.0:
+        used = target / excess
+    else:
+        return left
+    used = min(used, left)
+    if excess + jerk * used < 0.0:
+        used = min(used, -0.5 * excess / jerk)
+    px = -(load[1] - (load[1] * dx + load[3] * dy) * dx)
+    py = -(load[3] - (load[1] * dx + load[3] * dy) * dy)
+    turn = 2.0 * excess + grip
+    lag = used / turn if turn > 0.0 else 0.0
+    ex, ey = dx + px * lag, dy + py * lag
+    norm = math.hypot(ex, ey)
+    if norm == 0.0:
+        return left
+    ex, ey = ex / norm, ey / norm
+    speed = used * (excess + 0.5 * jerk * used)
+    gone = used * used * (0.5 * excess + jerk * used / 6.0)
+    state[0] += gone * ex
+    state[1] += gone * ey
+    state[2] = speed * ex
+    state[3] = speed * ey
+    state[4] += gone
+    return used
+
+
+@kernel
+def _piece(
+    state: Array, after: Array, trial: Array, load: Array, span: float, slipping: bool, guess: float,
+    b: float, c: float, mu_s: float, mu_k: float, scale: float, rtol: float, out: Array,
+) -> tuple[bool, float]:
+    # One stretch on which excitation and grip are linear.  load[4:6] is the kinetic grip mu_k N; state as in _step.
+    # Returns whether the body slips at the end, and the step size to begin the next stretch with.
+    share = mu_s / mu_k if mu_k > 0.0 else 0.0
+    t = 0.0
+    for _ in range(200000):
+        left = span - t
+        if left <= 1e-14 * span:
+            return slipping, guess
+        ax, ay = load[0] + load[1] * t, load[2] + load[3] * t
+        grip = load[4] + load[5] * t
+        if not slipping:
+            state[2], state[3] = 0.0, 0.0
+            qx, qy = ax + b * state[0], ay + b * state[1]
+            hold, hold1 = share * grip, share * load[5]
+            if math.hypot(qx, qy) <= hold:
+                wait = _onset(qx, qy, load[1], load[3], hold, hold1, left)
+                out[2] = max(out[2], math.hypot(ax, ay))
+                if wait < 0.0:
+                    out[2] = max(out[2], math.hypot(load[0] + load[1] * span, load[2] + load[3] * span))
+                    return False, guess
+                t += wait
+                ax, ay = load[0] + load[1] * t, load[2] + load[3] * t
+                out[2] = max(out[2], math.hypot(ax, ay))
+                qx, qy = ax + b * state[0], ay + b * state[1]
+                left = span - t
+            slipping = True
+            if left <= 1e-14 * span:
+                return True, guess
+            t += _start(state, load, t, left, qx, qy, scale, b, c)
+            out[0] = max(out[0], math.hypot(state[0], state[1]))
+            out[2] = max(out[2], _felt(state, load[4] + load[5] * t, b, c))
+            guess = min(guess, left)
+            continue
+        vx, vy = state[2], state[3]
+        speed = math.hypot(vx, vy)
+        rx, ry, _s = _rates(state[0], state[1], vx, vy, ax, ay, grip, b, c)
+        if speed == 0.0:
+            slipping = False
+            continue
+        if speed <= STOP * scale:
+            slowing = -(rx * vx + ry * vy) / speed
+            size = math.hypot(rx, ry)
+            astray = abs(rx * vy - ry * vx) / size if size > 0.0 else 0.0
+            qx, qy = ax + b * state[0], ay + b * state[1]
+            stays = math.hypot(qx, qy) <= share * grip
+            wait = speed / slowing if slowing > 0.0 else math.inf
+            if wait <= left and (stays or astray <= 1e-4 * speed):
+                gone = 0.5 * speed * wait
+                state[0] += gone * vx / speed
+                state[1] += gone * vy / speed
+                state[4] += gone
+                out[0] = max(out[0], math.hypot(state[0], state[1]))
+                t += wait
+                slipping = False
+                continue
+        # The direction of friction relaxes at the rate grip / speed; a larger step would only be rejected.
+        h = min(guess, left)
+        if grip > 0.0:
+            h = min(h, 2.5 * speed / grip + 1e-12 * span)
+        error = _step(state, load, t, h, b, c, after)
+        allowed = rtol * max(scale, speed) * max(h / span, 0.02)
+        if error > allowed and h > 1e-13 * span:
+            guess = h * max(0.2, 0.9 * (allowed / error) ** 0.2)
+            continue
+        _peaks(state, after, trial, load, t, h, b, c, out)
+        state[:] = after
+        t += h
+        grow = 5.0 if error == 0.0 else min(5.0, max(0.3, 0.9 * (allowed / error) ** 0.2))
+        guess = min(h * grow, 4.0 * span)
+    out[3] = float(int(out[3]) | EVENT_CAP)
+    return slipping, guess
+
+
+@kernel
+def _stretch(
+    state: Array, after: Array, trial: Array, load: Array,
+    x0: float, x1: float, y0: float, y1: float, z0: float, z1: float, span: float, slipping: bool, guess: float,
+    b: float, c: float, mu_s: float, mu_k: float, scale: float, rtol: float, out: Array,
+) -> tuple[bool, float]:
+    # A sample interval, cut where contact ends or begins.
+    n0, n1 = G + z0, z1
+    end = n0 + n1 * span
+    if n0 < 0.0 or end < 0.0:
+        out[3] = float(int(out[3]) | CONTACT_LOST)
+    cut = -1.0
+    if (n0 < 0.0 < end) or (end < 0.0 < n0):
+        cut = -n0 / n1
+    load[0], load[1], load[2], load[3] = x0, x1, y0, y1
+    if cut < 0.0:
+        held = max(n0, end) > 0.0
+        load[4], load[5] = (mu_k * max(0.0, n0), mu_k * n1) if held else (0.0, 0.0)
+        return _piece(
+            state, after, trial, load, span, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out
+        )
+    load[4], load[5] = (mu_k * n0, mu_k * n1) if n0 > 0.0 else (0.0, 0.0)
+    slipping, guess = _piece(
+        state, after, trial, load, cut, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out
+    )
+    load[0], load[2] = x0 + x1 * cut, y0 + y1 * cut
+    load[4], load[5] = (0.0, mu_k * n1) if n0 < 0.0 else (0.0, 0.0)
+    return _piece(
+        state, after, trial, load, span - cut, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out
+    )
+
+
+@kernel
+def friction_plane_one(
+    x: Array, y: Array, z: Array, ratio: Array, maxima: Array, push: Array, pushes: Array, dt: float, peak: float,
+    w: float, zeta: float, mu_s: float, mu_k: float, tail: float, rtol: float, out: Array, history: Array,
+) -> float:
+    """Integrate one body and return its residual displacement |u| [m].
+
+    x, y, z        : (n,) m/s2;  peak: the largest of push = |a_h|;  pushes: block maxima of push
+    ratio, maxima  : from kernels.quiet, of this very motion
+    rtol           : tolerance of the velocity in each sample interval, relative to the scale of speeds
+    out            : (4,) receives max |u| [m], path [m], max transmitted acceleration [m/s2], flags
+    history        : (m, 4) receives ux, uy and the absolute accelerations at the samples, as long as it is
+    """
+    n = x.shape[0]
+    out[:] = 0.0
+    if n < 2 or peak == 0.0:
+        return 0.0
+    b, c = w * w, 2.0 * zeta * w
+    # Nothing to slip over a denormal friction: it divides grips by it.
+    if mu_k < 1e-300:
+        mu_k = 0.0
+    state, after, trial, load = np.zeros(5), np.zeros(5), np.zeros(5), np.zeros(6)
+    scale = peak * dt
+    slipping, guess = False, dt
+    recording = history.shape[0] > 0
+    i = 0
+    while i < n - 1:
+        if not slipping and w == 0.0 and not recording:
+            ahead = next_above(ratio, maxima, i, mu_s)
+            if ahead >= n:
+                out[2] = max(out[2], largest(push, pushes, i, n))
+                break
+            if ahead > i + 1:
+                out[2] = max(out[2], largest(push, pushes, i, ahead))
+                i = ahead - 1
+        if i < history.shape[0]:
+            _note(history, i, state, x[i], y[i], mu_k * max(0.0, G + z[i]), b, c, slipping)
+        slipping, guess = _stretch(
+            state, after, trial, load, x[i], (x[i + 1] - x[i]) / dt, y[i], (y[i + 1] - y[i]) / dt,
+            z[i], (z[i + 1] - z[i]) / dt, dt, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out,
+        )
+        scale = max(scale, math.hypot(state[2], state[3]))
+        i += 1
+    if n - 1 < history.shape[0]:
+        _note(history, n - 1, state, x[n - 1], y[n - 1], mu_k * max(0.0, G + z[n - 1]), b, c, slipping)
+    _coast(state, after, trial, load, slipping, guess, w, zeta, mu_s, mu_k, tail, scale, rtol, dt, out)
+    out[1] = state[4]
+    return math.hypot(state[0], state[1])
+
+
+@kernel
+def _note(
+    history: Array, i: int, state: Array, ax: float, ay: float, grip: float, b: float, c: float, slipping: bool
+) -> None:
+    history[i, 0], history[i, 1] = state[0], state[1]
+    speed = math.hypot(state[2], state[3])
+    if slipping and speed > 0.0:
+        drag = c + grip / speed
+        history[i, 2], history[i, 3] = -drag * state[2] - b * state[0], -drag * state[3] - b * state[1]
+    else:
+        history[i, 2], history[i, 3] = ax, ay
+
+
+@kernel
+def _coast(
+    state: Array, after: Array, trial: Array, load: Array, slipping: bool, guess: float, w: float, zeta: float,
+    mu_s: float, mu_k: float, tail: float, scale: float, rtol: float, dt: float, out: Array,
+) -> None:
+    # After the record: no excitation, full weight, until the body rests for good, the tail ends, or the cap.
+    if tail == 0.0:
+        return
+    b, c = w * w, 2.0 * zeta * w
+    endless = mu_k == 0.0 and (w == 0.0 or zeta == 0.0)
+    if tail < 0.0 and endless:
+        if slipping:
+            out[3] = float(int(out[3]) | CUT)
+        if w == 0.0:
+            return
+        tail = 2.0 * math.pi / w
+    stop = tail if tail > 0.0 else CAP
+    t = 0.0
+    span = max(dt, min(0.1, 0.05 * stop)) if w == 0.0 else min(0.25 / (w * (1.0 + zeta)), max(dt, 0.01))
+    load[0], load[1], load[2], load[3], load[4], load[5] = 0.0, 0.0, 0.0, 0.0, mu_k * G, 0.0
+    while t < stop:
+        now = min(span, stop - t)
+        slipping, guess = _piece(
+            state, after, trial, load, now, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out
+        )
+        t += now
+        if not slipping:
+            return
+        if tail < 0.0 and mu_k == 0.0:
+            energy = state[2] * state[2] + state[3] * state[3] + b * (state[0] * state[0] + state[1] * state[1])
+            if energy <= 1e-24 * b * out[0] * out[0]:
+                return
+    if slipping and tail < 0.0:
+        out[3] = float(int(out[3]) | CUT)
+
+
+@kernel
+def friction_plane_batch(
+    x: Array, y: Array, z: Array, ratio: Array, maxima: Array, push: Array, pushes: Array, dt: float, peak: float,
+    w: Array, zeta: Array, mu_s: Array, mu_k: Array, tail: float, rtol: float, results: Array,
+) -> None:
+    """Fill results (m, 5): max |u|, residual, path [m], max transmitted acceleration [m/s2], flags."""
+    nothing = np.empty((0, 4))
+    out = np.empty(4)
+    for k in range(w.shape[0]):
+        residual = friction_plane_one(
+            x, y, z, ratio, maxima, push, pushes, dt, peak, w[k], zeta[k], mu_s[k], mu_k[k], tail, rtol, out, nothing
+        )
+        results[k, 0], results[k, 1], results[k, 2], results[k, 3], results[k, 4] = out[0], residual, out[1], out[2], out[3]

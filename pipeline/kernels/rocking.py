@@ -1,0 +1,292 @@
+"""Rocking and overturning of a rigid body about two edges (Housner 1963), impacts located in time.
+
+With s = +1 on the edge towards +axis and -1 on the other, and phi = s theta >= 0:
+phi'' = c_s (-N sin(alpha_s - phi) - s a cos(alpha_s - phi)),  c_s = R_s / (rho^2 + R_s^2),  N = max(0, g + a_z).
+At phi = 0 the body lands on the other edge and its rate is multiplied by the restitution.
+"""
+
+import math
+
+import numpy as np
+
+from pipeline.kernels import kernel
+from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
+from pipeline.kernels.quiet import next_above
+from pipeline.quantities import Array, G
+
+OVERTURNED = 0.5 * math.pi
+"""Rotation [rad] from which no body comes back."""
+
+REST = 1e-4
+"""Rate, as a share of the smaller p alpha, below which a landing body is taken to be at rest: impacts are infinite in number."""
+
+COUNTED = 1e-3
+"""Rate, as a share of the smaller p alpha, from which an impact is counted."""
+
+IMPACTS_CAP = 200
+"""Impacts within one sample interval after which the body is put to rest until the next sample."""
+
+CAP = 300.0
+"""Seconds after the record at which a body that still rocks is cut off."""
+
+
+
+@kernel
+def _bend(phi: float, a: float, n: float, s: float, alpha: float, c: float) -> float:
+    lean = alpha - phi
+    return c * (-n * math.sin(lean) - s * a * math.cos(lean))
+
+
+@kernel
+def _step(
+    phi: float, rate: float, a0: float, a1: float, n0: float, n1: float, t: float, h: float,
+    s: float, alpha: float, c: float,
+) -> tuple[float, float]:
+    # One classical Runge-Kutta step from t to t + h.
+    half = 0.5 * h
+    am, nm = a0 + a1 * (t + half), n0 + n1 * (t + half)
+    k1 = _bend(phi, a0 + a1 * t, n0 + n1 * t, s, alpha, c)
+    r2 = rate + half * k1
+    k2 = _bend(phi + half * rate, am, nm, s, alpha, c)
+    r3 = rate + half * k2
+    k3 = _bend(phi + half * r2, am, nm, s, alpha, c)
+    r4 = rate + h * k3
+    k4 = _bend(phi + h * r3, a0 + a1 * (t + h), n0 + n1 * (t + h), s, alpha, c)
+    return phi + h / 6.0 * (rate + 2.0 * (r2 + r3) + r4), rate + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
+
+
+@kernel
+def _locate(
+    phi: float, rate: float, a0: float, a1: float, n0: float, n1: float, t: float, low: float, high: float,
+    s: float, alpha: float, c: float, what: int, level: float,
+) -> float:
+    # The step length between low and high after which phi (what 0) or its rate (what 1) reaches the level: Illinois,
+    # each trial being one step from the same beginning.
+    p, r = _step(phi, rate, a0, a1, n0, n1, t, low, s, alpha, c)
+    at_low = (p if what == 0 else r) - level
+    p, r = _step(phi, rate, a0, a1, n0, n1, t, high, s, alpha, c)
+    at_high = (p if what == 0 else r) - level
+    side = 0
+    tau = high
+    for _ in range(60):
+        if at_high == at_low:
+            break
+        tau = (low * at_high - high * at_low) / (at_high - at_low)
+        if not low < tau < high:
+            tau = 0.5 * (low + high)
+        p, r = _step(phi, rate, a0, a1, n0, n1, t, tau, s, alpha, c)
+        value = (p if what == 0 else r) - level
+        if value == 0.0 or high - low <= 1e-15 * high:
+            return tau
+        if (value > 0.0) == (at_high > 0.0):
+            high, at_high = tau, value
+            if side == 1:
+                at_low *= 0.5
+            side = 1
+        else:
+            low, at_low = tau, value
+            if side == -1:
+                at_high *= 0.5
+            side = -1
+    return tau
+
+
+@kernel
+def _lift_off(a0: float, a1: float, n0: float, n1: float, now: float, span: float, tan1: float, tan2: float) -> tuple[float, float]:
+    # First time in [now, span] at which an edge lifts, and the edge it then turns about; (-1, 0) if none does.
+    time, edge = -1.0, 0.0
+    for s in (1.0, -1.0):
+        hold = tan1 if s > 0.0 else tan2
+        begin = -s * (a0 + a1 * now) - hold * (n0 + n1 * now)
+        end = -s * (a0 + a1 * span) - hold * (n0 + n1 * span)
+        if begin > 0.0:
+            t = now
+        elif end > 0.0:
+            t = now + (span - now) * min(1.0, -begin / (end - begin))
+        else:
+            continue
+        if time < 0.0 or t < time:
+            time, edge = t, s
+    return time, edge
+
+
+@kernel
+def _stretch(
+    state: Array, a0: float, a1: float, n0: float, n1: float, span: float, clock: float,
+    body: Array, out: Array,
+) -> None:
+    # One stretch on which the excitation and the normal force are linear.
+    # state: s, phi, rate.  body: alpha1, alpha2, c1, c2, e12, e21.
+    s, phi, rate = state[0], state[1], state[2]
+    tan1, tan2 = math.tan(body[0]), math.tan(body[1])
+    # The smaller p alpha of the two edges: a mirrored body must count the same impacts.
+    slow = min(math.sqrt(body[2] * G) * body[0], math.sqrt(body[3] * G) * body[1])
+    t = 0.0
+    impacts = 0
+    for _ in range(10000):
+        if s == 0.0:
+            lift, edge = _lift_off(a0, a1, n0, n1, t, span, tan1, tan2)
+            if edge == 0.0:
+                break
+            t, s = lift, edge
+            phi, rate = 0.0, 0.0
+            if out[3] < 0.0:
+                out[3] = clock + t
+            if t >= span:
+                break
+        h = span - t
+        if h <= 1e-14 * span:
+            break
+        alpha, c = (body[0], body[2]) if s > 0.0 else (body[1], body[3])
+        p1, r1 = _step(phi, rate, a0, a1, n0, n1, t, h, s, alpha, c)
+        landed = -1.0
+        if phi > 0.0:
+            if p1 < 0.0:
+                landed = _locate(phi, rate, a0, a1, n0, n1, t, 0.0, h, s, alpha, c, 0, 0.0)
+            elif rate < 0.0 < r1:
+                dip = _locate(phi, rate, a0, a1, n0, n1, t, 0.0, h, s, alpha, c, 1, 0.0)
+                lowest, _r = _step(phi, rate, a0, a1, n0, n1, t, dip, s, alpha, c)
+                if lowest < 0.0:
+                    landed = _locate(phi, rate, a0, a1, n0, n1, t, 0.0, dip, s, alpha, c, 0, 0.0)
+        elif p1 <= 0.0:
+            # A hop that begins and ends within the step: find a time at which the body is up.
+            low = 0.5 * h
+            landed = 0.0
+            for _k in range(50):
+                p, _r = _step(phi, rate, a0, a1, n0, n1, t, low, s, alpha, c)
+                if p > 0.0:
+                    landed = _locate(phi, rate, a0, a1, n0, n1, t, low, h, s, alpha, c, 0, 0.0)
+                    break
+                low *= 0.5
+        if landed < 0.0:
+            if p1 >= OVERTURNED:
+                tau = _locate(phi, rate, a0, a1, n0, n1, t, 0.0, h, s, alpha, c, 0, OVERTURNED)
+                out[0] = max(out[0], OVERTURNED / alpha)
+                out[1], out[2] = 1.0, clock + t + tau
+                break
+            _peak(phi, rate, a0, a1, n0, n1, t, h, s, alpha, c, r1, out)
+            out[0] = max(out[0], p1 / alpha)
+            phi, rate = p1, r1
+            break
+        _p, r1 = _step(phi, rate, a0, a1, n0, n1, t, landed, s, alpha, c)
+        _peak(phi, rate, a0, a1, n0, n1, t, landed, s, alpha, c, r1, out)
+        t += landed
+        if abs(r1) >= COUNTED * slow:
+            out[4] += 1.0
+        rate = max(0.0, -r1) * (body[4] if s > 0.0 else body[5])
+        s = -s
+        phi = 0.0
+        alpha, c = (body[0], body[2]) if s > 0.0 else (body[1], body[3])
+        impacts += 1
+        if impacts > IMPACTS_CAP:
+            out[5] = float(int(out[5]) | EVENT_CAP)
+            s, rate = 0.0, 0.0
+            break
+        if rate < REST * slow:
+            s, rate = 0.0, 0.0
+    state[0], state[1], state[2] = s, phi, rate
+
+
+@kernel
+def _peak(
+    phi: float, rate: float, a0: float, a1: float, n0: float, n1: float, t: float, h: float,
+    s: float, alpha: float, c: float, after: float, out: Array,
+) -> None:
+    if rate > 0.0 > after and (phi + h * rate) / alpha > out[0]:
+        tau = _locate(phi, rate, a0, a1, n0, n1, t, 0.0, h, s, alpha, c, 1, 0.0)
+        top, _r = _step(phi, rate, a0, a1, n0, n1, t, tau, s, alpha, c)
+        out[0] = max(out[0], top / alpha)
+
+
+@kernel
+def rocking_one(
+    x: Array, z: Array, ratio: Array, maxima: Array, dt: float, peak: float, body: Array, initial: float, tail: float,
+    refine: int, out: Array, history: Array,
+) -> None:
+    """Integrate one body.
+
+    x, z           : (n,) m/s2;  peak: the largest |x|
+    ratio, maxima  : from kernels.quiet, of this very motion
+    body           : alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]; 1 is the edge towards +axis
+    initial        : rad, released from rest
+    out            : (6,) receives max ratio, overturned (0, 1), time of overturning, time of uplift [s] (-1: never),
+                     impacts, flags
+    history        : (m, 1) receives theta at the samples, as long as it is
+    """
+    n = x.shape[0]
+    out[:] = 0.0
+    out[2] = -1.0
+    out[3] = -1.0
+    state = np.zeros(3)
+    if initial != 0.0:
+        state[0], state[1] = (1.0, initial) if initial > 0.0 else (-1.0, -initial)
+        out[0] = state[1] / (body[0] if initial > 0.0 else body[1])
+        if state[1] >= OVERTURNED:
+            out[1], out[2] = 1.0, 0.0
+            return
+    fastest = math.sqrt(max(body[2], body[3]) * (G + peak))
+    pieces = max(1, int(math.ceil(fastest * dt / 0.1))) * refine
+    step = dt / pieces
+    weakest = math.tan(min(body[0], body[1]))
+    recording = history.shape[0] > 0
+    i = 0
+    while i < n - 1:
+        if state[0] == 0.0 and not recording:
+            ahead = next_above(ratio, maxima, i, weakest)
+            if ahead >= n:
+                break
+            i = max(i, ahead - 1)
+        if i < history.shape[0]:
+            history[i, 0] = state[0] * state[1]
+        a1, n0, n1 = (x[i + 1] - x[i]) / dt, G + z[i], (z[i + 1] - z[i]) / dt
+        end = n0 + n1 * dt
+        cut = -1.0
+        if n0 < 0.0 or end < 0.0:
+            out[5] = float(int(out[5]) | CONTACT_LOST)
+            if n0 > 0.0 or end > 0.0:
+                cut = -n0 / n1
+        for j in range(pieces):
+            t0, t1 = j * step, (j + 1) * step
+            clock = i * dt + t0
+            if t0 < cut < t1:
+                held, after = (n1, 0.0) if n0 > 0.0 else (0.0, n1)
+                _stretch(
+                    state, x[i] + a1 * t0, a1, max(0.0, n0 + n1 * t0), held, cut - t0, clock, body, out
+                )
+                if out[1] == 0.0:
+                    _stretch(state, x[i] + a1 * cut, a1, 0.0, after, t1 - cut, i * dt + cut, body, out)
+            else:
+                held = n1 if max(n0 + n1 * t0, n0 + n1 * t1) > 0.0 else 0.0
+                _stretch(state, x[i] + a1 * t0, a1, max(0.0, n0 + n1 * t0), held, step, clock, body, out)
+            if out[1] > 0.0:
+                if i + 1 < history.shape[0]:
+                    history[i + 1 :, 0] = state[0] * OVERTURNED
+                return
+        i += 1
+    if n - 1 < history.shape[0]:
+        history[n - 1, 0] = state[0] * state[1]
+    # After the record: free rocking until rest or overturning, the end of the tail, or the cap.
+    stop = tail if tail >= 0.0 else CAP
+    h = 0.08 / math.sqrt(max(body[2], body[3]) * G) / refine
+    t = 0.0
+    while state[0] != 0.0 and t < stop:
+        now = min(h, stop - t)
+        _stretch(state, 0.0, 0.0, G, 0.0, now, (n - 1) * dt + t, body, out)
+        if out[1] > 0.0:
+            return
+        t += now
+    if state[0] != 0.0 and tail < 0.0:
+        out[5] = float(int(out[5]) | CUT)
+
+
+@kernel
+def rocking_batch(
+    x: Array, z: Array, ratio: Array, maxima: Array, dt: float, peak: float, bodies: Array, initial: Array, tail: float,
+    refine: int, results: Array,
+) -> None:
+    """Fill results (m, 6) as in rocking_one for m bodies, bodies (m, 6)."""
+    nothing = np.empty((0, 1))
+    for k in range(bodies.shape[0]):
+        rocking_one(
+            x, z, ratio, maxima, dt, peak, bodies[k], initial[k], tail, refine, results[k], nothing
+        )

@@ -1,0 +1,123 @@
+"""What several generic models share: flags in words, excitations prepared once, error floors."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from pipeline.kernels import flags
+from pipeline.kernels.quiet import block_maxima, demand_ratio
+from pipeline.quantities import Array, G
+from pipeline.records import Excitation, Scene, Support
+
+SENSITIVE = 8
+NO_TILT = 16
+NO_HISTORY = 32
+
+NOTES = {
+    flags.CONTACT_LOST: "contact lost (vertical acceleration below -g); flight and landing are not modelled",
+    flags.CUT: "still moving when the tail was cut",
+    flags.EVENT_CAP: "more impacts than are followed in one sample interval",
+    SENSITIVE: "sensitive: the outcome changes with the step of integration",
+    NO_TILT: "no tilt reproduces an acceleration of 1 g or more",
+    NO_HISTORY: "a closed-form screen, not a response",
+}
+"""What each bit of a result's note means."""
+
+ROUNDING = 1e-12
+"""Relative error granted to a closed form integrated over a long record."""
+
+
+def words(bits: float) -> str:
+    """Return the note of a result in words."""
+    return "; ".join(text for bit, text in NOTES.items() if int(bits) & bit)
+
+
+class Quiet:
+    """An excitation with the arrays that let resting objects skip ahead, prepared once for all objects."""
+
+    def __init__(self, motion: Excitation) -> None:
+        self.x = np.ascontiguousarray(motion.x)
+        self.y = np.zeros_like(self.x) if motion.y is None else np.ascontiguousarray(motion.y)
+        self.z = np.ascontiguousarray(motion.z)
+        self.dt = motion.dt
+        self.push = np.hypot(self.x, self.y)
+        self.peak = float(self.push.max())
+        self.pushes = block_maxima(self.push)
+        self.ratio = demand_ratio(self.x, self.y, self.z)
+        self.maxima = block_maxima(self.ratio)
+        self.tail = -1.0 if motion.tail is None else float(motion.tail)
+
+
+def shaken(motion: Excitation) -> float:
+    """Return the largest acceleration of the pivot [m/s2], all directions together."""
+    square = motion.x**2 + motion.z**2
+    if motion.y is not None:
+        square = square + motion.y**2
+    return float(np.sqrt(square.max()))
+
+
+def largest_push(motion: Excitation) -> float:
+    """Return A_max [m/s2]: the peak along the direction, or the peak resultant of two."""
+    return float(np.max(np.abs(motion.x) if motion.y is None else np.hypot(motion.x, motion.y)))
+
+
+def largest_speed(motion: Excitation) -> float:
+    """Return V_max [m/s]: the peak ground velocity from rest, at the samples and inside the intervals."""
+    speeds = [_velocity(motion.x, motion.dt)]
+    if motion.y is None:
+        v, a = speeds[0], motion.x
+        best = float(np.max(np.abs(v)))
+        turning = np.flatnonzero(a[:-1] * a[1:] < 0.0)
+        if turning.size:
+            # Where the acceleration changes sign inside an interval the velocity has its peak there.
+            a0, a1 = a[turning], a[turning + 1]
+            inside = v[turning] + 0.5 * a0 * motion.dt * a0 / (a0 - a1)
+            best = max(best, float(np.max(np.abs(inside))))
+        return best
+    return float(np.max(np.hypot(speeds[0], _velocity(motion.y, motion.dt))))
+
+
+def _velocity(a: Array, dt: float) -> Array:
+    return np.concatenate([[0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1]))])
+
+
+def lift_ratios(motion: Excitation) -> tuple[float, float]:
+    """Return the largest -a / N and a / N over time, N = max(0, g + a_z): what lifts either edge of a body of slope 1.
+
+    For two directions both are the largest |a_h| / N.  Infinite where contact is lost under a push.
+    """
+    weight = np.maximum(0.0, G + motion.z)
+    if motion.y is not None:
+        worst = _ratio(np.hypot(motion.x, motion.y), weight)
+        return worst, worst
+    return _ratio(-motion.x, weight), _ratio(motion.x, weight)
+
+
+def _ratio(push: Array, weight: Array) -> float:
+    push = np.maximum(push, 0.0)
+    free = (weight == 0.0) & (push > 0.0)
+    if free.any():
+        return float("inf")
+    return float(np.max(np.divide(push, weight, out=np.zeros_like(push), where=weight > 0.0)))
+
+
+def broadcast(parameters: Mapping[str, Array], name: str) -> Array:
+    """Return one parameter as a contiguous array."""
+    return np.ascontiguousarray(parameters[name], dtype=np.float64)
+
+
+def needs(scene: Scene, *names: str) -> str:
+    """Return "" when the scene has all these parameters, else which are missing."""
+    missing = [n for n in names if n not in scene.parameters]
+    return f"not known: {', '.join(missing)}" if missing else ""
+
+
+def unless_free(scene: Scene, what: str) -> str:
+    """Return the reason why an object that is not free on its support does not {what}; "" when it is free."""
+    reasons = {
+        Support.FASTENED: f"it is fastened to its support, so it does not {what}",
+        Support.HUNG: f"it hangs on a wall, so it does not {what}",
+        Support.SUSPENDED: f"it hangs from above, so it does not {what}",
+        Support.ISOLATED: f"it is fastened to an isolator, so it does not {what} on it",
+    }
+    return reasons.get(scene.support, "")

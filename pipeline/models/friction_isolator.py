@@ -1,0 +1,55 @@
+"""Generic isolator: a low-friction interface (Agbabian et al. 1991, sec. 2.6 and Table 2)."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from pipeline.models.common import needs
+from pipeline.models.friction import kinetic, stick_slip, stick_slip_trace
+from pipeline.models.sliding import FRICTION_KINETIC, FRICTION_STATIC
+from pipeline.quantities import Array, Quantity
+from pipeline.records import Columns, Excitation, Model, Scene, Support
+
+
+def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+    mu_s = parameters["friction_static"]
+    free = np.zeros_like(mu_s)
+    out = stick_slip(motion, free, free, mu_s, kinetic(parameters), refine)
+    # The error of the first output: friction passes on exactly mu N while slipping and the base's own while at rest.
+    out["error"] = 1e-12 * out["acceleration"]
+    del out["path_length"]
+    return out
+
+
+def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
+    mu_s, mu_k = parameters["friction_static"], parameters["friction_kinetic"]
+    return stick_slip_trace(motion, 0.0, 0.0, mu_s, mu_s if np.isnan(mu_k) else mu_k)
+
+
+def _applies(scene: Scene) -> str:
+    if scene.support is not Support.ISOLATED or scene.item.isolator != FRICTION_ISOLATOR.name:
+        return "it does not stand on a friction isolator"
+    return needs(scene, "friction_static")
+
+
+FRICTION_ISOLATOR = Model(
+    name="friction_isolator",
+    title="Friction isolator",
+    kind="isolator",
+    source="Agbabian et al. 1991, sec. 2.6",
+    equation="u'' = -a_h - mu_k N u'/|u'|; passes on a_h + u''",
+    needs=(FRICTION_STATIC, FRICTION_KINETIC),
+    gives=(
+        Quantity("acceleration", "m/s2", "largest horizontal acceleration passed on"),
+        Quantity("displacement", "m", "largest distance from where it stood"),
+        Quantity("residual", "m", "distance from where it stood when it rests"),
+    ),
+    directions=2,
+    run=_run,
+    trace=_trace,
+    demand="displacement",
+    capacity="clearance",
+    applies=_applies,
+    sentence="On its low-friction pad it slides up to {demand}; there is room for {capacity}.",
+    fails="slides",
+)

@@ -1,0 +1,58 @@
+"""Generic isolator: horizontal, with spring, viscous damping and Coulomb friction (Agbabian et al. 1991, Figure 6)."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from pipeline.models.common import needs
+from pipeline.models.friction import stick_slip, stick_slip_trace
+from pipeline.models.sliding import DIRECTIONS
+from pipeline.quantities import Array, Quantity
+from pipeline.records import Columns, Excitation, Model, Scene, Support
+
+
+def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+    mu = parameters["friction"]
+    w = 2.0 * np.pi * parameters["frequency"]
+    out = stick_slip(motion, w, parameters["damping"], mu, mu, refine)
+    # The kernel's error is of the displacement; the acceleration follows it through the spring and the dashpot.
+    out["error"] = out["error"] * w * (w + 2.0 * parameters["damping"] * w) + 1e-12 * out["acceleration"]
+    del out["path_length"]
+    return out
+
+
+def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
+    mu = parameters["friction"]
+    return stick_slip_trace(motion, 2.0 * np.pi * parameters["frequency"], parameters["damping"], mu, mu)
+
+
+def _applies(scene: Scene) -> str:
+    if scene.support is not Support.ISOLATED or scene.item.isolator != HORIZONTAL_ISOLATOR.name:
+        return "it does not stand on a horizontal isolator"
+    return needs(scene, "frequency", "damping", "friction", "stroke")
+
+
+FREQUENCY = Quantity("frequency", "Hz", "undamped natural frequency", 0.0, exclusive=True)
+DAMPING = Quantity("damping", "-", "viscous damping ratio", 0.0)
+
+HORIZONTAL_ISOLATOR = Model(
+    name="horizontal_isolator",
+    title="Horizontal isolator",
+    kind="isolator",
+    source="Agbabian et al. 1991, sec. 2.6 and Figure 6",
+    equation="u'' + 2 zeta w u' + w^2 u + mu N u'/|u'| = -a_h, with stick phases; passes on a_h + u''",
+    needs=(FREQUENCY, DAMPING, Quantity("friction", "-", "Coulomb friction coefficient", 0.0), DIRECTIONS),
+    gives=(
+        Quantity("acceleration", "m/s2", "largest horizontal acceleration passed on"),
+        Quantity("displacement", "m", "largest stroke"),
+        Quantity("residual", "m", "offset when it rests"),
+    ),
+    directions=0,
+    run=_run,
+    trace=_trace,
+    demand="displacement",
+    capacity="stroke",
+    applies=_applies,
+    sentence="Its isolator moves {demand}; its stroke is {capacity}.",
+    fails="exceeds the stroke of its isolator",
+)

@@ -1,0 +1,67 @@
+"""The damped oscillator (Nigam and Jennings 1969): response spectra, flexible plinths, and the core of two models."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from pipeline.kernels.oscillator import oscillator_batch, oscillator_one
+from pipeline.models.common import ROUNDING
+from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
+from pipeline.quantities import Array, Quantity
+from pipeline.records import Columns, Excitation, Model, Scene
+
+
+def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array, refine: int) -> tuple[Array, Array]:
+    """Return the largest |u| [m] and |a + share u''| [m/s2] of n oscillators, (n,) each."""
+    max_u, max_y = np.empty(w.size), np.empty(w.size)
+    tail = -1.0 if motion.tail is None else float(motion.tail)
+    arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta, share)]
+    oscillator_batch(np.ascontiguousarray(motion.x), motion.dt, *arrays, tail, refine, max_u, max_y)
+    return max_u, max_y
+
+
+def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+    w = 2.0 * np.pi * parameters["frequency"]
+    displacement, absolute = oscillate(motion, w, parameters["damping"], np.ones_like(w), refine)
+    return {
+        "displacement": displacement,
+        "pseudo_acceleration": w**2 * displacement,
+        "absolute_acceleration": absolute,
+        "error": ROUNDING * displacement,
+        "note": np.zeros_like(w),
+    }
+
+
+def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
+    history = np.zeros((motion.x.size, 2))
+    w = 2.0 * np.pi * parameters["frequency"]
+    oscillator_one(np.ascontiguousarray(motion.x), motion.dt, w, parameters["damping"], 1.0, 0.0, 1, history)
+    # history holds a + u'' with the sign of the base's acceleration.
+    return {"u_x": history[:, 0], "a_x": history[:, 1]}
+
+
+def _applies(_scene: Scene) -> str:
+    return "a building block of other models and of response spectra, not an object"
+
+
+OSCILLATOR = Model(
+    name="oscillator",
+    title="Oscillator",
+    kind="flexible",
+    source="Nigam and Jennings 1969 (exact for piecewise-linear input)",
+    equation="u'' + 2 zeta w u' + w^2 u = -a",
+    needs=(FREQUENCY, DAMPING),
+    gives=(
+        Quantity("displacement", "m", "largest |u|"),
+        Quantity("pseudo_acceleration", "m/s2", "w^2 times the displacement"),
+        Quantity("absolute_acceleration", "m/s2", "largest |a + u''|"),
+    ),
+    directions=1,
+    run=_run,
+    trace=_trace,
+    demand="displacement",
+    capacity="clearance",
+    applies=_applies,
+    sentence="It moves {demand} against its base; there is room for {capacity}.",
+    fails="moves too far",
+)

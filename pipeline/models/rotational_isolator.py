@@ -1,0 +1,64 @@
+"""Generic isolator: rotational, a damped oscillator about the base (Agbabian et al. 1991, sec. 2.6)."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from pipeline.kernels.oscillator import oscillator_one
+from pipeline.models.common import ROUNDING, needs
+from pipeline.models.horizontal_isolator import DAMPING
+from pipeline.models.oscillator import oscillate
+from pipeline.quantities import Array, Quantity
+from pipeline.records import Columns, Excitation, Model, Scene, Support
+
+
+def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+    # With r = I / (m h^2), theta = u / (r h) where u is the displacement of the plain oscillator, and the centre of
+    # gravity feels a + h theta'' = a + u'' / r.
+    w = 2.0 * np.pi * parameters["frequency"]
+    share = 1.0 / parameters["inertia_ratio"]
+    displacement, acceleration = oscillate(motion, w, parameters["damping"], share, refine)
+    rotation = displacement * share / parameters["cg_height"]
+    return {"rotation": rotation, "acceleration": acceleration, "error": ROUNDING * rotation, "note": np.zeros_like(w)}
+
+
+def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
+    history = np.zeros((motion.x.size, 2))
+    w = 2.0 * np.pi * parameters["frequency"]
+    share = 1.0 / parameters["inertia_ratio"]
+    oscillator_one(np.ascontiguousarray(motion.x), motion.dt, w, parameters["damping"], share, 0.0, 1, history)
+    return {"rotation": history[:, 0] * share / parameters["cg_height"], "a_x": history[:, 1]}
+
+
+def _applies(scene: Scene) -> str:
+    if scene.support is not Support.ISOLATED or scene.item.isolator != ROTATIONAL_ISOLATOR.name:
+        return "it does not stand on a rotational isolator"
+    return needs(scene, "frequency", "damping", "cg_height", "inertia_ratio", "rotation_limit")
+
+
+ROTATIONAL_ISOLATOR = Model(
+    name="rotational_isolator",
+    title="Rotational isolator",
+    kind="isolator",
+    source="Agbabian et al. 1991, sec. 2.6",
+    equation="I theta'' + c theta' + (k - m g h) theta = -m h a_h",
+    needs=(
+        # k <= m g h has no frequency: such a pad would not let the object stand up, and there is nothing to enter.
+        Quantity("frequency", "Hz", "of the standing system, gravity included", 0.0, exclusive=True),
+        DAMPING,
+        Quantity("cg_height", "m", "centre of gravity above the pivot", 0.0, exclusive=True),
+        Quantity("inertia_ratio", "-", "I / (m h^2) about the pivot", 0.0, exclusive=True),
+    ),
+    gives=(
+        Quantity("rotation", "rad", "largest |theta|"),
+        Quantity("acceleration", "m/s2", "largest horizontal acceleration of the centre of gravity"),
+    ),
+    directions=1,
+    run=_run,
+    trace=_trace,
+    demand="rotation",
+    capacity="rotation_limit",
+    applies=_applies,
+    sentence="Its pad lets it turn by {demand}; {capacity} is allowed.",
+    fails="turns too far on its pad",
+)

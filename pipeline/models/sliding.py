@@ -1,0 +1,57 @@
+"""Generic model 2: rigid body sliding (Agbabian et al. 1991, sec. 2.2 and Figures 3 and 4; Newmark 1965)."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from pipeline.models.common import needs, unless_free
+from pipeline.models.friction import kinetic, stick_slip, stick_slip_trace
+from pipeline.quantities import Array, Quantity
+from pipeline.records import Columns, Excitation, Model, Scene
+
+FRICTION_STATIC = Quantity("friction_static", "-", "coefficient at rest", 0.0)
+FRICTION_KINETIC = Quantity("friction_kinetic", "-", "coefficient while slipping; else the static one", 0.0, optional=True)
+DIRECTIONS = Quantity("directions", "-", "2, or 1 along the angle", 1.0, 2.0, optional=True, default=2.0)
+
+
+def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+    mu_s = parameters["friction_static"]
+    free = np.zeros_like(mu_s)
+    out = stick_slip(motion, free, free, mu_s, kinetic(parameters), refine)
+    del out["acceleration"]
+    return out
+
+
+def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
+    mu_s, mu_k = parameters["friction_static"], parameters["friction_kinetic"]
+    return stick_slip_trace(motion, 0.0, 0.0, mu_s, mu_s if np.isnan(mu_k) else mu_k)
+
+
+def _applies(scene: Scene) -> str:
+    return unless_free(scene, "slide") or needs(scene, "friction_static")
+
+
+SLIDING = Model(
+    name="sliding",
+    title="Sliding",
+    kind="rigid",
+    source="Agbabian et al. 1991, sec. 2.2 and Figure 4; Newmark 1965",
+    equation="u'' = -a_h - mu_k N u'/|u'|, N = max(0, g + a_z); at rest while |a_h| <= mu_s N",
+    needs=(FRICTION_STATIC, FRICTION_KINETIC, DIRECTIONS),
+    gives=(
+        Quantity("displacement", "m", "largest distance from where it stood"),
+        Quantity("residual", "m", "distance from where it stood when it rests"),
+        Quantity("path_length", "m", "length of the path on its support"),
+    ),
+    directions=0,
+    run=_run,
+    trace=_trace,
+    demand="displacement",
+    capacity="clearance",
+    applies=_applies,
+    sentence=(
+        "It slides up to {demand} from where it stands (its friction may be lower or higher: {low} to {high}); there "
+        "is room for {capacity}."
+    ),
+    fails="slides",
+)

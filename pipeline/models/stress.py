@@ -1,0 +1,130 @@
+"""Generic models 3 and 6: stress at a critical section, rigid and flexible (Agbabian et al. 1991, sec. 2.3 and 2.5)."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from pipeline.models.common import NO_TILT, ROUNDING, largest_push, needs
+from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
+from pipeline.models.oscillator import oscillate
+from pipeline.quantities import Array, G, Quantity
+from pipeline.records import Columns, Excitation, Model, Scene, Support
+
+RIGID_PERIOD = 0.06
+"""Period [s] up to which ASCE 7 calls a component rigid."""
+
+_SECTION = (
+    Quantity("mass", "kg", "of the part above the critical section", 0.0, exclusive=True),
+    Quantity("lever", "m", "from the section to the centre of gravity of that part", 0.0),
+    Quantity("area", "m2", "of the critical section", 0.0, exclusive=True),
+    Quantity("section_modulus", "m3", "of the critical section", 0.0, exclusive=True),
+)
+_STRESSES = (
+    Quantity("tension", "Pa", "largest tensile stress: bending less self-weight"),
+    Quantity("compression", "Pa", "largest compressive stress: bending plus self-weight"),
+    Quantity("shear", "Pa", "average over the section"),
+    Quantity("tilt", "deg", "static tilt with the same effect: sin(tilt) = A_max / g"),
+)
+
+
+def section_stresses(push: Array, parameters: Mapping[str, Array]) -> Columns:
+    """Return the stresses and the equivalent tilt under a horizontal acceleration push [m/s2] (n,).
+
+    sigma = m A l / S -/+ m g / A; tau = m A / A.  The tilt is empty from 1 g on: no tilt reproduces it.
+    """
+    mass, area = parameters["mass"], parameters["area"]
+    bending = mass * push * parameters["lever"] / parameters["section_modulus"]
+    weight = mass * G / area
+    share = push / G
+    too_much = share >= 1.0
+    tilt = np.degrees(np.arcsin(np.where(too_much, 0.0, share)))
+    tension = bending - weight
+    return {
+        "tension": tension,
+        "compression": bending + weight,
+        "shear": mass * push / area,
+        "tilt": np.where(too_much, np.nan, tilt),
+        "error": ROUNDING * np.abs(tension),
+        "note": np.where(too_much, float(NO_TILT), 0.0),
+    }
+
+
+def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:  # noqa: ARG001
+    return section_stresses(parameters["amplification"] * largest_push(motion), parameters)
+
+
+def _run_flexible(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+    w = 2.0 * np.pi * parameters["frequency"]
+    displacement, _ = oscillate(motion, w, parameters["damping"], np.ones_like(w), refine)
+    push = w**2 * displacement
+    out = section_stresses(push, parameters)
+    error, note = out.pop("error"), out.pop("note")
+    return {**out, "pseudo_acceleration": push, "error": error, "note": note}
+
+
+def _screen(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
+    return _run(motion, parameters, 1)
+
+
+def _say(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
+    if np.isnan(row["tilt"]):
+        return "Tilt test: the peak acceleration is 1 g or more; no tilt reproduces it."
+    return f"Tilt test: would it break if it were tilted {row['tilt']:.0f} degrees?"
+
+
+def _holds(scene: Scene, flexible: bool) -> str:
+    if scene.support in (Support.HUNG, Support.SUSPENDED):
+        return "it hangs: its own weight is all that its section bears"
+    missing = needs(scene, "mass", "lever", "area", "section_modulus", "allowable_stress")
+    if missing:
+        return f"its critical section is not known ({missing})"
+    frequency = scene.parameters.get("frequency")
+    bends = frequency is not None and frequency.value < 1.0 / RIGID_PERIOD
+    if flexible and not bends:
+        return "it is rigid: no natural period above 0.06 s is known or estimated"
+    if not flexible and bends:
+        return "it is flexible: the dynamic stress model takes its place"
+    return ""
+
+
+_SENTENCE = (
+    "Held at its base, its critical section reaches {demand} (the range of its uncertain measures gives {low} to {high}); "
+    "{capacity} is allowed."
+)
+
+STRESS = Model(
+    name="stress",
+    title="Stress",
+    kind="rigid",
+    source="Agbabian et al. 1991, sec. 2.3",
+    equation="F = m A_max; sigma = M/S -/+ N/A",
+    needs=(*_SECTION, Quantity("amplification", "-", "of A_max", 0.0, optional=True, default=1.0)),
+    gives=_STRESSES,
+    directions=1,
+    run=_run,
+    screen=_screen,
+    say_screen=_say,
+    demand="tension",
+    capacity="allowable_stress",
+    applies=lambda scene: _holds(scene, flexible=False),
+    sentence=_SENTENCE,
+    fails="breaks",
+)
+
+FLEXIBLE_STRESS = Model(
+    name="flexible_stress",
+    title="Dynamic stress",
+    kind="flexible",
+    source="Agbabian et al. 1991, sec. 2.5",
+    equation="sigma = M/S -/+ N/A under F = m PSA(f, zeta)",
+    needs=(*_SECTION, FREQUENCY, DAMPING),
+    gives=(*_STRESSES, Quantity("pseudo_acceleration", "m/s2", "peak of the damped oscillator that takes A_max's place")),
+    directions=1,
+    run=_run_flexible,
+    say_screen=_say,
+    demand="tension",
+    capacity="allowable_stress",
+    applies=lambda scene: _holds(scene, flexible=True),
+    sentence=_SENTENCE,
+    fails="breaks",
+)

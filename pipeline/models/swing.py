@@ -1,0 +1,142 @@
+"""Generic models 4 and 5: swinging in two and in three dimensions (Agbabian et al. 1991, sec. 2.4 and Figure 5)."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from pipeline.kernels.pendulum import pendulum_batch, pendulum_one
+from pipeline.kernels.spherical import spherical_batch, spherical_one
+from pipeline.models.common import NO_HISTORY, broadcast, needs, shaken
+from pipeline.models.horizontal_isolator import DAMPING
+from pipeline.quantities import Array, Quantity
+from pipeline.records import Columns, Excitation, Model, Scene, Support
+
+CHANDELIER = 1.4
+"""The paper's factor on the undamped two-dimensional result for an object that swings in all directions."""
+
+LENGTH = Quantity("length", "m", "from the point of suspension to the centre of gravity", 0.0, exclusive=True)
+
+
+def _swept(angle: Array) -> Array:
+    # |L sin theta| over the whole swing: a pendulum that passed the horizontal has been as far out as it is long.
+    return np.where(angle >= 0.5 * np.pi, 1.0, np.sin(np.minimum(angle, 0.5 * np.pi)))
+
+
+def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+    length, zeta = broadcast(parameters, "length"), broadcast(parameters, "damping")
+    x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
+    tail = -1.0 if motion.tail is None else float(motion.tail)
+    coarse, fine = np.empty((length.size, 2)), np.empty((length.size, 2))
+    for steps, results in ((refine, coarse), (2 * refine, fine)):
+        pendulum_batch(x, z, motion.dt, shaken(motion), length, zeta, tail, steps, results)
+    displacement = length * _swept(fine[:, 0])
+    return {
+        "displacement": displacement,
+        "rotation": fine[:, 0],
+        "error": np.abs(displacement - length * _swept(coarse[:, 0])) + 1e-12 * displacement,
+        "note": fine[:, 1],
+    }
+
+
+def _run_3d(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+    length, zeta = broadcast(parameters, "length"), broadcast(parameters, "damping")
+    x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
+    y = np.zeros_like(x) if motion.y is None else np.ascontiguousarray(motion.y)
+    tail = -1.0 if motion.tail is None else float(motion.tail)
+    coarse, fine = np.empty((length.size, 2)), np.empty((length.size, 2))
+    for steps, results in ((refine, coarse), (2 * refine, fine)):
+        spherical_batch(x, y, z, motion.dt, shaken(motion), length, zeta, tail, steps, results)
+    displacement = length * fine[:, 0]
+    return {
+        "displacement": displacement,
+        "error": length * np.abs(fine[:, 0] - coarse[:, 0]) + 1e-12 * displacement,
+        "note": fine[:, 1],
+    }
+
+
+def _screen_3d(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
+    undamped = {"length": parameters["length"], "damping": np.zeros_like(parameters["length"])}
+    swings = [_run(Excitation(motion.dt, motion.x, None, motion.z, motion.tail), undamped, 1)["displacement"]]
+    if motion.y is not None:
+        other = Excitation(motion.dt, motion.y, None, motion.z, motion.tail)
+        swings.append(_run(other, undamped, 1)["displacement"])
+    nothing = np.full_like(parameters["length"], np.nan)
+    return {
+        "displacement": CHANDELIER * np.maximum.reduce(swings),
+        "error": nothing,
+        "note": np.full_like(nothing, float(NO_HISTORY)),
+    }
+
+
+def _say_3d(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
+    return f"1.4 times the undamped swing in one plane: {100.0 * row['displacement']:.0f} cm."
+
+
+def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
+    history = np.zeros((motion.x.size, 1))
+    pendulum_one(
+        np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z), motion.dt, shaken(motion),
+        parameters["length"], parameters["damping"], 0.0, 2, history,
+    )
+    return {"rotation": history[:, 0], "u_x": parameters["length"] * np.sin(history[:, 0])}
+
+
+def _trace_3d(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
+    history = np.zeros((motion.x.size, 2))
+    y = np.zeros_like(motion.x) if motion.y is None else motion.y
+    spherical_one(
+        np.ascontiguousarray(motion.x), np.ascontiguousarray(y), np.ascontiguousarray(motion.z), motion.dt,
+        shaken(motion), parameters["length"], parameters["damping"], 0.0, 2, history,
+    )
+    return {"u_x": parameters["length"] * history[:, 0], "u_y": parameters["length"] * history[:, 1]}
+
+
+def _hangs(scene: Scene, support: Support, why: str) -> str:
+    return why if scene.support is not support else needs(scene, "length", "damping")
+
+
+_SENTENCE = (
+    "It swings up to {demand} to the side (the range of its uncertain measures gives {low} to {high}); there is room for "
+    "{capacity}."
+)
+
+SWING = Model(
+    name="swing",
+    title="Swinging",
+    kind="flexible",
+    source="Agbabian et al. 1991, sec. 2.4 and Figure 5",
+    equation="theta'' + 2 C_v w theta' + ((g + a_z)/L) sin theta = -(a_h/L) cos theta, w = sqrt(g/L)",
+    needs=(LENGTH, DAMPING),
+    gives=(
+        Quantity("displacement", "m", "largest |L sin theta|"),
+        Quantity("rotation", "rad", "largest |theta|"),
+    ),
+    directions=1,
+    run=_run,
+    trace=_trace,
+    demand="displacement",
+    capacity="clearance",
+    applies=lambda scene: _hangs(scene, Support.HUNG, "it does not hang on a wall"),
+    sentence=_SENTENCE,
+    fails="swings",
+)
+
+SWING_3D = Model(
+    name="swing_3d",
+    title="Swinging in all directions",
+    kind="flexible",
+    source="Agbabian et al. 1991, sec. 2.4 (estimate); spherical pendulum (history)",
+    equation="q'' = -|q'|^2 q + (I - q q^T) f - 2 zeta w q', f = -(a_x, a_y, g + a_z)/L",
+    needs=(LENGTH, DAMPING),
+    gives=(Quantity("displacement", "m", "largest horizontal distance from the plumb line"),),
+    directions=2,
+    run=_run_3d,
+    screen=_screen_3d,
+    say_screen=_say_3d,
+    trace=_trace_3d,
+    demand="displacement",
+    capacity="clearance",
+    applies=lambda scene: _hangs(scene, Support.SUSPENDED, "it does not hang from one point"),
+    sentence=_SENTENCE,
+    fails="swings",
+)

@@ -1,0 +1,196 @@
+"""One model, one motion, many parameter sets, one fidelity."""
+
+from collections.abc import Mapping
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pipeline.models import model_named
+from pipeline.models.common import words
+from pipeline.quantities import Array, Quantity
+from pipeline.records import Columns, Excitation, Model, Motion
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FIDELITIES = ("screen", "history", "reference")
+"""What ``respond`` can be asked for, from the paper's closed form to the tight-tolerance integration."""
+
+REFINE = {"history": 1, "reference": 8}
+"""How much finer than the standard step each fidelity integrates."""
+
+AZIMUTH_STEP = 10.0
+"""Degrees between the directions of which the worst counts when the orientation is unknown (RotD100)."""
+
+
+def respond(
+    model: str,
+    motion: Motion,
+    *,
+    fidelity: str = "history",
+    angle: float | None = 0.0,
+    tail: float | None = None,
+    azimuth_step: float = AZIMUTH_STEP,
+    **parameters: Any,
+) -> "pd.DataFrame":
+    """Run one generic model under one motion for many objects at once.
+
+    model        : a name of ``kouros models``
+    angle        : degrees from x towards y along which a one-direction model is shaken; None means RotD100: the row of
+                   the direction with the largest first output, every ``azimuth_step`` degrees
+    tail         : s of rest after the record; None means until rest or past the peak, with the cap of the model
+    parameters   : the model's own, in SI; numbers or arrays, broadcast against each other
+    returns      : table, one row a parameter set: the model's outputs, ``error`` (estimated, in the unit of the first
+                   output), ``fidelity``, ``note``, and ``angle`` (the direction of the row; empty for two directions)
+    raises       : ValueError for an unknown model, parameter or fidelity, and for a value outside its limits
+    """
+    import pandas as pd
+
+    row = model_named(model)
+    if fidelity not in FIDELITIES:
+        raise ValueError(f"there is no fidelity {fidelity!r}; choose from {', '.join(FIDELITIES)}")
+    values = prepare(row, parameters)
+    columns, angles = run_model(row, motion, values, fidelity, angle, tail, azimuth_step)
+    note = columns.pop("note")
+    table = pd.DataFrame({q.name: _typed(q, columns[q.name]) for q in row.gives})
+    table["error"] = columns["error"]
+    table["fidelity"] = fidelity
+    table["note"] = [words(bits) for bits in note]
+    table["angle"] = angles
+    return table
+
+
+def _typed(quantity: Quantity, values: Array) -> Any:
+    if quantity.unit == "bool":
+        return values.astype(bool)
+    return values.astype(np.int64) if quantity.unit == "count" else values
+
+
+def prepare(model: Model, parameters: Mapping[str, Any]) -> dict[str, Array]:
+    """Return the model's parameters as float arrays (n,) of one length; what was left out is NaN or its default.
+
+    raises : ValueError for a parameter that is unknown, missing, not a number, outside its limits, or of another length
+    """
+    known = {q.name: q for q in model.needs}
+    for name in parameters:
+        if name not in known:
+            close = get_close_matches(name, known, n=1)
+            hint = f"; did you mean {close[0]!r}?" if close else ""
+            raise ValueError(f"{model.name} has no parameter {name!r}{hint} It takes: {', '.join(known)}")
+    arrays: dict[str, Array] = {}
+    for name, quantity in known.items():
+        value = parameters.get(name)
+        if value is None:
+            if not quantity.optional:
+                raise ValueError(f"{model.name} needs {name} [{quantity.unit}]: {quantity.meaning}")
+            arrays[name] = np.array(np.nan if quantity.default is None else quantity.default)
+            continue
+        try:
+            array = np.asarray(value, dtype=np.float64)
+        except (TypeError, ValueError) as problem:
+            raise ValueError(f"{name} must be {quantity.allowed()}, not {value!r}") from problem
+        if array.ndim > 1:
+            raise ValueError(f"{name} must be a number or one row of numbers, not an array of shape {array.shape}")
+        quantity.check(np.atleast_1d(array))
+        arrays[name] = array
+    try:
+        full = np.broadcast_arrays(*(np.atleast_1d(a) for a in arrays.values()))
+    except ValueError as problem:
+        sizes = ", ".join(f"{n}: {np.size(a)}" for n, a in arrays.items())
+        raise ValueError(f"the parameters of {model.name} have different lengths ({sizes})") from problem
+    return {name: np.ascontiguousarray(a) for name, a in zip(arrays, full, strict=True)}
+
+
+def run_model(
+    model: Model,
+    motion: Motion,
+    values: Mapping[str, Array],
+    fidelity: str,
+    angle: float | None,
+    tail: float | None,
+    azimuth_step: float = AZIMUTH_STEP,
+) -> tuple[Columns, Array]:
+    """Run a model on prepared parameters and return its columns and the angle (n,) of each row (NaN: two directions).
+
+    raises : ValueError for a bad tail or azimuth step, mixed `directions`, or a model without the fidelity asked
+    """
+    if tail is not None and not (np.isfinite(tail) and tail >= 0.0):
+        raise ValueError(f"tail must be at least 0 s, or None for until rest, not {tail!r}")
+    size = next(iter(values.values())).size
+    directions = model.directions
+    if directions == 0:
+        asked = np.unique(values["directions"])
+        if asked.size > 1 or asked[0] not in (1.0, 2.0):
+            raise ValueError(f"directions must be 1 or 2 for all rows, not {asked.tolist()}")
+        directions = int(asked[0])
+    x, y, z = motion.acceleration
+    if fidelity == "screen":
+        if model.screen is None:
+            raise ValueError(f"the paper gives no closed-form criterion for {model.name}; ask for history")
+        both = angle is None or directions == 2
+        along = x if both else motion.along(angle or 0.0)
+        columns = model.screen(Excitation(motion.dt, along, y if both else None, z, tail), values)
+        return columns, np.full(size, np.nan if both else angle)
+    refine = REFINE[fidelity]
+    if directions == 2:
+        return model.run(Excitation(motion.dt, x, y, z, tail), values, refine), np.full(size, np.nan)
+    if angle is not None:
+        if not np.isfinite(angle):
+            raise ValueError(f"angle must be a number of degrees, or None for RotD100, not {angle!r}")
+        return model.run(Excitation(motion.dt, motion.along(angle), None, z, tail), values, refine), np.full(size, angle)
+    if not 0.0 < azimuth_step <= 90.0:
+        raise ValueError(f"azimuth_step must be above 0 and at most 90 degrees, not {azimuth_step!r}")
+    turn = 180.0 if model.symmetric(values) else 360.0
+    best: Columns = {}
+    where = np.zeros(size)
+    for direction in np.arange(0.0, turn - 1e-9, azimuth_step):
+        columns = model.run(Excitation(motion.dt, motion.along(direction), None, z, tail), values, refine)
+        if not best:
+            best = {name: column.copy() for name, column in columns.items()}
+            continue
+        first = model.gives[0].name
+        # Where the first output ties (nothing moved in either direction), the demand decides.
+        larger = (columns[first] > best[first]) | (
+            (columns[first] == best[first]) & (columns[model.demand] > best[model.demand])
+        )
+        for name, column in columns.items():
+            best[name][larger] = column[larger]
+        where[larger] = direction
+    return best, where
+
+
+def trace(model: str, motion: Motion, *, angle: float = 0.0, **parameters: Any) -> "pd.DataFrame":
+    """Return the time history of one object: t [s] and the model's own columns, one row a sample.
+
+    raises : ValueError as ``respond``, and for a model without a history (stress) or more than one parameter set
+    """
+    import pandas as pd
+
+    row = model_named(model)
+    if row.trace is None:
+        raise ValueError(f"{model} has no time history of its own; ask for the oscillator's")
+    values = prepare(row, parameters)
+    one = {name: float(column[0]) for name, column in values.items()}
+    if any(column.size > 1 for column in values.values()):
+        raise ValueError("trace follows one object at a time; give single numbers")
+    two = row.directions == 2 or (row.directions == 0 and one["directions"] == 2.0)
+    x = motion.acceleration[0] if two else motion.along(angle)
+    y = motion.acceleration[1] if two else None
+    columns = row.trace(Excitation(motion.dt, x, y, motion.acceleration[2], 0.0), one)
+    return pd.DataFrame({"t": motion.dt * np.arange(motion.samples), **columns})
+
+
+def transmit(support: str, motion: Motion, *, refine: int = 4, **parameters: Any) -> Motion:
+    """Return the motion that a support passes on to what stands on it.
+
+    support    : a name of ``pipeline.supports.SUPPORTS``
+    refine     : samples of the output for each of the input; the input is a polygon, so more samples add nothing to it,
+                 but a stick-slip output has corners that its own step must resolve
+    raises     : ValueError for an unknown support or parameter
+    """
+    from pipeline.supports import support_named
+
+    row = support_named(support)
+    values = {name: float(v[0]) for name, v in prepare(row.model, parameters).items()}
+    return row.transmit(motion, values, refine)
