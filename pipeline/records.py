@@ -407,6 +407,12 @@ class Model:
     screen     : (excitation, parameters) -> columns by the paper's closed-form criterion; reported, never deciding
     say_screen : (one row of the screen, one set of parameters) -> the criterion in words
     trace      : (excitation, one set of parameters) -> time histories at the samples, (n,) each
+    certificate: (excitation in two directions, parameters) -> the demand itself or an upper bound of it for any
+                 direction, without integration; what it shows to be below the capacity is never integrated
+    exact      : the certificate is the demand itself, not only a bound
+    outcome    : (one row, one set of parameters) -> what the object does, in a word and in a sentence
+    otherwise  : scene -> (output, capacity) that replace demand and capacity for this scene, or None
+    mark       : (one set of parameters, demand) -> (kind of chart, x, y), or None
     fails      : what an object does whose demand exceeds the capacity, such as "slides"
     """
 
@@ -428,6 +434,11 @@ class Model:
     screen: Callable[[Excitation, Mapping[str, Array]], Columns] | None = None
     say_screen: Callable[[Mapping[str, float], Mapping[str, float]], str] = lambda _row, _parameters: ""
     trace: Callable[[Excitation, Mapping[str, float]], Columns] | None = None
+    certificate: Callable[[Excitation, Mapping[str, Array]], Array] | None = None
+    exact: bool = False
+    outcome: Callable[[Mapping[str, float], Mapping[str, float]], tuple[str, str]] = lambda _row, _parameters: ("", "")
+    otherwise: Callable[[Scene], tuple[str, float] | None] = lambda _scene: None
+    mark: Callable[[Mapping[str, float], float], tuple[str, float, float] | None] = lambda _parameters, _demand: None
 
     def output(self, name: str) -> Quantity:
         """Return the output of that name.

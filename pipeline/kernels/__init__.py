@@ -46,3 +46,6 @@ if "NUMBA_CACHE_DIR" not in os.environ:
 # decides overturning.
 kernel: Callable[..., Any] = numba.njit(cache=True, nogil=True, error_model="numpy")
 """Decorator of every compiled function."""
+
+inlined: Callable[..., Any] = numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")
+"""Decorator of a function that must melt into the loop around it for the loop to be vectorised."""

@@ -2,15 +2,21 @@
 
 theta'' + 2 zeta w theta' + ((g + a_z) / L) sin theta = -(a / L) cos theta,  w = sqrt(g / L)
 (Agbabian et al. 1991, sec. 2.4: viscous damping and in-plane vertical excitation included).
+
+Sine and cosine of theta are integrated along with it (s' = c theta', c' = -s theta'), so that a step has no
+transcendental function in it and several pendulums share the vector registers.
 """
 
 import math
 
 import numpy as np
 
-from pipeline.kernels import kernel
+from pipeline.kernels import inlined, kernel
 from pipeline.kernels.flags import CUT
 from pipeline.quantities import Array, G
+
+LANES = 16
+"""Pendulums integrated side by side."""
 
 CAP = 200.0
 """Seconds after the record at which a pendulum that never turns back is cut off."""
@@ -18,32 +24,43 @@ CAP = 200.0
 FAINT = 1e-9
 """Share of the peak's energy below which what is left of the swing cannot matter."""
 
-
-@kernel
-def _bend(theta: float, rate: float, a: float, n: float, length: float, c: float) -> float:
-    return -c * rate - (n * math.sin(theta) + a * math.cos(theta)) / length
+STEP = 0.05
+"""Largest step of the integration, in radians of the fastest pendulum motion."""
 
 
-@kernel
+@inlined
 def _step(
-    theta: float, rate: float, a0: float, a1: float, n0: float, n1: float, t: float, h: float, length: float, c: float
-) -> tuple[float, float]:
-    half = 0.5 * h
-    am, nm = a0 + a1 * (t + half), n0 + n1 * (t + half)
-    k1 = _bend(theta, rate, a0 + a1 * t, n0 + n1 * t, length, c)
-    r2 = rate + half * k1
-    k2 = _bend(theta + half * rate, r2, am, nm, length, c)
-    r3 = rate + half * k2
-    k3 = _bend(theta + half * r2, r3, am, nm, length, c)
-    r4 = rate + h * k3
-    k4 = _bend(theta + h * r3, r4, a0 + a1 * (t + h), n0 + n1 * (t + h), length, c)
-    return theta + h / 6.0 * (rate + 2.0 * (r2 + r3) + r4), rate + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
+    theta: float, s: float, c: float, rate: float, a0: float, am: float, a1: float, n0: float, nm: float, n1: float,
+    h: float, curl: float, drag: float,
+) -> tuple[float, float, float, float]:
+    # One classical Runge-Kutta step; a, n: pivot acceleration and g + a_z at its beginning, middle and end.
+    # curl = 1 / L, drag = 2 zeta w.
+    half, sixth = 0.5 * h, h / 6.0
+    k1 = -drag * rate - (n0 * s + a0 * c) * curl
+    ds1, dc1 = c * rate, -s * rate
+    r2, s2, c2 = rate + half * k1, s + half * ds1, c + half * dc1
+    k2 = -drag * r2 - (nm * s2 + am * c2) * curl
+    ds2, dc2 = c2 * r2, -s2 * r2
+    r3, s3, c3 = rate + half * k2, s + half * ds2, c + half * dc2
+    k3 = -drag * r3 - (nm * s3 + am * c3) * curl
+    ds3, dc3 = c3 * r3, -s3 * r3
+    r4, s4, c4 = rate + h * k3, s + h * ds3, c + h * dc3
+    k4 = -drag * r4 - (n1 * s4 + a1 * c4) * curl
+    sn = s + sixth * (ds1 + 2.0 * (ds2 + ds3) + c4 * r4)
+    cn = c + sixth * (dc1 + 2.0 * (dc2 + dc3) - s4 * r4)
+    back = 1.5 - 0.5 * (sn * sn + cn * cn)
+    return (
+        theta + sixth * (rate + 2.0 * (r2 + r3) + r4),
+        sn * back,
+        cn * back,
+        rate + sixth * (k1 + 2.0 * (k2 + k3) + k4),
+    )
 
 
 @kernel
 def _turn(
-    theta: float, rate: float, a0: float, a1: float, n0: float, n1: float, t: float, h: float, length: float, c: float,
-    after: float,
+    theta: float, s: float, c: float, rate: float, a0: float, slope: float, n0: float, rise: float, h: float,
+    curl: float, drag: float, after: float,
 ) -> float:
     # The angle at which the pendulum turns back within the step (Illinois on the rate).
     low, high, at_low, at_high = 0.0, h, rate, after
@@ -53,7 +70,10 @@ def _turn(
         tau = (low * at_high - high * at_low) / (at_high - at_low)
         if not low < tau < high:
             tau = 0.5 * (low + high)
-        angle, value = _step(theta, rate, a0, a1, n0, n1, t, tau, length, c)
+        angle, _s, _c, value = _step(
+            theta, s, c, rate, a0, a0 + 0.5 * slope * tau, a0 + slope * tau, n0, n0 + 0.5 * rise * tau, n0 + rise * tau,
+            tau, curl, drag,
+        )
         if value == 0.0 or high - low < 1e-10 * h:
             break
         if (value > 0.0) == (at_high > 0.0):
@@ -72,63 +92,118 @@ def _turn(
 
 
 @kernel
-def pendulum_one(
-    x: Array, z: Array, dt: float, peak: float, length: float, zeta: float, tail: float, refine: int, history: Array
-) -> tuple[float, float]:
-    """Integrate one pendulum and return (max |theta| [rad], flags).
-
-    x, z    : (n,) m/s2;  peak: the largest acceleration of the pivot
-    history : (m, 1) receives theta at the samples, as long as it is
-    """
+def _shake(
+    x: Array, z: Array, dt: float, pieces: int, block: Array, most: Array, history: Array
+) -> None:
+    # Integrate a block of LANES pendulums through the record.
+    # block: rows theta, s, c, rate, 1/L, drag, then theta, s, c, rate after the step; history: theta of the first lane.
     n = x.shape[0]
-    if n < 2:
-        return 0.0, 0.0
-    w = math.sqrt(G / length)
-    c = 2.0 * zeta * w
-    fastest = math.sqrt((G + peak) / length) * (1.0 + 2.0 * zeta)
-    pieces = max(1, int(math.ceil(fastest * dt / 0.05))) * refine
     step = dt / pieces
-    theta, rate, most = 0.0, 0.0, 0.0
     for i in range(n - 1):
         if i < history.shape[0]:
-            history[i, 0] = theta
-        a1, n0, n1 = (x[i + 1] - x[i]) / dt, G + z[i], (z[i + 1] - z[i]) / dt
+            history[i, 0] = block[0, 0]
+        slope, rise = (x[i + 1] - x[i]) / dt, (z[i + 1] - z[i]) / dt
         for j in range(pieces):
-            t = j * step
-            ahead, after = _step(theta, rate, x[i], a1, n0, n1, t, step, length, c)
-            if rate * after < 0.0 and max(abs(theta), abs(ahead)) + step * max(abs(rate), abs(after)) > most:
-                most = max(most, abs(_turn(theta, rate, x[i], a1, n0, n1, t, step, length, c, after)))
-            most = max(most, abs(ahead))
-            theta, rate = ahead, after
+            a0, n0 = x[i] + slope * (j * step), G + z[i] + rise * (j * step)
+            am, nm = a0 + 0.5 * slope * step, n0 + 0.5 * rise * step
+            a1, n1 = a0 + slope * step, n0 + rise * step
+            for k in range(LANES):
+                block[6, k], block[7, k], block[8, k], block[9, k] = _step(
+                    block[0, k], block[1, k], block[2, k], block[3, k], a0, am, a1, n0, nm, n1, step,
+                    block[4, k], block[5, k],
+                )
+            for k in range(LANES):
+                before, after = block[3, k], block[9, k]
+                reach = max(abs(block[0, k]), abs(block[6, k]))
+                if reach > most[k] or before * after < 0.0:
+                    if before * after < 0.0 and reach + step * max(abs(before), abs(after)) > most[k]:
+                        top = _turn(
+                            block[0, k], block[1, k], block[2, k], before, a0, slope, n0, rise, step,
+                            block[4, k], block[5, k], after,
+                        )
+                        reach = max(reach, abs(top))
+                    most[k] = max(most[k], reach)
+            for k in range(LANES):
+                block[0, k], block[1, k], block[2, k], block[3, k] = block[6, k], block[7, k], block[8, k], block[9, k]
     if n - 1 < history.shape[0]:
-        history[n - 1, 0] = theta
+        history[n - 1, 0] = block[0, 0]
+
+
+@kernel
+def _coast(
+    theta: float, rate: float, most: float, length: float, zeta: float, tail: float, refine: int
+) -> tuple[float, float]:
     # After the record the energy cannot grow: the next turning point, or an energy below the peak's, ends it.
+    w = math.sqrt(G / length)
+    drag = 2.0 * zeta * w
+    s, c = math.sin(theta), math.cos(theta)
     stop = tail if tail >= 0.0 else CAP
     h = 0.04 / (w * (1.0 + 2.0 * zeta)) / refine
     t = 0.0
     while t < stop:
         if tail < 0.0:
-            lift = 1.0 - math.cos(min(most, math.pi))
-            left = 0.5 * rate * rate / (w * w) + 1.0 - math.cos(theta)
+            lift = 2.0 * math.sin(0.5 * min(most, math.pi)) ** 2
+            left = 0.5 * rate * rate / (w * w) + 2.0 * math.sin(0.5 * theta) ** 2
             if left <= lift * (1.0 - FAINT) or left == 0.0:
                 return most, 0.0
         now = min(h, stop - t)
-        ahead, after = _step(theta, rate, 0.0, 0.0, G, 0.0, 0.0, now, length, c)
+        ahead, sn, cn, after = _step(
+            theta, s, c, rate, 0.0, 0.0, 0.0, G, G, G, now, 1.0 / length, drag
+        )
         if rate * after < 0.0:
-            most = max(most, abs(_turn(theta, rate, 0.0, 0.0, G, 0.0, 0.0, now, length, c, after)))
+            top = _turn(theta, s, c, rate, 0.0, 0.0, G, 0.0, now, 1.0 / length, drag, after)
+            most = max(most, abs(top))
             if tail < 0.0:
                 return most, 0.0
         most = max(most, abs(ahead))
-        theta, rate = ahead, after
+        theta, s, c, rate = ahead, sn, cn, after
         t += now
     return most, float(CUT) if tail < 0.0 else 0.0
 
 
 @kernel
+def substeps(length: float, zeta: float, peak: float, dt: float) -> int:
+    """Return how many steps a sample interval takes; peak: the largest acceleration of the pivot [m/s2]."""
+    fastest = math.sqrt((G + peak) / length) * (1.0 + 2.0 * zeta)
+    return max(1, int(math.ceil(fastest * dt / STEP)))
+
+
+@kernel
 def pendulum_batch(
-    x: Array, z: Array, dt: float, peak: float, length: Array, zeta: Array, tail: float, refine: int, results: Array
+    x: Array, z: Array, dt: float, peak: float, length: Array, zeta: Array, tail: float, refine: int, results: Array,
+    history: Array,
 ) -> None:
-    """Fill results (m, 2): max |theta| [rad], flags."""
-    nothing = np.empty((0, 1))
-    for k in range(length.shape[0]):
-        results[k, 0], results[k, 1] = pendulum_one(x, z, dt, peak, length[k], zeta[k], tail, refine, nothing)
+    """Fill results (m, 2): max |theta| [rad], flags.
+
+    x, z    : (n,) m/s2;  peak: the largest acceleration of the pivot
+    history : (k, 1) receives theta of a single pendulum at the samples, as long as it is
+
+    Pendulums of the same number of steps share a block, so that a result never depends on its neighbours.
+    """
+    m = length.shape[0]
+    results[:, :] = 0.0
+    if x.shape[0] < 2:
+        return
+    pieces = np.empty(m, dtype=np.int64)
+    for k in range(m):
+        pieces[k] = substeps(length[k], zeta[k], peak, dt) * refine
+    order = np.argsort(pieces, kind="mergesort")
+    block, most = np.zeros((10, LANES)), np.zeros(LANES)
+    begin = 0
+    while begin < m:
+        end = begin + 1
+        while end < m and end - begin < LANES and pieces[order[end]] == pieces[order[begin]]:
+            end += 1
+        for k in range(LANES):
+            one = order[min(begin + k, end - 1)]
+            block[0, k], block[1, k], block[2, k], block[3, k] = 0.0, 0.0, 1.0, 0.0
+            block[4, k] = 1.0 / length[one]
+            block[5, k] = 2.0 * zeta[one] * math.sqrt(G / length[one])
+            most[k] = 0.0
+        _shake(x, z, dt, pieces[order[begin]], block, most, history)
+        for k in range(end - begin):
+            one = order[begin + k]
+            results[one, 0], results[one, 1] = _coast(
+                block[0, k], block[3, k], most[k], length[one], zeta[one], tail, refine
+            )
+        begin = end

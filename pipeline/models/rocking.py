@@ -106,6 +106,33 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     return {"rotation": history[:, 0]}
 
 
+def _certificate(motion: Excitation, parameters: Mapping[str, Array]) -> Array:
+    to_positive, to_negative = lift_ratios(motion)
+    other = parameters["half_width_other"]
+    b1, h = parameters["half_width"], parameters["cg_height"]
+    b2 = np.where(np.isnan(other), b1, other)
+    return np.maximum(to_positive * h / b1, to_negative * h / b2)
+
+
+def _outcome(row: Mapping[str, float], _parameters: Mapping[str, float]) -> tuple[str, str]:
+    if row["overturned"]:
+        return "overturns", f"In this motion it falls over after {row['overturning_time']:.1f} s."
+    if row["rotation_ratio"] > 0.0:
+        return "rocks", (
+            f"It comes back: it tips by at most {100.0 * row['rotation_ratio']:.0f} % of its critical angle and lands "
+            f"{row['impacts']:.0f} times."
+        )
+    return "", ""
+
+
+def _overturning(scene: Scene) -> tuple[str, float] | None:
+    # An object that rocking itself does not harm fails when it falls over.
+    if scene.item.susceptible is not False:
+        return None
+    alpha = np.arctan2(scene.parameters["half_width"].value, scene.parameters["cg_height"].value)
+    return "rotation_ratio", float(0.5 * np.pi / alpha)
+
+
 def _applies(scene: Scene) -> str:
     return unless_free(scene, "rock") or needs(scene, "half_width", "cg_height")
 
@@ -143,6 +170,11 @@ ROCKING = Model(
     screen=_screen,
     say_screen=_say,
     trace=_trace,
+    certificate=_certificate,
+    exact=True,
+    outcome=_outcome,
+    otherwise=_overturning,
+    mark=lambda parameters, _: ("stability", 2.0 * parameters["cg_height"], 2.0 * parameters["half_width"]),
     demand="uplift_ratio",
     capacity=1.0,
     applies=_applies,

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.models.common import needs, unless_free
+from pipeline.models.common import lift_ratios, needs, unless_free
 from pipeline.models.friction import kinetic, stick_slip, stick_slip_trace
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Columns, Excitation, Model, Scene
@@ -27,6 +27,12 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     return stick_slip_trace(motion, 0.0, 0.0, mu_s, mu_s if np.isnan(mu_k) else mu_k)
 
 
+def _certificate(motion: Excitation, parameters: Mapping[str, Array]) -> Array:
+    # It moves only where |a_h| exceeds mu (g + a_z); otherwise the displacement is exactly nothing.
+    at_rest = max(lift_ratios(motion)) <= parameters["friction_static"]
+    return np.where(at_rest, 0.0, np.inf)
+
+
 def _applies(scene: Scene) -> str:
     return unless_free(scene, "slide") or needs(scene, "friction_static")
 
@@ -46,6 +52,8 @@ SLIDING = Model(
     directions=0,
     run=_run,
     trace=_trace,
+    certificate=_certificate,
+    mark=lambda parameters, demand: ("sliding", parameters["friction_static"], demand),
     demand="displacement",
     capacity="clearance",
     applies=_applies,

@@ -13,6 +13,9 @@ from pipeline.records import Columns, Excitation, Model, Scene, Support
 RIGID_PERIOD = 0.06
 """Period [s] up to which ASCE 7 calls a component rigid."""
 
+RIGID_FREQUENCY = 33.0
+"""Frequency [Hz] at which charts show a rigid object: the response spectrum has come down to A_max there."""
+
 _SECTION = (
     Quantity("mass", "kg", "of the part above the critical section", 0.0, exclusive=True),
     Quantity("lever", "m", "from the section to the centre of gravity of that part", 0.0),
@@ -72,6 +75,12 @@ def _say(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
     return f"Tilt test: would it break if it were tilted {row['tilt']:.0f} degrees?"
 
 
+def _push(parameters: Mapping[str, float], tension: float) -> float:
+    # The acceleration behind a tension: the inverse of section_stresses.
+    weight = parameters["mass"] * G / parameters["area"]
+    return (tension + weight) * parameters["section_modulus"] / (parameters["mass"] * parameters["lever"])
+
+
 def _holds(scene: Scene, flexible: bool) -> str:
     if scene.support in (Support.HUNG, Support.SUSPENDED):
         return "it hangs: its own weight is all that its section bears"
@@ -104,6 +113,9 @@ STRESS = Model(
     run=_run,
     screen=_screen,
     say_screen=_say,
+    certificate=lambda motion, parameters: _run(motion, parameters, 1)["tension"],
+    exact=True,
+    mark=lambda parameters, demand: ("spectrum", RIGID_FREQUENCY, _push(parameters, demand)),
     demand="tension",
     capacity="allowable_stress",
     applies=lambda scene: _holds(scene, flexible=False),
@@ -122,6 +134,7 @@ FLEXIBLE_STRESS = Model(
     directions=1,
     run=_run_flexible,
     say_screen=_say,
+    mark=lambda parameters, demand: ("spectrum", parameters["frequency"], _push(parameters, demand)),
     demand="tension",
     capacity="allowable_stress",
     applies=lambda scene: _holds(scene, flexible=True),

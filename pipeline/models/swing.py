@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.kernels.pendulum import pendulum_batch, pendulum_one
+from pipeline.kernels.pendulum import pendulum_batch
 from pipeline.kernels.spherical import spherical_batch, spherical_one
 from pipeline.models.common import NO_HISTORY, broadcast, needs, shaken
 from pipeline.models.horizontal_isolator import DAMPING
@@ -28,7 +28,7 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Co
     tail = -1.0 if motion.tail is None else float(motion.tail)
     coarse, fine = np.empty((length.size, 2)), np.empty((length.size, 2))
     for steps, results in ((refine, coarse), (2 * refine, fine)):
-        pendulum_batch(x, z, motion.dt, shaken(motion), length, zeta, tail, steps, results)
+        pendulum_batch(x, z, motion.dt, shaken(motion), length, zeta, tail, steps, results, np.empty((0, 1)))
     displacement = length * _swept(fine[:, 0])
     return {
         "displacement": displacement,
@@ -74,10 +74,9 @@ def _say_3d(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
 
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     history = np.zeros((motion.x.size, 1))
-    pendulum_one(
-        np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z), motion.dt, shaken(motion),
-        parameters["length"], parameters["damping"], 0.0, 2, history,
-    )
+    length, zeta = np.array([parameters["length"]]), np.array([parameters["damping"]])
+    x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
+    pendulum_batch(x, z, motion.dt, shaken(motion), length, zeta, 0.0, 2, np.empty((1, 2)), history)
     return {"rotation": history[:, 0], "u_x": parameters["length"] * np.sin(history[:, 0])}
 
 
@@ -114,6 +113,7 @@ SWING = Model(
     directions=1,
     run=_run,
     trace=_trace,
+    mark=lambda parameters, demand: ("swing", parameters["length"], demand),
     demand="displacement",
     capacity="clearance",
     applies=lambda scene: _hangs(scene, Support.HUNG, "it does not hang on a wall"),
@@ -134,6 +134,7 @@ SWING_3D = Model(
     screen=_screen_3d,
     say_screen=_say_3d,
     trace=_trace_3d,
+    mark=lambda parameters, demand: ("swing", parameters["length"], demand),
     demand="displacement",
     capacity="clearance",
     applies=lambda scene: _hangs(scene, Support.SUSPENDED, "it does not hang from one point"),

@@ -1,0 +1,239 @@
+"""Scenes x motions -> demands -> findings: each demand against its capacity, with a number for how sure we are."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pipeline import __version__
+from pipeline.plan import Plan, Work, plan
+from pipeline.quantities import Array
+from pipeline.records import (
+    Columns,
+    Estimate,
+    Excitation,
+    Executor,
+    Finding,
+    Mark,
+    Model,
+    Motion,
+    Origin,
+    Progress,
+    Scene,
+    Verdict,
+)
+from pipeline.response import run_model
+
+CHUNK = 256
+"""Parameter sets in one task: small enough to share between workers, large enough to make the task worth its call."""
+
+NEVER = 1e300
+
+
+@dataclass(frozen=True)
+class LevelMotions:
+    """The motions of one level of the site, and how their demands are combined ("max" or "mean")."""
+
+    name: str
+    combine: str
+    motions: tuple[Motion, ...]
+
+
+@dataclass(frozen=True)
+class Demands:
+    """The columns of one model under one motion, row for row of its work's values, with the certificate beside."""
+
+    columns: Columns
+    certificate: Array | None
+    integrated: Array
+
+
+Task = tuple[Model, Motion, Mapping[str, Array], str, float]
+
+
+def _integrate(task: Task) -> Columns:
+    model, motion, values, fidelity, azimuth_step = task
+    return run_model(model, motion, values, fidelity, None, None, azimuth_step)[0]
+
+
+def demands(
+    work: Work, motion: Motion, executor: Executor, *, fidelity: str = "history", azimuth_step: float = 10.0
+) -> Demands:
+    """Run one model's parameter sets under one motion, in chunks on the executor.
+
+    What the certificate shows to stay at rest is not integrated: its demand is exactly the certificate's.
+    """
+    model, values = work.model, work.values
+    size = next(iter(values.values())).size
+    certificate = None
+    needed = np.ones(size, dtype=bool)
+    if model.certificate is not None:
+        x, y, z = motion.acceleration
+        certificate = model.certificate(Excitation(motion.dt, x, y, z, None), values)
+        if model.name != "stress":
+            needed = certificate > (1.0 if model.exact else 0.0)
+    columns = {q.name: np.zeros(size) for q in model.gives}
+    columns |= {"error": np.zeros(size), "note": np.zeros(size)}
+    rows = np.flatnonzero(needed)
+    chunks = [rows[i : i + CHUNK] for i in range(0, rows.size, CHUNK)]
+    tasks: list[Task] = [
+        (model, motion, {n: v[chunk] for n, v in values.items()}, fidelity, azimuth_step) for chunk in chunks
+    ]
+    for chunk, answer in zip(chunks, executor.map(_integrate, tasks), strict=True):
+        for name, column in answer.items():
+            columns[name][chunk] = column
+    if certificate is not None and model.exact:
+        columns[model.demand] = np.where(np.isnan(certificate), columns[model.demand], certificate)
+    return Demands(columns, certificate, needed)
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A demand against a capacity, both with their ranges."""
+
+    demand: float
+    low: float
+    high: float
+    capacity: float
+    utilisation: float
+    verdict: Verdict
+
+
+def judge(demand: float, low: float, high: float, capacity: Estimate) -> Judgement:
+    """Compare: pass or fail only where the whole range of the uncertain inputs says so, else undetermined.
+
+    A demand of exactly the capacity passes, except where reaching it is the failure itself (an overturned object).
+    """
+    utilisation = _ratio(demand, capacity.value)
+    most, least = _ratio(high, capacity.low), _ratio(low, capacity.high)
+    if most <= 1.0:
+        verdict = Verdict.PASS
+    elif least > 1.0:
+        verdict = Verdict.FAIL
+    else:
+        verdict = Verdict.UNDETERMINED
+    return Judgement(demand, low, high, capacity.value, utilisation, verdict)
+
+
+def _ratio(demand: float, capacity: float) -> float:
+    if demand <= 0.0:
+        return 0.0
+    return demand / capacity if capacity > 0.0 else float("inf")
+
+
+def assess(
+    scenes: Sequence[Scene],
+    levels: Sequence[LevelMotions],
+    executor: Executor,
+    progress: Progress,
+    *,
+    azimuth_step: float = 10.0,
+) -> tuple[Plan, list[list[Finding]]]:
+    """Run everything the scenes require under every motion and judge it.
+
+    returns : the plan (with the reasons for models not run) and the findings of each scene, in the order of the scenes
+    """
+    todo = plan(scenes)
+    findings: list[list[Finding]] = [[] for _ in scenes]
+    total = len(todo.work) * sum(len(level.motions) for level in levels)
+    done = 0
+    progress.step("analyses", done, total)
+    for level in levels:
+        for work in todo.work:
+            results = []
+            for motion in level.motions:
+                results.append(demands(work, motion, executor, azimuth_step=azimuth_step))
+                done += 1
+                progress.step("analyses", done, total)
+            for at, index in enumerate(work.scenes):
+                findings[index].append(_finding(scenes[index], work, at, level, results))
+    return todo, findings
+
+
+def capacity_of(model: Model, scene: Scene) -> tuple[str, Estimate]:
+    """Return which output of the model counts for this scene, and the capacity it is held against."""
+    other = model.otherwise(scene)
+    if other is not None:
+        # Reaching the limit is the failure: nothing smaller than it counts as reached.
+        limit = float(np.nextafter(other[1], 0.0)) * (1.0 - 1e-12)
+        return other[0], Estimate(limit, "-", Origin.DERIVED, limit, limit, "a quarter turn")
+    if isinstance(model.capacity, float):
+        fixed = model.capacity
+        return model.demand, Estimate(fixed, "-", Origin.DERIVED, fixed, fixed, "the onset itself")
+    return model.demand, scene.parameters[model.capacity]
+
+
+def _finding(scene: Scene, work: Work, at: int, level: LevelMotions, results: Sequence[Demands]) -> Finding:
+    model = work.model
+    output, capacity = capacity_of(model, scene)
+    best, span = work.best[at], list(work.spread[at])
+    each = np.array([r.columns[output][best] for r in results])
+    lows = np.array([r.columns[output][span].min() for r in results])
+    highs = np.array([r.columns[output][span].max() for r in results])
+    governing = int(np.argmax(each))
+    if level.combine == "mean":
+        verdict = judge(float(each.mean()), float(lows.mean()), float(highs.mean()), capacity)
+        if output == "rotation_ratio":
+            # An overturned object has no meaningful mean angle: half the records decide (contract "A site").
+            verdict = judge(float(np.median(each)), float(np.median(lows)), float(np.median(highs)), capacity)
+    else:
+        verdict = judge(float(each.max()), float(lows.max()), float(highs.max()), capacity)
+    result, motion = results[governing], level.motions[governing]
+    row = {name: float(column[best]) for name, column in result.columns.items()}
+    parameters = {name: float(column[best]) for name, column in work.values.items()}
+    certified = model.exact and output == model.demand
+    at_rest = not result.integrated[best]
+    outcome, sentence = model.outcome(row, parameters)
+    if not outcome and verdict.verdict is not Verdict.PASS:
+        outcome = model.fails
+    marked = model.mark(parameters, verdict.demand)
+    unit = model.output(output).unit
+    return Finding(
+        object_number=scene.item.object_number,
+        gallery=scene.item.gallery,
+        level=level.name,
+        model=model.name,
+        title=model.title,
+        demand_name=output,
+        demand=verdict.demand,
+        unit=unit,
+        low=verdict.low,
+        high=verdict.high,
+        capacity=verdict.capacity,
+        capacity_origin=capacity.origin,
+        utilisation=verdict.utilisation,
+        verdict=verdict.verdict,
+        fidelity="bound" if certified or at_rest else "history",
+        error=0.0 if certified or at_rest else row["error"],
+        decided_by="certificate" if certified or at_rest else "history",
+        motion=motion.name,
+        motion_hash=motion.hash,
+        sentence=f"{model.sentence} {sentence}".strip(),
+        screen=_screened(model, motion, parameters),
+        outcome=outcome,
+        note=_note(row),
+        assumptions=_assumptions(scene, model, capacity),
+        mark=None if marked is None else Mark(f"{marked[0]}:{motion.hash[:16]}", marked[1], marked[2]),
+        version=__version__,
+    )
+
+
+def _note(row: Mapping[str, float]) -> str:
+    from pipeline.models.common import words
+
+    return words(row["note"])
+
+
+def _screened(model: Model, motion: Motion, parameters: Mapping[str, Any]) -> str:
+    if model.screen is None:
+        return ""
+    values = {name: np.array([value]) for name, value in parameters.items()}
+    columns = run_model(model, motion, values, "screen", None, None)[0]
+    return model.say_screen({name: float(column[0]) for name, column in columns.items()}, parameters)
+
+
+def _assumptions(scene: Scene, model: Model, capacity: Estimate) -> tuple[str, ...]:
+    used = [scene.parameters[q.name] for q in model.needs if q.name in scene.parameters]
+    notes = [e.note for e in (*used, capacity) if e.origin is Origin.ASSUMED and e.note]
+    return tuple(dict.fromkeys(notes))

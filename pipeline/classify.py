@@ -1,0 +1,401 @@
+"""Item -> Scene: which generic class an object belongs to, and every number its models need, with its origin.
+
+The rules are rows of tables/rules.csv, read from the top; the first whose conditions all hold decides.  Numbers that the
+museum did not record come from the row of the class (tables/classes.csv) and the material (tables/materials.csv) as
+value, low and high, and are named as assumed.
+"""
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from math import pi
+
+from pipeline.quantities import G
+from pipeline.records import Estimate, Item, Origin, Scene, Support
+from pipeline.tables import Row, TableError, damping_of, friction_of, spread, table
+
+FLAT = 0.12
+"""Depth over the larger face dimension below which a thing is a sheet, not a body."""
+TALL = 2.0
+"""Height over the larger plan dimension from which a sculpture is taken as a standing figure."""
+SMALL = 0.4
+"""Height [m] below which a sculpture is handled as a figurine."""
+
+_WORD = re.compile(r"[^\W\d_]+")
+
+
+def _shape(name: str) -> Callable[[Item], bool]:
+    def plan(item: Item) -> float:
+        return max(item.width_m or 0.0, item.depth_m or 0.0)
+
+    shapes: dict[str, Callable[[Item], bool]] = {
+        "": lambda _: True,
+        "flat": lambda i: (i.depth_m or 0.0) < FLAT * max(i.height_m or 0.0, i.width_m or 0.0),
+        "tall": lambda i: i.height_m is not None and plan(i) > 0.0 and i.height_m >= TALL * plan(i),
+        "small": lambda i: i.height_m is not None and i.height_m < SMALL,
+    }
+    if name not in shapes:
+        raise TableError(f"rules.csv: there is no shape {name!r}; use one of {', '.join(s for s in shapes if s)}")
+    return shapes[name]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One row of rules.csv, ready to match."""
+
+    name: str
+    object_class: str
+    classifications: frozenset[str]
+    words: frozenset[str]
+    phrases: tuple[str, ...]
+    medium: re.Pattern[str] | None
+    shape: Callable[[Item], bool]
+    why: str
+
+    def holds(self, item: Item, words: frozenset[str], text: str) -> bool:
+        """Say whether all conditions of the row hold."""
+        if self.classifications and item.classification.strip().lower() not in self.classifications:
+            return False
+        if (self.words or self.phrases) and not (self.words & words or any(p in text for p in self.phrases)):
+            return False
+        if self.medium is not None and not self.medium.search(f"{item.material} {item.medium}"):
+            return False
+        return self.shape(item)
+
+
+@cache
+def rules() -> tuple[Rule, ...]:
+    """Return the table of rules, in order.
+
+    raises : TableError for a row that names a class or shape that does not exist
+    """
+    out = []
+    known = {r["class"] for r in table("classes")}
+    for row in table("rules"):
+        if row["class"] not in known:
+            raise TableError(f"rules.csv: rule {row['rule']!r} names class {row['class']!r}, which classes.csv does not have")
+        words = [w.strip().lower() for w in row["words"].split("|") if w.strip()]
+        medium = [re.escape(m.strip()) for m in row["medium"].split("|") if m.strip()]
+        out.append(
+            Rule(
+                row["rule"],
+                row["class"],
+                frozenset(c.strip().lower() for c in row["classification"].split("|") if c.strip()),
+                frozenset(w for w in words if " " not in w),
+                tuple(f" {w}" for w in words if " " in w),
+                re.compile(rf"\b(?:{'|'.join(medium)})\b", re.IGNORECASE) if medium else None,
+                _shape(row["shape"]),
+                row["why"],
+            )
+        )
+    return tuple(out)
+
+
+@cache
+def _classes() -> Mapping[str, Row]:
+    return {row["class"]: row for row in table("classes")}
+
+
+@cache
+def _materials() -> tuple[tuple[re.Pattern[str], Row], ...]:
+    out = []
+    for row in table("materials"):
+        words = [re.escape(w.strip()) for w in row["words"].split("|") if w.strip()]
+        if words:
+            out.append((re.compile(rf"\b(?:{'|'.join(words)})\b", re.IGNORECASE), row))
+    return tuple(out)
+
+
+def material_of(item: Item) -> Row:
+    """Return the row of materials.csv for what an object is made of: the word that stands first in its record."""
+    text = item.material or item.medium
+    found = [(match.start(), row) for pattern, row in _materials() if (match := pattern.search(text))]
+    if found:
+        return min(found, key=lambda pair: pair[0])[1]
+    return next(row for row in table("materials") if row["material"] == "unknown")
+
+
+def rule_for(item: Item) -> Rule:
+    """Return the first rule whose conditions hold for the object; the last row of the table holds for all."""
+    text = f" {item.object_name} {item.title}".lower()
+    words = set(_WORD.findall(text))
+    words |= {w[:-1] for w in words if w.endswith("s")}
+    frozen = frozenset(words)
+    for rule in rules():
+        if rule.holds(item, frozen, text):
+            return rule
+    raise TableError("rules.csv: no rule holds; the last row must have no conditions")
+
+
+def _assumed(value: float, low: float, high: float, unit: str, note: str, source: str) -> Estimate:
+    return Estimate(value, unit, Origin.ASSUMED, low, high, note, source)
+
+
+def _measured(value: float | None, unit: str) -> Estimate | None:
+    return None if value is None else Estimate.measured(value, unit)
+
+
+def _times(row: Row, kind: str, base: float, unit: str, what: str, of: str) -> Estimate:
+    """Return a share of a recorded dimension, as the row of the class assumes it."""
+    share = spread(row, f"{kind}_ratio", f"{kind}_low", f"{kind}_high", f"classes.csv, {row['class']}")
+    note = f"{what}: {share.value:g} ({share.low:g} to {share.high:g}) of its {of}, assumed for: {row['title'].lower()}"
+    return _assumed(share.value * base, share.low * base, share.high * base, unit, note, f"classes.csv, {row['class']}")
+
+
+class _Builder:
+    """Collects the parameters of one scene, and what is missing for them."""
+
+    def __init__(self, item: Item, row: Row, support: Support) -> None:
+        self.item, self.row, self.support = item, row, support
+        self.material = material_of(item)
+        self.found: dict[str, Estimate] = {}
+        self.missing: list[str] = []
+
+    def build(self) -> None:
+        if self.support in (Support.HUNG, Support.SUSPENDED):
+            self._hanging()
+        else:
+            self._standing()
+        self._clearance()
+
+    def _keep(self, name: str, estimate: Estimate | None) -> None:
+        if estimate is not None:
+            self.found[name] = estimate
+
+    def _hanging(self) -> None:
+        item = self.item
+        length = _measured(item.suspension_length_m, "m")
+        if length is None and item.height_m is None:
+            self.missing.append("height or suspension length")
+        elif length is None and item.height_m is not None:
+            half = 0.5 * item.height_m
+            note = "length from hook to centre of gravity: half its height, assumed for: hung from its upper edge; "
+            note += "a hook further down gives half of that, a cord from a rail up to 1 m more"
+            length = _assumed(half, 0.5 * half, half + 1.0, "m", note, "judgement")
+        self._keep("length", length)
+        damping = _measured(item.damping, "-")
+        if damping is None and self.support is Support.HUNG:
+            span = damping_of(item.wall_surface, item.back_surface)
+            note = "damping against the wall: wood on paint, the least of Table 4; wall and back surfaces not recorded"
+            if item.wall_surface or item.back_surface:
+                note = f"damping of {item.back_surface or 'its back'} on {item.wall_surface or 'the wall'} (Table 4)"
+            damping = _assumed(span.value, span.low, span.high, "-", note, span.source)
+        elif damping is None:
+            note = "damping: none, as the paper takes it for chandeliers"
+            damping = _assumed(0.0, 0.0, 0.0, "-", note, "Agbabian et al. 1991, sec. 2.4")
+        self._keep("damping", damping)
+        self._mass()
+
+    def _standing(self) -> None:
+        item = self.item
+        width, depth = self._plan()
+        if width is not None and depth is not None:
+            narrow = min(width, depth, key=lambda e: e.value)
+            low, high = min(width.low, depth.low), min(width.high, depth.high)
+            half = Estimate(0.5 * narrow.value, "m", narrow.origin, 0.5 * low, 0.5 * high, narrow.note, narrow.source)
+            self._keep("half_width", half)
+        cg = _measured(item.cg_height_m, "m")
+        if cg is None and item.height_m is not None:
+            cg = _times(self.row, "cg", item.height_m, "m", "height of the centre of gravity", "height")
+        if cg is None:
+            self.missing.append("height")
+        self._keep("cg_height", cg)
+        self._friction()
+        self._mass()
+        self._section(width, depth)
+        if item.frequency_hz is not None:
+            self._keep("frequency", _measured(item.frequency_hz, "Hz"))
+            note = "damping of the object itself: 2 % (1 to 5 %), assumed"
+            self._keep("damping", _measured(item.damping, "-") or _assumed(0.02, 0.01, 0.05, "-", note, "judgement"))
+
+    def _plan(self) -> tuple[Estimate | None, Estimate | None]:
+        item, row = self.item, self.row
+        sides: list[Estimate | None] = []
+        pairs = ((item.base_width_m, item.width_m, "width"), (item.base_depth_m, item.depth_m, "depth"))
+        for measured, largest, name in pairs:
+            side = _measured(measured, "m")
+            if side is None and largest is not None:
+                side = _times(row, "base", largest, "m", f"base {name}", name)
+            sides.append(side)
+        width, depth = sides
+        if width is None and depth is None:
+            self.missing.append("width (or diameter)")
+        elif width is None or depth is None:
+            known, lost = (width, "depth") if depth is None else (depth, "width")
+            if row["round"] != "yes" or known is None:
+                self.missing.append(lost)
+                return None, None
+            note = f"{lost} not recorded: taken as round. {known.note}".strip()
+            other = _assumed(known.value, known.low, known.high, "m", note, known.source or f"classes.csv, {row['class']}")
+            return (width, other) if depth is None else (other, depth)
+        return width, depth
+
+    def _friction(self) -> None:
+        item = self.item
+        friction = _measured(item.friction, "-")
+        if friction is None:
+            material = item.base_material or self.material["friction_as"]
+            span = friction_of(material, item.surface_material)
+            pair = f"{material or 'any material'} on {item.surface_material or 'any floor'}"
+            note = f"friction: {span.value:g} ({span.low:g} to {span.high:g}), Table 3 for {pair}; not measured"
+            friction = _assumed(span.value, span.low, span.high, "-", note, span.source)
+        self._keep("friction_static", friction)
+
+    def _clearance(self) -> None:
+        row = self.row
+        clearance = _measured(self.item.clearance_m, "m")
+        if clearance is None and row["clearance"]:
+            span = spread(row, "clearance", "clearance_low", "clearance_high", f"classes.csv, {row['class']}")
+            note = f"clearance to neighbour, wall or edge: {100 * span.value:g} cm ({100 * span.low:g} to {100 * span.high:g})"
+            note += f", assumed for: {row['title'].lower()}"
+            clearance = _assumed(span.value, span.low, span.high, "m", note, f"classes.csv, {row['class']}")
+        self._keep("clearance", clearance)
+
+    def _mass(self) -> None:
+        item, row = self.item, self.row
+        mass = _measured(item.mass_kg, "kg")
+        if mass is None and self.support in (Support.HUNG, Support.SUSPENDED) and item.height_m and item.width_m:
+            area = item.height_m * item.width_m
+            note = "mass: 15 kg (5 to 40 kg) for each square metre of a framed work, assumed"
+            mass = _assumed(15.0 * area, 5.0 * area, 40.0 * area, "kg", note, "judgement")
+        across = item.width_m or item.depth_m
+        along = item.depth_m or item.width_m
+        if mass is None and row["fill"] and item.height_m and across and along:
+            box = item.height_m * across * along * (0.25 * pi if row["round"] == "yes" else 1.0)
+            fill = spread(row, "fill", "fill_low", "fill_high", f"classes.csv, {row['class']}")
+            where = f"materials.csv, {self.material['material']}"
+            density = spread(self.material, "density", "density_low", "density_high", where)
+            note = f"mass: {self.material['material']} of {density.value:g} kg/m3 filling {fill.value:g} of its outline, assumed"
+            mass = _assumed(
+                box * fill.value * density.value, box * fill.low * density.low, box * fill.high * density.high,
+                "kg", note, where,
+            )
+        self._keep("object_mass", mass)
+
+    def _section(self, width: Estimate | None, depth: Estimate | None) -> None:
+        item = self.item
+        where = f"materials.csv, {self.material['material']}"
+        condition = 1.0 if item.condition is None else item.condition
+        allowable = _measured(item.allowable_stress_pa, "Pa")
+        if allowable is None:
+            span = spread(self.material, "tensile", "tensile_low", "tensile_high", where)
+            note = f"allowable stress: {self.material['material']}, {span.value / 1e6:g} ({span.low / 1e6:g} to {span.high / 1e6:g}) MPa"
+            note += ", condition factor 1 (not recorded)" if item.condition is None else f", condition factor {condition:g}"
+            allowable = _assumed(
+                span.value * condition, span.low * condition, span.high * condition, "Pa", note, span.source or where
+            )
+        mass, cg = self.found.get("object_mass"), self.found.get("cg_height")
+        section = self._section_size(width, depth)
+        if mass is None or cg is None or section is None:
+            return
+        shape, size, deep, count, wall, base = section
+        self._keep("allowable_stress", allowable)
+        self._keep("mass", mass)
+        height = item.section_height_m or 0.0
+        lever = max(cg.value - height, 0.0)
+        note = "lever: from the base to the centre of gravity" if not height else "lever: from the section to the centre of gravity"
+        self._keep("lever", Estimate(lever, "m", Origin.DERIVED, max(cg.low - height, 0.0), max(cg.high - height, 0.0), note))
+        area, modulus = section_properties(shape, size.value, deep.value, count, wall)
+        # Area and modulus vary together: the range of the section is carried by the modulus, which bending feels.
+        _, modulus_low = section_properties(shape, size.low, deep.low, count, wall)
+        _, modulus_high = section_properties(shape, size.high, deep.high, count, wall)
+        self._keep("area", Estimate(area, "m2", size.origin, area, area, base, size.source))
+        self._keep("section_modulus", Estimate(modulus, "m3", size.origin, modulus_low, modulus_high, base, size.source))
+
+    def _section_size(
+        self, width: Estimate | None, depth: Estimate | None
+    ) -> tuple[str, Estimate, Estimate, int, float, str] | None:
+        item, row = self.item, self.row
+        if item.section_width_m is not None:
+            size = Estimate.measured(item.section_width_m, "m")
+            deep = Estimate.measured(item.section_depth_m or item.section_width_m, "m")
+            shape = item.section_shape or "rectangle"
+            wall = item.section_wall_m or 0.0
+            return shape, size, deep, item.section_count or 1, wall, f"section: {shape}, as recorded"
+        if not row["section"] or width is None or depth is None:
+            return None
+        narrow = min(width, depth, key=lambda e: e.value)
+        kind = row["section"]
+        across = min(item.width_m or item.depth_m or narrow.value, item.depth_m or item.width_m or narrow.value)
+        base = narrow.value if kind in ("foot", "legs", "ring") else across
+        of = "narrower base side" if kind in ("foot", "legs", "ring") else "narrower side"
+        size = _times(row, "section", base, "m", {"ring": "wall of its foot"}.get(kind, f"critical section ({kind})"), of)
+        shapes = {"stem": ("round", 1), "ankles": ("round", 2), "foot": ("rectangle", 1), "legs": ("rectangle", 4)}
+        if kind == "ring":
+            # The size is the wall; the ring's outside is the base.
+            return "ring", size, narrow, 1, narrow.value, size.note
+        shape, count = shapes[kind]
+        return shape, size, size, count, 0.0, size.note
+
+
+def section_properties(shape: str, width: float, depth: float, count: int, wall: float) -> tuple[float, float]:
+    """Return area [m2] and weaker section modulus [m3] of ``count`` equal sections side by side.
+
+    round: solid of diameter width, or hollow where wall > 0; rectangle: width x depth, hollow where wall > 0;
+    ring: width is the wall and wall the outer diameter (a vessel's foot)
+    raises : ValueError for another shape
+    """
+    if shape == "ring":
+        width, wall = wall, min(width, 0.5 * wall)
+        shape = "round"
+    if shape in ("round", "solid round", "hollow round"):
+        inner = max(width - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
+        area = 0.25 * pi * (width**2 - inner**2)
+        modulus = pi * (width**4 - inner**4) / (32.0 * width)
+    elif shape in ("rectangle", "legs"):
+        narrow, wide = min(width, depth), max(width, depth)
+        inner_narrow = max(narrow - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
+        inner_wide = max(wide - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
+        area = narrow * wide - inner_narrow * inner_wide
+        modulus = (wide * narrow**3 - inner_wide * inner_narrow**3) / (6.0 * narrow)
+    else:
+        raise ValueError(f"section_shape {shape!r} is not known; use round, rectangle, or legs with section_count")
+    return count * area, count * modulus
+
+
+def classify(item: Item) -> Scene:
+    """Return the scene of one object: class, support, models to try, estimates, and the fields that are missing."""
+    rule = rule_for(item)
+    row = _classes()[rule.object_class]
+    support = item.support or Support(row["support"])
+    models = tuple(m for m in row["models"].split("|") if m and m != "none")
+    rule_words = f"{rule.name}: {rule.why}"
+    if not models and item.support is None:
+        why = f"no generic model applies: it {row['why']}"
+        return Scene(item, row["class"], rule_words, support, (), {}, (), (why,))
+    if item.support is not None and item.support is not Support(row["support"]):
+        models = MODELS_OF[item.support]
+    elif item.frequency_hz is not None and "stress" in models:
+        models = (*models, "flexible_stress")
+    builder = _Builder(item, row, support)
+    builder.build()
+    assumptions = [e.note for e in builder.found.values() if e.origin is Origin.ASSUMED and e.note]
+    if item.support is None:
+        assumptions.insert(0, f"support: {support.value}, assumed for: {row['title'].lower()}; not recorded")
+    missing = builder.missing if needs_size(models) else []
+    return Scene(
+        item, row["class"], rule_words, support, models, builder.found,
+        tuple(dict.fromkeys(assumptions)), tuple(missing),
+    )
+
+
+MODELS_OF: Mapping[Support, tuple[str, ...]] = {
+    Support.FREESTANDING: ("rocking", "sliding"),
+    Support.FASTENED: ("stress", "flexible_stress"),
+    Support.HUNG: ("swing",),
+    Support.SUSPENDED: ("swing_3d",),
+    Support.ISOLATED: ("friction_isolator", "horizontal_isolator", "rotational_isolator", "stress", "flexible_stress"),
+}
+"""The models to try when the museum says how an object is held and its class would say otherwise."""
+
+
+def needs_size(models: Iterable[str]) -> bool:
+    """Say whether any of the models needs the object's dimensions."""
+    return bool(set(models) - {"sliding", "friction_isolator"})
+
+
+def weight(scene: Scene) -> float | None:
+    """Return the object's weight [N], or None where its mass is neither recorded nor estimated."""
+    mass = scene.parameters.get("object_mass")
+    return None if mass is None else G * mass.value

@@ -1,0 +1,316 @@
+"""Record files to three aligned components in m/s2, with everything refused that would falsify them."""
+
+from __future__ import annotations
+
+import glob
+import re
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pipeline.motions.errors import refusal
+from pipeline.motions.manifest import Component, Record
+from pipeline.quantities import Array, G
+
+UNITS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "g": G, "mg": 0.001 * G}
+"""Metres per second squared in one of each unit that a manifest may name."""
+
+_SPELLINGS = {"m/s**2": "m/s2", "m/s/s": "m/s2", "m/s^2": "m/s2", "cm/s**2": "cm/s2", "cm/s/s": "cm/s2"}
+# obspy's ASCII readers hand on the storage type in the place of the unit where a file was written without one.
+_SILENT = {"", "integer", "float", "ascii", "unknown"}
+
+PGA_MOST = 20.0 * G
+PGA_LEAST = 1e-9 * G
+WATER_LEVEL_DB = 60.0
+AZIMUTH_TOLERANCE = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """Three components as recorded, aligned, in m/s2.
+
+    data     : (3, n), rows the channels that the manifest calls x, y, z; z positive up
+    azimuths : degrees clockwise from north of the first two rows
+    channels : what the files call the three rows
+    """
+
+    dt: float
+    data: Array
+    azimuths: tuple[float, float]
+    channels: tuple[str, str, str]
+    steps: tuple[str, ...]
+
+
+def prefilter(sampling_hz: float, highpass_hz: float | None) -> tuple[float, float, float, float]:
+    """Return the four corners in Hz of the cosine taper that bounds the removal of an instrument's response.
+
+    It is one from a fifth of the record's high-pass (0.02 Hz without one) to 0.8 of the Nyquist frequency, and zero
+    below half of the former and above 0.9 of the latter: beyond, a response has nothing left that could be divided by.
+    """
+    low = 0.02 if highpass_hz is None else 0.2 * highpass_hz
+    return 0.5 * low, low, 0.40 * sampling_hz, 0.45 * sampling_hz
+
+
+def read_record(folder: str | Path, record: Record) -> Recording:
+    """Read the files of a record.
+
+    returns : the three components on their common span, in m/s2
+    raises  : MotionError naming file, component and sample for anything but three complete, live, finite components
+    source  : obspy's Trace.remove_response for counts (full response, water level 60 dB, see `prefilter`)
+    """
+    folder = Path(folder)
+    steps: list[str] = []
+    traces = [(folder / name, trace) for name in record.files for trace in _open(folder / name, steps)]
+    inventory = None if record.response is None else _inventory(folder / record.response, steps)
+    rows: dict[str, tuple[Path, Any, str]] = {}
+    azimuths: dict[str, float] = {}
+    taken: set[int] = set()
+    for key, component in record.components.items():
+        file, trace = _component(folder=folder, record=record, key=key, component=component, traces=traces, taken=taken)
+        _check(file, key, component, trace)
+        if inventory is not None:
+            _check_orientation(folder / str(record.response), key, component, trace, inventory)
+        steps += _in_si(file, key, record, trace, inventory)
+        if component.axis == "z":
+            if component.orientation == "down":
+                trace.data = -trace.data
+                steps.append(f"{key}: turned over, positive up")
+        else:
+            azimuths[component.axis] = component.orientation
+        _check_size(file, key, component, trace)
+        rows[component.axis] = (file, trace, key)
+    data, dt = _aligned(rows, steps)
+    channels = (rows["x"][2], rows["y"][2], rows["z"][2])
+    return Recording(dt, data, (azimuths["x"], azimuths["y"]), channels, tuple(steps))
+
+
+def _obspy() -> Any:
+    with warnings.catch_warnings():
+        # How obspy looks up its plugins is deprecated on some versions of Python; that is no news about a record.
+        warnings.simplefilter("ignore")
+        import obspy
+        import obspy.io.mseed
+    return obspy
+
+
+def _open(file: Path, steps: list[str]) -> list[Any]:
+    obspy = _obspy()
+
+    with file.open("rb") as stream:
+        head = stream.read(100)
+    if b"obspy.core.stream" in head:
+        # obspy would unpickle it while guessing the format, and a pickle can run anything.
+        raise refusal(file, "file", "a pickled stream can run code and is never opened", "export it as MiniSEED or SAC")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            # Escaped, because obspy expands wildcards; never unpacked, so that what is read is what was hashed.
+            stream = obspy.read(glob.escape(str(file)), check_compression=False)
+        except Exception as error:  # on a broken file obspy's readers raise anything
+            wrong = f"cannot be read ({type(error).__name__}: {str(error)[:200]})"
+            raise refusal(
+                file, "file", wrong, "it is cut off, damaged or of an unknown format; fetch it again"
+            ) from error
+    said = [w for w in caught if issubclass(w.category, UserWarning)]
+    for warning in said:
+        if issubclass(warning.category, obspy.io.mseed.InternalMSEEDWarning):
+            raise refusal(file, "file", f"is cut off or damaged ({str(warning.message)[:200]})", "fetch it again")
+    steps += [f"{file.name}: the reader warned: {str(w.message)[:200]}" for w in said]
+    _check_complete(file, stream)
+    try:
+        stream.merge(method=-1)
+    except Exception as error:  # obspy raises a bare Exception for pieces that do not belong together
+        raise refusal(
+            file, "file", f"its pieces do not fit ({error})", "give files with one trace a channel"
+        ) from error
+    for trace in stream:
+        s = trace.stats
+        steps.append(
+            f"read {file.name} ({s._format}, {trace.id}): {s.npts} samples at {s.sampling_rate:g} Hz from {s.starttime}"
+        )
+    return list(stream)
+
+
+def _check_complete(file: Path, stream: Any) -> None:
+    form = stream[0].stats._format if len(stream) else ""
+    if form == "MSEED":
+        length, size = stream[0].stats.mseed.record_length, file.stat().st_size
+        if size % length:
+            wrong = f"is cut off: {size} bytes are not a whole number of records of {length} bytes"
+            raise refusal(file, "file", wrong, "fetch it again")
+    elif form in {"SLIST", "TSPAIR"}:
+        text = file.read_text(encoding="ascii", errors="replace")
+        declared = sum(int(n) for n in re.findall(r"^TIMESERIES [^,\n]*, *(\d+) samples", text, re.MULTILINE))
+        # Counted, not taken from the header, whose word obspy passes on.
+        found = sum(len(trace.data) for trace in stream)
+        if found != declared:
+            wrong = f"is cut off: it announces {declared} samples and holds {found}"
+            raise refusal(file, "file", wrong, "fetch it again")
+
+
+def _inventory(file: Path, steps: list[str]) -> Any:
+    obspy = _obspy()
+    try:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            inventory = obspy.read_inventory(glob.escape(str(file)), format="STATIONXML")
+    except Exception as error:  # on a broken file obspy's readers raise anything
+        wrong = f"is no StationXML ({type(error).__name__}: {str(error)[:200]})"
+        raise refusal(file, "response", wrong, "fetch it again with level=response") from error
+    steps += [
+        f"{file.name}: the reader warned: {w.message!s:.200}" for w in caught if issubclass(w.category, UserWarning)
+    ]
+    return inventory
+
+
+def _component(
+    *, folder: Path, record: Record, key: str, component: Component, traces: list[tuple[Path, Any]], taken: set[int]
+) -> tuple[Path, Any]:
+    place = f"record {record.name!r}, component {component.axis} ({key!r})"
+    fitting = [(f, t) for f, t in traces if key in {t.id, t.stats.channel} or f == folder / key]
+    if not fitting:
+        there = ", ".join(sorted({f"{f.name}: {t.id}" for f, t in traces})) or "nothing"
+        raise refusal(
+            folder, place, "is missing", f"name a file, a channel or a channel id of the record; it has {there}"
+        )
+    file, trace = fitting[0]
+    ids = sorted({t.id for _, t in fitting})
+    if len(ids) > 1:
+        raise refusal(
+            file, place, f"fits several channels ({', '.join(ids)})", "name the full channel id in components"
+        )
+    if len(fitting) > 1:
+        later = fitting[1][1].stats.starttime
+        wrong = f"has a gap or an overlap after sample {trace.stats.npts - 1} (the next piece starts at {later})"
+        raise refusal(file, place, wrong, "use a record without a gap, or files with one unbroken trace a channel")
+    if id(trace) in taken:
+        raise refusal(file, place, "is used for two axes", "name each component's own file or channel")
+    taken.add(id(trace))
+    return file, trace
+
+
+def _check(file: Path, key: str, component: Component, trace: Any) -> None:
+    place = f"component {component.axis} ({key!r})"
+    if trace.stats.npts < 2:
+        raise refusal(file, place, f"is empty ({trace.stats.npts} samples)", "fetch it again")
+    if not (np.isfinite(trace.stats.delta) and trace.stats.delta > 0.0):
+        raise refusal(file, place, f"has a time step of {trace.stats.delta} s", "fetch it again")
+    if np.ma.is_masked(trace.data):
+        at = int(np.flatnonzero(np.ma.getmaskarray(trace.data))[0])
+        raise refusal(file, place, f"has a gap at sample {at}", "use a record without a gap")
+    try:
+        values = np.array(trace.data, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise refusal(file, place, f"holds no numbers ({trace.data.dtype})", "name a channel of samples") from error
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        wrong = f"is {values[bad[0]]} at sample {bad[0]} ({bad.size} such samples)"
+        raise refusal(file, place, wrong, "use a record without missing samples")
+    if np.ptp(values) == 0.0:
+        raise refusal(file, place, f"is dead: every sample is {values[0]:g}", "use a record of a working channel")
+    trace.data = values
+
+
+def _check_orientation(file: Path, key: str, component: Component, trace: Any, inventory: Any) -> None:
+    place = f"component {component.axis} ({key!r})"
+    try:
+        known = inventory.get_channel_metadata(trace.id, trace.stats.starttime)
+    except Exception as error:  # obspy raises a bare Exception
+        wrong = f"says nothing about {trace.id} at {trace.stats.starttime}"
+        raise refusal(file, place, wrong, "name the StationXML of this channel and time") from error
+    if component.axis == "z":
+        said = {-90.0: "up", 90.0: "down"}.get(known["dip"])
+        agrees = said in {None, component.orientation}
+    else:
+        said = known["azimuth"]
+        agrees = said is None or abs((said - component.orientation + 180.0) % 360.0 - 180.0) <= AZIMUTH_TOLERANCE
+    if not agrees:
+        wrong = f"the manifest orients it {component.orientation}, the StationXML {said}"
+        raise refusal(file, place, wrong, "find out which is right, and mend the manifest's orientation")
+
+
+def _in_si(file: Path, key: str, record: Record, trace: Any, inventory: Any) -> list[str]:
+    stats = trace.stats
+    own, factor = _own_unit(stats)
+    if inventory is not None:
+        if own not in {"", "counts"}:
+            raise refusal(file, f"component {key!r}", f"is in {own} already", "drop response from the manifest")
+        corners = prefilter(stats.sampling_rate, record.highpass_hz)
+        try:
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                # Without a taper: one of obspy's 5 % would eat the onset of a record that was triggered late.
+                trace.remove_response(
+                    inventory, output="ACC", water_level=WATER_LEVEL_DB, pre_filt=corners, zero_mean=True, taper=False
+                )
+        except Exception as error:  # obspy and its C library raise anything on an incomplete response
+            wrong = f"the response cannot be removed ({type(error).__name__}: {str(error)[:200]})"
+            raise refusal(
+                file, f"component {key!r}", wrong, f"give the full StationXML, not {record.response!r}"
+            ) from error
+        said = [f"{key}: removing the response warned: {str(w.message)[:200]}" for w in caught]
+        taper = ", ".join(f"{c:g}" for c in corners)
+        how = f"mean removed, pre-filter {taper} Hz, water level {WATER_LEVEL_DB:g} dB"
+        step = f"{key}: response of {record.response} removed to m/s2, {how}"
+        return [step, *said]
+    unit = record.units or own
+    if own and record.units and UNITS[record.units] != factor:
+        wrong = f"the file says {own}, the manifest {record.units}"
+        raise refusal(file, f"component {key!r}", wrong, "drop units from the manifest, which may only fill a silence")
+    if own not in UNITS and own:
+        raise refusal(
+            file, f"component {key!r}", f"is in {own[:40]!r}, not an acceleration", "name its response in the manifest"
+        )
+    if not unit:
+        remedy = f"give units ({', '.join(UNITS)}), or response for counts, in the manifest"
+        raise refusal(file, f"component {key!r}", "neither the file nor the manifest says its unit", remedy)
+    # K-NET files hold counts and their factor to m/s2; for every other file the unit is the samples' own.
+    factor = stats.calib if stats._format == "KNET" else UNITS[unit]
+    trace.data = factor * trace.data
+    return [f"{key}: {unit} to m/s2, times {factor:.9g}"]
+
+
+def _own_unit(stats: Any) -> tuple[str, float]:
+    if stats._format == "KNET":
+        return "m/s2", 1.0
+    said = str(stats.get("ascii", {}).get("unit", "")).strip().lower()
+    if said in _SILENT:
+        return "", 0.0
+    unit = _SPELLINGS.get(said, said)
+    return unit, UNITS.get(unit, 0.0)
+
+
+def _check_size(file: Path, key: str, component: Component, trace: Any) -> None:
+    # About the mean, because a raw accelerometer carries an offset that is not shaking.
+    size = np.abs(trace.data - np.mean(trace.data))
+    at = int(np.argmax(size))
+    if not PGA_LEAST <= size[at] <= PGA_MOST:
+        place = f"component {component.axis} ({key!r})"
+        wrong = f"peaks at {size[at] / G:.3g} g (sample {at}), outside of 1e-9 g to 20 g"
+        raise refusal(file, place, wrong, "this is the wrong unit; mend units or response in the manifest")
+
+
+def _aligned(rows: dict[str, tuple[Path, Any, str]], steps: list[str]) -> tuple[Array, float]:
+    dt = rows["x"][1].stats.delta
+    for axis, (file, trace, key) in rows.items():
+        if abs(trace.stats.delta - dt) > 1e-6 * dt:
+            wrong = f"has a time step of {trace.stats.delta:g} s, component x of {dt:g} s"
+            raise refusal(file, f"component {axis} ({key!r})", wrong, "use three components of one time step")
+    latest = max(trace.stats.starttime for _, trace, _ in rows.values())
+    late = {axis: (latest - trace.stats.starttime) / dt for axis, (_, trace, _) in rows.items()}
+    first = {axis: round(samples) for axis, samples in late.items()}
+    n = min(trace.stats.npts - first[axis] for axis, (_, trace, _) in rows.items())
+    if n < 2:
+        raise refusal(rows["x"][0], "components x, y, z", "have no common time", "use components of one event")
+    cuts = {axis: (first[axis], trace.stats.npts - first[axis] - n) for axis, (_, trace, _) in rows.items()}
+    if any(any(cut) for cut in cuts.values()):
+        told = ", ".join(f"{axis} {a} at the start and {b} at the end" for axis, (a, b) in sorted(cuts.items()))
+        steps.append(f"cut to the common span from {latest} ({n} samples); samples dropped: {told}")
+    skew = max(abs(late[axis] - first[axis]) for axis in rows) * dt
+    if skew > 1e-3 * dt:
+        steps.append(f"aligned to the nearest sample; the components' clocks differ by up to {skew:.3g} s")
+    data = np.stack([rows[axis][1].data[first[axis] : first[axis] + n] for axis in "xyz"])
+    return data, float(dt)

@@ -1,0 +1,105 @@
+"""Tables are data: CSV files whose rows carry a value, its range and who says so.  Code never repeats their numbers."""
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+Row = Mapping[str, str]
+
+FOLDER = Path(__file__).resolve().parent
+
+
+class TableError(ValueError):
+    """A table that cannot be used: the message names file, row, column and remedy."""
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """A value with its range and source, as a table's row states it."""
+
+    value: float
+    low: float
+    high: float
+    source: str
+
+
+@cache
+def table(name: str) -> tuple[Row, ...]:
+    """Return the rows of a table, by column.
+
+    raises : TableError for a row of another length than the header, FileNotFoundError for an unknown table
+    """
+    path = FOLDER / f"{name}.csv"
+    with path.open(encoding="utf-8", newline="") as stream:
+        reader = csv.DictReader(stream, strict=True)
+        rows = list(reader)
+    for number, row in enumerate(rows, start=2):
+        if None in row or None in row.values():
+            raise TableError(f"{path.name}, line {number}: not as many cells as the header has; quote cells with commas")
+    return tuple(rows)
+
+
+def number(row: Row, column: str, where: str) -> float:
+    """Return a cell as a number.
+
+    raises : TableError naming table, row and column
+    """
+    try:
+        return float(row[column])
+    except (KeyError, ValueError) as problem:
+        raise TableError(f"{where}: column {column!r} must be a number, not {row.get(column)!r}") from problem
+
+
+def spread(row: Row, value: str, low: str, high: str, where: str) -> Range:
+    """Return value, low and high of a row as one range.
+
+    raises : TableError where they are no numbers or not in order
+    """
+    out = Range(number(row, value, where), number(row, low, where), number(row, high, where), row.get("source", ""))
+    if not out.low <= out.value <= out.high:
+        raise TableError(f"{where}: {low} <= {value} <= {high} does not hold ({out.low} {out.value} {out.high})")
+    return out
+
+
+def friction_of(object_material: str = "", surface_material: str = "") -> Range:
+    """Return the friction of a pair (paper's Table 3): the median and the span of all rows that are not ruled out.
+
+    An empty name rules nothing out; a name that the table does not know leaves the other one to decide.
+    """
+    rows = _matching("friction", {"object_material": object_material, "surface_material": surface_material})
+    # Special surfaces are chosen on purpose, never met by chance.
+    if not surface_material:
+        rows = [r for r in rows if r["surface_material"] not in ("Coarse sandpaper", "Teflon")]
+    if not object_material:
+        rows = [r for r in rows if r["object_material"] != "Teflon"]
+    return _span(rows, "friction")
+
+
+def damping_of(wall_surface: str = "", back_surface: str = "") -> Range:
+    """Return the damping of a painting against its wall (paper's Table 4).
+
+    With nothing known the lowest damping counts, the painting's bare wood on paint; the span is the table's.
+    """
+    rows = _matching("damping", {"wall_surface": wall_surface, "back_surface": back_surface})
+    out = _span(rows, "damping")
+    if not back_surface:
+        return Range(out.low, out.low, out.high, out.source)
+    return out
+
+
+def _matching(name: str, wanted: Mapping[str, str]) -> list[Row]:
+    rows = list(table(name))
+    for column, text in wanted.items():
+        kept = [r for r in rows if r[column].lower() == text.strip().lower()]
+        if kept:
+            rows = kept
+    return rows
+
+
+def _span(rows: list[Row], name: str) -> Range:
+    values = sorted(number(r, "value", f"{name}.csv") for r in rows)
+    low = min(number(r, "low", f"{name}.csv") for r in rows)
+    high = max(number(r, "high", f"{name}.csv") for r in rows)
+    return Range(values[(len(values) - 1) // 2], low, high, rows[0]["source"].split(" (")[0])
