@@ -1,0 +1,174 @@
+"""One cell of a museum's file -> one value of the record, or None and a problem that names what is wrong."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from decimal import Context
+from math import isinf
+
+from pipeline.collection.mapping import ColumnMap
+from pipeline.collection.record import plausible, units_of
+from pipeline.records import Problem, Support
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
+_INFINITE = re.compile(r"[+-]?inf(inity)?", re.IGNORECASE)
+_LONGEST_NUMBER = 40
+_BREAKS = re.compile("[\t\n\v\f\r\x85\u2028\u2029]+")
+# The C0 and C1 controls; and the marks that turn the direction of all text that follows, also outside of the cell.
+_CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
+_SPACE = " \t\r\n\v\f\u00a0\u3000"
+# A product of two decimals is rounded once, to the nearest double: 79 in is 2.0066 m and not its neighbour.
+_EXACT = Context(prec=80)
+_FLAGS = {"true": True, "yes": True, "y": True, "1": True, "false": False, "no": False, "n": False, "0": False}
+
+
+@dataclass(slots=True)
+class Cells:
+    """The cells of one row on their way into a record.
+
+    place    : names file and row in messages
+    decimal  : the file's decimal mark
+    problems : gathers what is wrong
+    """
+
+    place: str
+    decimal: str = "."
+    problems: list[Problem] = field(default_factory=list)
+
+    def number(self, name: str, column: ColumnMap, texts: Sequence[str]) -> float | None:
+        """Return a number in SI units, or None where none is recorded or none can be accepted (then with a problem)."""
+        text = texts[0].strip(_SPACE)
+        if _missing(text, column):
+            return None
+        value = self._parse(name, column, text)
+        if value is None or any(value == m for m in column.missing if not isinstance(m, str)):
+            return None
+        units = units_of(name)
+        unit = column.unit or plausible()[name].unit
+        metric = value
+        if units:
+            exact = _EXACT.multiply(_EXACT.create_decimal(self._plain(text)), _EXACT.create_decimal(repr(units[unit])))
+            metric = float(exact)
+        reason = _implausible(name, metric)
+        if reason:
+            shown = f"{_show(text)}{'' if unit == '-' else f' {unit}'}"
+            converted = f" = {metric:.6g} {plausible()[name].unit}" if units and unit != plausible()[name].unit else ""
+            self._note(name, column, f"{shown}{converted} {reason}", _remedy(metric))
+            return None
+        # No negative zero: it equals zero, but a database may not give it back.
+        return metric + 0.0
+
+    def integer(self, name: str, column: ColumnMap, texts: Sequence[str]) -> int | None:
+        """Return a whole number, or None as `number` does."""
+        value = self.number(name, column, texts)
+        if value is not None and not value.is_integer():
+            self._note(name, column, f"{_show(texts[0])} is not a whole number", "give a count")
+            return None
+        return None if value is None else int(value)
+
+    def text(self, name: str, column: ColumnMap, texts: Sequence[str], *, limit: int) -> str:
+        """Return the cells' text as it is: stripped, without control characters, capped; each change with a problem.
+
+        A text that the mapping's ``values`` do not list stays as it is: they translate, they do not restrict.
+        """
+        parts = [self._clean(name, column, text) for text in texts]
+        text = column.separator.join(part for part in parts if part)
+        if _missing(text, column):
+            return ""
+        meaning = _translate(column).get(text.casefold(), text)
+        text = str(meaning)
+        if len(text) > limit:
+            message = f"{len(text):,} characters, of which the first {limit:,} are kept"
+            self._note(name, column, message, "shorten it in the museum's database")
+            text = text[:limit].rstrip()
+        return text
+
+    def choice(self, name: str, column: ColumnMap, texts: Sequence[str]) -> Support | None:
+        """Return how the object is held, or None where it is not recorded or no known word (then with a problem)."""
+        text = texts[0].strip(_SPACE)
+        if _missing(text, column):
+            return None
+        meaning = str(_translate(column).get(text.casefold(), text.casefold()))
+        known = [support.value for support in Support]
+        if meaning not in known:
+            given = ", ".join(map(repr, column.values))
+            message = f"{_show(text)} is none of {', '.join(known)}{f', nor of {given}' if given else ''}"
+            self._note(name, column, message, f"add it to the mapping, [columns.{name}] values")
+            return None
+        return Support(meaning)
+
+    def flag(self, name: str, column: ColumnMap, texts: Sequence[str]) -> bool | None:
+        """Return yes or no, or None where it is not recorded or no known word (then with a problem)."""
+        text = texts[0].strip(_SPACE)
+        if _missing(text, column):
+            return None
+        meaning = _translate(column).get(text.casefold(), _FLAGS.get(text.casefold()))
+        if not isinstance(meaning, bool):
+            message = f"{_show(text)} is neither yes nor no"
+            self._note(name, column, message, f"add it to the mapping, [columns.{name}] values")
+            return None
+        return meaning
+
+    def _parse(self, name: str, column: ColumnMap, text: str) -> float | None:
+        plain = self._plain(text)
+        if len(plain) <= _LONGEST_NUMBER and _NUMBER.fullmatch(plain):
+            value = float(plain)
+            if not isinf(value):
+                return value
+        elif not _INFINITE.fullmatch(plain):
+            hint = "write numbers without units or thousands separators"
+            if self.decimal == "." and "," in text:
+                hint += ', and if the comma is the decimal mark say decimal = "," in the mapping, [source]'
+            self._note(name, column, f"{_show(text)} is not a number", f"{hint}; or list it as missing in the mapping")
+            return None
+        self._note(name, column, f"{_show(text)} is infinite", "measure it, or leave the cell empty")
+        return None
+
+    def _plain(self, text: str) -> str:
+        # A dot in a file with decimal commas separates thousands or is a slip: both are refused, not guessed.
+        return text if self.decimal == "." else text.replace(".", "?").replace(",", ".")
+
+    def _clean(self, name: str, column: ColumnMap, text: str) -> str:
+        text = text.strip(_SPACE)
+        clean = _CONTROLS.sub("", _BREAKS.sub(" ", text))
+        if clean != text:
+            found = sorted({f"U+{ord(c):04X}" for c in _CONTROLS.findall(text) + _BREAKS.findall(text) for c in c})
+            message = f"control characters were removed ({', '.join(found)}; line breaks became spaces)"
+            self._note(name, column, message, "retype the text in the museum's database")
+        return clean.strip(_SPACE)
+
+    def _note(self, name: str, column: ColumnMap, message: str, remedy: str) -> None:
+        source = " + ".join(_show(part) for part in column.sources)
+        self.problems.append(Problem(name, f"{self.place}: column {source}: {message}", remedy))
+
+
+def _missing(text: str, column: ColumnMap) -> bool:
+    return not text or any(text.casefold() == m.casefold() for m in column.missing if isinstance(m, str))
+
+
+def _translate(column: ColumnMap) -> dict[str, str | bool]:
+    return {text.casefold(): meaning for text, meaning in column.values.items()}
+
+
+def _implausible(name: str, value: float) -> str:
+    limits = plausible()[name]
+    if limits.low <= value <= limits.high:
+        return ""
+    if value == 0.0:
+        return "is zero, which nothing real can be"
+    if value < 0.0 <= limits.low:
+        return "is negative"
+    unit = "" if limits.unit == "-" else f" {limits.unit}"
+    return f"is implausible: not within {limits.low:g} to {limits.high:g}{unit} ({limits.reason})"
+
+
+def _remedy(value: float) -> str:
+    if value == 0.0:
+        return "if 0 means that it was not recorded, add missing = [0.0] to the mapping; else correct it"
+    return "correct it in the museum's database, or the column's unit in the mapping"
+
+
+def _show(text: str) -> str:
+    return repr(text if len(text) <= 60 else f"{text[:60]}...")

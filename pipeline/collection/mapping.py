@@ -1,0 +1,296 @@
+"""A mapping: the TOML file in which a registrar says which column of the museum's file is which field of the record."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    PrivateAttr,
+    StrictBool,
+    StrictFloat,
+    StrictStr,
+    ValidationError,
+    model_validator,
+)
+
+from pipeline.collection.errors import MappingError
+from pipeline.collection.record import KINDS, REQUIRED, units_of
+from pipeline.quantities import LENGTHS, MASSES
+from pipeline.records import Support
+
+PRESETS = Path(__file__).resolve().parent / "presets"
+
+DIAMETER = "diameter_m"
+"""The one column that is not a field of the record: it fills width_m and depth_m where they are missing."""
+
+MAPPABLE = (*(name for name, kind in KINDS.items() if kind != "problems"), DIAMETER)
+"""What a mapping may name under [columns]."""
+
+# In all but UTF-16 (Excel's "Unicode text") the line ends survive a broken byte, so that it spoils one row only.
+Encoding = Literal[
+    "utf-8",
+    "utf-16",
+    "ascii",
+    "cp437",
+    "cp850",
+    "cp1250",
+    "cp1251",
+    "cp1252",
+    "cp1253",
+    "cp1254",
+    "iso-8859-1",
+    "iso-8859-2",
+    "iso-8859-15",
+    "mac-roman",
+    "koi8-r",
+    "big5",
+    "euc-jp",
+    "euc-kr",
+    "gb18030",
+    "shift-jis",
+]
+Number = Annotated[StrictFloat, Field(allow_inf_nan=False)]
+Name = Annotated[str, Field(min_length=1)]
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Source(_Part):
+    """How the museum's file is written."""
+
+    format: Literal["csv"] = Field(description="The kind of file.")
+    encoding: Encoding = Field(description="How its letters are coded; Excel's older exports use cp1252.")
+    delimiter: str = Field(
+        pattern=r'^[^"\r\n\x00]$', description="The one character between two cells: a comma, a semicolon or a tab."
+    )
+    decimal: Literal[".", ","] = Field(default=".", description="The decimal mark of its numbers.")
+    unmapped_columns: Literal["ignore", "refuse"] = Field(
+        default="ignore", description="What to do with a column that no field is mapped to."
+    )
+
+    @model_validator(mode="after")
+    def _distinct(self) -> Self:
+        if self.delimiter == self.decimal == ",":
+            raise ValueError('a comma cannot be both delimiter and decimal mark; most such files have delimiter = ";"')
+        return self
+
+
+class Museum(_Part):
+    """Whose collection it is."""
+
+    name: Name = Field(description="The museum's name, as reports show it.")
+    credit: str = Field(default="", description="How the museum wants its data to be credited.")
+
+
+class ColumnMap(_Part):
+    """Where one field of the record comes from."""
+
+    column: Name | None = Field(default=None, description="The column's name in the file's first row.")
+    columns: tuple[Name, ...] = Field(
+        default=(), description="Several columns, joined to one text; empty cells left out."
+    )
+    separator: str = Field(default=" ", description="What stands between the texts of several columns.")
+    unit: str | None = Field(
+        default=None, description="Unit of the column's numbers; required for every length and mass, for them only."
+    )
+    missing: tuple[Number | StrictStr, ...] = Field(
+        default=(), description="Numbers (in the column's own unit) or texts that mean: not recorded."
+    )
+    values: dict[str, StrictStr | StrictBool] = Field(
+        default_factory=dict, description="What a text of the column means; capitals and small letters count the same."
+    )
+    optional: bool = Field(default=False, description="The file may lack this column.")
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """The names of the columns that it reads."""
+        return self.columns if self.column is None else (self.column,)
+
+    @model_validator(mode="after")
+    def _one_source(self) -> Self:
+        if (self.column is None) == (not self.columns):
+            raise ValueError('needs either column = "name" or columns = ["first", "second"]')
+        return self
+
+
+class Display(_Part):
+    """Which locations are no galleries."""
+
+    not_on_display: tuple[Name, ...] = Field(
+        default=(), description="Locations (such as a store) whose objects are not on display, and so not assessed."
+    )
+
+
+class Mapping(_Part):
+    """A museum's file, column by column; ``name`` is the preset's or the file's name, for messages."""
+
+    source: Source = Field(description="How the file is written.")
+    museum: Museum = Field(description="Whose collection it is.")
+    columns: dict[str, ColumnMap] = Field(
+        description="Field of the object record (or diameter_m) -> where it comes from."
+    )
+    display: Display = Field(default=Display(), description="Which locations are no galleries.")
+    _name: str = PrivateAttr(default="mapping")
+
+    @property
+    def name(self) -> str:
+        """The preset's or the file's name."""
+        return self._name
+
+    @model_validator(mode="after")
+    def _columns_fit(self) -> Self:
+        unknown = [name for name in self.columns if name not in MAPPABLE]
+        if unknown:
+            raise ValueError(
+                f"columns.{unknown[0]}: there is no such field{closest(unknown[0], MAPPABLE)}. "
+                f"Fields are {', '.join(MAPPABLE)}"
+            )
+        absent = [name for name in REQUIRED if name not in self.columns]
+        if absent:
+            raise ValueError(f'columns.{absent[0]} is missing; add it with column = "..."')
+        for field, column in self.columns.items():
+            fault = _fault(field, column)
+            if fault:
+                raise ValueError(f"columns.{field}: {fault}")
+        return self
+
+
+def closest(word: str, words: Iterable[str]) -> str:
+    """Return " (did you mean 'x'?)" for the most similar of the words, or nothing where none is similar."""
+    folded = {w.casefold(): w for w in words}
+    near = get_close_matches(word.casefold(), folded, n=1)
+    return f" (did you mean {folded[near[0]]!r}?)" if near else ""
+
+
+def preset_names() -> list[str]:
+    """Return the names of the mappings that come with Kouros."""
+    return sorted(path.stem for path in PRESETS.glob("*.toml"))
+
+
+def load_mapping(path_or_preset_name: str | Path) -> Mapping:
+    """Read a mapping: the path of a TOML file, or the name of a preset such as "carnegie".
+
+    raises : FileNotFoundError for neither, naming the presets; MappingError for a file that cannot be used, naming the
+             file, the key and the remedy
+    """
+    wanted = str(path_or_preset_name)
+    path = PRESETS / f"{wanted}.toml" if wanted in preset_names() else Path(wanted)
+    name = wanted if path.parent == PRESETS else path.name
+    if not path.is_file():
+        raise FileNotFoundError(
+            f"mapping {wanted!r} is neither a file nor a preset ({', '.join(preset_names())})"
+            f"{closest(wanted, preset_names())}"
+        )
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except UnicodeDecodeError as fault:
+        raise MappingError(f"{name}: byte {fault.start} is not UTF-8; save the mapping as UTF-8") from fault
+    except tomllib.TOMLDecodeError as fault:
+        raise MappingError(f"{name}: not TOML: {fault}; quote texts and write one key a line") from fault
+    except OSError as fault:
+        raise MappingError(f"{name}: cannot be read: {fault.strerror}; check its permissions") from fault
+    try:
+        mapping = Mapping.model_validate(data)
+    except ValidationError as fault:
+        raise MappingError("\n".join(f"{name}: {_say(error)}" for error in fault.errors())) from fault
+    mapping._name = name
+    return mapping
+
+
+def mapping_schema() -> dict[str, Any]:
+    """Return the JSON Schema of a mapping, as schemas/mapping.schema.json holds it."""
+    schema = Mapping.model_json_schema()
+    schema["properties"]["columns"]["propertyNames"] = {"enum": list(MAPPABLE)}
+    schema["properties"]["columns"]["required"] = list(REQUIRED)
+    schema["properties"]["columns"]["properties"] = {
+        field: {
+            "$ref": "#/$defs/ColumnMap",
+            "required": ["unit"],
+            "properties": {"unit": {"enum": list(units_of(field))}},
+        }
+        if units_of(field)
+        else {"$ref": "#/$defs/ColumnMap", "not": {"required": ["unit"]}}
+        for field in MAPPABLE
+    }
+    schema["$defs"]["ColumnMap"]["oneOf"] = [{"required": ["column"]}, {"required": ["columns"]}]
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+def check_header(mapping: Mapping, file: str, header: Sequence[str]) -> None:
+    """Refuse a file that lacks a column of the mapping, has one twice, or has unmapped ones that must not be.
+
+    raises : MappingError naming the mapping, the field, the column, the columns that are there and the closest of them
+    """
+    there = ", ".join(repr(name[:60]) for name in header[:80]) + (", ..." if len(header) > 80 else "")
+    for field, column in mapping.columns.items():
+        for source in column.sources:
+            if source not in header and not column.optional:
+                raise MappingError(
+                    f"{mapping.name}: columns.{field}: {file} has no column {source!r}{closest(source, header)}. "
+                    f"Its columns are {there}. Name one of them in the mapping"
+                )
+            if header.count(source) > 1:
+                raise MappingError(
+                    f"{mapping.name}: columns.{field}: {file} has {header.count(source)} columns named {source!r}; "
+                    "rename all but the one that is meant"
+                )
+    if mapping.source.unmapped_columns == "refuse":
+        known = [source for column in mapping.columns.values() for source in column.sources]
+        for name in header:
+            if name not in known:
+                raise MappingError(
+                    f"{mapping.name}: {file} has a column {name[:60]!r} that the mapping does not know"
+                    f"{closest(name[:60], known)}. Rename or delete it"
+                )
+
+
+def _fault(field: str, column: ColumnMap) -> str:
+    kind, units = KINDS.get(field, "number"), units_of(field)
+    if units and column.unit not in units:
+        given = "has no unit" if column.unit is None else f"cannot be in {column.unit!r}"
+        return f'a {"length" if units is LENGTHS else "mass"} {given}; add unit = "..." with one of {", ".join(units)}'
+    if not units and column.unit is not None:
+        return f"unit is for lengths ({', '.join(LENGTHS)}) and masses ({', '.join(MASSES)}) only; leave it out"
+    if column.columns and kind != "text":
+        return f"only texts can be joined from several columns, this is a {kind}; name one column"
+    if field in REQUIRED and column.optional:
+        return "every object needs it; leave out optional"
+    if kind in ("number", "integer"):
+        return "values translate texts, this is a number; use missing instead" if column.values else ""
+    if any(not isinstance(value, str) for value in column.missing):
+        return "missing must hold texts, in quotes: this field is no number"
+    choices: dict[str, list[Any]] = {"choice": [s.value for s in Support], "flag": [True, False]}
+    allowed = choices.get(kind)
+    for text, meaning in column.values.items():
+        if allowed is not None and meaning not in allowed:
+            one_of = ", ".join(str(a).lower() for a in allowed)
+            return f"values: {text!r} cannot mean {meaning!r}; it must be one of {one_of}"
+        if allowed is None and not isinstance(meaning, str):
+            return f"values: {text!r} must mean a text, in quotes, not {meaning!r}"
+    if len({text.casefold() for text in column.values}) < len(column.values):
+        return "values: two texts differ in capitals only, which count the same; leave one out"
+    return ""
+
+
+_SECTIONS: dict[str, type[BaseModel]] = {"source": Source, "museum": Museum, "columns": ColumnMap, "display": Display}
+
+
+def _say(error: Any) -> str:
+    where = ".".join(str(part) for part in error["loc"])
+    if error["type"] == "extra_forbidden":
+        key, section = str(error["loc"][-1]), str(error["loc"][0])
+        known = (
+            list(_SECTIONS[section].model_fields) if section in _SECTIONS and len(error["loc"]) > 1 else list(_SECTIONS)
+        )
+        return f"{where}: there is no such key{closest(key, known)}. Known are {', '.join(known)}"
+    message = error["msg"].removeprefix("Value error, ")
+    return f"{where}: {message}" if where else message

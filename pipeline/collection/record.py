@@ -1,0 +1,171 @@
+"""The object record at the border: kinds and units of its fields, its JSON form and its JSON Schema."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, get_type_hints
+
+from pydantic import TypeAdapter
+
+from pipeline.quantities import LENGTHS, MASSES
+from pipeline.records import ITEM_FIELDS, Item, Problem, Support
+from pipeline.tables import number, table
+
+KINDS: Mapping[str, str] = {
+    name: {
+        str: "text",
+        float | None: "number",
+        int | None: "integer",
+        bool: "flag",
+        bool | None: "flag",
+        Support | None: "choice",
+        tuple[Problem, ...]: "problems",
+    }[hint]
+    for name, hint in get_type_hints(Item).items()
+}
+"""Field of Item -> "text", "number", "integer", "flag", "choice" or "problems", as its type hint says."""
+
+REQUIRED = ("object_number", "gallery")
+"""The only fields that every record must have."""
+
+TEXT_LIMIT = 2000
+"""Characters that are kept of a text."""
+
+NUMBER_LIMIT = 200
+"""Characters of the longest object number: longer ones are pasted prose, and databases cannot index them."""
+
+_MEANINGS = {
+    "object_number": "The museum's own number of the object; unique.",
+    "gallery": "Current location.",
+    "title": "Title as the museum gives it; text is never markup.",
+    "object_name": "What kind of thing it is, such as vase or bust.",
+    "classification": "The museum's classification.",
+    "medium": "Material and technique in the museum's words.",
+    "case": "Display case or plinth it stands in or on.",
+    "position_x_m": "Position in the gallery, towards x (east).",
+    "position_y_m": "Position in the gallery, towards y (north).",
+    "orientation_deg": "Direction of the object's width, from x towards y.",
+    "support": "How the object is held.",
+    "isolator": "Name of the isolator it stands on, if any.",
+    "height_m": "Height.",
+    "base_width_m": "Width of the footing.",
+    "base_depth_m": "Depth of the footing.",
+    "width_m": "Largest width.",
+    "depth_m": "Largest depth.",
+    "cg_height_m": "Height of the centre of gravity above the base.",
+    "mass_kg": "Mass.",
+    "material": "Main material.",
+    "base_material": "Material of the footing.",
+    "surface_material": "Material of the surface it stands on.",
+    "friction": "Coefficient of friction between footing and surface.",
+    "frequency_hz": "Lowest natural frequency.",
+    "damping": "Ratio to critical damping.",
+    "suspension_length_m": "Length from the pivot to the centre of gravity.",
+    "wall_surface": "Surface of the wall behind a hung object.",
+    "back_surface": "Back of a hung object.",
+    "section_shape": "Shape of the weakest cross-section.",
+    "section_width_m": "Width of the weakest cross-section.",
+    "section_depth_m": "Depth of the weakest cross-section.",
+    "section_wall_m": "Wall thickness of a hollow cross-section.",
+    "section_height_m": "Height of the weakest cross-section above the base.",
+    "section_count": "How many such cross-sections share the load (legs, pins).",
+    "allowable_stress_pa": "Stress that the weakest material may bear.",
+    "condition": "Condition, from 0 (ruin) to 1 (sound).",
+    "clearance_m": "Room to the nearest neighbour or edge.",
+    "susceptible": "Whether rocking itself damages it.",
+    "value_class": "The museum's own class of value.",
+    "on_display": "Whether it is on display now; only then it is assessed.",
+    "problems": "What the import could not accept.",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Plausible:
+    """The range that a quantity can have in a museum, ends included, in ``unit``; the reason says why."""
+
+    low: float
+    high: float
+    unit: str
+    reason: str
+
+
+@cache
+def plausible() -> Mapping[str, Plausible]:
+    """Return the plausible range of every numeric field and of diameter_m (tables/plausible.csv).
+
+    raises : TableError for a row that cannot be read
+    """
+    out = {}
+    for line, row in enumerate(table("plausible"), start=2):
+        where = f"plausible.csv, line {line}"
+        out[row["field"]] = Plausible(number(row, "low", where), number(row, "high", where), row["unit"], row["reason"])
+    return out
+
+
+def units_of(field: str) -> Mapping[str, float]:
+    """Return the units that a mapping may name for a field, with their factors to SI; empty where none is needed."""
+    limits = plausible().get(field)
+    return {"m": LENGTHS, "kg": MASSES}.get(limits.unit, {}) if limits else {}
+
+
+@cache
+def _items() -> TypeAdapter[list[Item]]:
+    return TypeAdapter(list[Item])
+
+
+def to_records(items: list[Item]) -> list[dict[str, Any]]:
+    """Return items as JSON-ready records, one key for each field of Item; floats are the same floats."""
+    out: list[dict[str, Any]] = _items().dump_python(items, mode="json")
+    return out
+
+
+def to_items(records: list[Any]) -> list[Item]:
+    """Return the items of records that `to_records` made.
+
+    raises : pydantic.ValidationError (a ValueError) naming record and field
+    """
+    return _items().validate_python(records)
+
+
+def item_schema() -> dict[str, Any]:
+    """Return the JSON Schema (2020-12) of an object record, derived from Item; units and ranges in the descriptions."""
+    derived = TypeAdapter(Item).json_schema(mode="serialization")
+    problem = derived["$defs"]["Problem"]
+    derived["$defs"]["Problem"] = {**problem, "additionalProperties": False}
+    derived["$defs"]["Problem"].pop("description", None)
+    derived["$defs"]["Support"].pop("description", None)
+    properties = {}
+    for name in ITEM_FIELDS:
+        shape = {k: v for k, v in derived["properties"][name].items() if k != "title"}
+        properties[name] = {"description": _describe(name), **_limited(name, shape)}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Object record",
+        "description": "One object of a collection; quantities in SI units, null where not recorded.",
+        "type": "object",
+        "additionalProperties": False,
+        "required": list(REQUIRED),
+        "properties": properties,
+        "$defs": derived["$defs"],
+    }
+
+
+def _describe(name: str) -> str:
+    limits = plausible().get(name)
+    if limits is None:
+        return _MEANINGS[name]
+    unit = "" if limits.unit == "-" else f" {limits.unit}"
+    return f"{_MEANINGS[name]} From {limits.low:g} to {limits.high:g}{unit}: {limits.reason}."
+
+
+def _limited(name: str, shape: dict[str, Any]) -> dict[str, Any]:
+    if KINDS[name] == "text":
+        cap = {"maxLength": NUMBER_LIMIT if name == "object_number" else TEXT_LIMIT}
+        return {**shape, **cap, **({"minLength": 1} if name in REQUIRED else {})}
+    limits = plausible().get(name)
+    if limits is None:
+        return shape
+    first, *others = shape["anyOf"]
+    return {**shape, "anyOf": [{**first, "minimum": limits.low, "maximum": limits.high}, *others]}

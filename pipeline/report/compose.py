@@ -1,0 +1,193 @@
+"""A run's record becomes the views: judged, ranked and counted; nothing is computed again."""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from math import inf
+
+from pipeline.records import Assessment, MotionSummary, Recommendation, RunRecord
+from pipeline.report.describe import Describer, approval, motion_anchor
+from pipeline.report.errors import ReportError
+from pipeline.report.ranking import state_of, urgency
+from pipeline.report.text import clean, plain, slug, words
+from pipeline.report.units import Units
+from pipeline.report.views import (
+    STATES,
+    Counts,
+    GalleryView,
+    MotionView,
+    MuseumView,
+    ObjectView,
+    State,
+    TaskView,
+)
+
+STORED_PAGE = "not-on-display.html"
+"""File of the objects that are not on display; a gallery's file always ends in a hash, so the two never meet."""
+
+_HELPLESS = "\0"
+"""Groups the objects for which nothing helps; no measure of a table can have this name."""
+
+_MEASURE_UNITS = (
+    ("pga", "m/s2"),
+    ("a_max", "m/s2"),
+    ("rms_acceleration", "m/s2"),
+    ("pgv", "m/s"),
+    ("v_max", "m/s"),
+    ("pgd", "m"),
+    ("d_max", "m"),
+    ("d5_", "s"),
+    ("significant_duration", "s"),
+    ("duration", "s"),
+    ("pulse_period", "s"),
+    ("tp", "s"),
+)
+
+
+def compose(record: RunRecord, units: Units) -> MuseumView:
+    """Return everything that the pages show, in the order in which they show it.
+
+    raises : ReportError for a sentence with an unknown placeholder, a mark on a chart that the run does not hold, or
+             two galleries whose files would have one name
+    """
+    describer = Describer(record, units)
+    ranked = sorted(record.assessments, key=urgency)
+    shown: dict[tuple[bool, str], list[Assessment]] = {}
+    for assessment in ranked:
+        item = assessment.scene.item
+        shown.setdefault((item.on_display, item.gallery if item.on_display else ""), []).append(assessment)
+    levels = {f.level for a in record.assessments for f in a.findings}
+    galleries = [_gallery(key, members, describer, units, several=len(levels) > 1) for key, members in shown.items()]
+    pages = Counter(g.page for g in galleries)
+    twins = [g.name for g in galleries if pages[g.page] > 1]
+    if twins:
+        raise ReportError(f"galleries {twins} would share one file; rename one of them in the collection's records")
+    galleries.sort(key=lambda g: (not g.on_display, -g.counts.act, -g.counts.open, -g.counts.unknown, g.name))
+    everything = {(o.page, o.anchor): o for g in galleries for o in g.objects}
+    order = [everything[_address(a, describer)] for a in ranked]
+    return MuseumView(
+        museum=clean(record.museum),
+        site=clean(record.site),
+        run_id=clean(record.run_id),
+        started=clean(record.started),
+        finished=clean(record.finished),
+        version=clean(record.version),
+        demonstration=record.demonstration,
+        counts=_total(g.counts for g in galleries),
+        galleries=tuple(galleries),
+        first=tuple([o for o in order if o.state is State.ACT][:8]),
+        motions=tuple(_motion(m, units) for m in record.motions),
+        level_notes=tuple(clean(n) for n in record.level_notes),
+    )
+
+
+def page_of(assessment: Assessment) -> str:
+    """Return the file of the page on which an object is shown."""
+    item = assessment.scene.item
+    return f"{slug(item.gallery)}.html" if item.on_display else STORED_PAGE
+
+
+def _address(assessment: Assessment, describer: Describer) -> tuple[str, str]:
+    return page_of(assessment), describer.anchor(assessment)
+
+
+def _total(counts: Iterable[Counts]) -> Counts:
+    listed = list(counts)
+    return Counts(*(sum(getattr(c, state.value) for c in listed) for state in STATES))
+
+
+def _gallery(
+    key: tuple[bool, str], members: Sequence[Assessment], describer: Describer, units: Units, *, several: bool
+) -> GalleryView:
+    on_display, name = key
+    views = [describer.object(a, page_of(a)) for a in members]
+    by_state = Counter(v.state for v in views)
+    return GalleryView(
+        name=clean(name) if on_display else "",
+        page=page_of(members[0]),
+        on_display=on_display,
+        counts=Counts(*(by_state[state] for state in STATES)),
+        tasks=_tasks(list(zip(members, views, strict=True)), units),
+        objects=tuple(views),
+        charts=tuple(dict.fromkeys(f.chart for v in views if v.carded for f in v.figures)),
+        several_levels=several,
+    )
+
+
+def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], units: Units) -> tuple[TaskView, ...]:
+    """Group the recommendations by measure; the pairs come by urgency, and so do the groups."""
+    members: dict[str, list[ObjectView]] = {}
+    advice: dict[str, list[Recommendation]] = {}
+    for assessment, view in pairs:
+        for recommendation in assessment.recommendations:
+            group = members.setdefault(recommendation.measure, [])
+            if view not in group:
+                group.append(view)
+            advice.setdefault(recommendation.measure, []).append(recommendation)
+        if view.state is State.ACT and not assessment.recommendations:
+            members.setdefault(_HELPLESS, []).append(view)
+    return tuple(
+        TaskView(clean(advice[key][0].title), tuple(objects), _spans(advice[key], units))
+        if key in advice
+        else TaskView("", tuple(objects), advised=False)
+        for key, objects in members.items()
+    )
+
+
+def _spans(advice: Sequence[Recommendation], units: Units) -> tuple[tuple[str, str], ...]:
+    values: dict[tuple[str, str], list[float]] = {}
+    for recommendation in advice:
+        for name, value in recommendation.parameters.items():
+            values.setdefault((name, recommendation.units.get(name, "")), []).append(value)
+    return tuple((words(name), units.pair(min(v), max(v), unit)) for (name, unit), v in values.items())
+
+
+def _motion(motion: MotionSummary, units: Units) -> MotionView:
+    return MotionView(
+        name=clean(motion.name),
+        hash=clean(motion.hash),
+        short=clean(motion.hash[:8]),
+        anchor=motion_anchor(motion.hash),
+        level=clean(motion.level),
+        source=clean(motion.source),
+        licence=clean(motion.licence),
+        approved=approval(motion),
+        sampling=f"{motion.samples} samples, {motion.dt:.6g} s apart, {(motion.samples - 1) * motion.dt:.4g} s",
+        measures=tuple((_measure_name(k), _measure(k, v, units)) for k, v in motion.measures.items()),
+        steps=tuple(clean(s) for s in motion.steps),
+    )
+
+
+def _measure_name(name: str) -> str:
+    head, _, rest = name.partition("_")
+    return (
+        f"{head.upper()} {rest.replace('_', ' ')}".strip()
+        if head in ("pga", "pgv", "pgd")
+        else words(plain(name)).capitalize()
+    )
+
+
+def _measure(name: str, value: float, units: Units) -> str:
+    unit = next((u for start, u in _MEASURE_UNITS if name.startswith(start)), None)
+    if unit is not None:
+        return units.text(value, unit)
+    # The Arias intensity is quoted in m/s everywhere; anything that is not known here is shown in SI and says so.
+    return f"{value:.3g} m/s" if name.startswith("arias") else f"{value:.3g} (SI)" if abs(value) < inf else "∞"
+
+
+def object_rows(record: RunRecord) -> list[Mapping[str, str | bool]]:
+    """Return one plain row for every object of the run, assessed or not, for the export that adds up to all."""
+    describer = Describer(record, Units())
+    return [
+        {
+            "run": record.run_id,
+            "object_number": a.scene.item.object_number,
+            "title": a.scene.item.title,
+            "gallery": a.scene.item.gallery,
+            "on_display": a.scene.item.on_display,
+            "state": state_of(a).value,
+            "object_class": a.scene.object_class,
+            "missing": "; ".join(a.scene.missing),
+            "page": f"{page_of(a)}#{describer.anchor(a)}",
+        }
+        for a in record.assessments
+    ]

@@ -1,0 +1,214 @@
+"""One object in words and in the reader's units."""
+
+from collections import Counter
+from math import isfinite, isnan
+
+from pipeline.records import (
+    Assessment,
+    Check,
+    Estimate,
+    Finding,
+    Mark,
+    MotionSummary,
+    Origin,
+    Recommendation,
+    RunRecord,
+)
+from pipeline.report.errors import ReportError
+from pipeline.report.ranking import finding_order, finding_state, state_of
+from pipeline.report.svg import Spot
+from pipeline.report.text import clean, digest, plain, short, words
+from pipeline.report.units import Units, ratio
+from pipeline.report.views import (
+    Bar,
+    CheckView,
+    FigureView,
+    FindingView,
+    MeasureView,
+    NumberView,
+    ObjectView,
+)
+
+_ORIGIN_ORDER = {Origin.ASSUMED: 0, Origin.DERIVED: 1, Origin.MEASURED: 2}
+
+
+def motion_anchor(motion_hash: str) -> str:
+    """Return the id of a motion's section on the motion page."""
+    return f"m{digest(motion_hash, 10)}"
+
+
+def approval(motion: MotionSummary) -> str:
+    """Return who answers for a motion and since when, or "" where nobody does."""
+    if not motion.approved_by:
+        return ""
+    return clean(f"{motion.approved_by}, {motion.approved_on}" if motion.approved_on else motion.approved_by)
+
+
+def percent(utilisation: float | None) -> str:
+    """Write demand / capacity for the reader, "∞" where the capacity is zero or nothing stops the object."""
+    if utilisation is None:
+        return "not known"
+    if isnan(utilisation):
+        return "not a number"
+    return ratio(utilisation) if isfinite(utilisation) else "∞"
+
+
+def bar(utilisation: float | None) -> Bar | None:
+    """Return the bar of a utilisation: its track spans 0 to 2, and the limit, 1, lies in the middle."""
+    if utilisation is None or isnan(utilisation):
+        return None
+    return Bar(round(50.0 * min(max(utilisation, 0.0), 2.0), 1), utilisation > 2.0, utilisation > 1.0)
+
+
+class Describer:
+    """Turns assessments of one run into views."""
+
+    def __init__(self, record: RunRecord, units: Units) -> None:
+        self._record, self._units = record, units
+        self._motions = {m.hash: m for m in record.motions}
+        # Two records of one number in one gallery would share an id; the later ones are told apart by their place.
+        seen: Counter[tuple[bool, str, str]] = Counter()
+        self._twins: dict[int, int] = {}
+        for assessment in record.assessments:
+            item = assessment.scene.item
+            key = (item.on_display, item.gallery, item.object_number)
+            self._twins[id(assessment)] = seen[key]
+            seen[key] += 1
+
+    def anchor(self, assessment: Assessment) -> str:
+        """Return the id of the object on its page; it stays the same from run to run."""
+        twin = self._twins[id(assessment)]
+        return f"o{digest(assessment.scene.item.object_number, 10)}" + (f"-{twin + 1}" if twin else "")
+
+    def object(self, assessment: Assessment, page: str) -> ObjectView:
+        """Return everything that the report says about one object.
+
+        raises : ReportError naming the object, for a bad sentence or a mark on a chart that the run does not hold
+        """
+        scene, item = assessment.scene, assessment.scene.item
+        findings = tuple(self._finding(f) for f in sorted(assessment.findings, key=finding_order))
+        named = [*scene.assumptions, *(text for f in assessment.findings for text in f.assumptions)]
+        estimates = sorted(scene.parameters.items(), key=lambda pair: (_ORIGIN_ORDER[pair[1].origin], pair[0]))
+        title = clean(item.title or item.object_name)
+        return ObjectView(
+            number=clean(item.object_number),
+            title=title,
+            short=short(title, 80),
+            anchor=self.anchor(assessment),
+            gallery=clean(item.gallery),
+            page=page,
+            state=state_of(assessment),
+            value_class=clean(item.value_class),
+            object_class=clean(scene.object_class),
+            rule=clean(scene.rule),
+            support=scene.support.value,
+            place=clean(item.case),
+            lead=findings[0] if findings else None,
+            findings=findings,
+            measures=tuple(self._measure(r) for r in assessment.recommendations),
+            figures=self._figures(assessment),
+            numbers=tuple(self._number(name, estimate) for name, estimate in estimates),
+            assumptions=tuple(dict.fromkeys(clean(text) for text in named)),
+            missing=tuple(words(clean(m)) for m in scene.missing),
+            problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
+            skipped=tuple((words(clean(model)), clean(why)) for model, why in scene.skipped.items()),
+        )
+
+    def _finding(self, f: Finding) -> FindingView:
+        units = self._units
+        motion = self._motions.get(f.motion_hash)
+        values: dict[str, tuple[float | None, str]] = {
+            "demand": (f.demand, f.unit),
+            "capacity": (f.capacity, f.unit),
+            "low": (f.low, f.unit),
+            "high": (f.high, f.unit),
+        }
+        where = f"object {f.object_number}, finding {f.model}"
+        return FindingView(
+            title=clean(f.title),
+            level=clean(f.level),
+            state=finding_state(f),
+            outcome=clean(f.outcome),
+            sentence=clean(units.fill(f.sentence, values, where)),
+            demand_name=words(clean(f.demand_name)),
+            demand=units.text(f.demand, f.unit),
+            span=self._span(f.low, f.high, f.unit),
+            capacity=units.text(f.capacity, f.unit),
+            capacity_origin=f.capacity_origin.value if f.capacity_origin else "",
+            utilisation=percent(f.utilisation),
+            bar=bar(f.utilisation),
+            fidelity=clean(f.fidelity),
+            error=self._error(f),
+            decided_by=clean(f.decided_by),
+            screen=clean(f.screen),
+            note=clean(f.note),
+            motion=clean(f.motion),
+            motion_short=clean(f.motion_hash[:8]),
+            motion_anchor=motion_anchor(f.motion_hash) if motion else "",
+            approved=approval(motion) if motion else "",
+        )
+
+    def _span(self, low: float | None, high: float | None, unit: str) -> str:
+        if low is None or high is None or low == high:
+            return ""
+        return self._units.pair(low, high, unit)
+
+    def _error(self, f: Finding) -> str:
+        if not f.error:
+            return ""
+        if f.demand and isfinite(f.demand) and f.error < 5e-4 * abs(f.demand):
+            return "less than 0.1 %"
+        return self._units.text(f.error, f.unit)
+
+    def _measure(self, r: Recommendation) -> MeasureView:
+        where = f"object {r.object_number}, recommendation {r.measure}"
+        for name in r.parameters:
+            if name not in r.units:
+                raise ReportError(f"{where}: parameter {name!r} has no unit; store its unit with it")
+        values: dict[str, tuple[float | None, str]] = {k: (v, r.units[k]) for k, v in r.parameters.items()}
+        return MeasureView(
+            measure=clean(r.measure),
+            title=clean(r.title),
+            level=clean(r.level),
+            sentence=clean(self._units.fill(r.sentence, values, where)),
+            numbers=tuple((words(clean(k)), self._units.text(v, r.units[k])) for k, v in r.parameters.items()),
+            checks=tuple(self._check(c) for c in r.checks),
+            rejected=tuple(clean(text) for text in r.rejected),
+            source=clean(r.source),
+        )
+
+    def _check(self, c: Check) -> CheckView:
+        return CheckView(
+            clean(c.title),
+            self._units.text(c.demand, c.unit),
+            self._units.text(c.capacity, c.unit),
+            percent(c.utilisation),
+            c.passes,
+        )
+
+    def _number(self, name: str, e: Estimate) -> NumberView:
+        value = self._units.text(e.value, e.unit)
+        span = self._span(e.low, e.high, e.unit)
+        return NumberView(words(clean(name)), value, span, e.origin.value, clean(e.note), clean(e.source))
+
+    def _figures(self, assessment: Assessment) -> tuple[FigureView, ...]:
+        spots: dict[str, list[Spot]] = {}
+        for finding in sorted(assessment.findings, key=finding_order):
+            self._add(spots, finding.mark, finding.object_number, after=False)
+        for recommendation in assessment.recommendations:
+            self._add(spots, recommendation.mark, recommendation.object_number, after=True)
+        return tuple(FigureView(chart, tuple(marks)) for chart, marks in spots.items())
+
+    def _add(self, spots: dict[str, list[Spot]], mark: Mark | None, number: str, *, after: bool) -> None:
+        if mark is None:
+            return
+        if mark.chart not in self._record.charts:
+            raise ReportError(
+                f"object {number}: it is marked on chart {mark.chart!r}, which the run does not hold; "
+                "store the chart with the run"
+            )
+        label = plain(mark.label) or (f"{plain(number)} after the measure" if after else plain(number))
+        spot = Spot(mark.x, mark.y, label, after)
+        listed = spots.setdefault(mark.chart, [])
+        if spot not in listed:
+            listed.append(spot)

@@ -1,0 +1,55 @@
+"""Showing the newest whole report under one lasting name, without a moment in which there is none."""
+
+import os
+from contextlib import suppress
+from html import escape
+from pathlib import Path
+from urllib.parse import quote
+
+from pipeline.report.errors import ReportError
+
+
+def publish(folder: Path, root: Path) -> Path:
+    """Point ``root/latest`` at a whole report, atomically; earlier reports stay where they are.
+
+    folder  : a rendered report inside root
+    root    : the folder that holds all reports
+    returns : root/latest, or root/latest.html on a file system without symbolic links
+    raises  : FileNotFoundError if the folder holds no report; ReportError if it lies outside root or the name
+              "latest" is taken by something that Kouros did not make
+    """
+    folder, root = folder.resolve(), root.resolve()
+    if not (folder / "index.html").is_file():
+        raise FileNotFoundError(f"{folder} holds no index.html; render the report first")
+    if not folder.is_relative_to(root) or folder == root:
+        raise ReportError(f"{folder} is not inside {root}; render reports into a folder below it")
+    link = root / "latest"
+    if link.exists() and not link.is_symlink():
+        raise ReportError(f"{link} is not a link that Kouros made; move it away, then publish again")
+    target = folder.relative_to(root)
+    page = root / "latest.html"
+    aside = root / f".latest-{os.getpid()}"
+    with suppress(FileNotFoundError):
+        aside.unlink()
+    try:
+        aside.symlink_to(target, target_is_directory=True)
+    except (OSError, NotImplementedError):
+        # Windows without the privilege, and some network drives, refuse symbolic links; a page can be replaced instead.
+        return _redirect(target, page)
+    aside.replace(link)
+    if page.exists():
+        _redirect(target, page)  # A page left by an earlier system would go on showing an old report.
+    return link
+
+
+def _redirect(target: Path, page: Path) -> Path:
+    address = escape(quote(target.as_posix()) + "/index.html", quote=True)
+    aside = page.with_name(f".latest-{os.getpid()}.html")
+    aside.write_text(
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"/><title>Latest report</title>'
+        f'<meta http-equiv="refresh" content="0; url={address}"/></head>'
+        f'<body><p><a href="{address}">The latest report</a></p></body></html>\n',
+        encoding="utf-8",
+    )
+    aside.replace(page)
+    return page

@@ -1,0 +1,144 @@
+"""From data to a frame on paper: limits, tick values, positions."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil, floor, isfinite, isnan, log10
+
+import numpy as np
+
+from pipeline.report.errors import ReportError
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """One axis: data limits (reader's units) mapped onto pixels, linear or logarithmic."""
+
+    low: float
+    high: float
+    start: float
+    end: float
+    log: bool = False
+
+    def at(self, value: float) -> float:
+        """Return the pixel of a value; what lies outside the limits, or is endless, is held at the frame."""
+        held = self.low if isnan(value) or value <= self.low else min(value, self.high)
+        share = (
+            log10(held / self.low) / log10(self.high / self.low)
+            if self.log
+            else (held - self.low) / (self.high - self.low)
+        )
+        return self.start + share * (self.end - self.start)
+
+    def side(self, value: float) -> int:
+        """Return -1 below the limits, 0 inside, 1 above; a hair of rounding counts as inside."""
+        slack = 1e-9 * (self.high - self.low)
+        return -1 if value < self.low - slack else 1 if value > self.high + slack else 0
+
+    def ticks(self) -> list[float]:
+        """Return three to eight round tick values inside the limits."""
+        return log_ticks(self.low, self.high) if self.log else linear_ticks(self.low, self.high)
+
+
+def linear_ticks(low: float, high: float, about: int = 6) -> list[float]:
+    """Return multiples of 1, 2, 2.5 or 5 times a power of ten from low to high, roughly ``about`` of them."""
+    step = nice_step((high - low) / about)
+    first, last = ceil(low / step - 1e-9), floor(high / step + 1e-9)
+    return [round(i * step, 12) + 0.0 for i in range(first, last + 1)]
+
+
+def log_ticks(low: float, high: float) -> list[float]:
+    """Return 1, 2 and 5 times powers of ten from low to high; powers alone over many decades."""
+    decades = log10(high / low)
+    if decades < 0.7:
+        return linear_ticks(low, high, 4)
+    heads = (1.0, 2.0, 5.0) if decades <= 2.5 else (1.0,)
+    every = max(1, ceil(decades / 7))
+    powers = range(floor(log10(low)), ceil(log10(high)) + 1)
+    values = [head * 10.0**power for power in powers if power % every == 0 for head in heads]
+    return [v for v in values if low * (1 - 1e-9) <= v <= high * (1 + 1e-9)]
+
+
+def nice_step(rough: float) -> float:
+    """Return the smallest of 1, 2, 2.5, 5, 10 times a power of ten that is not below ``rough``."""
+    power = 10.0 ** floor(log10(rough))
+    return next(m * power for m in (1.0, 2.0, 2.5, 5.0, 10.0) if m * power >= rough * (1 - 1e-9))
+
+
+def limits(values: Sequence[float], log: bool, what: str, *, tight: bool = False) -> tuple[float, float]:
+    """Return the limits of an axis: round numbers for a linear one unless tight, with zero where zero is near.
+
+    raises : ReportError if no value can be drawn, naming ``what``
+    """
+    drawn = [v for v in values if isfinite(v) and (v > 0.0 or not log)]
+    if not drawn:
+        raise ReportError(f"{what}: no value can be drawn; store the chart with finite{' positive' * log} numbers")
+    low, high = min(drawn), max(drawn)
+    if log:
+        return (low, high) if high > low * 1.01 else (low / 2.0, high * 2.0)
+    if low >= 0.0 and low < 0.4 * high:
+        low = 0.0
+    if high <= low:
+        pad = abs(high) * 0.1 or 1.0
+        low, high = low - pad, high + pad
+    step = nice_step((high - low) / 6)
+    if tight:
+        return low, high
+    return floor(low / step + 1e-9) * step, ceil(high / step - 1e-9) * step
+
+
+def inside(x: float, y: float, px: Sequence[float], py: Sequence[float]) -> bool:
+    """Say whether a point lies in a closed polygon (even-odd rule)."""
+    within = False
+    for i in range(len(px)):
+        x0, y0, x1, y1 = px[i - 1], py[i - 1], px[i], py[i]
+        if (y0 > y) != (y1 > y) and x < (x1 - x0) * (y - y0) / (y1 - y0) + x0:
+            within = not within
+    return within
+
+
+def roomy(px: Sequence[float], py: Sequence[float], half: float) -> list[tuple[float, float]]:
+    """Return places for a label in a polygon, the one farthest from its sides first.
+
+    half    : half the label's width in pixels
+    returns : grid points where the whole label lies inside; none for a polygon that is too thin
+    """
+    places: list[tuple[float, float, float]] = []
+    for x in np.linspace(min(px), max(px), 26)[1:-1].tolist():
+        for y in np.linspace(min(py), max(py), 26)[1:-1].tolist():
+            if not all(inside(x + dx, y + dy, px, py) for dx in (-half, 0.0, half) for dy in (-7.0, 7.0)):
+                continue
+            room = min(_distance((x, y), (px[i - 1], py[i - 1]), (px[i], py[i])) for i in range(len(px)))
+            if room > 8.0:
+                places.append((-room, x, y))
+    return [(x, y) for _, x, y in sorted(places)]
+
+
+def thin(points: Sequence[tuple[float, float]], tolerance: float = 0.3) -> list[tuple[float, float]]:
+    """Drop points that lie within the tolerance (pixels) of the line through their neighbours (Douglas and Peucker)."""
+    if len(points) < 3:
+        return list(points)
+    p = np.asarray(points)
+    keep = np.zeros(len(p), dtype=bool)
+    keep[[0, -1]] = True
+    stack = [(0, len(p) - 1)]
+    while stack:
+        a, b = stack.pop()
+        if b - a < 2:
+            continue
+        chord, away = p[b] - p[a], p[a + 1 : b] - p[a]
+        square = float(chord @ chord)
+        share = np.clip(away @ chord / square, 0.0, 1.0) if square > 0.0 else np.zeros(len(away))
+        far = np.hypot(*(away - share[:, None] * chord).T)
+        middle = int(far.argmax())
+        if far[middle] > tolerance:
+            keep[a + 1 + middle] = True
+            stack += [(a, a + 1 + middle), (a + 1 + middle, b)]
+    return [points[i] for i in np.flatnonzero(keep).tolist()]
+
+
+def _distance(point: tuple[float, float], start: tuple[float, float], end: tuple[float, float]) -> float:
+    (x, y), (x0, y0), (x1, y1) = point, start, end
+    dx, dy = x1 - x0, y1 - y0
+    square = dx * dx + dy * dy
+    share = min(1.0, max(0.0, ((x - x0) * dx + (y - y0) * dy) / square)) if square else 0.0
+    return float(np.hypot(x - x0 - share * dx, y - y0 - share * dy))

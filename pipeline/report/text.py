@@ -1,0 +1,51 @@
+"""Text that came from outside, made fit for a page, a file name or a sentence."""
+
+import hashlib
+import re
+import unicodedata
+
+_UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+_BIDI = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+_UNIT_SUFFIX = re.compile(r"_(m|kg|hz|pa|deg|s|g|rad)$")
+
+
+def clean(text: str) -> str:
+    """Replace what no page or file may carry (control characters, lone surrogates) by the replacement character."""
+    return _UNFIT.sub("\ufffd", text)
+
+
+def plain(text: str) -> str:
+    """Return the text for places without markup (a page title, a text alternative): no direction marks, one line."""
+    return " ".join(_BIDI.sub("", clean(text)).split())
+
+
+def short(text: str, limit: int = 90) -> str:
+    """Cut a long text at a word where possible, with an ellipsis.
+
+    limit : the largest number of characters that is returned
+    """
+    flat = " ".join(clean(text).split())
+    if len(flat) <= limit:
+        return flat
+    cut = flat[: limit - 1]
+    at = cut.rfind(" ")
+    return (cut[:at] if at > limit // 2 else cut).rstrip() + "…"
+
+
+def words(name: str) -> str:
+    """Say a field or parameter in plain words: "base_width_m" becomes "base width"."""
+    bare = _UNIT_SUFFIX.sub("", name)
+    bare = "height of the centre of gravity" if bare == "cg_height" else bare
+    return bare.replace("_", " ").strip() or name
+
+
+def digest(text: str, length: int = 8) -> str:
+    """Return the first hexadecimal digits of the text's SHA-256."""
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:length]
+
+
+def slug(name: str) -> str:
+    """Return a file name stem for any text: at most 60 of a-z, 0-9 and "-", then 8 hex digits that tell twins apart."""
+    ascii_name = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode("ascii").lower()
+    stem = re.sub(r"[^a-z0-9]+", "-", ascii_name).strip("-")[:60].strip("-")
+    return f"{stem or 'gallery'}-{digest(name)}"

@@ -1,0 +1,68 @@
+"""The picture of a motion: its three components, one above the other, on one scale."""
+
+from html import escape
+from math import isfinite
+
+from pipeline.records import MotionSummary
+from pipeline.report.errors import ReportError
+from pipeline.report.scales import Scale, limits, thin
+from pipeline.report.svg import tick
+from pipeline.report.text import plain, short
+from pipeline.report.units import Units
+
+WIDTH, ROW = 1050, 118
+_LEFT, _RIGHT, _TOP, _BOTTOM = 76, 16, 10, 42
+_TIMES = ("t", "time", "time_s")
+_NAMES = {"x": "x (horizontal)", "y": "y (horizontal)", "z": "z (up)"}
+
+
+def trace(motion: MotionSummary, units: Units, ident: str) -> str:
+    """Return the motion's acceleration series as one inline SVG, or "" where the record keeps no series.
+
+    motion.series : component name -> accelerations [m/s2]; an entry named t, time or time_s holds the seconds,
+                    otherwise the values are spread evenly over the motion's duration
+    raises        : ReportError for a series whose length differs from its times', naming the motion
+    """
+    components = {k: v for k, v in motion.series.items() if k not in _TIMES and v}
+    if not components:
+        return ""
+    given = next((motion.series[k] for k in _TIMES if k in motion.series), None)
+    factor = units.factor("m/s2")
+    peak = max(abs(v) * factor for series in components.values() for v in series if isfinite(v))
+    reach = limits([-peak, peak] if peak else [-1.0, 1.0], False, f"motion {motion.name!r}")
+    duration = (motion.samples - 1) * motion.dt
+    end = given[-1] if given else duration
+    x = Scale(0.0, max(end, motion.dt), _LEFT, WIDTH - _RIGHT)
+    parts = []
+    for row, (name, series) in enumerate(components.items()):
+        if given and len(given) != len(series):
+            raise ReportError(
+                f"motion {motion.name!r}: series {name!r} has {len(series)} values for {len(given)} times; "
+                "store it thinned at the same times"
+            )
+        times = given or tuple(duration * i / max(1, len(series) - 1) for i in range(len(series)))
+        top = _TOP + row * ROW
+        y = Scale(*reach, top + ROW - 24, top)
+        points = thin([(x.at(t), y.at(v * factor)) for t, v in zip(times, series, strict=True)], 0.25)
+        d = "M" + "L".join(f"{a:.1f} {b:.1f}" for a, b in points)
+        ticks = [v for v in (reach[0], 0.0, reach[1]) if reach[0] <= v <= reach[1]]
+        parts.append(f'<path class="gr" d="{"".join(f"M{_LEFT} {y.at(v):.1f}H{WIDTH - _RIGHT}" for v in ticks)}"/>')
+        parts += [f'<text class="ty" x="{_LEFT - 8}" y="{y.at(v) + 4:.1f}">{tick(v)}</text>' for v in ticks]
+        parts.append(f'<path class="tr" d="{d}"/>')
+        label = escape(short(_NAMES.get(name, name), 40))
+        parts.append(f'<text class="cl" x="{_LEFT + 6}" y="{top + 12}">{label}</text>')
+    floor = _TOP + ROW * len(components) - 20
+    height = floor + _BOTTOM
+    seconds = "".join(f'<text class="tx" x="{x.at(v):.1f}" y="{floor + 14}">{tick(v)}</text>' for v in x.ticks())
+    symbol = units.symbol("m/s2")
+    said = (
+        f"Acceleration in {symbol} against time over {x.high:.3g} seconds, components {', '.join(components)}; "
+        f"largest value drawn {units.text(peak / factor, 'm/s2')}."
+    )
+    return (
+        f'<svg class="chart wide" viewBox="0 0 {WIDTH} {height}" role="img" aria-labelledby="{ident}t {ident}d">'
+        f'<title id="{ident}t">{escape(plain(motion.name))}: accelerogram</title>'
+        f'<desc id="{ident}d">{escape(said)}</desc>'
+        f'{"".join(parts)}{seconds}<text class="al" x="{(_LEFT + WIDTH) / 2:.0f}" y="{height - 6}">Time (s)</text>'
+        f'<text class="al" transform="translate(15 {floor / 2:.0f})rotate(-90)">Acceleration ({symbol})</text></svg>'
+    )

@@ -1,0 +1,137 @@
+"""Numbers for the reader: SI inside, centimetres, g, degrees and MPa on paper."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import floor, inf, isfinite, isnan, log10
+from string import Formatter
+
+from pipeline.quantities import LENGTHS, G
+from pipeline.report.errors import ReportError
+
+_FIXED: dict[str, tuple[str, float]] = {
+    "m/s2": ("g", 1.0 / G),
+    "rad": ("°", 57.29577951308232),
+    "deg": ("°", 1.0),
+    "Pa": ("MPa", 1e-6),
+    "-": ("", 1.0),
+    "": ("", 1.0),
+}
+_RATIOS = ("-", "")
+_POWERS = {"m": ("", 1), "m2": ("²", 2), "m3": ("³", 3), "m/s": ("/s", 1)}
+_THIN = "\u202f"
+
+
+def significant(value: float, digits: int, *, keep: bool = False) -> str:
+    """Write a finite number with that many significant digits; zeros at the end go unless they are to be kept."""
+    if value == 0.0:
+        return "0"
+    decimals = digits - 1 - floor(log10(abs(value)))
+    rounded = round(value, decimals)
+    if abs(rounded) >= 1e7 or abs(rounded) < 1e-6:
+        return f"{value:.{digits - 1}e}".replace("-", "−")
+    text = f"{rounded:.{max(0, decimals)}f}"
+    return (text.rstrip("0").rstrip(".") if "." in text and not keep else text).replace("-", "−")
+
+
+def ratio(value: float) -> str:
+    """Write a finite ratio with two significant digits, and more where two would hide on which side of 1 it lies."""
+    if value == round(value):
+        return significant(value, 2 if abs(value) >= 100.0 else 3)
+    for digits in range(2, 7):
+        text = significant(value, digits, keep=True)
+        if float(text.replace("−", "-")) != 1.0:
+            return text
+    return "just above 1" if value > 1.0 else "just below 1"
+
+
+@dataclass(frozen=True, slots=True)
+class Units:
+    """How numbers are written for one reader.
+
+    length : "cm" (default), "mm", "m", "in" or "ft"; areas, volumes and velocities follow it
+    raises : ReportError for another unit of length
+    """
+
+    length: str = "cm"
+
+    def __post_init__(self) -> None:
+        if self.length not in LENGTHS:
+            raise ReportError(f"units: length {self.length!r} is not known; use one of {', '.join(LENGTHS)}")
+
+    def symbol(self, unit: str) -> str:
+        """Return the reader's unit for an SI unit: "cm" for "m", "g" for "m/s2", "" for a ratio.
+
+        A unit without a translation (s, Hz, kg) is written as it is.
+        """
+        if unit in _POWERS:
+            return self.length + _POWERS[unit][0]
+        return _FIXED[unit][0] if unit in _FIXED else unit
+
+    def factor(self, unit: str) -> float:
+        """Return what a number in the SI unit is multiplied by to be in the reader's unit."""
+        if unit in _POWERS:
+            return 1.0 / LENGTHS[self.length] ** _POWERS[unit][1]
+        return _FIXED[unit][1] if unit in _FIXED else 1.0
+
+    def number(self, value: float, unit: str) -> str:
+        """Write the number alone, in the reader's unit: ratios with two significant digits, others with three."""
+        if isnan(value):
+            return "not a number"
+        if not isfinite(value):
+            return "∞" if value > 0.0 else "−∞"
+        shown = value * self.factor(unit)
+        return ratio(shown) if unit in _RATIOS else significant(shown, 3)
+
+    def text(self, value: float | None, unit: str) -> str:
+        """Write a number with its unit in the reader's units, an endless one in words, and None as "not known"."""
+        if value is None:
+            return "not known"
+        if value == inf:
+            return "no limit (∞)"
+        symbol = self.symbol(unit)
+        number = self.number(value, unit)
+        if not symbol or not isfinite(value):
+            return number
+        return number + ("" if symbol == "°" else _THIN) + symbol
+
+    def pair(self, low: float, high: float, unit: str) -> str:
+        """Write a range, such as "9 to 14 cm"; one number where both read the same."""
+        if self.text(low, unit) == self.text(high, unit):
+            return self.text(high, unit)
+        first = self.number(low, unit) if isfinite(high) else self.text(low, unit)
+        return f"{first} to {self.text(high, unit)}"
+
+    def fill(self, sentence: str, values: Mapping[str, tuple[float | None, str]], where: str) -> str:
+        """Fill the {placeholders} of a sentence with numbers in the reader's units.
+
+        values : name -> (value in SI or None, SI unit)
+        where  : what the error names, such as "object 12.3, finding rocking"
+        raises : ReportError for an unknown placeholder, a format specification or a brace that is not closed
+        """
+        parts = []
+        for literal, name in _pieces(sentence, where):
+            parts.append(literal)
+            if name is None:
+                continue
+            if name not in values:
+                known = ", ".join("{" + key + "}" for key in values) or "none"
+                raise ReportError(
+                    f"{where}: the sentence {sentence!r} asks for {{{name}}}; known placeholders: {known}; "
+                    "correct the sentence or supply the number"
+                )
+            parts.append(self.text(*values[name]))
+        return "".join(parts)
+
+
+def _pieces(sentence: str, where: str) -> Iterable[tuple[str, str | None]]:
+    # Formatter.parse only splits; attribute access and indexing of str.format never happen on this path.
+    try:
+        pieces = list(Formatter().parse(sentence))
+    except ValueError as error:
+        raise ReportError(
+            f"{where}: the sentence {sentence!r} has a stray brace ({error}); write {{{{ or }}}}"
+        ) from error
+    for literal, name, spec, conversion in pieces:
+        if spec or conversion:
+            raise ReportError(f"{where}: the sentence {sentence!r} formats {{{name}}}; write the name alone")
+        yield literal, name

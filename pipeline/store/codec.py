@@ -1,0 +1,126 @@
+"""Records <-> what a column of a database can hold, decided here and nowhere else.
+
+- A nested record (an Estimate, a Chart, a tuple of Checks) is kept as JSON text, written and read by its type hints.
+  JSON knows no infinity: such a float becomes the string "Infinity", "-Infinity" or "NaN", and a float again when read.
+- Settings have no type hints.  What JSON cannot say is tagged: ``{"$float": "inf"}``, ``{"$tuple": [...]}``; a key of
+  the settings that itself begins with "$" gets a second one.
+- PostgreSQL's text cannot hold the character NUL, which a spreadsheet can: it is kept as SUB "0", and SUB itself as
+  SUB "1" (SUB is U+001A), in every database alike, so that one can be copied into the other.
+"""
+
+import json
+import math
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+from pydantic import ConfigDict, TypeAdapter
+from pydantic_core import PydanticSerializationError, from_json
+
+_SUB = "\x1a"
+_TAGS = {"$float": float, "$tuple": tuple}
+NOT_FINITE = ("Infinity", "-Infinity", "NaN")
+"""The JSON strings that stand for a float that is not finite."""
+
+
+class StoreError(ValueError):
+    """The store cannot do what it was asked to; the message says why and what mends it."""
+
+
+@cache
+def adapter(hint: Any) -> TypeAdapter[Any]:
+    """Return what writes and reads values of one type hint; None is allowed too.
+
+    hint : a dataclass of `pipeline.records`, or a tuple or Mapping of such, or a plain type
+    """
+    # The union is what makes room for a configuration: pydantic takes none for a bare dataclass.
+    return TypeAdapter(hint | None, config=ConfigDict(ser_json_inf_nan="strings"))
+
+
+def to_json(hint: Any, value: Any) -> str:
+    """Write a value of that type as JSON text that is the same for equal values.
+
+    raises : StoreError where the value is not of the type, or holds text that is not Unicode (a lone surrogate)
+    """
+    try:
+        # The fallback only lets pydantic go on to the warning, which names the field where the error would not.
+        return adapter(hint).dump_json(value, warnings="error", fallback=repr).decode()
+    except PydanticSerializationError as error:
+        why = str(error).removeprefix("Pydantic serializer warnings:\n").strip()
+        raise StoreError(f"{why}; correct the value where it was made or imported") from error
+
+
+def of_json(hint: Any, text: str) -> Any:
+    """Read what `to_json` wrote; tuples, enumerations and records come back as such.
+
+    raises : StoreError where the text is not JSON of that type
+    """
+    try:
+        return adapter(hint).validate_json(text)
+    except ValueError as error:
+        raise StoreError(f"not a stored {hint}: {error}; the database was changed by hand or is damaged") from error
+
+
+def settings_to_json(settings: Mapping[str, Any]) -> str:
+    """Write settings (text, numbers, truth values, None, and tuples, lists and mappings of them) as JSON text.
+
+    raises : StoreError naming the setting that is anything else
+    """
+    return json.dumps(_tagged(settings, "settings"), allow_nan=False)
+
+
+def settings_from_json(text: str) -> dict[str, Any]:
+    """Read what `settings_to_json` wrote, tuples and infinities included."""
+    settings: dict[str, Any] = json.loads(text, object_hook=_untagged)
+    return settings
+
+
+def _tagged(value: Any, where: str) -> Any:
+    if isinstance(value, float):
+        return value if math.isfinite(value) else {"$float": str(float(value))}
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    if isinstance(value, tuple):
+        return {"$tuple": [_tagged(v, f"{where}[{i}]") for i, v in enumerate(value)]}
+    if isinstance(value, list):
+        return [_tagged(v, f"{where}[{i}]") for i, v in enumerate(value)]
+    if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):
+        return {f"${k}" if k.startswith("$") else k: _tagged(v, f"{where}.{k}") for k, v in value.items()}
+    kind = "a mapping whose keys are not text" if isinstance(value, Mapping) else f"a {type(value).__name__}"
+    raise StoreError(f"{where} is {kind}, which the store does not keep; make it text, a number, a list or a mapping")
+
+
+def _untagged(read: dict[str, Any]) -> Any:
+    if len(read) == 1:
+        key, value = next(iter(read.items()))
+        if key in _TAGS:
+            return _TAGS[key](value)
+    return {k.removeprefix("$"): v for k, v in read.items()}
+
+
+def escape(text: str) -> str:
+    """Return text that every database can hold.
+
+    raises : StoreError for text that is not Unicode (a lone surrogate)
+    """
+    if not text.isascii():
+        try:
+            text.encode()
+        except UnicodeEncodeError as error:
+            raise StoreError(f"{text!a} is not Unicode text ({error.reason}); correct it where it came in") from error
+    if "\0" in text or _SUB in text:
+        return text.replace(_SUB, f"{_SUB}1").replace("\0", f"{_SUB}0")
+    return text
+
+
+def unescape(text: str) -> str:
+    """Return the text that `escape` was given."""
+    return text.replace(f"{_SUB}0", "\0").replace(f"{_SUB}1", _SUB) if _SUB in text else text
+
+
+def plain(hint: Any, value: Any) -> Any:
+    """Return a value as plain dictionaries and lists, to see which parts of two records differ.
+
+    raises : StoreError as `to_json`
+    """
+    return from_json(to_json(hint, value))

@@ -1,0 +1,264 @@
+"""The tables of the results, one column for each field of the record that a row keeps."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from enum import StrEnum
+from math import isnan
+from operator import index
+from types import NoneType
+from typing import Any, SupportsIndex, get_args, get_type_hints
+
+from sqlalchemy import BigInteger, Boolean, Column, Dialect, Double, ForeignKey, Index, Table, Text
+from sqlalchemy.types import TypeDecorator, TypeEngine
+
+from pipeline.collection.database import METADATA
+from pipeline.collection.inventory import IMPORT_BATCH, ITEM
+from pipeline.records import Chart, Finding, MotionSummary, Recommendation, Scene
+from pipeline.store import codec
+
+# The inventory's tables are handed on so that METADATA is whole wherever this module is imported.
+__all__ = [
+    "FINDING",
+    "IMPORT_BATCH",
+    "ITEM",
+    "METADATA",
+    "RECOMMENDATION",
+    "RUN",
+    "RUN_CHART",
+    "RUN_MOTION",
+    "RUN_SCENE",
+]
+
+
+class _Coded(TypeDecorator[Any]):
+    """Text in the database that stands for a value: a kind of column says how to write one and read it back."""
+
+    impl = Text
+    cache_ok = True
+
+    def write(self, value: Any) -> str:
+        """Return the text that is kept."""
+        raise NotImplementedError
+
+    def read(self, text: str) -> Any:
+        """Return the value that was kept."""
+        raise NotImplementedError
+
+    def process_bind_param(self, value: Any | None, dialect: Dialect) -> str | None:  # noqa: ARG002
+        """Write, for every database alike."""
+        return None if value is None else self.write(value)
+
+    def process_result_value(self, value: Any | None, dialect: Dialect) -> Any:  # noqa: ARG002
+        """Read, from every database alike."""
+        return None if value is None else self.read(value)
+
+
+class Words(_Coded):
+    """Any Unicode text, whatever is in it (see `codec.escape`)."""
+
+    cache_ok = True
+
+    def write(self, value: str) -> str:
+        """Make the text one that every database can hold."""
+        return codec.escape(value)
+
+    def read(self, text: str) -> str:
+        """Give the text back as it was."""
+        return codec.unescape(text)
+
+
+class Choice(_Coded):
+    """A member of an enumeration, kept as its text."""
+
+    cache_ok = True
+
+    def __init__(self, kind: type[StrEnum]) -> None:
+        super().__init__()
+        self.kind = kind
+
+    def write(self, value: StrEnum) -> str:
+        """Put the member's text.
+
+        raises : ValueError for a text that is no member
+        """
+        return self.kind(value).value
+
+    def read(self, text: str) -> StrEnum:
+        """Give the member.
+
+        raises : ValueError for a text that is no member
+        """
+        return self.kind(text)
+
+
+class Json(_Coded):
+    """A nested record as JSON text; ``column::json`` reads it in PostgreSQL, ``json_extract`` in SQLite."""
+
+    cache_ok = True
+
+    def __init__(self, hint: Any) -> None:
+        super().__init__()
+        self.hint = hint
+
+    def write(self, value: Any) -> str:
+        """Write the value by its type.
+
+        raises : StoreError (see `codec.to_json`)
+        """
+        return codec.to_json(self.hint, value)
+
+    def read(self, text: str) -> Any:
+        """Read the value by its type.
+
+        raises : StoreError (see `codec.of_json`)
+        """
+        return codec.of_json(self.hint, text)
+
+
+class Settings(_Coded):
+    """Settings, which have no type, as JSON text (see `codec`)."""
+
+    cache_ok = True
+
+    def write(self, value: Mapping[str, Any]) -> str:
+        """Write the settings.
+
+        raises : StoreError (see `codec.settings_to_json`)
+        """
+        return codec.settings_to_json(value)
+
+    def read(self, text: str) -> dict[str, Any]:
+        """Read the settings."""
+        return codec.settings_from_json(text)
+
+
+class Number(TypeDecorator[float]):
+    """A double of any value.  SQLite turns NaN into NULL, so that there it is kept as the text "NaN".
+
+    Both databases sort NaN above every number, and both keep infinities.
+    """
+
+    impl = Double
+    cache_ok = True
+
+    def bind_processor(self, dialect: Dialect) -> Callable[[Any], Any] | None:
+        """Put "NaN" for NaN where the database is SQLite, past the type below, which would make a float of it again."""
+        return _nan_as_text if dialect.name == "sqlite" else super().bind_processor(dialect)
+
+    def process_result_value(self, value: Any | None, dialect: Dialect) -> float | None:  # noqa: ARG002
+        """Give a float, NaN included."""
+        return None if value is None else float(value)
+
+
+class Whole(TypeDecorator[int]):
+    """A whole number; numpy's are made Python's, for SQLite would keep their bytes."""
+
+    impl = BigInteger
+    cache_ok = True
+
+    def process_bind_param(self, value: SupportsIndex | None, dialect: Dialect) -> int | None:  # noqa: ARG002
+        """Put an int.
+
+        raises : TypeError for what is no whole number
+        """
+        return None if value is None else index(value)
+
+
+def _nan_as_text(value: float | None) -> float | str | None:
+    if value is None:
+        return None
+    return "NaN" if isnan(value) else float(value)
+
+
+def _column_type(hint: Any) -> TypeEngine[Any]:
+    if isinstance(hint, type) and issubclass(hint, StrEnum):
+        return Choice(hint)
+    plain: dict[Any, TypeEngine[Any]] = {str: Words(), float: Number(), int: Whole(), bool: Boolean()}
+    return plain.get(hint) or Json(hint)
+
+
+def _columns(record: type[Any], *names: str) -> list[Column[Any]]:
+    """Return a column for each of the named fields of a record (default: all), typed by the field's type hint."""
+    hints = get_type_hints(record)
+    columns: list[Column[Any]] = []
+    for name in names or tuple(field.name for field in fields(record)):
+        options = [part for part in get_args(hints[name]) if part is not NoneType]
+        optional = NoneType in get_args(hints[name])
+        columns.append(Column(name, _column_type(options[0] if optional else hints[name]), nullable=optional))
+    return columns
+
+
+def _of_run() -> Column[Any]:
+    return Column("run_id", Words(), ForeignKey("run.run_id", ondelete="CASCADE"), primary_key=True)
+
+
+def _position() -> Column[Any]:
+    # The order in which the run had them; part of no record, but equal records come back in equal order.
+    return Column("position", BigInteger(), primary_key=True, autoincrement=False)
+
+
+RUN = Table(
+    "run",
+    METADATA,
+    Column("run_id", Words(), primary_key=True),
+    Column("started", Words(), nullable=False),
+    Column("finished", Words(), nullable=False),
+    Column("version", Words(), nullable=False),
+    Column("site", Words(), nullable=False),
+    Column("museum", Words(), nullable=False),
+    Column("level_notes", Json(tuple[str, ...]), nullable=False),
+    Column("settings", Settings(), nullable=False),
+    Column("demonstration", Boolean(), nullable=False),
+    Column("status", Words(), nullable=False),
+    Column("counts", Json(dict[str, int]), nullable=False),
+    Index(None, "status", "started"),
+)
+"""One row a run; status is "finished", or "unfinished" for a run without a time of finishing."""
+
+RUN_MOTION = Table("run_motion", METADATA, _of_run(), _position(), *_columns(MotionSummary))
+"""The motions of a run; measures, steps and series as JSON."""
+
+RUN_CHART = Table(
+    "run_chart",
+    METADATA,
+    _of_run(),
+    Column("key", Words(), primary_key=True),
+    Column("position", BigInteger(), nullable=False),
+    Column("chart", Json(Chart), nullable=False),
+)
+"""The charts of a run by key; the chart itself as JSON."""
+
+RUN_SCENE = Table(
+    "run_scene",
+    METADATA,
+    _of_run(),
+    Column("object_number", Words(), primary_key=True),
+    Column("position", BigInteger(), nullable=False),
+    Column("gallery", Words(), nullable=False),
+    Column("on_display", Boolean(), nullable=False),
+    *_columns(Scene),
+    Index(None, "run_id", "gallery"),
+)
+"""One row an assessed object: a column for each field of its scene, and of its item those that are searched for."""
+
+FINDING = Table(
+    "finding",
+    METADATA,
+    _of_run(),
+    _position(),
+    *_columns(Finding),
+    Index(None, "run_id", "gallery"),
+    Index(None, "run_id", "object_number"),
+)
+"""One row a finding."""
+
+RECOMMENDATION = Table(
+    "recommendation",
+    METADATA,
+    _of_run(),
+    _position(),
+    *_columns(Recommendation),
+    Index(None, "run_id", "gallery"),
+    Index(None, "run_id", "object_number"),
+)
+"""One row a recommendation."""

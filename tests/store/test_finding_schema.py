@@ -1,0 +1,60 @@
+"""The record, the table and the published schema of a finding agree."""
+
+import json
+import math
+from dataclasses import fields
+
+import jsonschema
+import pytest
+from hypothesis import given, settings
+from run_samples import finding, values_of
+
+from pipeline.records import ITEM_FIELDS, Finding, Recommendation
+from pipeline.resources import resource
+from pipeline.store import codec
+from pipeline.store.schema import finding_schema
+from pipeline.store.tables import FINDING, METADATA, RECOMMENDATION
+
+NAMES = {field.name for field in fields(Finding)}
+
+
+def test_record_table_and_schema_have_the_same_fields() -> None:
+    assert {column.name for column in FINDING.columns} - {"run_id", "position"} == NAMES
+    properties = finding_schema()["properties"]
+    assert set(properties) - {"run"} == NAMES == set(finding_schema()["required"])
+    optional = {column.name for column in FINDING.columns if column.nullable}
+    allowing = {
+        name for name, part in finding_schema()["properties"].items() if {"type": "null"} in part.get("anyOf", ())
+    }
+    assert (
+        optional == allowing == {"demand", "low", "high", "capacity", "capacity_origin", "utilisation", "error", "mark"}
+    )
+
+
+def test_recommendation_and_item_have_a_column_for_each_field() -> None:
+    names = {field.name for field in fields(Recommendation)}
+    assert {column.name for column in RECOMMENDATION.columns} - {"run_id", "position"} == names
+    assert set(ITEM_FIELDS) <= {column.name for column in METADATA.tables["item"].columns}
+
+
+def test_the_published_file_is_the_derived_schema() -> None:
+    published = json.loads(resource("schemas", "finding.schema.json").read_text(encoding="utf-8"))
+    assert published == finding_schema()
+    jsonschema.Draft202012Validator.check_schema(published)
+
+
+@settings(deadline=None, max_examples=50)
+@given(values_of(Finding))
+def test_every_finding_satisfies_the_schema(record: Finding) -> None:
+    exported = json.loads(codec.to_json(Finding, record)) | {"run": "2031-05-01"}
+    jsonschema.validate(exported, finding_schema(), cls=jsonschema.Draft202012Validator)
+
+
+@pytest.mark.parametrize(
+    "change", [{"verdict": "maybe"}, {"demand": "much"}, {"gallery": None}, {"gallerie": "G1"}, {"mark": {"x": 1}}]
+)
+def test_the_schema_refuses(change: dict[str, object]) -> None:
+    good = json.loads(codec.to_json(Finding, finding("1", utilisation=math.inf)))
+    jsonschema.validate(good, finding_schema())
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(good | change, finding_schema())

@@ -1,0 +1,114 @@
+"""The migrations make exactly the tables that the code uses, once, whoever starts first."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.config import Config
+from alembic.migration import MigrationContext
+from alembic.script import ScriptDirectory
+from run_samples import assessment, finding, run
+from sqlalchemy import URL, Engine, insert, inspect, text
+
+import pipeline
+from pipeline.collection.database import open_database
+from pipeline.collection.inventory import latest_import, read_inventory
+from pipeline.collection.record import to_records
+from pipeline.records import Item, Problem, Support
+from pipeline.resources import resource
+from pipeline.store.codec import StoreError
+from pipeline.store.migrate import current, revisions, upgrade
+from pipeline.store.runs import load_run, save_run
+from pipeline.store.tables import IMPORT_BATCH, ITEM, METADATA
+
+UPGRADE = """
+import sys
+from pipeline.collection.database import open_database
+from pipeline.store.migrate import upgrade
+upgrade(open_database(sys.argv[1]))
+print("alembic" in sys.modules)
+"""
+
+
+def _start(url: URL) -> subprocess.Popen[str]:
+    command = [sys.executable, "-c", UPGRADE, url.render_as_string(hide_password=False)]
+    found_here = os.environ | {"PYTHONPATH": str(Path(pipeline.__file__).parent.parent)}
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=found_here)
+
+
+def test_migrated_tables_equal_the_metadata(engine: Engine) -> None:
+    with engine.connect() as connection:
+        assert compare_metadata(MigrationContext.configure(connection), METADATA) == []
+    found = inspect(engine)
+    assert set(found.get_table_names()) == {*METADATA.tables, "alembic_version"}
+    for name, table in METADATA.tables.items():  # which alembic does not compare
+        assert found.get_pk_constraint(name)["constrained_columns"] == [column.name for column in table.primary_key]
+
+
+def test_the_inventory_works_on_migrated_tables(engine: Engine) -> None:
+    items = [
+        Item("1", "G1", support=Support.HUNG, section_count=4, height_m=0.1 + 0.2, susceptible=False),
+        Item("2", "G1", problems=(Problem("mass_kg", "no number", "weigh it"),)),
+    ]
+    batch = {"sha256": "", "mapping": "", "museum": "", "credit": "", "rows": 2, "items": 2, "rejected": []}
+    with engine.begin() as connection:
+        connection.execute(insert(ITEM), to_records(items))
+        for source in ("first.csv", "second.csv"):  # the database numbers them
+            connection.execute(insert(IMPORT_BATCH), batch | {"imported_at": "2031-05-01", "source": source})
+    assert read_inventory(engine) == items
+    latest = latest_import(engine)
+    assert latest is not None
+    assert latest.source == "second.csv"
+
+
+def test_the_last_file_is_the_only_head() -> None:
+    config = Config()
+    config.set_main_option("script_location", str(resource("schemas", "migrations")))
+    script = ScriptDirectory.from_config(config)
+    assert tuple(script.get_heads()) == (revisions()[-1],)
+    assert tuple(step.revision for step in script.walk_revisions())[::-1] == revisions()
+
+
+def test_upgrade_again_keeps_the_results_and_imports_no_alembic(engine: Engine, empty_url: URL) -> None:
+    record = run("a", assessment("1", finding("1")))
+    save_run(engine, record)
+    process = _start(empty_url)
+    assert process.communicate(timeout=30)[0].strip() == "False"
+    assert process.returncode == 0
+    assert load_run(engine, "a") == record
+
+
+def test_two_processes_may_start_at_once(empty_url: URL, empty: Engine) -> None:
+    processes = [_start(empty_url) for _ in range(2)]
+    for process in processes:
+        process.communicate(timeout=60)
+    assert [process.returncode for process in processes] == [0, 0]
+    assert current(empty) == revisions()[-1]
+
+
+def test_a_newer_database_is_refused(engine: Engine) -> None:
+    with engine.begin() as connection:
+        connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
+    with pytest.raises(StoreError, match=r"'9999'.*newer Kouros made it; upgrade kouros"):
+        upgrade(engine)
+    assert current(engine) == "9999"
+
+
+def test_a_failed_migration_leaves_the_database_as_it_was(empty: Engine) -> None:
+    """A table of the museum's own that is called as one of ours, met after others were made."""
+    with empty.begin() as connection:
+        connection.execute(text("CREATE TABLE recommendation (words TEXT)"))
+    with pytest.raises(StoreError, match=r"stays as it was.*recommendation"):
+        upgrade(empty)
+    assert inspect(empty).get_table_names() == ["recommendation"]
+    assert current(empty) is None
+
+
+def test_a_password_is_not_shown() -> None:
+    closed = open_database("postgresql://keeper:sesame@127.0.0.1:1/kouros")
+    with pytest.raises(StoreError, match="cannot be read") as refused:
+        upgrade(closed)
+    assert "sesame" not in str(refused.value)

@@ -1,0 +1,230 @@
+"""A run comes back exactly as it was saved, or nothing of it is there."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from run_samples import RUNS, assessment, finding, motion, run
+from sqlalchemy import Engine, delete, func, select, text
+
+from pipeline.collection.database import open_database
+from pipeline.records import Chart, Estimate, Origin, RunRecord, Verdict
+from pipeline.store.codec import StoreError
+from pipeline.store.migrate import upgrade
+from pipeline.store.runs import latest_run_id, list_runs, load_run, prune_runs, save_run
+from pipeline.store.tables import FINDING, RECOMMENDATION, RUN, RUN_CHART, RUN_MOTION, RUN_SCENE
+
+TABLES = (RUN, RUN_MOTION, RUN_CHART, RUN_SCENE, FINDING, RECOMMENDATION)
+
+
+def rows(engine: Engine) -> dict[str, int]:
+    """How many rows each table of results has."""
+    with engine.connect() as connection:
+        return {
+            table.name: connection.execute(select(func.count()).select_from(table)).scalar_one() for table in TABLES
+        }
+
+
+NOTHING = dict.fromkeys((table.name for table in TABLES), 0)
+
+
+@settings(deadline=None, max_examples=40, suppress_health_check=list(HealthCheck))
+@given(record=RUNS)
+def test_a_run_comes_back_exactly(engine: Engine, record: RunRecord) -> None:
+    with engine.begin() as connection:
+        connection.execute(delete(RUN))
+    save_run(engine, record)
+    loaded = load_run(engine, record.run_id)
+    assert loaded == record
+    # Beyond equality: an enumeration is no text, 1.0 is no 1, and the order of mappings is kept.
+    assert repr(_positive_zero(loaded)) == repr(_positive_zero(record))
+
+
+def _positive_zero(record: RunRecord) -> str:
+    """SQLite keeps -0.0 as 0.0, which is equal."""
+    return repr(record).replace("-0.0,", "0.0,").replace("-0.0)", "0.0)").replace("-0.0}", "0.0}")
+
+
+def test_mappings_that_are_no_dictionaries_are_refused_or_become_them(engine: Engine) -> None:
+    one = assessment("1", finding("1"))
+    scene = replace(one.scene, skipped=MappingProxyType({"swing": "stands"}))
+    with pytest.raises(StoreError, match=r"object '1' .*Expected `dict.*skipped"):
+        save_run(engine, run("a", replace(one, scene=scene)))
+    record = replace(run("a", one), settings=MappingProxyType({"keep": (1, 2)}))
+    save_run(engine, record)
+    loaded = load_run(engine, "a")
+    assert loaded == record
+    assert type(loaded.settings) is dict
+
+
+def test_infinity_and_nan_survive(engine: Engine) -> None:
+    odd = finding("1", demand=math.nan, low=-math.inf, high=math.inf, utilisation=math.inf, error=None)
+    one = assessment("1", odd)
+    wild = Estimate(math.nan, "m", Origin.ASSUMED, -math.inf, math.inf)
+    save_run(engine, run("a", replace(one, scene=replace(one.scene, parameters={"lever": wild}))))
+    loaded = load_run(engine).assessments[0]
+    back = loaded.findings[0]
+    assert back.demand is not None
+    assert math.isnan(back.demand)
+    assert (back.low, back.high, back.utilisation, back.error) == (-math.inf, math.inf, math.inf, None)
+    assert math.isnan(loaded.scene.parameters["lever"].value)
+    assert loaded.scene.parameters["lever"].high == math.inf
+    with engine.connect() as connection:  # whoever asks in SQL sees it too: not NULL, and above every number
+        assert connection.execute(text("SELECT count(*) FROM finding WHERE demand > 1e300")).scalar() == 1
+
+
+def test_numbers_of_numpy_are_numbers(engine: Engine) -> None:
+    odd = finding("1", demand=np.float64(0.1) + np.float64(0.2), capacity=np.int64(3), error=np.float32(0.1))
+    shaken = replace(motion("malibu", "ab"), samples=np.int64(2**40))
+    record = run("a", assessment("1", odd), motions=(shaken,))
+    save_run(engine, record)
+    loaded = load_run(engine, "a")
+    assert loaded == record
+    assert [type(loaded.assessments[0].findings[0].capacity), type(loaded.motions[0].samples)] == [float, int]
+
+
+def test_an_empty_run_comes_back(engine: Engine) -> None:
+    record = run("", motions=())
+    save_run(engine, record)
+    assert load_run(engine) == record
+    assert load_run(engine, "") == record
+
+
+def test_an_object_that_occurs_twice_leaves_nothing_of_the_run(engine: Engine) -> None:
+    """The primary key of run_scene is violated after the run, its motions and 2,500 objects were written."""
+    before = run("before", assessment("1", finding("1")))
+    save_run(engine, before)
+    had = rows(engine)
+    many = [assessment(str(i)) for i in range(2_500)]
+    with pytest.raises(StoreError, match=r"nothing of it was kept: it has more than one object '7'"):
+        save_run(engine, run("twice", *many, assessment("7"), motions=(motion("malibu", "ab"),)))
+    assert rows(engine) == had
+    assert load_run(engine) == before
+
+
+def test_a_run_is_never_overwritten(engine: Engine) -> None:
+    first = run("a", assessment("1", finding("1")))
+    save_run(engine, first)
+    with pytest.raises(StoreError, match=r"'a' was not stored.*there is a run of that id already"):
+        save_run(engine, replace(first, museum="Another museum"))
+    assert load_run(engine, "a") == first
+
+
+@pytest.mark.parametrize(
+    ("changed", "what"),
+    [
+        ({"demand": "much"}, "object '1' in gallery 'G1'.*demand"),
+        ({"title": "broken \ud800"}, "object '1' in gallery 'G1'.*surrogates"),
+        ({"verdict": "fail?"}, "object '1' in gallery 'G1'.*verdict"),
+        ({"object_number": "2"}, "object '1' in gallery 'G1' has a finding of object '2'"),
+    ],
+)
+def test_what_cannot_be_kept_names_the_object(engine: Engine, changed: dict[str, object], what: str) -> None:
+    good = finding("1")
+    with pytest.raises(StoreError, match=f"(?s){what}"):
+        save_run(engine, run("a", assessment("1", replace(good, **changed))))
+    assert rows(engine) == NOTHING
+
+
+def test_settings_charts_and_motions_that_cannot_be_kept_are_named(engine: Engine) -> None:
+    with pytest.raises(StoreError, match=r"run 'a': settings\.out is a (Posix|Windows)Path"):
+        save_run(engine, replace(run("a"), settings={"out": Path("reports")}))
+    with pytest.raises(StoreError, match=r"(?s)motion 'malibu'.*samples"):
+        save_run(engine, run("a", motions=(replace(motion("malibu", "ab"), samples=2.5),)))
+    charts: Mapping[str, Chart] = {"stability": 3}  # type: ignore[dict-item]
+    with pytest.raises(StoreError, match="chart 'stability'"):
+        save_run(engine, replace(run("a"), charts=charts))
+    assert rows(engine) == NOTHING
+
+
+def test_an_unknown_run_lists_the_known_ones(engine: Engine) -> None:
+    with pytest.raises(StoreError, match=r"no finished run.*kouros run"):
+        load_run(engine)
+    with pytest.raises(StoreError, match=r"no run 'z'.*none; make one"):
+        load_run(engine, "z")
+    save_run(engine, run("a", day=1))
+    save_run(engine, run("b", day=2))
+    with pytest.raises(StoreError, match="no run 'z'; the runs, newest first, are: 'b', 'a'"):
+        load_run(engine, "z")
+
+
+def test_the_newest_finished_run_is_the_latest(engine: Engine) -> None:
+    assert latest_run_id(engine) is None
+    assert list_runs(engine) == ()
+    for run_id, day in (("b", 3), ("a", 1), ("c", 2)):
+        save_run(engine, run(run_id, day=day))
+    save_run(engine, replace(run("later", day=4), finished=""))
+    assert latest_run_id(engine) == "b"
+    assert load_run(engine).run_id == "b"
+    assert [(one.run_id, one.status) for one in list_runs(engine)] == [
+        ("later", "unfinished"),
+        ("b", "finished"),
+        ("c", "finished"),
+        ("a", "finished"),
+    ]
+
+
+def test_the_list_counts(engine: Engine) -> None:
+    verdicts = (Verdict.FAIL, Verdict.FAIL, Verdict.PASS)
+    findings = [finding("1", f"model {i}", verdict) for i, verdict in enumerate(verdicts)]
+    save_run(engine, run("a", assessment("1", *findings), assessment("2"), motions=(motion("malibu", "ab"),)))
+    assert list_runs(engine)[0].counts == {
+        "objects": 2,
+        "assessed": 1,
+        "findings": 3,
+        "pass": 1,
+        "fail": 2,
+        "undetermined": 0,
+        "recommendations": 2,
+        "charts": 0,
+        "motions": 1,
+    }
+
+
+def test_pruning_removes_all_of_the_oldest_runs(engine: Engine) -> None:
+    for day in range(1, 5):
+        save_run(engine, run(f"r{day}", assessment("1", finding("1")), day=day, motions=(motion("malibu", "ab"),)))
+    assert prune_runs(engine, keep=9) == ()
+    assert prune_runs(engine, keep=2) == ("r1", "r2")
+    # Each run has one row in each table but that of charts.
+    assert rows(engine) == {name: 0 if name == "run_chart" else 2 for name in NOTHING}
+    assert [one.run_id for one in list_runs(engine)] == ["r4", "r3"]
+    with pytest.raises(StoreError, match="at least 1"):
+        prune_runs(engine, keep=0)
+
+
+def test_pruning_never_removes_the_last_report_for_an_unfinished_run(engine: Engine) -> None:
+    save_run(engine, run("good", day=1))
+    save_run(engine, replace(run("cut", day=2), finished=""))
+    save_run(engine, replace(run("long cut", day=0), finished=""))
+    assert prune_runs(engine, keep=2) == ()
+    assert prune_runs(engine, keep=1) == ("long cut",)
+    assert [one.run_id for one in list_runs(engine)] == ["cut", "good"]
+    assert latest_run_id(engine) == "good"
+
+
+def test_a_run_that_lost_rows_is_not_shown_as_whole(engine: Engine) -> None:
+    save_run(engine, run("a", assessment("1", finding("1"))))
+    with engine.begin() as connection:
+        connection.execute(delete(FINDING))
+    with pytest.raises(StoreError, match="run 'a' is not whole"):
+        load_run(engine, "a")
+
+
+def test_a_database_without_tables_says_how_to_make_them(empty: Engine) -> None:
+    for act in (load_run, list_runs, latest_run_id, lambda engine: save_run(engine, run("a"))):
+        with pytest.raises(StoreError, match="kouros init"):
+            act(empty)
+
+
+def test_a_folder_with_a_percent_sign_and_a_quote(tmp_path: Path) -> None:
+    where = open_database(tmp_path / "100% Kouros's données" / "kouros.db")
+    upgrade(where)
+    save_run(where, run("a"))
+    assert load_run(where) == run("a")
+    where.dispose()
