@@ -1,6 +1,6 @@
 """Scenes x motions -> demands -> findings: each demand against its capacity, with a number for how sure we are."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -58,11 +58,18 @@ def _integrate(task: Task) -> Columns:
 
 
 def demands(
-    work: Work, motion: Motion, executor: Executor, *, fidelity: str = "history", azimuth_step: float = 10.0
+    work: Work,
+    motion: Motion,
+    executor: Executor,
+    outcomes: Collection[int],
+    *,
+    fidelity: str = "history",
+    azimuth_step: float = 10.0,
 ) -> Demands:
     """Run one model's parameter sets under one motion, in chunks on the executor.
 
     What the certificate shows to stay at rest is not integrated: its demand is exactly the certificate's.
+    outcomes : rows of the work's values whose history is wanted even where the certificate is the demand
     """
     model, values = work.model, work.values
     size = next(iter(values.values())).size
@@ -71,8 +78,13 @@ def demands(
     if model.certificate is not None:
         x, y, z = motion.acceleration
         certificate = model.certificate(Excitation(motion.dt, x, y, z, None), values)
-        if model.name != "stress":
-            needed = certificate > (1.0 if model.exact else 0.0)
+        if model.rests is not None:
+            needed = certificate > model.rests
+        if model.exact and model.rests is not None:
+            # The certificate is the demand: the integration only tells what happens after, for the best estimates.
+            told = np.zeros(size, dtype=bool)
+            told[list(outcomes)] = True
+            needed &= told
     columns = {q.name: np.zeros(size) for q in model.gives}
     columns |= {"error": np.zeros(size), "note": np.zeros(size)}
     rows = np.flatnonzero(needed)
@@ -103,7 +115,7 @@ class Judgement:
 def judge(demand: float, low: float, high: float, capacity: Estimate) -> Judgement:
     """Compare: pass or fail only where the whole range of the uncertain inputs says so, else undetermined.
 
-    A demand of exactly the capacity passes, except where reaching it is the failure itself (an overturned object).
+    A demand of exactly the capacity passes.
     """
     utilisation = _ratio(demand, capacity.value)
     most, least = _ratio(high, capacity.low), _ratio(low, capacity.high)
@@ -128,6 +140,7 @@ def assess(
     executor: Executor,
     progress: Progress,
     *,
+    fidelity: str = "history",
     azimuth_step: float = 10.0,
 ) -> tuple[Plan, list[list[Finding]]]:
     """Run everything the scenes require under every motion and judge it.
@@ -142,29 +155,38 @@ def assess(
     for level in levels:
         for work in todo.work:
             results = []
+            wanted = _wanted(work, scenes)
             for motion in level.motions:
-                results.append(demands(work, motion, executor, azimuth_step=azimuth_step))
+                results.append(demands(work, motion, executor, wanted, fidelity=fidelity, azimuth_step=azimuth_step))
                 done += 1
                 progress.step("analyses", done, total)
             for at, index in enumerate(work.scenes):
-                findings[index].append(_finding(scenes[index], work, at, level, results))
+                findings[index].append(_finding(scenes[index], work, at, level, results, fidelity))
     return todo, findings
+
+
+def _wanted(work: Work, scenes: Sequence[Scene]) -> set[int]:
+    rows = set(work.best)
+    for index, span in zip(work.scenes, work.spread, strict=True):
+        if work.model.otherwise(scenes[index]) is not None:
+            rows.update(span)
+    return rows
 
 
 def capacity_of(model: Model, scene: Scene) -> tuple[str, Estimate]:
     """Return which output of the model counts for this scene, and the capacity it is held against."""
     other = model.otherwise(scene)
     if other is not None:
-        # Reaching the limit is the failure: nothing smaller than it counts as reached.
-        limit = float(np.nextafter(other[1], 0.0)) * (1.0 - 1e-12)
-        return other[0], Estimate(limit, "-", Origin.DERIVED, limit, limit, "a quarter turn")
+        return other[0], Estimate(other[1], "-", Origin.DERIVED, other[1], other[1], "half of the motions")
     if isinstance(model.capacity, float):
         fixed = model.capacity
         return model.demand, Estimate(fixed, "-", Origin.DERIVED, fixed, fixed, "the onset itself")
     return model.demand, scene.parameters[model.capacity]
 
 
-def _finding(scene: Scene, work: Work, at: int, level: LevelMotions, results: Sequence[Demands]) -> Finding:
+def _finding(
+    scene: Scene, work: Work, at: int, level: LevelMotions, results: Sequence[Demands], fidelity: str
+) -> Finding:
     model = work.model
     output, capacity = capacity_of(model, scene)
     best, span = work.best[at], list(work.spread[at])
@@ -174,9 +196,6 @@ def _finding(scene: Scene, work: Work, at: int, level: LevelMotions, results: Se
     governing = int(np.argmax(each))
     if level.combine == "mean":
         verdict = judge(float(each.mean()), float(lows.mean()), float(highs.mean()), capacity)
-        if output == "rotation_ratio":
-            # An overturned object has no meaningful mean angle: half the records decide (contract "A site").
-            verdict = judge(float(np.median(each)), float(np.median(lows)), float(np.median(highs)), capacity)
     else:
         verdict = judge(float(each.max()), float(lows.max()), float(highs.max()), capacity)
     result, motion = results[governing], level.motions[governing]
@@ -184,6 +203,7 @@ def _finding(scene: Scene, work: Work, at: int, level: LevelMotions, results: Se
     parameters = {name: float(column[best]) for name, column in work.values.items()}
     certified = model.exact and output == model.demand
     at_rest = not result.integrated[best]
+    other = model.otherwise(scene)
     outcome, sentence = model.outcome(row, parameters)
     if not outcome and verdict.verdict is not Verdict.PASS:
         outcome = model.fails
@@ -204,12 +224,12 @@ def _finding(scene: Scene, work: Work, at: int, level: LevelMotions, results: Se
         capacity_origin=capacity.origin,
         utilisation=verdict.utilisation,
         verdict=verdict.verdict,
-        fidelity="bound" if certified or at_rest else "history",
+        fidelity="bound" if certified or at_rest else fidelity,
         error=0.0 if certified or at_rest else row["error"],
         decided_by="certificate" if certified or at_rest else "history",
         motion=motion.name,
         motion_hash=motion.hash,
-        sentence=f"{model.sentence} {sentence}".strip(),
+        sentence=f"{other[2] if other else model.sentence} {sentence}".strip(),
         screen=_screened(model, motion, parameters),
         outcome=outcome,
         note=_note(row),

@@ -22,6 +22,9 @@ TALL = 2.0
 SMALL = 0.4
 """Height [m] below which a sculpture is handled as a figurine."""
 
+THIN = 9.0
+"""Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
+
 _WORD = re.compile(r"[^\W\d_]+")
 
 
@@ -370,6 +373,7 @@ def classify(item: Item) -> Scene:
         models = (*models, "flexible_stress")
     builder = _Builder(item, row, support)
     builder.build()
+    builder.missing.extend(_unheld(item, support))
     assumptions = [e.note for e in builder.found.values() if e.origin is Origin.ASSUMED and e.note]
     if item.support is None:
         assumptions.insert(0, f"support: {support.value}, assumed for: {row['title'].lower()}; not recorded")
@@ -378,6 +382,17 @@ def classify(item: Item) -> Scene:
         item, row["class"], rule_words, support, models, builder.found,
         tuple(dict.fromkeys(assumptions)), tuple(missing),
     )
+
+
+def _unheld(item: Item, support: Support) -> list[str]:
+    """Say that the support is missing where a thing is too thin to stand and nothing tells how it is held."""
+    plan = [d for d in (item.base_width_m or item.width_m, item.base_depth_m or item.depth_m) if d is not None]
+    if item.support is not None or support is not Support.FREESTANDING or not plan or item.height_m is None:
+        return []
+    times = item.height_m / min(plan)
+    if times <= THIN:
+        return []
+    return [f"support (it is {times:.0f} times as high as it is deep: it cannot stand by itself, or a measure is wrong)"]
 
 
 MODELS_OF: Mapping[Support, tuple[str, ...]] = {

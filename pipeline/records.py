@@ -399,7 +399,8 @@ class Model:
     needs      : its parameters, in the order a caller would name them
     gives      : its outputs; the first is the one that ranks directions (RotD100) and carries the error
     directions : 1 (along an angle), 2 (both horizontal directions) or 0 (the parameter `directions` says)
-    run        : (excitation, parameters, refine) -> columns; parameters are broadcast (n,) arrays
+    run        : (excitation, parameters, refine, estimate) -> columns; parameters are broadcast (n,) arrays, refine
+                 divides the standard step; without estimate the error is left out (NaN) and the cost is a third
     demand     : which output is set against the capacity
     capacity   : parameter of the scene that the demand is held against, or a constant
     applies    : scene -> "" where the model applies, else the reason why not
@@ -410,8 +411,9 @@ class Model:
     certificate: (excitation in two directions, parameters) -> the demand itself or an upper bound of it for any
                  direction, without integration; what it shows to be below the capacity is never integrated
     exact      : the certificate is the demand itself, not only a bound
+    rests      : certificate up to which nothing moves, so that there is nothing to integrate; None: always integrate
     outcome    : (one row, one set of parameters) -> what the object does, in a word and in a sentence
-    otherwise  : scene -> (output, capacity) that replace demand and capacity for this scene, or None
+    otherwise  : scene -> (output, capacity, sentence) that take the place of its own for this scene, or None
     mark       : (one set of parameters, demand) -> (kind of chart, x, y), or None
     fails      : what an object does whose demand exceeds the capacity, such as "slides"
     """
@@ -424,7 +426,7 @@ class Model:
     needs: tuple[Quantity, ...]
     gives: tuple[Quantity, ...]
     directions: int
-    run: Callable[[Excitation, Mapping[str, Array], int], Columns]
+    run: Callable[[Excitation, Mapping[str, Array], int, bool], Columns]
     demand: str
     capacity: str | float
     applies: Callable[[Scene], str]
@@ -436,8 +438,9 @@ class Model:
     trace: Callable[[Excitation, Mapping[str, float]], Columns] | None = None
     certificate: Callable[[Excitation, Mapping[str, Array]], Array] | None = None
     exact: bool = False
+    rests: float | None = None
     outcome: Callable[[Mapping[str, float], Mapping[str, float]], tuple[str, str]] = lambda _row, _parameters: ("", "")
-    otherwise: Callable[[Scene], tuple[str, float] | None] = lambda _scene: None
+    otherwise: Callable[[Scene], tuple[str, float, str] | None] = lambda _scene: None
     mark: Callable[[Mapping[str, float], float], tuple[str, float, float] | None] = lambda _parameters, _demand: None
 
     def output(self, name: str) -> Quantity:

@@ -20,6 +20,9 @@ FIDELITIES = ("screen", "history", "reference")
 REFINE = {"history": 1, "reference": 8}
 """How much finer than the standard step each fidelity integrates."""
 
+SCAN_LIMIT = 16
+"""Refinement up to which a worst direction that a finer step does not confirm is looked for again."""
+
 AZIMUTH_STEP = 10.0
 """Degrees between the directions of which the worst counts when the orientation is unknown (RotD100)."""
 
@@ -134,29 +137,50 @@ def run_model(
         return columns, np.full(size, np.nan if both else angle)
     refine = REFINE[fidelity]
     if directions == 2:
-        return model.run(Excitation(motion.dt, x, y, z, tail), values, refine), np.full(size, np.nan)
+        return model.run(Excitation(motion.dt, x, y, z, tail), values, refine, True), np.full(size, np.nan)
     if angle is not None:
         if not np.isfinite(angle):
             raise ValueError(f"angle must be a number of degrees, or None for RotD100, not {angle!r}")
-        return model.run(Excitation(motion.dt, motion.along(angle), None, z, tail), values, refine), np.full(size, angle)
+        one = Excitation(motion.dt, motion.along(angle), None, z, tail)
+        return model.run(one, values, refine, True), np.full(size, angle)
     if not 0.0 < azimuth_step <= 90.0:
         raise ValueError(f"azimuth_step must be above 0 and at most 90 degrees, not {azimuth_step!r}")
+    return _worst_direction(model, motion, values, refine, tail, azimuth_step)
+
+
+def _worst_direction(
+    model: Model, motion: Motion, values: Mapping[str, Array], refine: int, tail: float | None, azimuth_step: float
+) -> tuple[Columns, Array]:
+    # RotD100: find the worst direction of each row without error estimates, then integrate that one with them.
+    z = motion.acceleration[2]
+    size = next(iter(values.values())).size
     turn = 180.0 if model.symmetric(values) else 360.0
-    best: Columns = {}
+    first, demand = model.gives[0].name, model.demand
     where = np.zeros(size)
+    most, push = np.full(size, -np.inf), np.full(size, -np.inf)
     for direction in np.arange(0.0, turn - 1e-9, azimuth_step):
-        columns = model.run(Excitation(motion.dt, motion.along(direction), None, z, tail), values, refine)
-        if not best:
-            best = {name: column.copy() for name, column in columns.items()}
-            continue
-        first = model.gives[0].name
+        one = Excitation(motion.dt, motion.along(direction), None, z, tail)
+        columns = model.run(one, values, refine, False)
         # Where the first output ties (nothing moved in either direction), the demand decides.
-        larger = (columns[first] > best[first]) | (
-            (columns[first] == best[first]) & (columns[model.demand] > best[model.demand])
-        )
-        for name, column in columns.items():
-            best[name][larger] = column[larger]
+        larger = (columns[first] > most) | ((columns[first] == most) & (columns[demand] > push))
+        most[larger], push[larger] = columns[first][larger], columns[demand][larger]
         where[larger] = direction
+    best: Columns = {}
+    for direction in np.unique(where):
+        rows = where == direction
+        one = Excitation(motion.dt, motion.along(float(direction)), None, z, tail)
+        columns = model.run(one, {name: v[rows] for name, v in values.items()}, refine, True)
+        for name, column in columns.items():
+            best.setdefault(name, np.empty(size))[rows] = column
+    # A worst direction that the finer integration does not confirm (a block that fell, and then did not) says nothing:
+    # look again with half the step, so that no direction in which it does fall is missed.
+    unsure = best[first] < 0.999 * most
+    if unsure.any() and refine < SCAN_LIMIT:
+        again = {name: v[unsure] for name, v in values.items()}
+        columns, directions = _worst_direction(model, motion, again, 2 * refine, tail, azimuth_step)
+        where[unsure] = directions
+        for name, column in columns.items():
+            best[name][unsure] = column
     return best, where
 
 

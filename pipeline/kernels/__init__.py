@@ -39,8 +39,17 @@ def _cache_folder(version: str) -> Path:
 
 
 KERNEL_VERSION = kernel_version()
+"""Hash of the sources of the compiled models."""
+
+_CONFIG: Any = numba.config
 if "NUMBA_CACHE_DIR" not in os.environ:
-    numba.config.CACHE_DIR = str(_cache_folder(KERNEL_VERSION))
+    _CONFIG.CACHE_DIR = str(_cache_folder(KERNEL_VERSION))
+
+
+def cache_folder() -> str:
+    """Return the folder of the compiled code."""
+    return str(_CONFIG.CACHE_DIR)
+
 
 # error_model="numpy": a division by zero gives inf, as in the arrays around it.  No fastmath: the order of operations
 # decides overturning.

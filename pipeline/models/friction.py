@@ -14,7 +14,8 @@ PLANE_TOLERANCE = 1e-6
 """Velocity tolerance of the two-directional kernel at `history`; the result is taken at a tenth of it."""
 
 
-def stick_slip(motion: Excitation, w: Array, zeta: Array, mu_s: Array, mu_k: Array, refine: int) -> Columns:
+def stick_slip(motion: Excitation, w: Array, zeta: Array, mu_s: Array, mu_k: Array, refine: int, estimate: bool
+) -> Columns:
     """Run n bodies on dry friction, with a spring and a dashpot where w > 0.
 
     w [rad/s], zeta, mu_s, mu_k [-] : (n,)
@@ -29,9 +30,10 @@ def stick_slip(motion: Excitation, w: Array, zeta: Array, mu_s: Array, mu_k: Arr
         )
         error = ROUNDING * np.maximum(results[:, 0], results[:, 2])
     else:
-        coarse = np.empty_like(results)
+        coarse = np.full_like(results, np.nan)
         tolerance = PLANE_TOLERANCE / refine**4
-        for rtol, out in ((tolerance, coarse), (0.1 * tolerance, results)):
+        runs = ((tolerance, coarse), (0.1 * tolerance, results)) if estimate else ((tolerance, results),)
+        for rtol, out in runs:
             friction_plane_batch(
                 quiet.x, quiet.y, quiet.z, quiet.ratio, quiet.maxima, quiet.push, quiet.pushes, quiet.dt, quiet.peak,
                 *arrays, quiet.tail, rtol, out,

@@ -11,10 +11,10 @@ from pipeline.quantities import Array, Quantity
 from pipeline.records import Columns, Excitation, Model, Scene, Support
 
 
-def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     mu_s = parameters["friction_static"]
     free = np.zeros_like(mu_s)
-    out = stick_slip(motion, free, free, mu_s, kinetic(parameters), refine)
+    out = stick_slip(motion, free, free, mu_s, kinetic(parameters), refine, estimate)
     # The error of the first output: friction passes on exactly mu N while slipping and the base's own while at rest.
     out["error"] = 1e-12 * out["acceleration"]
     del out["path_length"]

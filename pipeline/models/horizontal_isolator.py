@@ -11,10 +11,10 @@ from pipeline.quantities import Array, Quantity
 from pipeline.records import Columns, Excitation, Model, Scene, Support
 
 
-def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     mu = parameters["friction"]
     w = 2.0 * np.pi * parameters["frequency"]
-    out = stick_slip(motion, w, parameters["damping"], mu, mu, refine)
+    out = stick_slip(motion, w, parameters["damping"], mu, mu, refine, estimate)
     # The kernel's error is of the displacement; the acceleration follows it through the spring and the dashpot.
     out["error"] = out["error"] * w * (w + 2.0 * parameters["damping"] * w) + 1e-12 * out["acceleration"]
     del out["path_length"]

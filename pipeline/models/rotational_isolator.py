@@ -12,7 +12,9 @@ from pipeline.quantities import Array, Quantity
 from pipeline.records import Columns, Excitation, Model, Scene, Support
 
 
-def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+def _run(
+    motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool  # noqa: ARG001
+) -> Columns:
     # With r = I / (m h^2), theta = u / (r h) where u is the displacement of the plain oscillator, and the centre of
     # gravity feels a + h theta'' = a + u'' / r.
     w = 2.0 * np.pi * parameters["frequency"]

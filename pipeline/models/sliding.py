@@ -14,10 +14,10 @@ FRICTION_KINETIC = Quantity("friction_kinetic", "-", "coefficient while slipping
 DIRECTIONS = Quantity("directions", "-", "2, or 1 along the angle", 1.0, 2.0, optional=True, default=2.0)
 
 
-def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     mu_s = parameters["friction_static"]
     free = np.zeros_like(mu_s)
-    out = stick_slip(motion, free, free, mu_s, kinetic(parameters), refine)
+    out = stick_slip(motion, free, free, mu_s, kinetic(parameters), refine, estimate)
     del out["acceleration"]
     return out
 
@@ -53,6 +53,7 @@ SLIDING = Model(
     run=_run,
     trace=_trace,
     certificate=_certificate,
+    rests=0.0,
     mark=lambda parameters, demand: ("sliding", parameters["friction_static"], demand),
     demand="displacement",
     capacity="clearance",

@@ -52,11 +52,18 @@ def section_stresses(push: Array, parameters: Mapping[str, Array]) -> Columns:
     }
 
 
-def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:  # noqa: ARG001
+def _run(
+    motion: Excitation,
+    parameters: Mapping[str, Array],
+    refine: int,  # noqa: ARG001
+    estimate: bool,  # noqa: ARG001
+) -> Columns:
     return section_stresses(parameters["amplification"] * largest_push(motion), parameters)
 
 
-def _run_flexible(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+def _run_flexible(
+    motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool  # noqa: ARG001
+) -> Columns:
     w = 2.0 * np.pi * parameters["frequency"]
     displacement, _ = oscillate(motion, w, parameters["damping"], np.ones_like(w), refine)
     push = w**2 * displacement
@@ -66,7 +73,7 @@ def _run_flexible(motion: Excitation, parameters: Mapping[str, Array], refine: i
 
 
 def _screen(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
-    return _run(motion, parameters, 1)
+    return _run(motion, parameters, 1, False)
 
 
 def _say(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
@@ -113,7 +120,7 @@ STRESS = Model(
     run=_run,
     screen=_screen,
     say_screen=_say,
-    certificate=lambda motion, parameters: _run(motion, parameters, 1)["tension"],
+    certificate=lambda motion, parameters: _run(motion, parameters, 1, False)["tension"],
     exact=True,
     mark=lambda parameters, demand: ("spectrum", RIGID_FREQUENCY, _push(parameters, demand)),
     demand="tension",

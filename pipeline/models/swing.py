@@ -22,12 +22,13 @@ def _swept(angle: Array) -> Array:
     return np.where(angle >= 0.5 * np.pi, 1.0, np.sin(np.minimum(angle, 0.5 * np.pi)))
 
 
-def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     length, zeta = broadcast(parameters, "length"), broadcast(parameters, "damping")
     x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
     tail = -1.0 if motion.tail is None else float(motion.tail)
-    coarse, fine = np.empty((length.size, 2)), np.empty((length.size, 2))
-    for steps, results in ((refine, coarse), (2 * refine, fine)):
+    coarse, fine = np.full((length.size, 2), np.nan), np.empty((length.size, 2))
+    runs = ((refine, coarse), (2 * refine, fine)) if estimate else ((refine, fine),)
+    for steps, results in runs:
         pendulum_batch(x, z, motion.dt, shaken(motion), length, zeta, tail, steps, results, np.empty((0, 1)))
     displacement = length * _swept(fine[:, 0])
     return {
@@ -38,13 +39,14 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Co
     }
 
 
-def _run_3d(motion: Excitation, parameters: Mapping[str, Array], refine: int) -> Columns:
+def _run_3d(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     length, zeta = broadcast(parameters, "length"), broadcast(parameters, "damping")
     x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
     y = np.zeros_like(x) if motion.y is None else np.ascontiguousarray(motion.y)
     tail = -1.0 if motion.tail is None else float(motion.tail)
-    coarse, fine = np.empty((length.size, 2)), np.empty((length.size, 2))
-    for steps, results in ((refine, coarse), (2 * refine, fine)):
+    coarse, fine = np.full((length.size, 2), np.nan), np.empty((length.size, 2))
+    runs = ((refine, coarse), (2 * refine, fine)) if estimate else ((refine, fine),)
+    for steps, results in runs:
         spherical_batch(x, y, z, motion.dt, shaken(motion), length, zeta, tail, steps, results)
     displacement = length * fine[:, 0]
     return {
@@ -56,10 +58,10 @@ def _run_3d(motion: Excitation, parameters: Mapping[str, Array], refine: int) ->
 
 def _screen_3d(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
     undamped = {"length": parameters["length"], "damping": np.zeros_like(parameters["length"])}
-    swings = [_run(Excitation(motion.dt, motion.x, None, motion.z, motion.tail), undamped, 1)["displacement"]]
+    swings = [_run(Excitation(motion.dt, motion.x, None, motion.z, motion.tail), undamped, 1, False)["displacement"]]
     if motion.y is not None:
         other = Excitation(motion.dt, motion.y, None, motion.z, motion.tail)
-        swings.append(_run(other, undamped, 1)["displacement"])
+        swings.append(_run(other, undamped, 1, False)["displacement"])
     nothing = np.full_like(parameters["length"], np.nan)
     return {
         "displacement": CHANDELIER * np.maximum.reduce(swings),

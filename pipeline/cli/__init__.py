@@ -1,0 +1,60 @@
+"""The command `kouros`: parse, call, print; decides nothing."""
+
+import sys
+
+import click
+
+from pipeline import __version__
+from pipeline.cli import commands
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.option("--config", default="kouros.toml", show_default=True, type=click.Path(dir_okay=False), help="Settings file.")
+@click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors and results.")
+@click.option("-v", "--verbose", is_flag=True, help="Plain progress lines even on a terminal.")
+@click.option("--debug", is_flag=True, help="Show the traceback of an error.")
+@click.version_option(__version__, prog_name="kouros")
+@click.pass_context
+def kouros(context: click.Context, config: str, quiet: bool, verbose: bool, debug: bool) -> None:
+    """Which objects of a museum an earthquake would rock, slide, swing, break or throw down, and what to do.
+
+    \b
+    Exit codes: 0 done; 1 unexpected; 2 usage or settings; 3 done, some objects could not be assessed;
+    4 a motion was refused; 5 collection unreachable; 6 another run holds the lock;
+    7 input shrank suspiciously, nothing published.
+
+    Example: kouros demo
+    """
+    context.obj = commands.Options(config=config, quiet=quiet, verbose=verbose, debug=debug)
+
+
+for command in commands.ALL:
+    kouros.add_command(command)
+
+
+def main() -> None:
+    """Run the command; errors name file, row, field and remedy, and become exit codes."""
+    debug = "--debug" in sys.argv
+    try:
+        code = kouros.main(standalone_mode=False)
+    except click.exceptions.Exit as leaving:
+        code = leaving.exit_code
+    except click.Abort:
+        print("kouros: stopped", file=sys.stderr)
+        code = 130
+    except click.ClickException as problem:
+        problem.show()
+        code = 2
+    except Exception as problem:
+        if debug:
+            raise
+        print(f"kouros: {_said(problem)}", file=sys.stderr)
+        code = int(getattr(problem, "exit_code", 2 if isinstance(problem, ValueError) else 1))
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def _said(problem: Exception) -> str:
+    text = str(problem)
+    if isinstance(problem, ValueError) or hasattr(problem, "exit_code"):
+        return text
+    return f"unexpected {type(problem).__name__}: {text} (run again with --debug for the traceback)"

@@ -1,0 +1,284 @@
+"""The verbs.  Each parses its options, calls one job, prints its answer."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from pipeline.cli.console import Console, summary_lines
+
+if TYPE_CHECKING:
+    from pipeline.jobs.nightly import Summary
+    from pipeline.settings import Settings
+
+as_json = click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+
+
+@dataclass(frozen=True)
+class Options:
+    """The options that all commands share."""
+
+    config: str
+    quiet: bool
+    verbose: bool
+    debug: bool
+
+    def console(self) -> Console:
+        """Return where progress goes."""
+        return Console(quiet=self.quiet, verbose=self.verbose)
+
+    def settings(self) -> "Settings":
+        """Read the settings file."""
+        from pipeline.settings import load_settings
+
+        return load_settings(self.config)
+
+
+def _print_summary(summary: "Summary", wanted: bool) -> None:
+    if not wanted:
+        click.echo("\n".join(summary_lines(summary)))
+        return
+    plain = {k: v for k, v in vars(summary).items() if k != "changes"}
+    plain["changes"] = None if summary.changes is None else asdict(summary.changes)
+    click.echo(json.dumps(plain, indent=2, default=str))
+
+
+@click.command()
+@click.option("--folder", default="kouros-demo", show_default=True, type=click.Path(file_okay=False, path_type=Path))
+@as_json
+@click.pass_obj
+def demo(options: Options, folder: Path, as_json: bool) -> None:
+    """Run the whole job on the bundled collection and site, and print the report's path.
+
+    Example: kouros demo
+    """
+    from pipeline.jobs.demo import demo as job
+
+    with options.console() as console:
+        summary = job(folder, console)
+    _print_summary(summary, as_json)
+
+
+@click.command()
+@click.argument("folder", default=".", type=click.Path(file_okay=False, path_type=Path))
+def init(folder: Path) -> None:
+    """Make a commented kouros.toml, an empty site folder and the database.
+
+    Example: kouros init museum
+    """
+    from pipeline.jobs.initialise import initialise
+
+    for made in initialise(folder):
+        click.echo(f"made {made}")
+
+
+@click.command("import")
+@click.argument("source", type=click.Path(dir_okay=False, path_type=Path))
+@click.option("--mapping", help="A preset (carnegie, kouros) or the file of your mapping; default: the settings'.")
+@click.option("--shrink-limit", type=click.FloatRange(0.0, 1.0), help="Share of objects that may vanish at once.")
+@click.option("--dry-run", is_flag=True, help="Read and report; write nothing.")
+@as_json
+@click.pass_obj
+def import_(
+    options: Options, source: Path, mapping: str | None, shrink_limit: float | None, dry_run: bool, as_json: bool
+) -> None:
+    """Read the museum's export into Kouros's inventory, by a mapping.
+
+    Example: kouros import export.csv --mapping carnegie --dry-run
+    """
+    from pipeline.jobs.importing import import_collection
+    from pipeline.jobs.workspace import locked, open_workspace
+
+    settings = options.settings()
+    wanted = settings.collection
+    limit = wanted.shrink_limit if shrink_limit is None else shrink_limit
+    with locked(settings):
+        workspace = open_workspace(settings)
+        done = import_collection(workspace, source, mapping or wanted.mapping, shrink_limit=limit, dry_run=dry_run)
+    reading, problems = done.reading, done.problems
+    if as_json:
+        answer: dict[str, Any] = {
+            "source": reading.source,
+            "rows": reading.rows,
+            "items": len(reading.items),
+            "rejected": [asdict(r) for r in reading.rejected],
+            "problems": [{"object_number": item.object_number, **asdict(p)} for item, p in problems],
+            "counts": None if done.counts is None else asdict(done.counts),
+        }
+        click.echo(json.dumps(answer, indent=2))
+        return
+    click.echo(f"{reading.source}: {reading.rows:,} rows, {len(reading.items):,} objects, {len(reading.rejected):,} rejected")
+    _list("rejected", [f"{r.file}, row {r.row} (line {r.line}): {r.field}: {r.message}; {r.remedy}" for r in reading.rejected])
+    _list("not accepted", [f"{item.object_number}: {p.field}: {p.message}; {p.remedy}" for item, p in problems])
+    if done.counts is None:
+        click.echo("dry run: nothing was written")
+    else:
+        c = done.counts
+        click.echo(f"inventory: {c.after:,} objects ({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed)")
+
+
+def _list(title: str, lines: Sequence[str], most: int = 10) -> None:
+    for line in lines[:most]:
+        click.echo(f"  {title}: {line}")
+    if len(lines) > most:
+        click.echo(f"  {title}: and {len(lines) - most:,} more (--json lists all)")
+
+
+@click.command()
+@as_json
+@click.pass_obj
+def check(options: Options, as_json: bool) -> None:
+    """Look at settings, database, mapping, motions, clock and disk, and say what to mend.
+
+    Example: kouros check
+    """
+    from pipeline.jobs.doctor import diagnose
+
+    found = diagnose(Path(options.config))
+    if as_json:
+        click.echo(json.dumps([asdict(d) for d in found], indent=2))
+    else:
+        for d in found:
+            click.echo(f"{d.state:<8} {d.what:<11} {d.message}")
+    if any(d.state == "wrong" for d in found):
+        raise click.exceptions.Exit(2)
+
+
+@click.command()
+@click.option("--gallery", "galleries", multiple=True, help="Only this gallery; may be repeated.")
+@click.option("--object", "objects", multiple=True, help="Only this object number; may be repeated.")
+@click.option("--site", help="Another site's folder, or 'demo'.")
+@click.option("--fidelity", type=click.Choice(["history", "reference"]), help="How finely to integrate.")
+@click.option("--dry-run", is_flag=True, help="Assess and summarise; store and publish nothing.")
+@as_json
+@click.pass_obj
+def run(
+    options: Options,
+    galleries: tuple[str, ...],
+    objects: tuple[str, ...],
+    site: str | None,
+    fidelity: str | None,
+    dry_run: bool,
+    as_json: bool,
+) -> None:
+    """Run the nightly job: read, assess, recommend, store, publish the report.
+
+    A run of a part of the collection is stored and has its report, but does not become the latest one.
+
+    Example: kouros run --gallery "Hall of Sculpture"
+    """
+    from pipeline.jobs.nightly import Selection
+    from pipeline.jobs.nightly import run as job
+
+    settings = options.settings()
+    if site is not None:
+        settings = settings.model_copy(update={"site": settings.site.model_copy(update={"folder": site})})
+    if fidelity is not None:
+        settings = settings.model_copy(update={"analysis": settings.analysis.model_copy(update={"fidelity": fidelity})})
+    with options.console() as console:
+        summary = job(settings, console, Selection(galleries, objects), dry_run=dry_run)
+    _print_summary(summary, as_json)
+    if summary.cannot:
+        raise click.exceptions.Exit(3)
+
+
+@click.command()
+@click.argument("run_id", required=False)
+@click.pass_obj
+def report(options: Options, run_id: str | None) -> None:
+    """Render a run's report again from the store; nothing is computed.  Without RUN: the newest.
+
+    Example: kouros report
+    """
+    from pipeline.jobs.reporting import render_again
+
+    click.echo(f"Report: {render_again(options.settings(), run_id)}")
+
+
+@click.command()
+@click.argument("old", required=False)
+@click.argument("new", required=False)
+@as_json
+@click.pass_obj
+def diff(options: Options, old: str | None, new: str | None, as_json: bool) -> None:
+    """Say what changed between two runs: objects, inputs, motions, verdicts.  Without RUNs: the last two.
+
+    Example: kouros diff
+    """
+    from pipeline.jobs.reporting import compare
+
+    changes = compare(options.settings(), old, new)
+    if as_json:
+        click.echo(json.dumps(asdict(changes), indent=2))
+        return
+    click.echo(f"from {changes.old} to {changes.new}")
+    for title, places in (("new", changes.added), ("gone", changes.removed)):
+        _list(title, [f"{p.object_number} ({p.gallery})" for p in places])
+    _list("changed", [f"{i.object_number} ({i.gallery}): {', '.join(i.fields)}" for i in changes.inputs])
+    _list("motion", [f"{m.level} {m.name}" for m in changes.motions])
+    verdicts = [f"{v.object_number} ({v.gallery}) {v.model}, {v.level}: {v.before} -> {v.after}" for v in changes.verdicts]
+    _list("verdict", verdicts)
+    if not changes:
+        click.echo("nothing changed")
+
+
+@click.command()
+@as_json
+def models(as_json: bool) -> None:
+    """List the generic models: what each needs and gives, and its source.
+
+    Example: kouros models --json
+    """
+    from pipeline.models import MODELS
+
+    rows = [
+        {
+            "name": m.name,
+            "title": m.title,
+            "kind": m.kind,
+            "equation": m.equation,
+            "source": m.source,
+            "needs": [
+                {"name": q.name, "unit": q.unit, "meaning": q.meaning, "allowed": q.allowed(), "optional": q.optional}
+                for q in m.needs
+            ],
+            "gives": [{"name": q.name, "unit": q.unit, "meaning": q.meaning} for q in m.gives],
+        }
+        for m in MODELS
+    ]
+    if as_json:
+        click.echo(json.dumps(rows, indent=2))
+        return
+    for m in MODELS:
+        click.echo(f"{m.name}  ({m.kind})  {m.title}")
+        click.echo(f"    {m.equation}")
+        click.echo("    needs  " + ", ".join(f"{q.name} [{q.unit}]{'?' if q.optional else ''}" for q in m.needs))
+        click.echo("    gives  " + ", ".join(f"{q.name} [{q.unit}]" for q in m.gives))
+        click.echo(f"    source {m.source}")
+
+
+@click.command()
+@click.argument("model")
+@click.argument("parameters", nargs=-1, metavar="NAME=VALUE[,VALUE...]...")
+@click.option("--site", default="demo", show_default=True, help="Site folder whose motions shake it, or 'demo'.")
+@click.option("--angle", default="0", show_default=True, help="Degrees from x towards y, or 'worst' (RotD100).")
+@click.option("--fidelity", default="history", type=click.Choice(["screen", "history", "reference"]), show_default=True)
+@click.option("--tail", type=click.FloatRange(min=0.0), help="Seconds after the record; default: until rest.")
+@as_json
+def respond(
+    model: str, parameters: tuple[str, ...], site: str, angle: str, fidelity: str, tail: float | None, as_json: bool
+) -> None:
+    """Run one model on a site's motions, ad hoc.  Parameters in SI; several values make several rows.
+
+    Example: kouros respond sliding friction_static=0.05,0.1,0.2
+    """
+    from pipeline.jobs.adhoc import respond_on_site
+
+    table = respond_on_site(model, parameters, site, angle=angle, fidelity=fidelity, tail=tail)
+    click.echo(table.to_json(orient="records", indent=2) if as_json else table.to_string(index=False))
+
+
+ALL = (demo, init, import_, check, run, report, diff, models, respond)

@@ -1,0 +1,95 @@
+"""What a person sees: progress bars on a terminal, plain lines elsewhere, one screen at the end."""
+
+import sys
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as Bars
+
+    from pipeline.jobs.nightly import Summary
+
+
+class Console:
+    """Reports progress on standard error, so that standard output stays a result.
+
+    quiet : say nothing but errors;  verbose : a line for each step even on a terminal
+    """
+
+    def __init__(self, *, quiet: bool = False, verbose: bool = False) -> None:
+        self.quiet = quiet
+        self._bars: Bars | None = None
+        self._tasks: dict[str, Any] = {}
+        self._last: dict[str, int] = {}
+        self._plain = verbose or not sys.stderr.isatty()
+
+    def __enter__(self) -> Self:
+        if not self.quiet and not self._plain:
+            from rich.console import Console as Rich
+            from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+            columns = (TextColumn("{task.description:<16}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+            self._bars = Progress(*columns, console=Rich(stderr=True), transient=True)
+            self._bars.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._bars is not None:
+            self._bars.stop()
+
+    def step(self, what: str, done: int, total: int) -> None:
+        """Show that ``done`` of ``total`` pieces of ``what`` are finished."""
+        if self.quiet:
+            return
+        if self._bars is not None:
+            if what not in self._tasks:
+                self._tasks[what] = self._bars.add_task(what, total=total)
+            self._bars.update(self._tasks[what], completed=done, total=total)
+            return
+        # Plain lines: the beginning, every tenth, the end.
+        tenth = 10 * done // max(total, 1)
+        if self._last.get(what) != tenth:
+            self._last[what] = tenth
+            print(f"{what}: {done} of {total}", file=sys.stderr, flush=True)
+
+
+def summary_lines(summary: "Summary") -> list[str]:
+    """Return a run's result as lines that fit one screen."""
+    width = max(len(f"{summary.objects:,}"), 5)
+
+    def count(number: int, words: str) -> str:
+        return f"  {number:>{width},}  {words}"
+
+    lines = [
+        f"{summary.museum or 'Collection'} under {summary.site}",
+        "",
+        count(summary.objects, f"objects: {summary.on_display:,} on display in {summary.galleries} galleries, "
+              f"{summary.objects - summary.on_display:,} not on display"),
+        count(summary.assessed, f"assessed ({summary.findings:,} findings), of which"),
+        count(summary.act, "  need action: something fails"),
+        count(summary.open, "  are open: a measure would settle it"),
+        count(summary.safe, "  are safe as they stand"),
+        count(summary.cannot, "cannot be assessed, because this is not recorded:"),
+    ]
+    reasons = list(summary.missing.items())
+    lines += [f"  {'':>{width}}    {number:>4}  {_short(reason)}" for reason, number in reasons[:5]]
+    if len(reasons) > 5:
+        lines.append(f"  {'':>{width}}    {sum(n for _, n in reasons[5:]):>4}  for other reasons, named in the report")
+    lines += ["", "  Recommended, each run again and passing:"]
+    lines += [count(number, title) for title, number in summary.measures.items()]
+    if summary.first:
+        lines += ["", "  First:", *(f"    {text}" for text in summary.first)]
+    if summary.changes is not None:
+        changes = summary.changes
+        lines += ["", f"  Since the last run: {len(changes.added)} objects new, {len(changes.removed)} gone, "
+                  f"{len(changes.inputs)} changed, {len(changes.verdicts)} verdicts changed, "
+                  f"{len(changes.motions)} motions changed"]
+    if summary.report is not None:
+        lines += ["", f"Report: {summary.report}"]
+    return lines
+
+
+def _short(text: str, most: int = 84) -> str:
+    return text if len(text) <= most else f"{text[: most - 1]}…"

@@ -1,0 +1,1 @@
+"""The jobs: each reads as a story, one call a line."""

@@ -1,0 +1,54 @@
+"""One model on one site, ad hoc."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pipeline.jobs.workspace import UsageError
+from pipeline.resources import resource
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def respond_on_site(
+    model: str, parameters: Sequence[str], site: str, *, angle: str, fidelity: str, tail: float | None
+) -> "pd.DataFrame":
+    """Run one model under every motion of a site.
+
+    parameters : "name=value" or "name=value,value,..." in SI
+    angle      : degrees, or "worst"
+    returns    : the table of `respond` with the parameters and the motion in front
+    raises     : UsageError for words that are not name=value, ValueError as `respond`
+    """
+    import pandas as pd
+
+    from pipeline.motions.site import read_motion
+    from pipeline.response import respond
+
+    given = dict(_parsed(word) for word in parameters)
+    direction = None if angle == "worst" else _number("angle", angle)
+    folder = resource("site_motions", "demo") if site == "demo" else Path(site)
+    tables = []
+    for motion in read_motion(folder):
+        table = respond(model, motion, fidelity=fidelity, angle=direction, tail=tail, **given)
+        rows = len(table)
+        for at, (name, values) in enumerate(given.items()):
+            table.insert(at, name, values * rows if len(values) == 1 else values)
+        table.insert(0, "motion", motion.name)
+        tables.append(table)
+    return pd.concat(tables, ignore_index=True)
+
+
+def _parsed(word: str) -> tuple[str, list[float]]:
+    name, equals, values = word.partition("=")
+    if not equals or not name or not values:
+        raise UsageError(f"{word!r} is not NAME=VALUE, such as friction_static=0.2")
+    return name, [_number(name, value) for value in values.split(",")]
+
+
+def _number(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError as problem:
+        raise UsageError(f"{name}: {text!r} is not a number") from problem

@@ -1,0 +1,129 @@
+"""Whether the next night can run, and what to mend if not."""
+
+import os
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from pipeline.collection.inventory import galleries, latest_import, read_inventory
+from pipeline.collection.mapping import load_mapping, preset_names
+from pipeline.jobs.workspace import LockedError, Workspace, locked, open_workspace
+from pipeline.settings import Settings, load_settings
+from pipeline.store.runs import list_runs
+
+SPACE = 1_000_000_000
+"""Bytes of free disk below which a night may fail to write."""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """One thing looked at: whether it is well ("ok", "warning", "wrong"), and what mends it."""
+
+    what: str
+    state: str
+    message: str
+
+
+def diagnose(file: Path) -> list[Diagnosis]:
+    """Look at everything a night needs; every look is made, whatever the others found."""
+    try:
+        settings = load_settings(file)
+    except ValueError as problem:
+        return [Diagnosis("settings", "wrong", str(problem))]
+    found = [Diagnosis("settings", "ok", str(file))]
+    try:
+        workspace = open_workspace(settings)
+    except Exception as problem:  # noqa: BLE001 - a doctor reports whatever a database driver raises
+        found.append(Diagnosis("database", "wrong", f"{type(problem).__name__}: {problem}"))
+        return [*found, *_each(settings, None)]
+    found.append(Diagnosis("database", "ok", f"{workspace.engine.dialect.name}, tables up to date"))
+    return [*found, *_each(settings, workspace)]
+
+
+def _each(settings: Settings, workspace: Workspace | None) -> list[Diagnosis]:
+    looks: list[tuple[str, Callable[[], tuple[str, str]]]] = [
+        ("collection", lambda: _collection(settings)),
+        ("motions", lambda: _motions(settings)),
+        ("disk", lambda: _disk(settings)),
+        ("kernels", _kernels),
+        ("lock", lambda: _lock(settings)),
+    ]
+    if workspace is not None:
+        looks += [("inventory", lambda: _inventory(workspace)), ("clock", lambda: _clock(workspace))]
+    out = []
+    for what, look in looks:
+        try:
+            state, message = look()
+        except Exception as problem:  # noqa: BLE001 - one thing that is broken must not hide the others
+            state, message = "wrong", str(problem) or type(problem).__name__
+        out.append(Diagnosis(what, state, message))
+    return out
+
+
+def _collection(settings: Settings) -> tuple[str, str]:
+    wanted = settings.collection
+    load_mapping(wanted.mapping if wanted.mapping in preset_names() else settings.path(wanted.mapping))
+    if not wanted.source:
+        return "ok", "no source: the inventory is used as it was last imported"
+    source = settings.path(wanted.source)
+    if not source.is_file():
+        return "wrong", f"{source} is not there; export the collection to it, or change [collection] source"
+    return "ok", f"{source.name}, mapping {wanted.mapping}"
+
+
+def _motions(settings: Settings) -> tuple[str, str]:
+    from pipeline.jobs.workspace import site_folder
+    from pipeline.motions.site import read_site
+    from pipeline.quantities import G
+
+    site = read_site(site_folder(settings, settings.site.folder))
+    peaks = [f"{m.motion.name} {m.measures['pga'] / G:.2f} g" for level in site.levels for m in level.motions]
+    nobody = [level.name for level in site.levels if not level.approved_by]
+    text = f"{site.name} ({site.folder}): {', '.join(peaks)}"
+    if nobody:
+        return "warning", f"{text}; nobody has approved: {', '.join(nobody)} (approved_by in the manifest)"
+    return "ok", text
+
+
+def _disk(settings: Settings) -> tuple[str, str]:
+    folder = settings.path(settings.report.folder)
+    while not folder.exists():
+        folder = folder.parent
+    if not os.access(folder, os.W_OK):
+        return "wrong", f"{folder} cannot be written; change its permissions or [report] folder"
+    free = shutil.disk_usage(folder).free
+    text = f"{free / 1e9:.1f} GB free at {folder}"
+    return ("ok", text) if free >= SPACE else ("warning", f"{text}; make room")
+
+
+def _kernels() -> tuple[str, str]:
+    from pipeline.kernels import KERNEL_VERSION, cache_folder
+
+    return "ok", f"version {KERNEL_VERSION}, compiled code in {cache_folder()}"
+
+
+def _lock(settings: Settings) -> tuple[str, str]:
+    try:
+        with locked(settings):
+            return "ok", "no other run is at work"
+    except LockedError as problem:
+        return "warning", str(problem)
+
+
+def _inventory(workspace: Workspace) -> tuple[str, str]:
+    info = latest_import(workspace.engine)
+    if info is None:
+        return "warning", "nothing imported yet; `kouros import FILE` does that, `kouros run` too where a source is set"
+    items = read_inventory(workspace.engine)
+    shown = sum(galleries(items).values())
+    return "ok", f"{len(items)} objects, {shown} on display, from {info.source} on {info.imported_at}"
+
+
+def _clock(workspace: Workspace) -> tuple[str, str]:
+    now = datetime.now(UTC)
+    runs = list_runs(workspace.engine)
+    if runs and datetime.fromisoformat(runs[0].started) > now:
+        return "wrong", f"the last run is of {runs[0].started}, later than now ({now.isoformat()}); set the clock"
+    return "ok", now.isoformat(timespec="seconds")

@@ -1,0 +1,58 @@
+"""A new workspace: commented settings, an empty site, the database."""
+
+from pathlib import Path
+
+from pipeline.jobs.workspace import UsageError, open_workspace
+from pipeline.settings import load_settings, template
+
+MANIFEST = """\
+# The motions of your site.  Put the records beside this file, name them here, then try `kouros check`.
+# The bundled example is a complete manifest to copy from: its path is printed by `kouros check`.
+
+[site]
+name = "Our site"
+latitude = 0.0
+longitude = 0.0
+
+# [[level]]
+# name = "design"
+# return_period_years = 475
+# combine = "max"            # with seven records and more: "mean"
+# approved_by = ""           # the engineer who answers for these motions
+#
+# [[level.record]]
+# files = ["record.mseed"]
+# response = "station.xml"   # for raw counts; leave it out for processed records
+# processed = false
+# scale_to_pga_g = 0.5
+# highpass_hz = 0.1
+# source = ""
+# licence = ""
+# [level.record.components]
+# HNE = { axis = "x", orientation = 90 }
+# HNN = { axis = "y", orientation = 0 }
+# HNZ = { axis = "z", orientation = "up" }
+# [level.record.sha256]
+# "record.mseed" = ""
+"""
+
+
+def initialise(folder: Path) -> list[Path]:
+    """Make kouros.toml, site_motions/site and the database in a folder.
+
+    returns : what was made
+    raises  : UsageError where settings are there already; nothing is overwritten
+    """
+    file = folder / "kouros.toml"
+    if file.exists():
+        raise UsageError(f"{file} is there already; remove it, or choose another folder")
+    manifest = folder / "site_motions" / "site" / "manifest.toml"
+    manifest.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(template(museum="", source="", mapping="kouros", site="site_motions/site"), encoding="utf-8")
+    made = [file]
+    if not manifest.exists():
+        manifest.write_text(MANIFEST, encoding="utf-8")
+        made.append(manifest)
+    workspace = open_workspace(load_settings(file))
+    database = workspace.engine.url.database
+    return [*made, Path(database)] if workspace.engine.dialect.name == "sqlite" and database else made

@@ -1,0 +1,269 @@
+"""The night, from the museum's records to the published report."""
+
+import os
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pipeline import __version__
+from pipeline.assess import LevelMotions, assess
+from pipeline.charts import chart_keys, charts
+from pipeline.classify import classify
+from pipeline.collection.inventory import galleries, latest_import, read_inventory
+from pipeline.execute import Threads
+from pipeline.jobs.importing import import_collection
+from pipeline.jobs.workspace import UsageError, Workspace, locked, open_workspace, site_folder
+from pipeline.kernels import KERNEL_VERSION
+from pipeline.mitigate import advise
+from pipeline.motions.site import Site, read_site, summaries
+from pipeline.records import Assessment, Chart, Executor, Item, Motion, Progress, RunRecord, Verdict
+from pipeline.report import Units, publish, render
+from pipeline.settings import Settings
+from pipeline.store.reuse import KERNELS, stored_charts
+from pipeline.store.runs import compare_runs, latest_run_id, save_run
+
+if TYPE_CHECKING:
+    from pipeline.store.changes import RunChanges
+
+
+@dataclass(frozen=True)
+class Selection:
+    """Which part of the collection to run; nothing named means all of it."""
+
+    galleries: tuple[str, ...] = ()
+    objects: tuple[str, ...] = ()
+
+    def __bool__(self) -> bool:
+        """Whether anything was named."""
+        return bool(self.galleries or self.objects)
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a run did, for one screen and for programs.
+
+    objects       : all that were looked at; act + open + safe + cannot is the same number
+    missing       : why objects could not be assessed, with how many of each
+    report        : the report's index, None for a dry run
+    """
+
+    run_id: str
+    museum: str
+    site: str
+    objects: int
+    on_display: int
+    galleries: int
+    assessed: int
+    cannot: int
+    act: int
+    open: int
+    safe: int
+    findings: int
+    measures: Mapping[str, int]
+    missing: Mapping[str, int]
+    first: Sequence[str]
+    report: Path | None = None
+    latest: Path | None = None
+    changes: "RunChanges | None" = field(default=None, repr=False)
+
+
+def run(settings: Settings, progress: Progress, selection: Selection | None = None, *, dry_run: bool = False) -> Summary:
+    """Assess the collection and publish the report; the last report stays until this one is whole.
+
+    dry_run : assess and summarise, but store and publish nothing
+    raises  : errors with an `exit_code`: settings 2, motions 4, collection 5, lock 6, shrunk 7
+    """
+    chosen = selection or Selection()
+    with locked(settings):
+        started = datetime.now(UTC)
+        workspace = open_workspace(settings)
+        _refresh(workspace, progress, dry_run=dry_run)
+        items = _choose(read_inventory(workspace.engine), chosen)
+        site = _read_site(workspace, progress)
+        record = _assess(workspace, items, site, started, progress)
+        record = replace(record, settings={**record.settings, "selection": bool(chosen)})
+        summary = summarise(record)
+        if dry_run:
+            return summary
+        before = latest_run_id(workspace.engine)
+        save_run(workspace.engine, record)
+        progress.step("report", 0, 1)
+        index = render(record, workspace.reports / record.run_id, units=Units(length=settings.report.length))
+        # A part of the collection is worth a report, but not the name of the museum's latest one.
+        latest = None if chosen else publish(index.parent, workspace.reports)
+        progress.step("report", 1, 1)
+        changes = compare_runs(workspace.engine, before, record.run_id) if before else None
+        return replace(summary, report=index, latest=latest, changes=changes)
+
+
+def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None:
+    wanted = workspace.settings.collection
+    if not wanted.source:
+        return
+    progress.step("collection", 0, 1)
+    source = workspace.settings.path(wanted.source)
+    import_collection(workspace, source, wanted.mapping, shrink_limit=wanted.shrink_limit, dry_run=dry_run)
+    progress.step("collection", 1, 1)
+
+
+def _choose(items: list[Item], selection: Selection) -> list[Item]:
+    if not items:
+        raise EmptyCollectionError("the inventory is empty: import the museum's export first (`kouros import FILE`)")
+    _known("gallery", selection.galleries, {item.gallery for item in items})
+    _known("object", selection.objects, {item.object_number for item in items})
+    return [
+        item
+        for item in items
+        if (not selection.galleries or item.gallery in selection.galleries)
+        and (not selection.objects or item.object_number in selection.objects)
+    ]
+
+
+class EmptyCollectionError(ValueError):
+    """There is nothing to assess."""
+
+    exit_code = 5
+
+
+def _known(what: str, wanted: Sequence[str], known: set[str]) -> None:
+    for name in wanted:
+        if name not in known:
+            close = get_close_matches(name, known, n=3)
+            hint = f"; did you mean {' or '.join(repr(c) for c in close)}?" if close else ""
+            raise UsageError(f"there is no {what} {name!r} in the inventory{hint}")
+
+
+def _read_site(workspace: Workspace, progress: Progress) -> Site:
+    progress.step("motions", 0, 1)
+    site = read_site(site_folder(workspace.settings, workspace.settings.site.folder))
+    progress.step("motions", 1, 1)
+    return site
+
+
+def _assess(
+    workspace: Workspace, items: Sequence[Item], site: Site, started: datetime, progress: Progress
+) -> RunRecord:
+    settings = workspace.settings
+    executor = Threads(settings.analysis.workers or None)
+    levels = [LevelMotions(v.name, v.combine, tuple(m.motion for m in v.motions)) for v in site.levels]
+    scenes = [classify(item) for item in items]
+    plan, findings = assess(
+        scenes,
+        levels,
+        executor,
+        progress,
+        fidelity=settings.analysis.fidelity,
+        azimuth_step=settings.analysis.azimuth_step,
+    )
+    scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
+    advice = advise(scenes, findings, {level.name: level.motions for level in levels}, executor, progress)
+    drawn = _charts(workspace, [motion for level in levels for motion in level.motions], executor, progress)
+    info = latest_import(workspace.engine)
+    return RunRecord(
+        run_id=f"{started:%Y%m%dT%H%M%S}-{os.getpid()}",
+        started=started.isoformat(timespec="milliseconds"),
+        finished=datetime.now(UTC).isoformat(timespec="milliseconds"),
+        version=__version__,
+        site=site.name,
+        museum=settings.museum.name or (info.museum if info else ""),
+        level_notes=tuple(_level_note(level) for level in site.levels),
+        settings=_stored_settings(settings, info.credit if info else ""),
+        assessments=tuple(
+            Assessment(scene, tuple(found), tuple(advised))
+            for scene, found, advised in zip(scenes, findings, advice, strict=True)
+        ),
+        charts=drawn,
+        motions=summaries(site),
+        demonstration=settings.demonstration,
+    )
+
+
+def _stored_settings(settings: Settings, credit: str) -> dict[str, Any]:
+    # Never the database's address: it may hold a password.
+    return {
+        KERNELS: KERNEL_VERSION,
+        "credit": credit,
+        "analysis": settings.analysis.model_dump(),
+        "length": settings.report.length,
+        "site": settings.site.folder,
+    }
+
+
+def _charts(
+    workspace: Workspace, motions: Sequence[Motion], executor: Executor, progress: Progress
+) -> dict[str, Chart]:
+    drawn: dict[str, Chart] = {}
+    for done, motion in enumerate(motions):
+        progress.step("charts", done, len(motions))
+        kept = stored_charts(workspace.engine, chart_keys(motion), KERNEL_VERSION)
+        drawn |= kept if len(kept) == len(chart_keys(motion)) else charts(motion, executor)
+    progress.step("charts", len(motions), len(motions))
+    return drawn
+
+
+def _level_note(level: Any) -> str:
+    period = "" if level.return_period_years is None else f", return period {level.return_period_years:g} years"
+    answers = (
+        f"approved by {level.approved_by} on {level.approved_on}"
+        if level.approved_by
+        else "no engineer has approved these motions"
+    )
+    number = len(level.motions)
+    return f"Level {level.name}{period}: {number} motion{'s' if number != 1 else ''}, {level.combine} of them; {answers}."
+
+
+def summarise(record: RunRecord) -> Summary:
+    """Count what a run found: every object is in exactly one of act, open, safe and cannot."""
+    act = open_ = safe = 0
+    for assessment in record.assessments:
+        if not assessment.assessed:
+            continue
+        verdicts = {finding.verdict for finding in assessment.findings}
+        if Verdict.FAIL in verdicts:
+            act += 1
+        elif Verdict.UNDETERMINED in verdicts:
+            open_ += 1
+        else:
+            safe += 1
+    objects = len(record.assessments)
+    items = [assessment.scene.item for assessment in record.assessments]
+    advice = [advised for assessment in record.assessments for advised in assessment.recommendations]
+    missing = Counter(
+        reason for assessment in record.assessments if not assessment.assessed for reason in assessment.scene.missing
+    )
+    return Summary(
+        run_id=record.run_id,
+        museum=record.museum,
+        site=record.site,
+        objects=objects,
+        on_display=sum(item.on_display for item in items),
+        galleries=len(galleries(items)),
+        assessed=act + open_ + safe,
+        cannot=objects - act - open_ - safe,
+        act=act,
+        open=open_,
+        safe=safe,
+        findings=sum(len(assessment.findings) for assessment in record.assessments),
+        measures=dict(Counter(advised.title for advised in advice).most_common()),
+        missing=dict(missing.most_common()),
+        first=_first(record),
+    )
+
+
+def _first(record: RunRecord, most: int = 5) -> list[str]:
+    """Name the objects on display that fail worst: those that fall or break, by how far they are beyond."""
+    failing = []
+    for assessment in record.assessments:
+        worst = [f for f in assessment.findings if f.verdict is Verdict.FAIL]
+        if worst and assessment.scene.item.on_display:
+            finding = max(worst, key=lambda f: (f.outcome in ("overturns", "breaks"), f.utilisation or 0.0))
+            failing.append((finding.outcome in ("overturns", "breaks"), finding.utilisation or 0.0, assessment, finding))
+    failing.sort(key=lambda entry: (-entry[0], -entry[1], entry[2].scene.item.object_number))
+    return [
+        f"{a.scene.item.object_number}  {a.scene.item.title[:48]}  ({a.scene.item.gallery}): {f.outcome}"
+        for _, _, a, f in failing[:most]
+    ]

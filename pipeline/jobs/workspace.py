@@ -1,0 +1,79 @@
+"""Where a job works: settings, database, lock."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pipeline.collection.database import open_database
+from pipeline.resources import resource
+from pipeline.settings import Settings
+from pipeline.store import migrate
+
+if TYPE_CHECKING:
+    from sqlalchemy import Engine
+
+
+class LockedError(RuntimeError):
+    """Another run is at work."""
+
+    exit_code = 6
+
+
+class UsageError(ValueError):
+    """A wish that cannot be carried out as it was put."""
+
+    exit_code = 2
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """Open settings: the database is at the newest schema, the folders are known."""
+
+    settings: Settings
+    engine: "Engine"
+
+    @property
+    def reports(self) -> Path:
+        """The folder of all reports."""
+        return self.settings.path(self.settings.report.folder)
+
+    @property
+    def site(self) -> Path:
+        """The folder of the site's motions; "demo" is the bundled one."""
+        return site_folder(self.settings, self.settings.site.folder)
+
+
+def site_folder(settings: Settings, name: str) -> Path:
+    """Return a site's folder: the bundled one for "demo", else relative to the settings."""
+    return resource("site_motions", "demo") if name == "demo" else settings.path(name)
+
+
+def open_workspace(settings: Settings) -> Workspace:
+    """Open the database, bringing its tables to the newest schema."""
+    engine = open_database(settings.database)
+    migrate.upgrade(engine)
+    return Workspace(settings, engine)
+
+
+@contextmanager
+def locked(settings: Settings) -> Iterator[None]:
+    """Hold the lock of this workspace: one run at a time.
+
+    raises : LockedError at once where another process holds it
+    """
+    from filelock import FileLock, Timeout
+
+    settings.home.mkdir(parents=True, exist_ok=True)
+    lock = FileLock(settings.home / ".kouros.lock", timeout=0)
+    try:
+        lock.acquire()
+    except Timeout as problem:
+        raise LockedError(
+            f"another run holds {lock.lock_file}; wait for it to end (the lock goes with the process that holds it)"
+        ) from problem
+    try:
+        yield
+    finally:
+        lock.release()

@@ -1,0 +1,107 @@
+"""What each isolator of the catalogue does under the site's motions: run once, used by every object that may stand on it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pipeline.models.common import largest_push, lift_ratios
+from pipeline.records import Excitation, Executor, Motion
+from pipeline.response import respond, transmit
+from pipeline.tables import number, table
+
+
+@dataclass(frozen=True)
+class Isolator:
+    """A row of the catalogue with its own demand under the motions of a level.
+
+    stroke       : m, the largest displacement over the motions
+    acceleration : m/s2, the largest horizontal acceleration passed on
+    lift         : -, the largest |a_h| / N passed on: what an object's slope b/h is held against
+    passed       : the motions that it passes on
+    """
+
+    frequency: float
+    damping: float
+    friction: float
+    source: str
+    stroke: float
+    acceleration: float
+    lift: float
+    passed: tuple[Motion, ...]
+
+
+@dataclass(frozen=True)
+class _Trial:
+    frequency: float
+    damping: float
+    friction: float
+    source: str
+    motions: tuple[Motion, ...]
+
+
+def _run(trial: _Trial) -> Isolator:
+    given = {"frequency": trial.frequency, "damping": trial.damping, "friction": trial.friction}
+    stroke = acceleration = lift = 0.0
+    passed_on = []
+    for motion in trial.motions:
+        own = respond("horizontal_isolator", motion, **given)
+        passed = transmit("horizontal_isolator", motion, refine=1, **given)
+        passed_on.append(passed)
+        x, y, z = passed.acceleration
+        shaken = Excitation(passed.dt, x, y, z, None)
+        stroke = max(stroke, float(own["displacement"].iloc[0]))
+        acceleration = max(acceleration, float(own["acceleration"].iloc[0]), largest_push(shaken))
+        lift = max(lift, *lift_ratios(shaken))
+    return Isolator(trial.frequency, trial.damping, trial.friction, trial.source, stroke, acceleration, lift, tuple(passed_on))
+
+
+def horizontal_isolators(motions: Sequence[Motion], executor: Executor) -> list[Isolator]:
+    """Run every horizontal isolator of tables/isolators.csv under every motion, gentlest first."""
+    trials = [
+        _Trial(
+            number(row, "frequency", "isolators.csv"),
+            number(row, "damping", "isolators.csv"),
+            number(row, "friction", "isolators.csv"),
+            row["source"],
+            tuple(motions),
+        )
+        for row in table("isolators")
+        if row["kind"] == "horizontal_isolator"
+    ]
+    return sorted(executor.map(_run, trials), key=lambda i: i.acceleration)
+
+
+@dataclass(frozen=True)
+class Pad:
+    """A rotational isolator of the catalogue."""
+
+    frequency: float
+    damping: float
+    source: str
+
+
+def rotational_pads() -> list[Pad]:
+    """Return the rotational isolators of tables/isolators.csv, in their order."""
+    return [
+        Pad(number(row, "frequency", "isolators.csv"), number(row, "damping", "isolators.csv"), row["source"])
+        for row in table("isolators")
+        if row["kind"] == "rotational_isolator"
+    ]
+
+
+def on_pad(motions: Sequence[Motion], pad: Pad, cg_height: float, inertia_ratio: float) -> tuple[float, float]:
+    """Return rotation [rad] and acceleration of the centre of gravity [m/s2] of an object on a pad, worst motion."""
+    rotation = acceleration = 0.0
+    for motion in motions:
+        row = respond(
+            "rotational_isolator",
+            motion,
+            angle=None,
+            azimuth_step=30.0,
+            frequency=pad.frequency,
+            damping=pad.damping,
+            cg_height=cg_height,
+            inertia_ratio=inertia_ratio,
+        )
+        rotation = max(rotation, float(row["rotation"].iloc[0]))
+        acceleration = max(acceleration, float(row["acceleration"].iloc[0]))
+    return rotation, acceleration

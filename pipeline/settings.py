@@ -1,0 +1,160 @@
+"""kouros.toml -> typed, frozen settings.  Unknown keys are errors; secrets come from the environment only."""
+
+import os
+import tomllib
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+DATABASE_VARIABLE = "KOUROS_DATABASE"
+"""Environment variable that names the database, with its password, in place of the file's."""
+
+
+class SettingsError(ValueError):
+    """Settings that cannot be used: the message names file, key and remedy."""
+
+    exit_code = 2
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Museum(_Part):
+    """Whose collection it is."""
+
+    name: str = Field(default="", description="shown on every page")
+
+
+class Inventory(_Part):
+    """Where Kouros keeps its own tables."""
+
+    database: str = Field(default="kouros.sqlite", description="a file, or postgresql://host/name without a password")
+
+
+class Collection(_Part):
+    """The museum's own records, read again before every run; empty: the inventory as it is."""
+
+    source: str = Field(default="", description="the file to import")
+    mapping: str = Field(default="kouros", description="a preset, or the file of a mapping")
+    shrink_limit: float = Field(default=0.2, ge=0.0, le=1.0, description="share of objects that may vanish at once")
+
+
+class SiteFolder(_Part):
+    """The site's motions."""
+
+    folder: str = Field(default="site_motions/site", description="folder with manifest.toml, or 'demo'")
+
+
+class Analysis(_Part):
+    """How finely to look."""
+
+    fidelity: Literal["history", "reference"] = "history"
+    azimuth_step: float = Field(default=10.0, gt=0.0, le=90.0, description="degrees between directions (RotD100)")
+    workers: int = Field(default=0, ge=0, le=256, description="threads; 0: as many as there are cores")
+
+
+class Report(_Part):
+    """How the report is written."""
+
+    folder: str = Field(default="reports", description="one folder a run, and 'latest'")
+    length: Literal["cm", "mm", "m", "in", "ft"] = "cm"
+
+
+class Settings(_Part):
+    """All settings of one museum, as kouros.toml gives them; paths are relative to that file."""
+
+    museum: Museum = Museum()
+    inventory: Inventory = Inventory()
+    collection: Collection = Collection()
+    site: SiteFolder = SiteFolder()
+    analysis: Analysis = Analysis()
+    report: Report = Report()
+    home: Path = Field(default=Path(), exclude=True)
+    demonstration: bool = Field(default=False, description="say on every page that this is a demonstration")
+
+    def path(self, text: str) -> Path:
+        """Return a path of the file, relative to the file's own folder."""
+        return self.home / Path(text).expanduser()
+
+    @property
+    def database(self) -> str:
+        """Where the database is: the environment's word first, else a URL or a file."""
+        where = os.environ.get(DATABASE_VARIABLE) or self.inventory.database
+        return where if "://" in where else str(self.path(where))
+
+
+def load_settings(file: str | Path) -> Settings:
+    """Read kouros.toml.
+
+    raises : SettingsError naming the file, the key and the remedy
+    """
+    where = Path(file)
+    try:
+        data = tomllib.loads(where.read_text(encoding="utf-8"))
+    except FileNotFoundError as problem:
+        raise SettingsError(f"{where}: there is no such file; make one with `kouros init`, or name it by --config") from problem
+    except (OSError, UnicodeDecodeError) as problem:
+        raise SettingsError(f"{where}: cannot be read ({problem}); check its permissions and that it is UTF-8") from problem
+    except tomllib.TOMLDecodeError as problem:
+        raise SettingsError(f"{where}: is not valid TOML ({problem}); mend that line") from problem
+    if "home" in data:
+        raise SettingsError(f"{where}: key 'home' is not a setting; remove it")
+    try:
+        return Settings(**data, home=where.resolve().parent)
+    except ValidationError as problem:
+        first = problem.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise SettingsError(f"{where}: {key}: {first['msg']} (is {first.get('input')!r}); see `kouros init`") from problem
+
+
+TEMPLATE = """\
+# Settings of Kouros.  Paths are relative to this file.  Passwords never stand here: put the whole database address
+# into the environment variable KOUROS_DATABASE.
+
+[museum]
+name = {museum}
+
+[inventory]
+# A file, or an address such as "postgresql://server/kouros".
+database = "kouros.sqlite"
+
+[collection]
+# The museum's own export, read again before every run.  Leave it empty to use what was imported last.
+source = {source}
+# A preset (carnegie, kouros) or the file of your own mapping.
+mapping = {mapping}
+# A night that finds this share of objects fewer than the last one publishes nothing.
+shrink_limit = 0.2
+
+[site]
+# The folder with manifest.toml and the records of your site; "demo" is the bundled record.
+folder = {site}
+
+[analysis]
+# fidelity = "reference" integrates eight times finer.
+fidelity = "history"
+# Degrees between the directions tried for an object whose orientation is not recorded.
+azimuth_step = 10.0
+# Threads; 0 means as many as there are cores.
+workers = 0
+
+[report]
+folder = "reports"
+# cm, mm, m, in or ft
+length = "cm"
+"""
+
+
+def template(*, museum: str, source: str, mapping: str, site: str) -> str:
+    """Return a commented kouros.toml."""
+    quoted = {key: _quoted(value) for key, value in {"museum": museum, "source": source, "mapping": mapping}.items()}
+    return TEMPLATE.format(site=_quoted(site), **quoted)
+
+
+def _quoted(text: str) -> str:
+    import json
+
+    # A JSON string is a TOML basic string.
+    return json.dumps(text, ensure_ascii=False)
