@@ -25,7 +25,7 @@ from pipeline.records import (
 )
 from pipeline.response import run_model
 
-CHUNK = 256
+CHUNK = 96
 """Parameter sets in one task: small enough to share between workers, large enough to make the task worth its call."""
 
 NEVER = 1e300

@@ -83,6 +83,7 @@ def stability_chart(motion: Motion) -> Chart:
     crossing = (speed / slope) ** 2 if slope > 0.0 else 0.0
     caption = (
         f"Peak resultant acceleration {slope:.2f} g, peak resultant velocity {100.0 * speed * VELOCITY_SCREEN:.0f} cm/s. "
+        "H' is twice the height of the centre of gravity. "
         f"Below H' = {100.0 * crossing:.0f} cm there is no band in which an object rocks without overturning. "
         "The lines are the paper's closed-form criteria; the verdict comes from the time history."
     )
@@ -90,7 +91,7 @@ def stability_chart(motion: Motion) -> Chart:
         chart_key("stability", motion),
         "Rocking stability",
         caption,
-        Axis("Equivalent height H' (twice the height of the centre of gravity)", "m", "log"),
+        Axis("Equivalent height H'", "m", "log"),
         Axis("Base width B", "m", "log"),
         (
             _curve("A_max/g = B/H'", heights, uplift),

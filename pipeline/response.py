@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 FIDELITIES = ("screen", "history", "reference")
 """What ``respond`` can be asked for, from the paper's closed form to the tight-tolerance integration."""
 
-REFINE = {"history": 1, "reference": 8}
-"""How much finer than the standard step each fidelity integrates."""
+REFINE = {"history": 2, "reference": 16}
+"""How much finer than the coarsest step, which only ever looks for the worst direction, each fidelity integrates."""
 
 SCAN_LIMIT = 16
 """Refinement up to which a worst direction that a finer step does not confirm is looked for again."""
@@ -155,12 +155,13 @@ def _worst_direction(
     z = motion.acceleration[2]
     size = next(iter(values.values())).size
     turn = 180.0 if model.symmetric(values) else 360.0
+    scan = max(1, refine // 2)
     first, demand = model.gives[0].name, model.demand
     where = np.zeros(size)
     most, push = np.full(size, -np.inf), np.full(size, -np.inf)
     for direction in np.arange(0.0, turn - 1e-9, azimuth_step):
         one = Excitation(motion.dt, motion.along(direction), None, z, tail)
-        columns = model.run(one, values, refine, False)
+        columns = model.run(one, values, scan, False)
         # Where the first output ties (nothing moved in either direction), the demand decides.
         larger = (columns[first] > most) | ((columns[first] == most) & (columns[demand] > push))
         most[larger], push[larger] = columns[first][larger], columns[demand][larger]

@@ -20,11 +20,7 @@ class Threads:
 
         raises : whatever a task raises, the first in the order of the tasks; the others are not waited for
         """
-        if not tasks:
-            return []
-        # The first task alone: it compiles what the others will share, once.
-        first = work(tasks[0])
-        if len(tasks) == 1 or self.workers == 1:
-            return [first, *(work(task) for task in tasks[1:])]
+        if len(tasks) <= 1 or self.workers == 1:
+            return [work(task) for task in tasks]
         with ThreadPoolExecutor(self.workers) as pool:
-            return [first, *pool.map(work, tasks[1:])]
+            return list(pool.map(work, tasks))

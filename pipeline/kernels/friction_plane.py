@@ -147,7 +147,7 @@ def _peaks(
     end = after[0] * after[2] + after[1] * after[3]
     if begin > 0.0 > end and max(r0, r1) + h * math.hypot(state[2], state[3]) > out[0]:
         low, high, at_low, at_high = 0.0, h, begin, end
-        for k in range(12):
+        for k in range(24):
             tau = (low * at_high - high * at_low) / (at_high - at_low) if k % 3 < 2 else 0.5 * (low + high)
             _step(state, load, t, tau, b, c, trial)
             value = trial[0] * trial[2] + trial[1] * trial[3]
@@ -155,7 +155,7 @@ def _peaks(
                 low, at_low = tau, value
             else:
                 high, at_high = tau, value
-            if value == 0.0 or high - low < 1e-7 * h:
+            if value == 0.0 or high - low < 1e-11 * h:
                 break
         out[0] = max(out[0], math.hypot(trial[0], trial[1]))
     g0, g1 = load[4] + load[5] * t, load[4] + load[5] * (t + h)
@@ -167,7 +167,7 @@ def _peaks(
         end = _felt_rate(after, load[0] + load[1] * s, load[2] + load[3] * s, g1, load[5], b, c)
         if begin > 0.0 > end:
             low, high, at_low, at_high = 0.0, h, begin, end
-            for k in range(12):
+            for k in range(24):
                 tau = (low * at_high - high * at_low) / (at_high - at_low) if k % 3 < 2 else 0.5 * (low + high)
                 _step(state, load, t, tau, b, c, trial)
                 s = t + tau
@@ -178,7 +178,7 @@ def _peaks(
                     low, at_low = tau, value
                 else:
                     high, at_high = tau, value
-                if value == 0.0 or high - low < 1e-7 * h:
+                if value == 0.0 or high - low < 1e-11 * h:
                     break
             out[2] = max(out[2], _felt(trial, load[4] + load[5] * (t + tau), b, c))
 

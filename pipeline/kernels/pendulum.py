@@ -24,7 +24,7 @@ CAP = 200.0
 FAINT = 1e-9
 """Share of the peak's energy below which what is left of the swing cannot matter."""
 
-STEP = 0.05
+STEP = 0.1
 """Largest step of the integration, in radians of the fastest pendulum motion."""
 
 
@@ -138,7 +138,7 @@ def _coast(
     drag = 2.0 * zeta * w
     s, c = math.sin(theta), math.cos(theta)
     stop = tail if tail >= 0.0 else CAP
-    h = 0.04 / (w * (1.0 + 2.0 * zeta)) / refine
+    h = 0.8 * STEP / (w * (1.0 + 2.0 * zeta)) / refine
     t = 0.0
     while t < stop:
         if tail < 0.0:

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import kernel
+from pipeline.kernels import inlined, kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
 from pipeline.kernels.quiet import next_above
 from pipeline.quantities import Array, G
@@ -26,45 +26,56 @@ COUNTED = 1e-3
 IMPACTS_CAP = 200
 """Impacts within one sample interval after which the body is put to rest until the next sample."""
 
+STEP = 0.2
+"""Largest step of the integration times the fastest rate of the body."""
+
 CAP = 300.0
 """Seconds after the record at which a body that still rocks is cut off."""
 
 
 
-@kernel
-def _bend(phi: float, a: float, n: float, s: float, alpha: float, c: float) -> float:
-    lean = alpha - phi
-    return c * (-n * math.sin(lean) - s * a * math.cos(lean))
-
-
-@kernel
+@inlined
 def _step(
-    phi: float, rate: float, a0: float, a1: float, n0: float, n1: float, t: float, h: float,
-    s: float, alpha: float, c: float,
-) -> tuple[float, float]:
-    # One classical Runge-Kutta step from t to t + h.
-    half = 0.5 * h
-    am, nm = a0 + a1 * (t + half), n0 + n1 * (t + half)
-    k1 = _bend(phi, a0 + a1 * t, n0 + n1 * t, s, alpha, c)
-    r2 = rate + half * k1
-    k2 = _bend(phi + half * rate, am, nm, s, alpha, c)
-    r3 = rate + half * k2
-    k3 = _bend(phi + half * r2, am, nm, s, alpha, c)
-    r4 = rate + h * k3
-    k4 = _bend(phi + h * r3, a0 + a1 * (t + h), n0 + n1 * (t + h), s, alpha, c)
-    return phi + h / 6.0 * (rate + 2.0 * (r2 + r3) + r4), rate + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
+    phi: float, rate: float, sn: float, cs: float, a0: float, a1: float, n0: float, n1: float, t: float, h: float,
+    s: float, c: float,
+) -> tuple[float, float, float, float]:
+    # One classical Runge-Kutta step from t to t + h.  sn, cs: sine and cosine of alpha - phi, integrated along with it,
+    # so that a step has no transcendental function in it.
+    half, sixth = 0.5 * h, h / 6.0
+    pa, pn = s * (a0 + a1 * t), n0 + n1 * t
+    ma, mn = s * (a0 + a1 * (t + half)), n0 + n1 * (t + half)
+    qa, qn = s * (a0 + a1 * (t + h)), n0 + n1 * (t + h)
+    k1 = -c * (pn * sn + pa * cs)
+    ds1, dc1 = -rate * cs, rate * sn
+    r2, s2, c2 = rate + half * k1, sn + half * ds1, cs + half * dc1
+    k2 = -c * (mn * s2 + ma * c2)
+    ds2, dc2 = -r2 * c2, r2 * s2
+    r3, s3, c3 = rate + half * k2, sn + half * ds2, cs + half * dc2
+    k3 = -c * (mn * s3 + ma * c3)
+    ds3, dc3 = -r3 * c3, r3 * s3
+    r4, s4, c4 = rate + h * k3, sn + h * ds3, cs + h * dc3
+    k4 = -c * (qn * s4 + qa * c4)
+    sa = sn + sixth * (ds1 + 2.0 * (ds2 + ds3) - r4 * c4)
+    ca = cs + sixth * (dc1 + 2.0 * (dc2 + dc3) + r4 * s4)
+    back = 1.5 - 0.5 * (sa * sa + ca * ca)
+    return (
+        phi + sixth * (rate + 2.0 * (r2 + r3) + r4),
+        rate + sixth * (k1 + 2.0 * (k2 + k3) + k4),
+        sa * back,
+        ca * back,
+    )
 
 
 @kernel
 def _locate(
-    phi: float, rate: float, a0: float, a1: float, n0: float, n1: float, t: float, low: float, high: float,
-    s: float, alpha: float, c: float, what: int, level: float,
+    phi: float, rate: float, sn: float, cs: float, a0: float, a1: float, n0: float, n1: float, t: float,
+    low: float, high: float, s: float, c: float, what: int, level: float,
 ) -> float:
     # The step length between low and high after which phi (what 0) or its rate (what 1) reaches the level: Illinois,
     # each trial being one step from the same beginning.
-    p, r = _step(phi, rate, a0, a1, n0, n1, t, low, s, alpha, c)
+    p, r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, low, s, c)
     at_low = (p if what == 0 else r) - level
-    p, r = _step(phi, rate, a0, a1, n0, n1, t, high, s, alpha, c)
+    p, r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, high, s, c)
     at_high = (p if what == 0 else r) - level
     side = 0
     tau = high
@@ -74,7 +85,7 @@ def _locate(
         tau = (low * at_high - high * at_low) / (at_high - at_low)
         if not low < tau < high:
             tau = 0.5 * (low + high)
-        p, r = _step(phi, rate, a0, a1, n0, n1, t, tau, s, alpha, c)
+        p, r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, tau, s, c)
         value = (p if what == 0 else r) - level
         if value == 0.0 or high - low <= 1e-15 * high:
             return tau
@@ -116,20 +127,18 @@ def _stretch(
     body: Array, out: Array,
 ) -> None:
     # One stretch on which the excitation and the normal force are linear.
-    # state: s, phi, rate.  body: alpha1, alpha2, c1, c2, e12, e21.
-    s, phi, rate = state[0], state[1], state[2]
-    tan1, tan2 = math.tan(body[0]), math.tan(body[1])
-    # The smaller p alpha of the two edges: a mirrored body must count the same impacts.
-    slow = min(math.sqrt(body[2] * G) * body[0], math.sqrt(body[3] * G) * body[1])
+    # state: s, phi, rate, and sine and cosine of alpha - phi.  body: alpha1, alpha2, c1, c2, e12, e21.
+    s, phi, rate, sn, cs = state[0], state[1], state[2], state[3], state[4]
     t = 0.0
     impacts = 0
     for _ in range(10000):
         if s == 0.0:
-            lift, edge = _lift_off(a0, a1, n0, n1, t, span, tan1, tan2)
+            lift, edge = _lift_off(a0, a1, n0, n1, t, span, math.tan(body[0]), math.tan(body[1]))
             if edge == 0.0:
                 break
             t, s = lift, edge
             phi, rate = 0.0, 0.0
+            sn, cs = (math.sin(body[0]), math.cos(body[0])) if s > 0.0 else (math.sin(body[1]), math.cos(body[1]))
             if out[3] < 0.0:
                 out[3] = clock + t
             if t >= span:
@@ -138,45 +147,49 @@ def _stretch(
         if h <= 1e-14 * span:
             break
         alpha, c = (body[0], body[2]) if s > 0.0 else (body[1], body[3])
-        p1, r1 = _step(phi, rate, a0, a1, n0, n1, t, h, s, alpha, c)
+        p1, r1, s1, c1 = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c)
         landed = -1.0
         if phi > 0.0:
             if p1 < 0.0:
-                landed = _locate(phi, rate, a0, a1, n0, n1, t, 0.0, h, s, alpha, c, 0, 0.0)
+                landed = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, 0, 0.0)
             elif rate < 0.0 < r1:
-                dip = _locate(phi, rate, a0, a1, n0, n1, t, 0.0, h, s, alpha, c, 1, 0.0)
-                lowest, _r = _step(phi, rate, a0, a1, n0, n1, t, dip, s, alpha, c)
+                dip = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, 1, 0.0)
+                lowest, _r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, dip, s, c)
                 if lowest < 0.0:
-                    landed = _locate(phi, rate, a0, a1, n0, n1, t, 0.0, dip, s, alpha, c, 0, 0.0)
+                    landed = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, dip, s, c, 0, 0.0)
         elif p1 <= 0.0:
             # A hop that begins and ends within the step: find a time at which the body is up.
             low = 0.5 * h
             landed = 0.0
             for _k in range(50):
-                p, _r = _step(phi, rate, a0, a1, n0, n1, t, low, s, alpha, c)
+                p, _r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, low, s, c)
                 if p > 0.0:
-                    landed = _locate(phi, rate, a0, a1, n0, n1, t, low, h, s, alpha, c, 0, 0.0)
+                    landed = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, low, h, s, c, 0, 0.0)
                     break
                 low *= 0.5
         if landed < 0.0:
             if p1 >= OVERTURNED:
-                tau = _locate(phi, rate, a0, a1, n0, n1, t, 0.0, h, s, alpha, c, 0, OVERTURNED)
+                tau = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, 0, OVERTURNED)
                 out[0] = max(out[0], OVERTURNED / alpha)
                 out[1], out[2] = 1.0, clock + t + tau
                 break
-            _peak(phi, rate, a0, a1, n0, n1, t, h, s, alpha, c, r1, out)
+            if rate > 0.0 > r1:
+                _peak(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, alpha, c, out)
             out[0] = max(out[0], p1 / alpha)
-            phi, rate = p1, r1
+            phi, rate, sn, cs = p1, r1, s1, c1
             break
-        _p, r1 = _step(phi, rate, a0, a1, n0, n1, t, landed, s, alpha, c)
-        _peak(phi, rate, a0, a1, n0, n1, t, landed, s, alpha, c, r1, out)
+        _p, r1, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, landed, s, c)
+        if rate > 0.0 > r1:
+            _peak(phi, rate, sn, cs, a0, a1, n0, n1, t, landed, s, alpha, c, out)
         t += landed
+        # The smaller p alpha of the two edges: a mirrored body must count the same impacts.
+        slow = min(math.sqrt(body[2] * G) * body[0], math.sqrt(body[3] * G) * body[1])
         if abs(r1) >= COUNTED * slow:
             out[4] += 1.0
         rate = max(0.0, -r1) * (body[4] if s > 0.0 else body[5])
         s = -s
         phi = 0.0
-        alpha, c = (body[0], body[2]) if s > 0.0 else (body[1], body[3])
+        sn, cs = (math.sin(body[0]), math.cos(body[0])) if s > 0.0 else (math.sin(body[1]), math.cos(body[1]))
         impacts += 1
         if impacts > IMPACTS_CAP:
             out[5] = float(int(out[5]) | EVENT_CAP)
@@ -184,17 +197,17 @@ def _stretch(
             break
         if rate < REST * slow:
             s, rate = 0.0, 0.0
-    state[0], state[1], state[2] = s, phi, rate
+    state[0], state[1], state[2], state[3], state[4] = s, phi, rate, sn, cs
 
 
 @kernel
 def _peak(
-    phi: float, rate: float, a0: float, a1: float, n0: float, n1: float, t: float, h: float,
-    s: float, alpha: float, c: float, after: float, out: Array,
+    phi: float, rate: float, sn: float, cs: float, a0: float, a1: float, n0: float, n1: float, t: float, h: float,
+    s: float, alpha: float, c: float, out: Array,
 ) -> None:
-    if rate > 0.0 > after and (phi + h * rate) / alpha > out[0]:
-        tau = _locate(phi, rate, a0, a1, n0, n1, t, 0.0, h, s, alpha, c, 1, 0.0)
-        top, _r = _step(phi, rate, a0, a1, n0, n1, t, tau, s, alpha, c)
+    if (phi + h * rate) / alpha > out[0]:
+        tau = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, 1, 0.0)
+        top, _r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, tau, s, c)
         out[0] = max(out[0], top / alpha)
 
 
@@ -217,15 +230,17 @@ def rocking_one(
     out[:] = 0.0
     out[2] = -1.0
     out[3] = -1.0
-    state = np.zeros(3)
+    state = np.zeros(5)
     if initial != 0.0:
         state[0], state[1] = (1.0, initial) if initial > 0.0 else (-1.0, -initial)
+        lean = (body[0] if initial > 0.0 else body[1]) - state[1]
+        state[3], state[4] = math.sin(lean), math.cos(lean)
         out[0] = state[1] / (body[0] if initial > 0.0 else body[1])
         if state[1] >= OVERTURNED:
             out[1], out[2] = 1.0, 0.0
             return
     fastest = math.sqrt(max(body[2], body[3]) * (G + peak))
-    pieces = max(1, int(math.ceil(fastest * dt / 0.1))) * refine
+    pieces = max(1, int(math.ceil(fastest * dt / STEP))) * refine
     step = dt / pieces
     weakest = math.tan(min(body[0], body[1]))
     recording = history.shape[0] > 0
@@ -267,7 +282,7 @@ def rocking_one(
         history[n - 1, 0] = state[0] * state[1]
     # After the record: free rocking until rest or overturning, the end of the tail, or the cap.
     stop = tail if tail >= 0.0 else CAP
-    h = 0.08 / math.sqrt(max(body[2], body[3]) * G) / refine
+    h = 0.8 * STEP / math.sqrt(max(body[2], body[3]) * G) / refine
     t = 0.0
     while state[0] != 0.0 and t < stop:
         now = min(h, stop - t)

@@ -12,6 +12,9 @@ from pipeline.kernels import kernel
 from pipeline.kernels.flags import CUT
 from pipeline.quantities import Array, G
 
+STEP = 0.1
+"""Largest step of the integration, in radians of the fastest pendulum motion."""
+
 CAP = 200.0
 """Seconds after the record at which a pendulum that never turns back is cut off."""
 
@@ -106,7 +109,7 @@ def spherical_one(
     w = math.sqrt(G / length)
     c = 2.0 * zeta * w
     fastest = math.sqrt((G + peak) / length) * (1.0 + 2.0 * zeta)
-    pieces = max(1, int(math.ceil(fastest * dt / 0.05))) * refine
+    pieces = max(1, int(math.ceil(fastest * dt / STEP))) * refine
     step = dt / pieces
     s, after, trial, load, k = np.zeros(6), np.zeros(6), np.zeros(6), np.zeros(6), np.zeros((10, 3))
     s[2] = -1.0
@@ -130,7 +133,7 @@ def spherical_one(
     if n - 1 < history.shape[0]:
         history[n - 1, 0], history[n - 1, 1] = s[0], s[1]
     stop = tail if tail >= 0.0 else CAP
-    h = 0.04 / (w * (1.0 + 2.0 * zeta)) / refine
+    h = 0.8 * STEP / (w * (1.0 + 2.0 * zeta)) / refine
     load[:] = 0.0
     load[4] = G
     t, turns = 0.0, 0

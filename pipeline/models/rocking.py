@@ -101,7 +101,7 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     body = bodies({k: np.array([v]) for k, v in parameters.items()})[0]
     history = np.zeros((motion.x.size, 1))
     rocking_one(
-        quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.dt, quiet.peak, body, parameters["initial_rotation"], 0.0, 2,
+        quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.dt, quiet.peak, body, parameters["initial_rotation"], 0.0, 4,
         np.empty(6), history,
     )
     return {"rotation": history[:, 0]}

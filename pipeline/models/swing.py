@@ -78,7 +78,7 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     history = np.zeros((motion.x.size, 1))
     length, zeta = np.array([parameters["length"]]), np.array([parameters["damping"]])
     x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
-    pendulum_batch(x, z, motion.dt, shaken(motion), length, zeta, 0.0, 2, np.empty((1, 2)), history)
+    pendulum_batch(x, z, motion.dt, shaken(motion), length, zeta, 0.0, 4, np.empty((1, 2)), history)
     return {"rotation": history[:, 0], "u_x": parameters["length"] * np.sin(history[:, 0])}
 
 
@@ -87,7 +87,7 @@ def _trace_3d(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     y = np.zeros_like(motion.x) if motion.y is None else motion.y
     spherical_one(
         np.ascontiguousarray(motion.x), np.ascontiguousarray(y), np.ascontiguousarray(motion.z), motion.dt,
-        shaken(motion), parameters["length"], parameters["damping"], 0.0, 2, history,
+        shaken(motion), parameters["length"], parameters["damping"], 0.0, 4, history,
     )
     return {"u_x": parameters["length"] * history[:, 0], "u_y": parameters["length"] * history[:, 1]}
 
