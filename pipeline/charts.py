@@ -82,7 +82,7 @@ def stability_chart(motion: Motion) -> Chart:
     )
     crossing = (speed / slope) ** 2 if slope > 0.0 else 0.0
     caption = (
-        f"Peak resultant acceleration {slope:.2f} g, peak resultant velocity {100.0 * speed * VELOCITY_SCREEN:.0f} cm/s. "
+        f"Peak resultant acceleration {slope:.2f} g, velocity {100.0 * speed * VELOCITY_SCREEN:.0f} cm/s. "
         "H' is twice the height of the centre of gravity. "
         f"Below H' = {100.0 * crossing:.0f} cm there is no band in which an object rocks without overturning. "
         "The lines are the paper's closed-form criteria; the verdict comes from the time history."
@@ -164,7 +164,7 @@ def isolator_chart(motion: Motion) -> Chart:
     return Chart(
         chart_key("isolator", motion),
         "Horizontal isolator",
-        "Peak horizontal acceleration passed on to the object, with 2 % viscous damping and four friction coefficients.",
+        "Peak horizontal acceleration passed on, with 2 % viscous damping and four friction coefficients.",
         Axis("Isolator frequency", "Hz", "log"),
         Axis("Peak acceleration", "m/s2"),
         tuple(_curve(f"friction {m:.2f}", ISOLATOR_FREQUENCIES, peaks[:, i]) for i, m in enumerate(ISOLATOR_FRICTIONS)),
@@ -183,11 +183,9 @@ def spectrum_chart(motion: Motion) -> Chart:
     return Chart(
         chart_key("spectrum", motion),
         "Acceleration felt by a flexible object",
-        "Pseudo-acceleration of an oscillator on the floor; a rigid object (33 Hz and more) feels the peak acceleration.",
+        "Pseudo-acceleration of an oscillator; a rigid object (33 Hz and more) feels the peak acceleration.",
         Axis("Natural frequency", "Hz", "log"),
         Axis("Pseudo-acceleration", "m/s2"),
         tuple(curves),
         source="Agbabian et al. 1991, sec. 2.5; Nigam and Jennings 1969",
     )
-
-

@@ -1,7 +1,7 @@
 """Item -> Scene: which generic class an object belongs to, and every number its models need, with its origin.
 
-The rules are rows of tables/rules.csv, read from the top; the first whose conditions all hold decides.  Numbers that the
-museum did not record come from the row of the class (tables/classes.csv) and the material (tables/materials.csv) as
+The rules are rows of tables/rules.csv, read from the top; the first whose conditions all hold decides.  Numbers that
+the museum did not record come from the row of the class (tables/classes.csv) and the material (tables/materials.csv) as
 value, low and high, and are named as assumed.
 """
 
@@ -77,7 +77,9 @@ def rules() -> tuple[Rule, ...]:
     known = {r["class"] for r in table("classes")}
     for row in table("rules"):
         if row["class"] not in known:
-            raise TableError(f"rules.csv: rule {row['rule']!r} names class {row['class']!r}, which classes.csv does not have")
+            raise TableError(
+                f"rules.csv: rule {row['rule']!r} names class {row['class']!r}, which classes.csv does not have"
+            )
         words = [w.strip().lower() for w in row["words"].split("|") if w.strip()]
         medium = [re.escape(m.strip()) for m in row["medium"].split("|") if m.strip()]
         out.append(
@@ -230,7 +232,9 @@ class _Builder:
                 self.missing.append(lost)
                 return None, None
             note = f"{lost} not recorded: taken as round. {known.note}".strip()
-            other = _assumed(known.value, known.low, known.high, "m", note, known.source or f"classes.csv, {row['class']}")
+            other = _assumed(
+                known.value, known.low, known.high, "m", note, known.source or f"classes.csv, {row['class']}"
+            )
             return (width, other) if depth is None else (other, depth)
         return width, depth
 
@@ -250,7 +254,8 @@ class _Builder:
         clearance = _measured(self.item.clearance_m, "m")
         if clearance is None and row["clearance"]:
             span = spread(row, "clearance", "clearance_low", "clearance_high", f"classes.csv, {row['class']}")
-            note = f"clearance to neighbour, wall or edge: {100 * span.value:g} cm ({100 * span.low:g} to {100 * span.high:g})"
+            low, value, high = (100.0 * v for v in (span.low, span.value, span.high))
+            note = f"clearance to neighbour, wall or edge: {value:g} cm ({low:g} to {high:g})"
             note += f", assumed for: {row['title'].lower()}"
             clearance = _assumed(span.value, span.low, span.high, "m", note, f"classes.csv, {row['class']}")
         self._keep("clearance", clearance)
@@ -269,10 +274,15 @@ class _Builder:
             fill = spread(row, "fill", "fill_low", "fill_high", f"classes.csv, {row['class']}")
             where = f"materials.csv, {self.material['material']}"
             density = spread(self.material, "density", "density_low", "density_high", where)
-            note = f"mass: {self.material['material']} of {density.value:g} kg/m3 filling {fill.value:g} of its outline, assumed"
+            of = f"{self.material['material']} of {density.value:g} kg/m3"
+            note = f"mass: {of} filling {fill.value:g} of its outline, assumed"
             mass = _assumed(
-                box * fill.value * density.value, box * fill.low * density.low, box * fill.high * density.high,
-                "kg", note, where,
+                box * fill.value * density.value,
+                box * fill.low * density.low,
+                box * fill.high * density.high,
+                "kg",
+                note,
+                where,
             )
         self._keep("object_mass", mass)
 
@@ -283,8 +293,11 @@ class _Builder:
         allowable = _measured(item.allowable_stress_pa, "Pa")
         if allowable is None:
             span = spread(self.material, "tensile", "tensile_low", "tensile_high", where)
-            note = f"allowable stress: {self.material['material']}, {span.value / 1e6:g} ({span.low / 1e6:g} to {span.high / 1e6:g}) MPa"
-            note += ", condition factor 1 (not recorded)" if item.condition is None else f", condition factor {condition:g}"
+            low, value, high = (v / 1e6 for v in (span.low, span.value, span.high))
+            note = f"allowable stress: {self.material['material']}, {value:g} ({low:g} to {high:g}) MPa"
+            note += (
+                ", condition factor 1 (not recorded)" if item.condition is None else f", condition factor {condition:g}"
+            )
             allowable = _assumed(
                 span.value * condition, span.low * condition, span.high * condition, "Pa", note, span.source or where
             )
@@ -297,14 +310,22 @@ class _Builder:
         self._keep("mass", mass)
         height = item.section_height_m or 0.0
         lever = max(cg.value - height, 0.0)
-        note = "lever: from the base to the centre of gravity" if not height else "lever: from the section to the centre of gravity"
-        self._keep("lever", Estimate(lever, "m", Origin.DERIVED, max(cg.low - height, 0.0), max(cg.high - height, 0.0), note))
+        note = (
+            "lever: from the base to the centre of gravity"
+            if not height
+            else "lever: from the section to the centre of gravity"
+        )
+        self._keep(
+            "lever", Estimate(lever, "m", Origin.DERIVED, max(cg.low - height, 0.0), max(cg.high - height, 0.0), note)
+        )
         area, modulus = section_properties(shape, size.value, deep.value, count, wall)
         # Area and modulus vary together: the range of the section is carried by the modulus, which bending feels.
         _, modulus_low = section_properties(shape, size.low, deep.low, count, wall)
         _, modulus_high = section_properties(shape, size.high, deep.high, count, wall)
         self._keep("area", Estimate(area, "m2", size.origin, area, area, base, size.source))
-        self._keep("section_modulus", Estimate(modulus, "m3", size.origin, modulus_low, modulus_high, base, size.source))
+        self._keep(
+            "section_modulus", Estimate(modulus, "m3", size.origin, modulus_low, modulus_high, base, size.source)
+        )
 
     def _section_size(
         self, width: Estimate | None, depth: Estimate | None
@@ -323,7 +344,9 @@ class _Builder:
         across = min(item.width_m or item.depth_m or narrow.value, item.depth_m or item.width_m or narrow.value)
         base = narrow.value if kind in ("foot", "legs", "ring") else across
         of = "narrower base side" if kind in ("foot", "legs", "ring") else "narrower side"
-        size = _times(row, "section", base, "m", {"ring": "wall of its foot"}.get(kind, f"critical section ({kind})"), of)
+        size = _times(
+            row, "section", base, "m", {"ring": "wall of its foot"}.get(kind, f"critical section ({kind})"), of
+        )
         shapes = {"stem": ("round", 1), "ankles": ("round", 2), "foot": ("rectangle", 1), "legs": ("rectangle", 4)}
         if kind == "ring":
             # The size is the wall; the ring's outside is the base.
@@ -379,8 +402,14 @@ def classify(item: Item) -> Scene:
         assumptions.insert(0, f"support: {support.value}, assumed for: {row['title'].lower()}; not recorded")
     missing = builder.missing if needs_size(models) else []
     return Scene(
-        item, row["class"], rule_words, support, models, builder.found,
-        tuple(dict.fromkeys(assumptions)), tuple(missing),
+        item,
+        row["class"],
+        rule_words,
+        support,
+        models,
+        builder.found,
+        tuple(dict.fromkeys(assumptions)),
+        tuple(missing),
     )
 
 
@@ -392,7 +421,9 @@ def _unheld(item: Item, support: Support) -> list[str]:
     times = item.height_m / min(plan)
     if times <= THIN:
         return []
-    return [f"support (it is {times:.0f} times as high as it is deep: it cannot stand by itself, or a measure is wrong)"]
+    return [
+        f"support (it is {times:.0f} times as high as it is deep: it cannot stand by itself, or a measure is wrong)"
+    ]
 
 
 MODELS_OF: Mapping[Support, tuple[str, ...]] = {

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.models import MODELS
 from pipeline.quantities import Array
@@ -89,7 +90,7 @@ def _gather(model: Model, scenes: Sequence[Scene], chosen: Sequence[int]) -> Wor
     )
 
 
-def _unique_rows(matrix: Array) -> tuple[Array, Array]:
+def _unique_rows(matrix: Array) -> tuple[Array, NDArray[np.intp]]:
     # Bit for bit, so that NaN (not given) equals NaN.
     bits = np.ascontiguousarray(matrix).view(np.uint64)
     _, first, inverse = np.unique(bits, axis=0, return_index=True, return_inverse=True)

@@ -22,7 +22,7 @@ MASSES = {"kg": 1.0, "g": 0.001, "lb": 0.45359237, "oz": 0.028349523125}
 class Quantity:
     """A named number with its unit and the hard limits outside of which it means nothing.
 
-    ``optional`` quantities may be left out; ``default`` is then used, or, where it is None, the model derives the value.
+    ``optional`` quantities may be left out; ``default`` is then used, or, where it is None, the model derives it.
     ``exclusive`` says that the lower limit itself is not allowed (a length is above zero, a damping may be zero).
     """
 

@@ -14,9 +14,6 @@ from numpy.typing import ArrayLike
 
 from pipeline.quantities import Array, Quantity
 
-# ---------------------------------------------------------------------------------------------------------------------
-# Motions
-
 
 @dataclass(frozen=True, eq=False)
 class Motion:
@@ -87,10 +84,6 @@ class Motion:
         """Return the motion with all three components multiplied by one factor, and the step recorded."""
         step = f"scaled by {factor:.6g} ({why})"
         return Motion(self.dt, factor * self.acceleration, self.name, (*self.steps, step), self.source)
-
-
-# ---------------------------------------------------------------------------------------------------------------------
-# Items: one object record as it crosses the border (contract "An object record")
 
 
 class Support(StrEnum):
@@ -174,10 +167,6 @@ class Item:
 ITEM_FIELDS = tuple(f.name for f in fields(Item))
 
 
-# ---------------------------------------------------------------------------------------------------------------------
-# Scenes: an item, how it is held, and every number its models need
-
-
 @dataclass(frozen=True, slots=True)
 class Estimate:
     """A number with its range and where it comes from.
@@ -218,10 +207,6 @@ class Scene:
     assumptions: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
     skipped: Mapping[str, str] = field(default_factory=dict)
-
-
-# ---------------------------------------------------------------------------------------------------------------------
-# Charts: pictures as data; the report draws any of them without knowing what they show
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,10 +264,6 @@ class Mark:
     x: float
     y: float
     label: str = ""
-
-
-# ---------------------------------------------------------------------------------------------------------------------
-# Findings and recommendations
 
 
 class Verdict(StrEnum):
@@ -369,10 +350,6 @@ class Recommendation:
     source: str = ""
 
 
-# ---------------------------------------------------------------------------------------------------------------------
-# Generic models
-
-
 @dataclass(frozen=True, slots=True)
 class Excitation:
     """What a one-direction or two-direction model is shaken by.
@@ -451,10 +428,6 @@ class Model:
         return next(q for q in self.gives if q.name == name)
 
 
-# ---------------------------------------------------------------------------------------------------------------------
-# What the report reads back from the store
-
-
 @dataclass(frozen=True, slots=True)
 class MotionSummary:
     """A motion as the report shows it: measures in SI, processing steps, and thinned series for its picture."""
@@ -504,9 +477,6 @@ class RunRecord:
     motions: tuple[MotionSummary, ...]
     demonstration: bool = False
 
-
-# ---------------------------------------------------------------------------------------------------------------------
-# Protocols: what lower floors are handed by the jobs
 
 Task = TypeVar("Task")
 Answer = TypeVar("Answer")

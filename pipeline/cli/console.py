@@ -65,8 +65,11 @@ def summary_lines(summary: "Summary") -> list[str]:
     lines = [
         f"{summary.museum or 'Collection'} under {summary.site}",
         "",
-        count(summary.objects, f"objects: {summary.on_display:,} on display in {summary.galleries} galleries, "
-              f"{summary.objects - summary.on_display:,} not on display"),
+        count(
+            summary.objects,
+            f"objects: {summary.on_display:,} on display in {summary.galleries} galleries, "
+            f"{summary.objects - summary.on_display:,} not on display",
+        ),
         count(summary.assessed, f"assessed ({summary.findings:,} findings), of which"),
         count(summary.act, "  need action: something fails"),
         count(summary.open, "  are open: a measure would settle it"),
@@ -83,9 +86,12 @@ def summary_lines(summary: "Summary") -> list[str]:
         lines += ["", "  First:", *(f"    {text}" for text in summary.first)]
     if summary.changes is not None:
         changes = summary.changes
-        lines += ["", f"  Since the last run: {len(changes.added)} objects new, {len(changes.removed)} gone, "
-                  f"{len(changes.inputs)} changed, {len(changes.verdicts)} verdicts changed, "
-                  f"{len(changes.motions)} motions changed"]
+        lines += [
+            "",
+            f"  Since the last run: {len(changes.added)} objects new, {len(changes.removed)} gone, "
+            f"{len(changes.inputs)} changed, {len(changes.verdicts)} verdicts changed, "
+            f"{len(changes.motions)} motions changed",
+        ]
     if summary.report is not None:
         lines += ["", f"Report: {summary.report}"]
     return lines

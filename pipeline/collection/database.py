@@ -6,6 +6,9 @@ from typing import Any
 from sqlalchemy import Engine, MetaData, create_engine, event
 from sqlalchemy.engine import URL, make_url
 
+Database = Engine
+"""An open database, for those floors that hand it on without speaking SQL."""
+
 METADATA = MetaData(
     # Named constraints: a migration can drop what it can name.
     naming_convention={

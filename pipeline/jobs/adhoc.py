@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from pipeline.jobs.workspace import UsageError
 from pipeline.resources import resource
@@ -26,7 +26,7 @@ def respond_on_site(
     from pipeline.motions.site import read_motion
     from pipeline.response import respond
 
-    given = dict(_parsed(word) for word in parameters)
+    given: dict[str, Any] = dict(_parsed(word) for word in parameters)
     direction = None if angle == "worst" else _number("angle", angle)
     folder = resource("site_motions", "demo") if site == "demo" else Path(site)
     tables = []

@@ -10,7 +10,6 @@ from pipeline.jobs.workspace import Workspace
 from pipeline.records import Item, Problem
 
 
-
 @dataclass(frozen=True)
 class Imported:
     """What an import read, and what it changed (None for a dry run)."""

@@ -71,7 +71,9 @@ class Summary:
     changes: "RunChanges | None" = field(default=None, repr=False)
 
 
-def run(settings: Settings, progress: Progress, selection: Selection | None = None, *, dry_run: bool = False) -> Summary:
+def run(
+    settings: Settings, progress: Progress, selection: Selection | None = None, *, dry_run: bool = False
+) -> Summary:
     """Assess the collection and publish the report; the last report stays until this one is whole.
 
     dry_run : assess and summarise, but store and publish nothing
@@ -213,7 +215,9 @@ def _level_note(level: Any) -> str:
         else "no engineer has approved these motions"
     )
     number = len(level.motions)
-    return f"Level {level.name}{period}: {number} motion{'s' if number != 1 else ''}, {level.combine} of them; {answers}."
+    return (
+        f"Level {level.name}{period}: {number} motion{'s' if number != 1 else ''}, {level.combine} of them; {answers}."
+    )
 
 
 def summarise(record: RunRecord) -> Summary:
@@ -261,7 +265,9 @@ def _first(record: RunRecord, most: int = 5) -> list[str]:
         worst = [f for f in assessment.findings if f.verdict is Verdict.FAIL]
         if worst and assessment.scene.item.on_display:
             finding = max(worst, key=lambda f: (f.outcome in ("overturns", "breaks"), f.utilisation or 0.0))
-            failing.append((finding.outcome in ("overturns", "breaks"), finding.utilisation or 0.0, assessment, finding))
+            failing.append(
+                (finding.outcome in ("overturns", "breaks"), finding.utilisation or 0.0, assessment, finding)
+            )
     failing.sort(key=lambda entry: (-entry[0], -entry[1], entry[2].scene.item.object_number))
     return [
         f"{a.scene.item.object_number}  {a.scene.item.title[:48]}  ({a.scene.item.gallery}): {f.outcome}"

@@ -4,15 +4,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from pipeline.collection.database import open_database
+from pipeline.collection.database import Database, open_database
 from pipeline.resources import resource
 from pipeline.settings import Settings
 from pipeline.store import migrate
-
-if TYPE_CHECKING:
-    from sqlalchemy import Engine
 
 
 class LockedError(RuntimeError):
@@ -32,7 +28,7 @@ class Workspace:
     """Open settings: the database is at the newest schema, the folders are known."""
 
     settings: Settings
-    engine: "Engine"
+    engine: Database
 
     @property
     def reports(self) -> Path:

@@ -27,7 +27,10 @@ def _cache_folder(version: str) -> Path:
     # numba serves an edited kernel stale when a cached driver imports it, so every state of the sources gets its own
     # folder.
     home = os.environ.get("KOUROS_CACHE") or os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    for base in (Path(home) / "kouros", Path(tempfile.gettempdir()) / f"kouros-{os.getuid() if os.name == 'posix' else 0}"):
+    for base in (
+        Path(home) / "kouros",
+        Path(tempfile.gettempdir()) / f"kouros-{os.getuid() if os.name == 'posix' else 0}",
+    ):
         folder = base / f"kernels-{version}"
         try:
             folder.mkdir(parents=True, exist_ok=True, mode=0o700)

@@ -20,7 +20,6 @@ CAP = 200.0
 """Seconds after the record at which a body that still moves is cut off."""
 
 
-
 @kernel
 def _first_beyond(q0: float, q1: float, l0: float, l1: float, span: float) -> float:
     # First time in [0, span] at which |q0 + q1 t| > l0 + l1 t, given that it is not so at 0; -1 if never.
@@ -36,7 +35,7 @@ def _first_beyond(q0: float, q1: float, l0: float, l1: float, span: float) -> fl
 
 @kernel
 def _velocity(u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: float) -> float:
-    g, h, h1, h2 = transition(w, zeta, t)
+    g, h, h1, _ = transition(w, zeta, t)
     return -u * w * w * h + v * (g - 2.0 * zeta * w * h) + f0 * h + f1 * h1
 
 
@@ -50,7 +49,7 @@ def _acceleration(u: float, v: float, f0: float, f1: float, w: float, zeta: floa
 def _root(
     u: float, v: float, f0: float, f1: float, w: float, zeta: float, order: int, low: float, high: float
 ) -> float:
-    # The zero of the velocity (order 1) or acceleration (order 2) bracketed by low and high: Illinois, to the last bits.
+    # The zero of the velocity (order 1) or acceleration (order 2) bracketed by low and high: Illinois.
     if order == 1:
         a, b = _velocity(u, v, f0, f1, w, zeta, low), _velocity(u, v, f0, f1, w, zeta, high)
     else:
@@ -106,8 +105,19 @@ def _first_stop(u: float, v: float, s: float, f0: float, f1: float, w: float, ze
 
 @kernel
 def _piece(
-    u: float, v: float, s: float, a0: float, a1: float, n0: float, n1: float, span: float,
-    w: float, zeta: float, mu_s: float, mu_k: float, out: Array,
+    u: float,
+    v: float,
+    s: float,
+    a0: float,
+    a1: float,
+    n0: float,
+    n1: float,
+    span: float,
+    w: float,
+    zeta: float,
+    mu_s: float,
+    mu_k: float,
+    out: Array,
 ) -> tuple[float, float, float]:
     # One stretch on which excitation a0 + a1 t and normal force n0 + n1 t >= 0 are linear.
     # s: 0 at rest, else the direction of slip.  out: [max |u|, path, max transmitted, flags].
@@ -166,8 +176,20 @@ def _piece(
 
 @kernel
 def _split(
-    u: float, v: float, s: float, a0: float, a1: float, z0: float, z1: float, span: float, pieces: int,
-    w: float, zeta: float, mu_s: float, mu_k: float, out: Array,
+    u: float,
+    v: float,
+    s: float,
+    a0: float,
+    a1: float,
+    z0: float,
+    z1: float,
+    span: float,
+    pieces: int,
+    w: float,
+    zeta: float,
+    mu_s: float,
+    mu_k: float,
+    out: Array,
 ) -> tuple[float, float, float]:
     # A stretch on which excitation and vertical acceleration are linear: cut where contact ends or begins.
     n0, n1 = G + z0, z1
@@ -182,8 +204,19 @@ def _split(
         t0, t1 = j * step, (j + 1) * step
         if t0 < cross < t1:
             u, v, s = _piece(
-                u, v, s, a0 + a1 * t0, a1, max(0.0, n0 + n1 * t0), n1 if n0 > 0.0 else 0.0, cross - t0,
-                w, zeta, mu_s, mu_k, out,
+                u,
+                v,
+                s,
+                a0 + a1 * t0,
+                a1,
+                max(0.0, n0 + n1 * t0),
+                n1 if n0 > 0.0 else 0.0,
+                cross - t0,
+                w,
+                zeta,
+                mu_s,
+                mu_k,
+                out,
             )
             u, v, s = _piece(
                 u, v, s, a0 + a1 * cross, a1, 0.0, n1 if n0 < 0.0 else 0.0, t1 - cross, w, zeta, mu_s, mu_k, out
@@ -191,16 +224,39 @@ def _split(
         else:
             held = max(n0 + n1 * t0, n0 + n1 * t1) > 0.0
             u, v, s = _piece(
-                u, v, s, a0 + a1 * t0, a1, max(0.0, n0 + n1 * t0), n1 if held else 0.0, step,
-                w, zeta, mu_s, mu_k, out,
+                u,
+                v,
+                s,
+                a0 + a1 * t0,
+                a1,
+                max(0.0, n0 + n1 * t0),
+                n1 if held else 0.0,
+                step,
+                w,
+                zeta,
+                mu_s,
+                mu_k,
+                out,
             )
     return u, v, s
 
 
 @kernel
 def friction_line_one(
-    x: Array, z: Array, ratio: Array, maxima: Array, pushes: Array, dt: float, w: float, zeta: float,
-    mu_s: float, mu_k: float, tail: float, refine: int, out: Array, history: Array,
+    x: Array,
+    z: Array,
+    ratio: Array,
+    maxima: Array,
+    pushes: Array,
+    dt: float,
+    w: float,
+    zeta: float,
+    mu_s: float,
+    mu_k: float,
+    tail: float,
+    refine: int,
+    out: Array,
+    history: Array,
 ) -> float:
     """Integrate one body and return its residual displacement |u| [m].
 
@@ -213,7 +269,7 @@ def friction_line_one(
     out[:] = 0.0
     if n < 2:
         return 0.0
-    pieces = max(1, int(math.ceil(w * dt * (1.0 + zeta) / 0.5))) * (refine if w > 0.0 else 1)
+    pieces = max(1, math.ceil(w * dt * (1.0 + zeta) / 0.5)) * (refine if w > 0.0 else 1)
     u, v, s = 0.0, 0.0, 0.0
     recording = history.shape[0] > 0
     i = 0
@@ -230,8 +286,20 @@ def friction_line_one(
             history[i, 0] = u
             history[i, 1] = x[i] if s == 0.0 else -(2.0 * zeta * w * v + w * w * u + s * mu_k * max(0.0, G + z[i]))
         u, v, s = _split(
-            u, v, s, x[i], (x[i + 1] - x[i]) / dt, z[i], (z[i + 1] - z[i]) / dt, dt, pieces,
-            w, zeta, mu_s, mu_k, out,
+            u,
+            v,
+            s,
+            x[i],
+            (x[i + 1] - x[i]) / dt,
+            z[i],
+            (z[i + 1] - z[i]) / dt,
+            dt,
+            pieces,
+            w,
+            zeta,
+            mu_s,
+            mu_k,
+            out,
         )
         i += 1
     if n - 1 < history.shape[0]:
@@ -257,10 +325,7 @@ def _coast(
     stop = tail if tail > 0.0 else CAP
     t = 0.0
     while t < stop:
-        if w == 0.0:
-            span = stop - t
-        else:
-            span = min(stop - t, 0.5 / (w * (1.0 + zeta)))
+        span = stop - t if w == 0.0 else min(stop - t, 0.5 / (w * (1.0 + zeta)))
         u, v, s = _piece(u, v, s, 0.0, 0.0, G, 0.0, span, w, zeta, mu_s, mu_k, out)
         t += span
         if s == 0.0:
@@ -274,8 +339,19 @@ def _coast(
 
 @kernel
 def friction_line_batch(
-    x: Array, z: Array, ratio: Array, maxima: Array, pushes: Array, dt: float, w: Array, zeta: Array,
-    mu_s: Array, mu_k: Array, tail: float, refine: int, results: Array,
+    x: Array,
+    z: Array,
+    ratio: Array,
+    maxima: Array,
+    pushes: Array,
+    dt: float,
+    w: Array,
+    zeta: Array,
+    mu_s: Array,
+    mu_k: Array,
+    tail: float,
+    refine: int,
+    results: Array,
 ) -> None:
     """Fill results (m, 5): max |u|, residual, path [m], max transmitted acceleration [m/s2], flags."""
     nothing = np.empty((0, 2))
@@ -284,4 +360,10 @@ def friction_line_batch(
         residual = friction_line_one(
             x, z, ratio, maxima, pushes, dt, w[k], zeta[k], mu_s[k], mu_k[k], tail, refine, out, nothing
         )
-        results[k, 0], results[k, 1], results[k, 2], results[k, 3], results[k, 4] = out[0], residual, out[1], out[2], out[3]
+        results[k, 0], results[k, 1], results[k, 2], results[k, 3], results[k, 4] = (
+            out[0],
+            residual,
+            out[1],
+            out[2],
+            out[3],
+        )

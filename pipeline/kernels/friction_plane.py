@@ -2,9 +2,9 @@
 
 u'' + 2 zeta w u' + w^2 u + mu_k N u'/|u'| = -a, N = max(0, g + a_z); at rest while |a + w^2 u| <= mu_s N.
 
-The direction of friction turns infinitely fast where the speed vanishes.  Onset and stop are therefore stepped over with
-their own expansions; in between, an embedded Runge-Kutta pair (Dormand and Prince 1980) follows the path, one sample
-interval at a time because the excitation has a kink at every sample.
+The direction of friction turns infinitely fast where the speed vanishes.  Onset and stop are therefore stepped over
+with their own expansions; in between, an embedded Runge-Kutta pair (Dormand and Prince 1980) follows the path, one
+sample interval at a time because the excitation has a kink at every sample.
 """
 
 import math
@@ -14,6 +14,7 @@ import numpy as np
 from pipeline.kernels import kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
 from pipeline.kernels.friction_line import CAP
+from pipeline.kernels.plane_step import plane_rates, plane_step
 from pipeline.kernels.quiet import largest, next_above
 from pipeline.quantities import Array, G
 
@@ -21,93 +22,6 @@ START = 1e-5
 """Speed, as a share of the scale of speeds, up to which the expansion at slip onset is used."""
 STOP = 1e-5
 """Speed, as a share of the scale of speeds, below which a decelerating body is brought to rest in closed form."""
-
-
-@kernel
-def _rates(
-    ux: float, uy: float, vx: float, vy: float, ax: float, ay: float, grip: float, b: float, c: float
-) -> tuple[float, float, float]:
-    speed = math.hypot(vx, vy)
-    drag = c + (grip / speed if speed > 0.0 else 0.0)
-    return -ax - drag * vx - b * ux, -ay - drag * vy - b * uy, speed
-
-
-@kernel
-def _step(
-    state: Array, load: Array, t: float, h: float, b: float, c: float, after: Array
-) -> float:
-    # One Dormand-Prince step of (ux, uy, vx, vy, path) from t to t + h.  load: ax0, ax1, ay0, ay1, grip0, grip1.
-    # Returns the error of the velocity [m/s]; the error of the displacement is smaller by the step.
-    ux, uy, vx, vy, path = state[0], state[1], state[2], state[3], state[4]
-
-    s = t
-    kx1, ky1, p1 = _rates(
-        ux, uy, vx, vy, load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c
-    )
-    s = t + h / 5.0
-    x2, y2 = vx + h * kx1 / 5.0, vy + h * ky1 / 5.0
-    kx2, ky2, _p2 = _rates(
-        ux + h * vx / 5.0, uy + h * vy / 5.0, x2, y2,
-        load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c,
-    )
-    s = t + 0.3 * h
-    x3 = vx + h * (3.0 / 40.0 * kx1 + 9.0 / 40.0 * kx2)
-    y3 = vy + h * (3.0 / 40.0 * ky1 + 9.0 / 40.0 * ky2)
-    kx3, ky3, p3 = _rates(
-        ux + h * (3.0 / 40.0 * vx + 9.0 / 40.0 * x2), uy + h * (3.0 / 40.0 * vy + 9.0 / 40.0 * y2), x3, y3,
-        load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c,
-    )
-    s = t + 0.8 * h
-    x4 = vx + h * (44.0 / 45.0 * kx1 - 56.0 / 15.0 * kx2 + 32.0 / 9.0 * kx3)
-    y4 = vy + h * (44.0 / 45.0 * ky1 - 56.0 / 15.0 * ky2 + 32.0 / 9.0 * ky3)
-    kx4, ky4, p4 = _rates(
-        ux + h * (44.0 / 45.0 * vx - 56.0 / 15.0 * x2 + 32.0 / 9.0 * x3),
-        uy + h * (44.0 / 45.0 * vy - 56.0 / 15.0 * y2 + 32.0 / 9.0 * y3), x4, y4,
-        load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c,
-    )
-    s = t + 8.0 / 9.0 * h
-    x5 = vx + h * (19372.0 / 6561.0 * kx1 - 25360.0 / 2187.0 * kx2 + 64448.0 / 6561.0 * kx3 - 212.0 / 729.0 * kx4)
-    y5 = vy + h * (19372.0 / 6561.0 * ky1 - 25360.0 / 2187.0 * ky2 + 64448.0 / 6561.0 * ky3 - 212.0 / 729.0 * ky4)
-    kx5, ky5, p5 = _rates(
-        ux + h * (19372.0 / 6561.0 * vx - 25360.0 / 2187.0 * x2 + 64448.0 / 6561.0 * x3 - 212.0 / 729.0 * x4),
-        uy + h * (19372.0 / 6561.0 * vy - 25360.0 / 2187.0 * y2 + 64448.0 / 6561.0 * y3 - 212.0 / 729.0 * y4), x5, y5,
-        load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c,
-    )
-    s = t + h
-    x6 = vx + h * (
-        9017.0 / 3168.0 * kx1 - 355.0 / 33.0 * kx2 + 46732.0 / 5247.0 * kx3 + 49.0 / 176.0 * kx4
-        - 5103.0 / 18656.0 * kx5
-    )
-    y6 = vy + h * (
-        9017.0 / 3168.0 * ky1 - 355.0 / 33.0 * ky2 + 46732.0 / 5247.0 * ky3 + 49.0 / 176.0 * ky4
-        - 5103.0 / 18656.0 * ky5
-    )
-    kx6, ky6, p6 = _rates(
-        ux + h * (
-            9017.0 / 3168.0 * vx - 355.0 / 33.0 * x2 + 46732.0 / 5247.0 * x3 + 49.0 / 176.0 * x4
-            - 5103.0 / 18656.0 * x5
-        ),
-        uy + h * (
-            9017.0 / 3168.0 * vy - 355.0 / 33.0 * y2 + 46732.0 / 5247.0 * y3 + 49.0 / 176.0 * y4
-            - 5103.0 / 18656.0 * y5
-        ), x6, y6,
-        load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c,
-    )
-    b1, b3, b4, b5, b6 = 35.0 / 384.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0
-    x7 = vx + h * (b1 * kx1 + b3 * kx3 + b4 * kx4 + b5 * kx5 + b6 * kx6)
-    y7 = vy + h * (b1 * ky1 + b3 * ky3 + b4 * ky4 + b5 * ky5 + b6 * ky6)
-    ux7 = ux + h * (b1 * vx + b3 * x3 + b4 * x4 + b5 * x5 + b6 * x6)
-    uy7 = uy + h * (b1 * vy + b3 * y3 + b4 * y4 + b5 * y5 + b6 * y6)
-    kx7, ky7, _p7 = _rates(
-        ux7, uy7, x7, y7, load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, b, c
-    )
-    after[0], after[1], after[2], after[3] = ux7, uy7, x7, y7
-    after[4] = path + h * (b1 * p1 + b3 * p3 + b4 * p4 + b5 * p5 + b6 * p6)
-    e1, e3, e4 = 71.0 / 57600.0, -71.0 / 16695.0, 71.0 / 1920.0
-    e5, e6, e7 = -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0
-    ex = e1 * kx1 + e3 * kx3 + e4 * kx4 + e5 * kx5 + e6 * kx6 + e7 * kx7
-    ey = e1 * ky1 + e3 * ky3 + e4 * ky4 + e5 * ky5 + e6 * ky6 + e7 * ky7
-    return h * math.hypot(ex, ey)
 
 
 @kernel
@@ -126,7 +40,7 @@ def _felt_rate(state: Array, ax: float, ay: float, grip: float, grip1: float, b:
     speed = math.hypot(vx, vy)
     if speed == 0.0:
         return 0.0
-    qx, qy, _ = _rates(ux, uy, vx, vy, ax, ay, grip, b, c)
+    qx, qy, _ = plane_rates(ux, uy, vx, vy, ax, ay, grip, b, c)
     ex, ey = vx / speed, vy / speed
     along = ex * qx + ey * qy
     yx, yy = c * vx + b * ux + grip * ex, c * vy + b * uy + grip * ey
@@ -149,7 +63,7 @@ def _peaks(
         low, high, at_low, at_high = 0.0, h, begin, end
         for k in range(24):
             tau = (low * at_high - high * at_low) / (at_high - at_low) if k % 3 < 2 else 0.5 * (low + high)
-            _step(state, load, t, tau, b, c, trial)
+            plane_step(state, load, t, tau, b, c, trial)
             value = trial[0] * trial[2] + trial[1] * trial[3]
             if value > 0.0:
                 low, at_low = tau, value
@@ -169,7 +83,7 @@ def _peaks(
             low, high, at_low, at_high = 0.0, h, begin, end
             for k in range(24):
                 tau = (low * at_high - high * at_low) / (at_high - at_low) if k % 3 < 2 else 0.5 * (low + high)
-                _step(state, load, t, tau, b, c, trial)
+                plane_step(state, load, t, tau, b, c, trial)
                 s = t + tau
                 value = _felt_rate(
                     trial, load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, load[5], b, c
@@ -195,15 +109,13 @@ def _onset(qx: float, qy: float, q1x: float, q1y: float, l0: float, l1: float, s
     # a t^2 + 2 half t + c = 0 with c <= 0: the root that is not negative, without cancellation.
     root = math.sqrt(max(0.0, half * half - a * c))
     if half >= 0.0:
-        t = -c / (half + root) if half + root > 0.0 else 0.0
-    else:
-        t = (root - half) / a if a > 0.0 else 0.0
-    return min(span, max(0.0, t))
+        return min(span, -c / (half + root)) if half + root > 0.0 else 0.0
+    return min(span, max(0.0, (root - half) / a)) if a > 0.0 else 0.0
 
 
 @kernel
 def _start(
-    state: Array, load: Array, t: float, left: float, qx: float, qy: float, scale: float, b: float, c: float
+    state: Array, load: Array, t: float, left: float, qx: float, qy: float, scale: float, c: float
 ) -> float:
     # Slip from rest along the expansion v = (e t + j t^2 / 2) d, d = d0 + d1 t, up to START times the scale of speeds.
     # Returns the time used.
@@ -248,8 +160,20 @@ def _start(
 
 @kernel
 def _piece(
-    state: Array, after: Array, trial: Array, load: Array, span: float, slipping: bool, guess: float,
-    b: float, c: float, mu_s: float, mu_k: float, scale: float, rtol: float, out: Array,
+    state: Array,
+    after: Array,
+    trial: Array,
+    load: Array,
+    span: float,
+    slipping: bool,
+    guess: float,
+    b: float,
+    c: float,
+    mu_s: float,
+    mu_k: float,
+    scale: float,
+    rtol: float,
+    out: Array,
 ) -> tuple[bool, float]:
     # One stretch on which excitation and grip are linear.  load[4:6] is the kinetic grip mu_k N; state as in _step.
     # Returns whether the body slips at the end, and the step size to begin the next stretch with.
@@ -279,14 +203,14 @@ def _piece(
             slipping = True
             if left <= 1e-14 * span:
                 return True, guess
-            t += _start(state, load, t, left, qx, qy, scale, b, c)
+            t += _start(state, load, t, left, qx, qy, scale, c)
             out[0] = max(out[0], math.hypot(state[0], state[1]))
             out[2] = max(out[2], _felt(state, load[4] + load[5] * t, b, c))
             guess = min(guess, left)
             continue
         vx, vy = state[2], state[3]
         speed = math.hypot(vx, vy)
-        rx, ry, _s = _rates(state[0], state[1], vx, vy, ax, ay, grip, b, c)
+        rx, ry, _s = plane_rates(state[0], state[1], vx, vy, ax, ay, grip, b, c)
         if speed == 0.0:
             slipping = False
             continue
@@ -310,7 +234,7 @@ def _piece(
         h = min(guess, left)
         if grip > 0.0:
             h = min(h, 2.5 * speed / grip + 1e-12 * span)
-        error = _step(state, load, t, h, b, c, after)
+        error = plane_step(state, load, t, h, b, c, after)
         allowed = rtol * max(scale, speed) * max(h / span, 0.02)
         if error > allowed and h > 1e-13 * span:
             guess = h * max(0.2, 0.9 * (allowed / error) ** 0.2)
@@ -326,9 +250,26 @@ def _piece(
 
 @kernel
 def _stretch(
-    state: Array, after: Array, trial: Array, load: Array,
-    x0: float, x1: float, y0: float, y1: float, z0: float, z1: float, span: float, slipping: bool, guess: float,
-    b: float, c: float, mu_s: float, mu_k: float, scale: float, rtol: float, out: Array,
+    state: Array,
+    after: Array,
+    trial: Array,
+    load: Array,
+    x0: float,
+    x1: float,
+    y0: float,
+    y1: float,
+    z0: float,
+    z1: float,
+    span: float,
+    slipping: bool,
+    guess: float,
+    b: float,
+    c: float,
+    mu_s: float,
+    mu_k: float,
+    scale: float,
+    rtol: float,
+    out: Array,
 ) -> tuple[bool, float]:
     # A sample interval, cut where contact ends or begins.
     n0, n1 = G + z0, z1
@@ -342,24 +283,33 @@ def _stretch(
     if cut < 0.0:
         held = max(n0, end) > 0.0
         load[4], load[5] = (mu_k * max(0.0, n0), mu_k * n1) if held else (0.0, 0.0)
-        return _piece(
-            state, after, trial, load, span, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out
-        )
+        return _piece(state, after, trial, load, span, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out)
     load[4], load[5] = (mu_k * n0, mu_k * n1) if n0 > 0.0 else (0.0, 0.0)
-    slipping, guess = _piece(
-        state, after, trial, load, cut, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out
-    )
+    slipping, guess = _piece(state, after, trial, load, cut, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out)
     load[0], load[2] = x0 + x1 * cut, y0 + y1 * cut
     load[4], load[5] = (0.0, mu_k * n1) if n0 < 0.0 else (0.0, 0.0)
-    return _piece(
-        state, after, trial, load, span - cut, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out
-    )
+    return _piece(state, after, trial, load, span - cut, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out)
 
 
 @kernel
 def friction_plane_one(
-    x: Array, y: Array, z: Array, ratio: Array, maxima: Array, push: Array, pushes: Array, dt: float, peak: float,
-    w: float, zeta: float, mu_s: float, mu_k: float, tail: float, rtol: float, out: Array, history: Array,
+    x: Array,
+    y: Array,
+    z: Array,
+    ratio: Array,
+    maxima: Array,
+    push: Array,
+    pushes: Array,
+    dt: float,
+    peak: float,
+    w: float,
+    zeta: float,
+    mu_s: float,
+    mu_k: float,
+    tail: float,
+    rtol: float,
+    out: Array,
+    history: Array,
 ) -> float:
     """Integrate one body and return its residual displacement |u| [m].
 
@@ -394,8 +344,26 @@ def friction_plane_one(
         if i < history.shape[0]:
             _note(history, i, state, x[i], y[i], mu_k * max(0.0, G + z[i]), b, c, slipping)
         slipping, guess = _stretch(
-            state, after, trial, load, x[i], (x[i + 1] - x[i]) / dt, y[i], (y[i + 1] - y[i]) / dt,
-            z[i], (z[i + 1] - z[i]) / dt, dt, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out,
+            state,
+            after,
+            trial,
+            load,
+            x[i],
+            (x[i + 1] - x[i]) / dt,
+            y[i],
+            (y[i + 1] - y[i]) / dt,
+            z[i],
+            (z[i + 1] - z[i]) / dt,
+            dt,
+            slipping,
+            guess,
+            b,
+            c,
+            mu_s,
+            mu_k,
+            scale,
+            rtol,
+            out,
         )
         scale = max(scale, math.hypot(state[2], state[3]))
         i += 1
@@ -421,8 +389,21 @@ def _note(
 
 @kernel
 def _coast(
-    state: Array, after: Array, trial: Array, load: Array, slipping: bool, guess: float, w: float, zeta: float,
-    mu_s: float, mu_k: float, tail: float, scale: float, rtol: float, dt: float, out: Array,
+    state: Array,
+    after: Array,
+    trial: Array,
+    load: Array,
+    slipping: bool,
+    guess: float,
+    w: float,
+    zeta: float,
+    mu_s: float,
+    mu_k: float,
+    tail: float,
+    scale: float,
+    rtol: float,
+    dt: float,
+    out: Array,
 ) -> None:
     # After the record: no excitation, full weight, until the body rests for good, the tail ends, or the cap.
     if tail == 0.0:
@@ -441,9 +422,7 @@ def _coast(
     load[0], load[1], load[2], load[3], load[4], load[5] = 0.0, 0.0, 0.0, 0.0, mu_k * G, 0.0
     while t < stop:
         now = min(span, stop - t)
-        slipping, guess = _piece(
-            state, after, trial, load, now, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out
-        )
+        slipping, guess = _piece(state, after, trial, load, now, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out)
         t += now
         if not slipping:
             return
@@ -457,8 +436,22 @@ def _coast(
 
 @kernel
 def friction_plane_batch(
-    x: Array, y: Array, z: Array, ratio: Array, maxima: Array, push: Array, pushes: Array, dt: float, peak: float,
-    w: Array, zeta: Array, mu_s: Array, mu_k: Array, tail: float, rtol: float, results: Array,
+    x: Array,
+    y: Array,
+    z: Array,
+    ratio: Array,
+    maxima: Array,
+    push: Array,
+    pushes: Array,
+    dt: float,
+    peak: float,
+    w: Array,
+    zeta: Array,
+    mu_s: Array,
+    mu_k: Array,
+    tail: float,
+    rtol: float,
+    results: Array,
 ) -> None:
     """Fill results (m, 5): max |u|, residual, path [m], max transmitted acceleration [m/s2], flags."""
     nothing = np.empty((0, 4))
@@ -467,4 +460,10 @@ def friction_plane_batch(
         residual = friction_plane_one(
             x, y, z, ratio, maxima, push, pushes, dt, peak, w[k], zeta[k], mu_s[k], mu_k[k], tail, rtol, out, nothing
         )
-        results[k, 0], results[k, 1], results[k, 2], results[k, 3], results[k, 4] = out[0], residual, out[1], out[2], out[3]
+        results[k, 0], results[k, 1], results[k, 2], results[k, 3], results[k, 4] = (
+            out[0],
+            residual,
+            out[1],
+            out[2],
+            out[3],
+        )

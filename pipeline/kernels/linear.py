@@ -52,9 +52,7 @@ def transition(w: float, zeta: float, t: float) -> tuple[float, float, float, fl
 
 
 @kernel
-def advance(
-    u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: float
-) -> tuple[float, float]:
+def advance(u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: float) -> tuple[float, float]:
     """Return displacement and velocity after t."""
     g, h, h1, h2 = transition(w, zeta, t)
     return u * g + v * h + f0 * h1 + f1 * h2, -u * w * w * h + v * (g - 2.0 * zeta * w * h) + f0 * h + f1 * h1
@@ -71,8 +69,19 @@ def slope(
 
 @kernel
 def _root_of_slope(
-    u: float, v: float, f0: float, f1: float, w: float, zeta: float, c1: float, cu: float, cv: float,
-    low: float, high: float, at_low: float, at_high: float,
+    u: float,
+    v: float,
+    f0: float,
+    f1: float,
+    w: float,
+    zeta: float,
+    c1: float,
+    cu: float,
+    cv: float,
+    low: float,
+    high: float,
+    at_low: float,
+    at_high: float,
 ) -> float:
     # Illinois variant of the false position: the value at a maximum is second order in the time's error.
     side = 0
@@ -100,8 +109,17 @@ def _root_of_slope(
 
 @kernel
 def peak_inside(
-    u: float, v: float, f0: float, f1: float, w: float, zeta: float, span: float,
-    c0: float, c1: float, cu: float, cv: float,
+    u: float,
+    v: float,
+    f0: float,
+    f1: float,
+    w: float,
+    zeta: float,
+    span: float,
+    c0: float,
+    c1: float,
+    cu: float,
+    cv: float,
 ) -> float:
     """Return the largest |y| strictly inside (0, span) at a stationary point of y = c0 + c1 t + cu u + cv u', or 0.
 

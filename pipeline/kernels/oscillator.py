@@ -23,7 +23,7 @@ def oscillator_one(
     n = base.shape[0]
     if n < 2:
         return 0.0, 0.0, 0.0
-    pieces = max(1, int(math.ceil(w * dt * (1.0 + zeta) / 0.9))) * refine
+    pieces = max(1, math.ceil(w * dt * (1.0 + zeta) / 0.9)) * refine
     step = dt / pieces
     g, h, h1, h2 = transition(w, zeta, step)
     b, c = w * w, 2.0 * zeta * w

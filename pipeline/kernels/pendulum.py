@@ -30,8 +30,19 @@ STEP = 0.1
 
 @inlined
 def _step(
-    theta: float, s: float, c: float, rate: float, a0: float, am: float, a1: float, n0: float, nm: float, n1: float,
-    h: float, curl: float, drag: float,
+    theta: float,
+    s: float,
+    c: float,
+    rate: float,
+    a0: float,
+    am: float,
+    a1: float,
+    n0: float,
+    nm: float,
+    n1: float,
+    h: float,
+    curl: float,
+    drag: float,
 ) -> tuple[float, float, float, float]:
     # One classical Runge-Kutta step; a, n: pivot acceleration and g + a_z at its beginning, middle and end.
     # curl = 1 / L, drag = 2 zeta w.
@@ -59,8 +70,18 @@ def _step(
 
 @kernel
 def _turn(
-    theta: float, s: float, c: float, rate: float, a0: float, slope: float, n0: float, rise: float, h: float,
-    curl: float, drag: float, after: float,
+    theta: float,
+    s: float,
+    c: float,
+    rate: float,
+    a0: float,
+    slope: float,
+    n0: float,
+    rise: float,
+    h: float,
+    curl: float,
+    drag: float,
+    after: float,
 ) -> float:
     # The angle at which the pendulum turns back within the step (Illinois on the rate).
     low, high, at_low, at_high = 0.0, h, rate, after
@@ -71,8 +92,19 @@ def _turn(
         if not low < tau < high:
             tau = 0.5 * (low + high)
         angle, _s, _c, value = _step(
-            theta, s, c, rate, a0, a0 + 0.5 * slope * tau, a0 + slope * tau, n0, n0 + 0.5 * rise * tau, n0 + rise * tau,
-            tau, curl, drag,
+            theta,
+            s,
+            c,
+            rate,
+            a0,
+            a0 + 0.5 * slope * tau,
+            a0 + slope * tau,
+            n0,
+            n0 + 0.5 * rise * tau,
+            n0 + rise * tau,
+            tau,
+            curl,
+            drag,
         )
         if value == 0.0 or high - low < 1e-10 * h:
             break
@@ -92,9 +124,7 @@ def _turn(
 
 
 @kernel
-def _shake(
-    x: Array, z: Array, dt: float, pieces: int, block: Array, most: Array, history: Array
-) -> None:
+def _shake(x: Array, z: Array, dt: float, pieces: int, block: Array, most: Array, history: Array) -> None:
     # Integrate a block of LANES pendulums through the record.
     # block: rows theta, s, c, rate, 1/L, drag, then theta, s, c, rate after the step; history: theta of the first lane.
     n = x.shape[0]
@@ -109,8 +139,19 @@ def _shake(
             a1, n1 = a0 + slope * step, n0 + rise * step
             for k in range(LANES):
                 block[6, k], block[7, k], block[8, k], block[9, k] = _step(
-                    block[0, k], block[1, k], block[2, k], block[3, k], a0, am, a1, n0, nm, n1, step,
-                    block[4, k], block[5, k],
+                    block[0, k],
+                    block[1, k],
+                    block[2, k],
+                    block[3, k],
+                    a0,
+                    am,
+                    a1,
+                    n0,
+                    nm,
+                    n1,
+                    step,
+                    block[4, k],
+                    block[5, k],
                 )
             for k in range(LANES):
                 before, after = block[3, k], block[9, k]
@@ -118,8 +159,18 @@ def _shake(
                 if reach > most[k] or before * after < 0.0:
                     if before * after < 0.0 and reach + step * max(abs(before), abs(after)) > most[k]:
                         top = _turn(
-                            block[0, k], block[1, k], block[2, k], before, a0, slope, n0, rise, step,
-                            block[4, k], block[5, k], after,
+                            block[0, k],
+                            block[1, k],
+                            block[2, k],
+                            before,
+                            a0,
+                            slope,
+                            n0,
+                            rise,
+                            step,
+                            block[4, k],
+                            block[5, k],
+                            after,
                         )
                         reach = max(reach, abs(top))
                     most[k] = max(most[k], reach)
@@ -147,9 +198,7 @@ def _coast(
             if left <= lift * (1.0 - FAINT) or left == 0.0:
                 return most, 0.0
         now = min(h, stop - t)
-        ahead, sn, cn, after = _step(
-            theta, s, c, rate, 0.0, 0.0, 0.0, G, G, G, now, 1.0 / length, drag
-        )
+        ahead, sn, cn, after = _step(theta, s, c, rate, 0.0, 0.0, 0.0, G, G, G, now, 1.0 / length, drag)
         if rate * after < 0.0:
             top = _turn(theta, s, c, rate, 0.0, 0.0, G, 0.0, now, 1.0 / length, drag, after)
             most = max(most, abs(top))
@@ -165,12 +214,20 @@ def _coast(
 def substeps(length: float, zeta: float, peak: float, dt: float) -> int:
     """Return how many steps a sample interval takes; peak: the largest acceleration of the pivot [m/s2]."""
     fastest = math.sqrt((G + peak) / length) * (1.0 + 2.0 * zeta)
-    return max(1, int(math.ceil(fastest * dt / STEP)))
+    return max(1, math.ceil(fastest * dt / STEP))
 
 
 @kernel
 def pendulum_batch(
-    x: Array, z: Array, dt: float, peak: float, length: Array, zeta: Array, tail: float, refine: int, results: Array,
+    x: Array,
+    z: Array,
+    dt: float,
+    peak: float,
+    length: Array,
+    zeta: Array,
+    tail: float,
+    refine: int,
+    results: Array,
     history: Array,
 ) -> None:
     """Fill results (m, 2): max |theta| [rad], flags.

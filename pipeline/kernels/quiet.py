@@ -16,16 +16,13 @@ BLOCK = 64
 
 @kernel
 def demand_ratio(x: Array, y: Array, z: Array) -> Array:
-    """Return |a_h| / max(0, g + a_z) at each sample (n,); infinite where contact is lost under a push, 0 without push."""
+    """Return |a_h| / max(0, g + a_z) at each sample (n,): infinite where contact is lost."""
     n = x.shape[0]
     ratio = np.empty(n)
     for i in range(n):
-        push = math.hypot(x[i], y[i])
-        normal = max(0.0, G + z[i])
-        ratio[i] = 0.0 if push == 0.0 else push / normal
-        if normal == 0.0:
-            # Without weight an object is free: even without a push it no longer holds on.
-            ratio[i] = math.inf
+        normal = G + z[i]
+        # Without weight an object is free: even without a push it no longer holds on.
+        ratio[i] = math.hypot(x[i], y[i]) / normal if normal > 0.0 else math.inf
     return ratio
 
 

@@ -18,7 +18,7 @@ OVERTURNED = 0.5 * math.pi
 """Rotation [rad] from which no body comes back."""
 
 REST = 1e-4
-"""Rate, as a share of the smaller p alpha, below which a landing body is taken to be at rest: impacts are infinite in number."""
+"""Rate, as a share of the smaller p alpha, below which a landing body rests: impacts are infinite in number."""
 
 COUNTED = 1e-3
 """Rate, as a share of the smaller p alpha, from which an impact is counted."""
@@ -33,11 +33,20 @@ CAP = 300.0
 """Seconds after the record at which a body that still rocks is cut off."""
 
 
-
 @inlined
 def _step(
-    phi: float, rate: float, sn: float, cs: float, a0: float, a1: float, n0: float, n1: float, t: float, h: float,
-    s: float, c: float,
+    phi: float,
+    rate: float,
+    sn: float,
+    cs: float,
+    a0: float,
+    a1: float,
+    n0: float,
+    n1: float,
+    t: float,
+    h: float,
+    s: float,
+    c: float,
 ) -> tuple[float, float, float, float]:
     # One classical Runge-Kutta step from t to t + h.  sn, cs: sine and cosine of alpha - phi, integrated along with it,
     # so that a step has no transcendental function in it.
@@ -68,8 +77,21 @@ def _step(
 
 @kernel
 def _locate(
-    phi: float, rate: float, sn: float, cs: float, a0: float, a1: float, n0: float, n1: float, t: float,
-    low: float, high: float, s: float, c: float, what: int, level: float,
+    phi: float,
+    rate: float,
+    sn: float,
+    cs: float,
+    a0: float,
+    a1: float,
+    n0: float,
+    n1: float,
+    t: float,
+    low: float,
+    high: float,
+    s: float,
+    c: float,
+    what: int,
+    level: float,
 ) -> float:
     # The step length between low and high after which phi (what 0) or its rate (what 1) reaches the level: Illinois,
     # each trial being one step from the same beginning.
@@ -103,7 +125,9 @@ def _locate(
 
 
 @kernel
-def _lift_off(a0: float, a1: float, n0: float, n1: float, now: float, span: float, tan1: float, tan2: float) -> tuple[float, float]:
+def _lift_off(
+    a0: float, a1: float, n0: float, n1: float, now: float, span: float, tan1: float, tan2: float
+) -> tuple[float, float]:
     # First time in [now, span] at which an edge lifts, and the edge it then turns about; (-1, 0) if none does.
     time, edge = -1.0, 0.0
     for s in (1.0, -1.0):
@@ -123,15 +147,22 @@ def _lift_off(a0: float, a1: float, n0: float, n1: float, now: float, span: floa
 
 @kernel
 def _stretch(
-    state: Array, a0: float, a1: float, n0: float, n1: float, span: float, clock: float,
-    body: Array, out: Array,
+    state: Array,
+    a0: float,
+    a1: float,
+    n0: float,
+    n1: float,
+    span: float,
+    clock: float,
+    body: Array,
+    out: Array,
 ) -> None:
     # One stretch on which the excitation and the normal force are linear.
     # state: s, phi, rate, and sine and cosine of alpha - phi.  body: alpha1, alpha2, c1, c2, e12, e21.
     s, phi, rate, sn, cs = state[0], state[1], state[2], state[3], state[4]
     t = 0.0
-    impacts = 0
-    for _ in range(10000):
+    landings = 0
+    while landings <= IMPACTS_CAP:
         if s == 0.0:
             lift, edge = _lift_off(a0, a1, n0, n1, t, span, math.tan(body[0]), math.tan(body[1]))
             if edge == 0.0:
@@ -190,20 +221,30 @@ def _stretch(
         s = -s
         phi = 0.0
         sn, cs = (math.sin(body[0]), math.cos(body[0])) if s > 0.0 else (math.sin(body[1]), math.cos(body[1]))
-        impacts += 1
-        if impacts > IMPACTS_CAP:
+        landings += 1
+        if landings > IMPACTS_CAP:
             out[5] = float(int(out[5]) | EVENT_CAP)
-            s, rate = 0.0, 0.0
-            break
-        if rate < REST * slow:
+        if landings > IMPACTS_CAP or rate < REST * slow:
             s, rate = 0.0, 0.0
     state[0], state[1], state[2], state[3], state[4] = s, phi, rate, sn, cs
 
 
 @kernel
 def _peak(
-    phi: float, rate: float, sn: float, cs: float, a0: float, a1: float, n0: float, n1: float, t: float, h: float,
-    s: float, alpha: float, c: float, out: Array,
+    phi: float,
+    rate: float,
+    sn: float,
+    cs: float,
+    a0: float,
+    a1: float,
+    n0: float,
+    n1: float,
+    t: float,
+    h: float,
+    s: float,
+    alpha: float,
+    c: float,
+    out: Array,
 ) -> None:
     if (phi + h * rate) / alpha > out[0]:
         tau = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, 1, 0.0)
@@ -213,8 +254,18 @@ def _peak(
 
 @kernel
 def rocking_one(
-    x: Array, z: Array, ratio: Array, maxima: Array, dt: float, peak: float, body: Array, initial: float, tail: float,
-    refine: int, out: Array, history: Array,
+    x: Array,
+    z: Array,
+    ratio: Array,
+    maxima: Array,
+    dt: float,
+    peak: float,
+    body: Array,
+    initial: float,
+    tail: float,
+    refine: int,
+    out: Array,
+    history: Array,
 ) -> None:
     """Integrate one body.
 
@@ -240,7 +291,7 @@ def rocking_one(
             out[1], out[2] = 1.0, 0.0
             return
     fastest = math.sqrt(max(body[2], body[3]) * (G + peak))
-    pieces = max(1, int(math.ceil(fastest * dt / STEP))) * refine
+    pieces = max(1, math.ceil(fastest * dt / STEP)) * refine
     step = dt / pieces
     weakest = math.tan(min(body[0], body[1]))
     recording = history.shape[0] > 0
@@ -265,9 +316,7 @@ def rocking_one(
             clock = i * dt + t0
             if t0 < cut < t1:
                 held, after = (n1, 0.0) if n0 > 0.0 else (0.0, n1)
-                _stretch(
-                    state, x[i] + a1 * t0, a1, max(0.0, n0 + n1 * t0), held, cut - t0, clock, body, out
-                )
+                _stretch(state, x[i] + a1 * t0, a1, max(0.0, n0 + n1 * t0), held, cut - t0, clock, body, out)
                 if out[1] == 0.0:
                     _stretch(state, x[i] + a1 * cut, a1, 0.0, after, t1 - cut, i * dt + cut, body, out)
             else:
@@ -296,12 +345,19 @@ def rocking_one(
 
 @kernel
 def rocking_batch(
-    x: Array, z: Array, ratio: Array, maxima: Array, dt: float, peak: float, bodies: Array, initial: Array, tail: float,
-    refine: int, results: Array,
+    x: Array,
+    z: Array,
+    ratio: Array,
+    maxima: Array,
+    dt: float,
+    peak: float,
+    bodies: Array,
+    initial: Array,
+    tail: float,
+    refine: int,
+    results: Array,
 ) -> None:
     """Fill results (m, 6) as in rocking_one for m bodies, bodies (m, 6)."""
     nothing = np.empty((0, 1))
     for k in range(bodies.shape[0]):
-        rocking_one(
-            x, z, ratio, maxima, dt, peak, bodies[k], initial[k], tail, refine, results[k], nothing
-        )
+        rocking_one(x, z, ratio, maxima, dt, peak, bodies[k], initial[k], tail, refine, results[k], nothing)

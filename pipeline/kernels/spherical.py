@@ -19,7 +19,6 @@ CAP = 200.0
 """Seconds after the record at which a pendulum that never turns back is cut off."""
 
 
-
 @kernel
 def _bend(q: Array, r: Array, fx: float, fy: float, fz: float, c: float, out: Array) -> None:
     along = fx * q[0] + fy * q[1] + fz * q[2] + r[0] * r[0] + r[1] * r[1] + r[2] * r[2]
@@ -64,8 +63,16 @@ def _normalise(s: Array) -> None:
 
 @kernel
 def _turn(
-    s: Array, load: Array, t: float, h: float, length: float, c: float, k: Array, trial: Array,
-    begin: float, end: float,
+    s: Array,
+    load: Array,
+    t: float,
+    h: float,
+    length: float,
+    c: float,
+    k: Array,
+    trial: Array,
+    begin: float,
+    end: float,
 ) -> float:
     # The radius [-] at its stationary point within the step.
     low, high, at_low, at_high = 0.0, h, begin, end
@@ -95,7 +102,15 @@ def _turn(
 
 @kernel
 def spherical_one(
-    x: Array, y: Array, z: Array, dt: float, peak: float, length: float, zeta: float, tail: float, refine: int,
+    x: Array,
+    y: Array,
+    z: Array,
+    dt: float,
+    peak: float,
+    length: float,
+    zeta: float,
+    tail: float,
+    refine: int,
     history: Array,
 ) -> tuple[float, float]:
     """Integrate one pendulum and return (max horizontal displacement / L [-], flags).
@@ -109,7 +124,7 @@ def spherical_one(
     w = math.sqrt(G / length)
     c = 2.0 * zeta * w
     fastest = math.sqrt((G + peak) / length) * (1.0 + 2.0 * zeta)
-    pieces = max(1, int(math.ceil(fastest * dt / STEP))) * refine
+    pieces = max(1, math.ceil(fastest * dt / STEP)) * refine
     step = dt / pieces
     s, after, trial, load, k = np.zeros(6), np.zeros(6), np.zeros(6), np.zeros(6), np.zeros((10, 3))
     s[2] = -1.0
@@ -168,12 +183,18 @@ def _height(s: Array) -> float:
 
 @kernel
 def spherical_batch(
-    x: Array, y: Array, z: Array, dt: float, peak: float, length: Array, zeta: Array, tail: float, refine: int,
+    x: Array,
+    y: Array,
+    z: Array,
+    dt: float,
+    peak: float,
+    length: Array,
+    zeta: Array,
+    tail: float,
+    refine: int,
     results: Array,
 ) -> None:
     """Fill results (m, 2): max horizontal displacement / L [-], flags."""
     nothing = np.empty((0, 2))
     for k in range(length.shape[0]):
-        results[k, 0], results[k, 1] = spherical_one(
-            x, y, z, dt, peak, length[k], zeta[k], tail, refine, nothing
-        )
+        results[k, 0], results[k, 1] = spherical_one(x, y, z, dt, peak, length[k], zeta[k], tail, refine, nothing)

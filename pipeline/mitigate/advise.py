@@ -59,7 +59,7 @@ def advise(
 def _least_intrusive(
     scene: Scene, findings: Sequence[Finding], level: str, site: m.Site, only: Sequence[str] | None
 ) -> Recommendation:
-    rejected = []
+    rejected: list[str] = []
     for row in m.measures():
         name = row["measure"]
         if name not in MEASURES:

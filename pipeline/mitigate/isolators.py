@@ -1,7 +1,8 @@
-"""What each isolator of the catalogue does under the site's motions: run once, used by every object that may stand on it."""
+"""What each isolator of the catalogue does under the site's motions: run once, used by all that may stand on it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from pipeline.models.common import largest_push, lift_ratios
 from pipeline.records import Excitation, Executor, Motion
@@ -39,7 +40,7 @@ class _Trial:
 
 
 def _run(trial: _Trial) -> Isolator:
-    given = {"frequency": trial.frequency, "damping": trial.damping, "friction": trial.friction}
+    given: dict[str, Any] = {"frequency": trial.frequency, "damping": trial.damping, "friction": trial.friction}
     stroke = acceleration = lift = 0.0
     passed_on = []
     for motion in trial.motions:
@@ -51,7 +52,9 @@ def _run(trial: _Trial) -> Isolator:
         stroke = max(stroke, float(own["displacement"].iloc[0]))
         acceleration = max(acceleration, float(own["acceleration"].iloc[0]), largest_push(shaken))
         lift = max(lift, *lift_ratios(shaken))
-    return Isolator(trial.frequency, trial.damping, trial.friction, trial.source, stroke, acceleration, lift, tuple(passed_on))
+    return Isolator(
+        trial.frequency, trial.damping, trial.friction, trial.source, stroke, acceleration, lift, tuple(passed_on)
+    )
 
 
 def horizontal_isolators(motions: Sequence[Motion], executor: Executor) -> list[Isolator]:

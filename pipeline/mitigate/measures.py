@@ -165,12 +165,14 @@ def keep_clear(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) 
     room = _up(MARGIN * high)
     hanging = scene.support in (Support.HUNG, Support.SUSPENDED)
     if room > limit(row, hanging):
-        return _not(f"it would need {100 * room:.0f} cm of room, more than the {100 * limit(row, hanging):.0f} cm allowed")
+        return _not(
+            f"it would need {100 * room:.0f} cm of room, more than the {100 * limit(row, hanging):.0f} cm allowed"
+        )
     checks = tuple(_check(f.model, f.title, f.demand or 0.0, f.unit, _exactly(room, "m"), f.high) for f in moving)
     return Tried({"clearance": room, "movement": demand}, {"clearance": "m", "movement": "m"}, checks)
 
 
-def rubber_pads(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) -> Tried:
+def rubber_pads(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) -> Tried:  # noqa: ARG001
     """Damp the swing of a painting by rubber pads behind its lower corners."""
     if scene.support is not Support.HUNG:
         return _not("it does not hang on a wall")
@@ -336,5 +338,3 @@ def rotational_isolator(scene: Scene, findings: Sequence[Finding], site: Site, r
 def remove(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) -> Tried:  # noqa: ARG001
     """Take it off display."""
     return Tried({}, {}, ())
-
-

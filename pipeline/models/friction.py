@@ -14,7 +14,8 @@ PLANE_TOLERANCE = 1e-6
 """Velocity tolerance of the two-directional kernel at `history`; the result is taken at a tenth of it."""
 
 
-def stick_slip(motion: Excitation, w: Array, zeta: Array, mu_s: Array, mu_k: Array, refine: int, estimate: bool
+def stick_slip(
+    motion: Excitation, w: Array, zeta: Array, mu_s: Array, mu_k: Array, refine: int, estimate: bool
 ) -> Columns:
     """Run n bodies on dry friction, with a spring and a dashpot where w > 0.
 
@@ -35,8 +36,19 @@ def stick_slip(motion: Excitation, w: Array, zeta: Array, mu_s: Array, mu_k: Arr
         runs = ((tolerance, coarse), (0.1 * tolerance, results)) if estimate else ((tolerance, results),)
         for rtol, out in runs:
             friction_plane_batch(
-                quiet.x, quiet.y, quiet.z, quiet.ratio, quiet.maxima, quiet.push, quiet.pushes, quiet.dt, quiet.peak,
-                *arrays, quiet.tail, rtol, out,
+                quiet.x,
+                quiet.y,
+                quiet.z,
+                quiet.ratio,
+                quiet.maxima,
+                quiet.push,
+                quiet.pushes,
+                quiet.dt,
+                quiet.peak,
+                *arrays,
+                quiet.tail,
+                rtol,
+                out,
             )
         # The pair's own error does not shrink exactly with its tolerance: ten times the difference covers it.
         error = 10.0 * (np.abs(results[:, 0] - coarse[:, 0]) + ROUNDING * results[:, 2])
@@ -63,8 +75,23 @@ def stick_slip_trace(motion: Excitation, w: float, zeta: float, mu_s: float, mu_
         return {"u_x": line[:, 0], "u_y": still, "a_x": line[:, 1], "a_y": still}
     plane = np.zeros((quiet.x.size, 4))
     friction_plane_one(
-        quiet.x, quiet.y, quiet.z, quiet.ratio, quiet.maxima, quiet.push, quiet.pushes, quiet.dt, quiet.peak,
-        w, zeta, mu_s, mu_k, 0.0, 0.1 * PLANE_TOLERANCE, out, plane,
+        quiet.x,
+        quiet.y,
+        quiet.z,
+        quiet.ratio,
+        quiet.maxima,
+        quiet.push,
+        quiet.pushes,
+        quiet.dt,
+        quiet.peak,
+        w,
+        zeta,
+        mu_s,
+        mu_k,
+        0.0,
+        0.1 * PLANE_TOLERANCE,
+        out,
+        plane,
     )
     return {"u_x": plane[:, 0], "u_y": plane[:, 1], "a_x": plane[:, 2], "a_y": plane[:, 3]}
 

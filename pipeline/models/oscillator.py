@@ -21,7 +21,10 @@ def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array, refine: i
 
 
 def _run(
-    motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool  # noqa: ARG001
+    motion: Excitation,
+    parameters: Mapping[str, Array],
+    refine: int,
+    estimate: bool,  # noqa: ARG001
 ) -> Columns:
     w = 2.0 * np.pi * parameters["frequency"]
     displacement, absolute = oscillate(motion, w, parameters["damping"], np.ones_like(w), refine)

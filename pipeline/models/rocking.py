@@ -20,7 +20,7 @@ from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Columns, Excitation, Model, Scene
 
 VELOCITY_SCREEN = 1.0
-"""V_max > 10 B / sqrt(H') in cm and s is V_max > 1.0 B / sqrt(H') in m and s (Ishiyama 1982, as the paper prints it)."""
+"""V_max > 10 B / sqrt(H') in cm and s is V_max > 1.0 B / sqrt(H') in m and s (Ishiyama 1982, in the paper's form)."""
 
 
 def bodies(parameters: Mapping[str, Array]) -> Array:
@@ -74,7 +74,7 @@ def _screen(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
     nothing = np.full_like(width, np.nan)
     return {
         "rotation_ratio": nothing,
-        # Of 400 blocks, 174 failed the velocity criterion and never lifted an edge: it only means something after uplift.
+        # Of 400 blocks, 174 failed the velocity criterion and never lifted an edge: it means nothing before uplift.
         "overturned": ((velocity > 1.0) & (uplift > 1.0)).astype(np.float64),
         "overturning_time": nothing,
         "uplift_time": nothing,
@@ -101,8 +101,18 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     body = bodies({k: np.array([v]) for k, v in parameters.items()})[0]
     history = np.zeros((motion.x.size, 1))
     rocking_one(
-        quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.dt, quiet.peak, body, parameters["initial_rotation"], 0.0, 4,
-        np.empty(6), history,
+        quiet.x,
+        quiet.z,
+        quiet.ratio,
+        quiet.maxima,
+        quiet.dt,
+        quiet.peak,
+        body,
+        parameters["initial_rotation"],
+        0.0,
+        4,
+        np.empty(6),
+        history,
     )
     return {"rotation": history[:, 0]}
 
@@ -158,7 +168,9 @@ ROCKING = Model(
         Quantity("cg_height", "m", "height of the centre of gravity above the base", 0.0, exclusive=True),
         Quantity("half_width_other", "m", "to the other edge, where it differs", 0.0, exclusive=True, optional=True),
         Quantity("gyration_radius", "m", "about the centre of gravity; else a uniform rectangle's", 0.0, optional=True),
-        Quantity("restitution", "-", "rate after over before an impact; else from the geometry", 0.0, 1.0, optional=True),
+        Quantity(
+            "restitution", "-", "rate after over before an impact; else from the geometry", 0.0, 1.0, optional=True
+        ),
         Quantity("initial_rotation", "rad", "released from rest", -1.6, 1.6, optional=True, default=0.0),
     ),
     gives=(

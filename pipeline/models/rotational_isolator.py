@@ -13,7 +13,10 @@ from pipeline.records import Columns, Excitation, Model, Scene, Support
 
 
 def _run(
-    motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool  # noqa: ARG001
+    motion: Excitation,
+    parameters: Mapping[str, Array],
+    refine: int,
+    estimate: bool,  # noqa: ARG001
 ) -> Columns:
     # With r = I / (m h^2), theta = u / (r h) where u is the displacement of the plain oscillator, and the centre of
     # gravity feels a + h theta'' = a + u'' / r.

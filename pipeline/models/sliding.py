@@ -10,7 +10,9 @@ from pipeline.quantities import Array, Quantity
 from pipeline.records import Columns, Excitation, Model, Scene
 
 FRICTION_STATIC = Quantity("friction_static", "-", "coefficient at rest", 0.0)
-FRICTION_KINETIC = Quantity("friction_kinetic", "-", "coefficient while slipping; else the static one", 0.0, optional=True)
+FRICTION_KINETIC = Quantity(
+    "friction_kinetic", "-", "coefficient while slipping; else the static one", 0.0, optional=True
+)
 DIRECTIONS = Quantity("directions", "-", "2, or 1 along the angle", 1.0, 2.0, optional=True, default=2.0)
 
 

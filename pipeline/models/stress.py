@@ -62,7 +62,10 @@ def _run(
 
 
 def _run_flexible(
-    motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool  # noqa: ARG001
+    motion: Excitation,
+    parameters: Mapping[str, Array],
+    refine: int,
+    estimate: bool,  # noqa: ARG001
 ) -> Columns:
     w = 2.0 * np.pi * parameters["frequency"]
     displacement, _ = oscillate(motion, w, parameters["damping"], np.ones_like(w), refine)
@@ -104,8 +107,8 @@ def _holds(scene: Scene, flexible: bool) -> str:
 
 
 _SENTENCE = (
-    "Held at its base, its critical section reaches {demand} (the range of its uncertain measures gives {low} to {high}); "
-    "{capacity} is allowed."
+    "Held at its base, its critical section reaches {demand} (the range of its uncertain measures gives {low} to "
+    "{high}); {capacity} is allowed."
 )
 
 STRESS = Model(
@@ -137,7 +140,10 @@ FLEXIBLE_STRESS = Model(
     source="Agbabian et al. 1991, sec. 2.5",
     equation="sigma = M/S -/+ N/A under F = m PSA(f, zeta)",
     needs=(*_SECTION, FREQUENCY, DAMPING),
-    gives=(*_STRESSES, Quantity("pseudo_acceleration", "m/s2", "peak of the damped oscillator that takes A_max's place")),
+    gives=(
+        *_STRESSES,
+        Quantity("pseudo_acceleration", "m/s2", "peak of the damped oscillator that takes A_max's place"),
+    ),
     directions=1,
     run=_run_flexible,
     say_screen=_say,

@@ -86,8 +86,16 @@ def _trace_3d(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     history = np.zeros((motion.x.size, 2))
     y = np.zeros_like(motion.x) if motion.y is None else motion.y
     spherical_one(
-        np.ascontiguousarray(motion.x), np.ascontiguousarray(y), np.ascontiguousarray(motion.z), motion.dt,
-        shaken(motion), parameters["length"], parameters["damping"], 0.0, 4, history,
+        np.ascontiguousarray(motion.x),
+        np.ascontiguousarray(y),
+        np.ascontiguousarray(motion.z),
+        motion.dt,
+        shaken(motion),
+        parameters["length"],
+        parameters["damping"],
+        0.0,
+        4,
+        history,
     )
     return {"u_x": parameters["length"] * history[:, 0], "u_y": parameters["length"] * history[:, 1]}
 
@@ -97,8 +105,8 @@ def _hangs(scene: Scene, support: Support, why: str) -> str:
 
 
 _SENTENCE = (
-    "It swings up to {demand} to the side (the range of its uncertain measures gives {low} to {high}); there is room for "
-    "{capacity}."
+    "It swings up to {demand} to the side (the range of its uncertain measures gives {low} to {high}); there is room "
+    "for {capacity}."
 )
 
 SWING = Model(

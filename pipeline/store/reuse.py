@@ -18,7 +18,9 @@ def stored_charts(engine: Engine, keys: Iterable[str], kernels: str) -> dict[str
     kernels : version of the kernels that made them
     """
     wanted = set(keys)
-    newest = select(RUN.c.run_id, RUN.c.settings).where(RUN.c.status == "finished").order_by(RUN.c.started.desc()).limit(1)
+    newest = (
+        select(RUN.c.run_id, RUN.c.settings).where(RUN.c.status == "finished").order_by(RUN.c.started.desc()).limit(1)
+    )
     with engine.connect() as connection:
         row = connection.execute(newest).one_or_none()
         if row is None or row.settings.get(KERNELS) != kernels:

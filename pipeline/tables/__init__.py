@@ -37,7 +37,9 @@ def table(name: str) -> tuple[Row, ...]:
         rows = list(reader)
     for number, row in enumerate(rows, start=2):
         if None in row or None in row.values():
-            raise TableError(f"{path.name}, line {number}: not as many cells as the header has; quote cells with commas")
+            raise TableError(
+                f"{path.name}, line {number}: not as many cells as the header has; quote cells with commas"
+            )
     return tuple(rows)
 
 
