@@ -198,7 +198,11 @@ class _Builder:
         if width is not None and depth is not None:
             narrow = min(width, depth, key=lambda e: e.value)
             low, high = min(width.low, depth.low), min(width.high, depth.high)
-            half = Estimate(0.5 * narrow.value, "m", narrow.origin, 0.5 * low, 0.5 * high, narrow.note, narrow.source)
+            assumed = any(side.origin is Origin.ASSUMED for side in (width, depth))
+            origin = Origin.ASSUMED if assumed else Origin.MEASURED
+            note = "; ".join(dict.fromkeys(side.note for side in (width, depth) if side.note))
+            source = narrow.source or width.source or depth.source
+            half = Estimate(0.5 * narrow.value, "m", origin, 0.5 * low, 0.5 * high, note, source)
             self._keep("half_width", half)
         cg = _measured(item.cg_height_m, "m")
         if cg is None and item.height_m is not None:
@@ -231,7 +235,7 @@ class _Builder:
             if row["round"] != "yes" or known is None:
                 self.missing.append(lost)
                 return None, None
-            note = f"{lost} not recorded: taken as round. {known.note}".strip()
+            note = f"{lost} not recorded: taken as round"
             other = _assumed(
                 known.value, known.low, known.high, "m", note, known.source or f"classes.csv, {row['class']}"
             )

@@ -1,0 +1,97 @@
+"""The package as others meet it: lazy names, floors, and a wheel that carries its files."""
+
+import re
+import subprocess
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import pipeline
+from pipeline.resources import resource
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def python(code: str, folder: Path) -> str:
+    done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True)
+    return done.stdout.strip()
+
+
+def test_the_public_names_are_handed_on() -> None:
+    from pipeline import Motion, read_motion, respond, trace, transmit
+
+    assert all(callable(name) for name in (Motion, read_motion, respond, trace, transmit))
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = pipeline.nothing
+
+
+def test_importing_the_package_is_free_and_the_names_survive_any_order() -> None:
+    """`pipeline` itself must load nothing heavy; a submodule imported first must not hide a function."""
+    heavy = "numpy", "pandas", "numba", "obspy", "sqlalchemy", "scipy"
+    loaded = python(f"import sys, pipeline; print([m for m in {heavy} if m in sys.modules])", ROOT)
+    assert loaded == "[]"
+    assert python("import pipeline.response, pipeline; print(pipeline.respond.__name__)", ROOT) == "respond"
+
+
+def test_help_does_not_wait_for_compilers() -> None:
+    heavy = "pandas", "numba", "obspy", "sqlalchemy", "scipy"
+    code = f"import sys, pipeline.cli; print([m for m in {heavy} if m in sys.modules])"
+    assert python(code, ROOT) == "[]"
+
+
+def test_the_wheel_carries_schemas_templates_and_the_demo_site(tmp_path: Path) -> None:
+    """Built by the real back end, unpacked, and asked for its files from outside of the checkout."""
+    command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
+    subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+    (wheel,) = tmp_path.glob("*.whl")
+    unpacked = tmp_path / "unpacked"
+    with zipfile.ZipFile(wheel) as archive:
+        names = archive.namelist()
+        archive.extractall(unpacked)
+    assert not [n for n in names if n.endswith(".pyc") or "__pycache__" in n]
+    code = (
+        f"import sys; sys.path.insert(0, {str(unpacked)!r})\n"
+        "from pipeline.resources import resource\n"
+        "print(resource('templates', 'gallery.html'), resource('schemas', 'migrations', 'env.py'),"
+        " resource('site_motions', 'demo', 'manifest.toml'))"
+    )
+    found = python(code, tmp_path)
+    assert found.count(str(unpacked)) == 3
+    assert "pipeline/collection/data/carnegie_2000.csv" in names
+    assert "pipeline/tables/friction.csv" in names
+
+
+def test_a_resource_that_is_not_there_is_named() -> None:
+    with pytest.raises(FileNotFoundError, match="templates/absent.html is neither in"):
+        resource("templates", "absent.html")
+
+
+def test_every_dependency_has_its_reason() -> None:
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    project = tomllib.loads(text)["project"]
+    wanted = [*project["dependencies"], *project["optional-dependencies"]["dev"]]
+    for requirement in wanted:
+        assert re.search(rf'"{re.escape(requirement)}",? +# \S+', text), requirement
+
+
+def test_constraints_pin_versions_and_name_no_index() -> None:
+    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    pins = [line for line in lines if line and not line.startswith("#")]
+    assert all(re.fullmatch(r"[A-Za-z0-9_.-]+==[^ ;]+", pin) for pin in pins)
+    names = {pin.partition("==")[0].lower().replace("_", "-") for pin in pins}
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    for requirement in [*project["dependencies"], *project["optional-dependencies"]["dev"]]:
+        assert re.match(r"[A-Za-z0-9_.-]+", requirement)[0].lower().replace("_", "-") in names, requirement  # type: ignore[index]
+
+
+def test_no_file_ties_the_project_to_a_machine() -> None:
+    """Text files name no folder of a build machine and no user."""
+    tied = re.compile(r"(?:^|[\s\"'(=])/(?:work|farm|root|home)/")
+    files = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False).stdout.split()
+    for name in files:
+        path = ROOT / name
+        if path.suffix in {".py", ".toml", ".md", ".html", ".txt", ".yml"} and path.name != Path(__file__).name:
+            assert not tied.search(path.read_text(encoding="utf-8")), name
