@@ -79,7 +79,7 @@ def prepare(model: Model, parameters: Mapping[str, Any]) -> dict[str, Array]:
     for name in parameters:
         if name not in known:
             close = get_close_matches(name, known, n=1)
-            hint = f"; did you mean {close[0]!r}?" if close else ""
+            hint = f"; did you mean {close[0]!r}?" if close else "."
             raise ValueError(f"{model.name} has no parameter {name!r}{hint} It takes: {', '.join(known)}")
     arrays: dict[str, Array] = {}
     for name, quantity in known.items():
@@ -93,6 +93,8 @@ def prepare(model: Model, parameters: Mapping[str, Any]) -> dict[str, Array]:
             array = np.asarray(value, dtype=np.float64)
         except (TypeError, ValueError) as problem:
             raise ValueError(f"{name} must be {quantity.allowed()}, not {value!r}") from problem
+        if array.size == 0:
+            raise ValueError(f"{name} is empty: give at least one value")
         if array.ndim > 1:
             raise ValueError(f"{name} must be a number or one row of numbers, not an array of shape {array.shape}")
         quantity.check(np.atleast_1d(array))
@@ -118,9 +120,11 @@ def run_model(
 
     raises : ValueError for a bad tail or azimuth step, mixed `directions`, or a model without the fidelity asked
     """
-    if tail is not None and not (np.isfinite(tail) and tail >= 0.0):
+    if tail is not None and not (isinstance(tail, (int, float)) and np.isfinite(tail) and tail >= 0.0):
         raise ValueError(f"tail must be at least 0 s, or None for until rest, not {tail!r}")
     size = next(iter(values.values())).size
+    if angle is not None:
+        _finite_angle(angle)
     directions = model.directions
     if directions == 0:
         asked = np.unique(values["directions"])
@@ -139,13 +143,16 @@ def run_model(
     if directions == 2:
         return model.run(Excitation(motion.dt, x, y, z, tail), values, refine, True), np.full(size, np.nan)
     if angle is not None:
-        if not np.isfinite(angle):
-            raise ValueError(f"angle must be a number of degrees, or None for RotD100, not {angle!r}")
         one = Excitation(motion.dt, motion.along(angle), None, z, tail)
         return model.run(one, values, refine, True), np.full(size, angle)
     if not 0.0 < azimuth_step <= 90.0:
         raise ValueError(f"azimuth_step must be above 0 and at most 90 degrees, not {azimuth_step!r}")
     return _worst_direction(model, motion, values, refine, tail, azimuth_step)
+
+
+def _finite_angle(angle: object) -> None:
+    if not (isinstance(angle, (int, float)) and np.isfinite(angle)):
+        raise ValueError(f"angle must be a number of degrees, or None for RotD100, not {angle!r}")
 
 
 def _worst_direction(
@@ -195,10 +202,8 @@ def trace(model: str, motion: Motion, *, angle: float = 0.0, **parameters: Any) 
     row = model_named(model)
     if row.trace is None:
         raise ValueError(f"{model} has no time history of its own; ask for the oscillator's")
-    values = prepare(row, parameters)
-    one = {name: float(column[0]) for name, column in values.items()}
-    if any(column.size > 1 for column in values.values()):
-        raise ValueError("trace follows one object at a time; give single numbers")
+    _finite_angle(angle)
+    one = _single(row, parameters, "trace follows one object at a time")
     two = row.directions == 2 or (row.directions == 0 and one["directions"] == 2.0)
     x = motion.acceleration[0] if two else motion.along(angle)
     y = motion.acceleration[1] if two else None
@@ -217,5 +222,14 @@ def transmit(support: str, motion: Motion, *, refine: int = 4, **parameters: Any
     from pipeline.supports import support_named
 
     row = support_named(support)
-    values = {name: float(v[0]) for name, v in prepare(row.model, parameters).items()}
+    values = _single(row.model, parameters, "transmit passes a motion through one support")
+    if values.get("directions", 2.0) != 2.0:
+        raise ValueError("transmit passes both horizontal directions on; leave directions out")
     return row.transmit(motion, values, refine)
+
+
+def _single(model: Model, parameters: Mapping[str, Any], why: str) -> dict[str, float]:
+    values = prepare(model, parameters)
+    if any(column.size > 1 for column in values.values()):
+        raise ValueError(f"{why}; give single numbers")
+    return {name: float(column[0]) for name, column in values.items()}

@@ -85,7 +85,7 @@ def test_equal_work_is_done_once() -> None:
 def test_the_certificate_agrees_with_the_history(motion: Motion) -> None:
     """Blocks around the onset: uplift_ratio <= 1 by the certificate if and only if the integration never lifts an edge.
 
-    The certificate looks at all directions at once, the history at one: the direction of the largest resultant is tried.
+    The certificate looks at all directions at once, the history at one: that of the largest resultant.
     """
     slopes = np.linspace(0.3, 1.5, 60)
     x, y, z = motion.acceleration
@@ -131,7 +131,7 @@ def test_findings_follow_the_models(motion: Motion) -> None:
 
 def test_rocking_itself_is_the_failure_unless_the_museum_says_otherwise(motion: Motion) -> None:
     """Paper, section 4: onset; an object declared not susceptible fails only by falling over."""
-    # A block of 4 m with B/H' = 0.5 lifts (0.9 g / 0.5) and is far too large to fall: V_max 0.57 m/s < B / sqrt(H') = 1.
+    # 4 m high with B/H' = 0.5 it lifts (0.9 g / 0.5) but is far too large to fall: V_max 0.57 m/s < B / sqrt(H') = 1.
     pillar = replace(
         VASE, title="Stele", support=Support.FREESTANDING, height_m=4.0, base_width_m=2.0, base_depth_m=2.0,
         cg_height_m=2.0, friction=0.6, clearance_m=1.0,
@@ -148,7 +148,9 @@ def test_rocking_itself_is_the_failure_unless_the_museum_says_otherwise(motion: 
 def test_levels_take_the_worst_motion_or_the_mean(motion: Motion) -> None:
     half = motion.scaled(0.5, "test")
     scene = classify(replace(VASE, friction=0.1))
-    found = {combine: {f.model: f for f in run([scene], half, motion, combine=combine)[0]} for combine in ("max", "mean")}
+    found = {
+        combine: {f.model: f for f in run([scene], half, motion, combine=combine)[0]} for combine in ("max", "mean")
+    }
     one, two = (respond("sliding", m, friction_static=0.1)["displacement"].iloc[0] for m in (half, motion))
     assert found["max"]["sliding"].demand == pytest.approx(max(one, two), rel=1e-12)
     assert found["mean"]["sliding"].demand == pytest.approx(0.5 * (one + two), rel=1e-12)

@@ -61,7 +61,9 @@ def test_real_rows(carnegie: dict[str, Item], number: str, expected: str) -> Non
 
 
 def test_a_tall_marble_figure_is_checked_for_stress() -> None:
-    figure = replace(VASE, title="Diana", classification="sculpture", medium="marble", height_m=1.8, width_m=0.6, depth_m=0.5)
+    figure = replace(
+        VASE, title="Diana", classification="sculpture", medium="marble", height_m=1.8, width_m=0.6, depth_m=0.5
+    )
     scene = classify(figure)
     assert scene.object_class == "standing_figure"
     assert scene.models == ("rocking", "sliding", "stress")

@@ -1,4 +1,4 @@
-"""Whatever is recommended has been run again and passes: each advice of the demonstration, once more, by other means."""
+"""Whatever is recommended has been run again and passes: each advice of the demonstration, by other means."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -197,7 +197,9 @@ def test_an_isolator_is_the_right_answer(motion: Motion) -> None:
 
 def test_a_low_friction_pad_is_the_right_answer_for_what_is_clamped_too_hard(motion: Motion) -> None:
     """Clamped it breaks; it does not rock, so it may slide (paper, 2.6)."""
-    clamped = replace(BLOCK, support=Support.FASTENED, section_width_m=0.05, section_depth_m=0.05, allowable_stress_pa=3e5)
+    clamped = replace(
+        BLOCK, support=Support.FASTENED, section_width_m=0.05, section_depth_m=0.05, allowable_stress_pa=3e5
+    )
     advice = solve(clamped, motion)
     assert advice.measure == "friction_isolator"
     assert advice.checks[0].model == "rocking"

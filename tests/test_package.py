@@ -65,7 +65,7 @@ def test_the_wheel_carries_schemas_templates_and_the_demo_site(tmp_path: Path) -
 
 
 def test_a_resource_that_is_not_there_is_named() -> None:
-    with pytest.raises(FileNotFoundError, match="templates/absent.html is neither in"):
+    with pytest.raises(FileNotFoundError, match=r"templates/absent\.html is neither in"):
         resource("templates", "absent.html")
 
 

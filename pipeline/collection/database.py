@@ -5,6 +5,7 @@ from typing import Any
 
 from sqlalchemy import Engine, MetaData, create_engine, event
 from sqlalchemy.engine import URL, make_url
+from sqlalchemy.pool import NullPool
 
 Database = Engine
 """An open database, for those floors that hand it on without speaking SQL."""
@@ -39,7 +40,8 @@ def open_database(where: str | Path) -> Engine:
     url = database_url(where)
     if url.get_backend_name() == "sqlite" and url.database:
         Path(url.database).parent.mkdir(parents=True, exist_ok=True)
-    engine = create_engine(url)
+    # A connection is opened for each piece of work and closed after it: a night holds none while it computes.
+    engine = create_engine(url, poolclass=NullPool)
     if url.get_backend_name() == "sqlite":
         event.listen(engine, "connect", _prepare_sqlite)
     return engine

@@ -179,14 +179,14 @@ def preset_names() -> list[str]:
 def load_mapping(path_or_preset_name: str | Path) -> Mapping:
     """Read a mapping: the path of a TOML file, or the name of a preset such as "carnegie".
 
-    raises : FileNotFoundError for neither, naming the presets; MappingError for a file that cannot be used, naming the
-             file, the key and the remedy
+    raises : MappingError for neither, naming the presets, and for a file that cannot be used, naming the file, the key
+             and the remedy
     """
     wanted = str(path_or_preset_name)
     path = PRESETS / f"{wanted}.toml" if wanted in preset_names() else Path(wanted)
     name = wanted if path.parent == PRESETS else path.name
     if not path.is_file():
-        raise FileNotFoundError(
+        raise MappingError(
             f"mapping {wanted!r} is neither a file nor a preset ({', '.join(preset_names())})"
             f"{closest(wanted, preset_names())}"
         )

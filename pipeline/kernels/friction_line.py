@@ -19,6 +19,9 @@ from pipeline.quantities import Array, G
 CAP = 200.0
 """Seconds after the record at which a body that still moves is cut off."""
 
+FAINT = 1e-12
+"""Share of the largest displacement that is no longer followed."""
+
 
 @kernel
 def _first_beyond(q0: float, q1: float, l0: float, l1: float, span: float) -> float:
@@ -242,6 +245,19 @@ def _split(
 
 
 @kernel
+def _felt(
+    u: float, v: float, s: float, a: float, weight: float, w: float, zeta: float, mu_s: float, mu_k: float
+) -> float:
+    # The absolute acceleration at a sample.  A jump past the hold is not felt: the friction of the slip is.
+    q = a + w * w * u
+    if s == 0.0 and abs(q) <= mu_s * weight:
+        return a
+    if s == 0.0:
+        s = -1.0 if q > 0.0 else 1.0
+    return -(2.0 * zeta * w * v + w * w * u + s * mu_k * weight)
+
+
+@kernel
 def friction_line_one(
     x: Array,
     z: Array,
@@ -263,7 +279,8 @@ def friction_line_one(
     x, z           : (n,) m/s2
     ratio, maxima  : from kernels.quiet, of this very motion; pushes: block maxima of |x|
     out            : (4,) receives max |u| [m], path [m], max transmitted acceleration [m/s2], flags
-    history        : (m, 2) receives u and the absolute acceleration at the samples, as long as it is
+    history        : (m, 2) receives u and the absolute acceleration at the samples, as long as it is; rows after the
+                     record follow the body on without excitation
     """
     n = x.shape[0]
     out[:] = 0.0
@@ -284,7 +301,7 @@ def friction_line_one(
                 i = ahead - 1
         if i < history.shape[0]:
             history[i, 0] = u
-            history[i, 1] = x[i] if s == 0.0 else -(2.0 * zeta * w * v + w * w * u + s * mu_k * max(0.0, G + z[i]))
+            history[i, 1] = _felt(u, v, s, x[i], max(0.0, G + z[i]), w, zeta, mu_s, mu_k)
         u, v, s = _split(
             u,
             v,
@@ -304,7 +321,12 @@ def friction_line_one(
         i += 1
     if n - 1 < history.shape[0]:
         history[n - 1, 0] = u
-        history[n - 1, 1] = 0.0 if s == 0.0 else -(2.0 * zeta * w * v + w * w * u + s * mu_k * G)
+        history[n - 1, 1] = _felt(u, v, s, x[n - 1], max(0.0, G + z[n - 1]), w, zeta, mu_s, mu_k)
+    for k in range(n, history.shape[0]):
+        for _ in range(pieces):
+            u, v, s = _piece(u, v, s, 0.0, 0.0, G, 0.0, dt / pieces, w, zeta, mu_s, mu_k, out)
+        history[k, 0] = u
+        history[k, 1] = _felt(u, v, s, 0.0, G, w, zeta, mu_s, mu_k)
     return abs(_coast(u, v, s, w, zeta, mu_s, mu_k, tail, out))
 
 
@@ -329,6 +351,10 @@ def _coast(
         u, v, s = _piece(u, v, s, 0.0, 0.0, G, 0.0, span, w, zeta, mu_s, mu_k, out)
         t += span
         if s == 0.0:
+            return u
+        b, c = w * w, 2.0 * zeta * w
+        if tail < 0.0 and abs(b * abs(u) - mu_k * G) <= 2.0 * c * abs(v) and c * abs(v) <= FAINT * b * out[0]:
+            # Overdamped, it creeps towards the end of the friction's reach and never gets there.
             return u
         if tail < 0.0 and mu_k == 0.0 and 0.5 * v * v + 0.5 * w * w * u * u <= 1e-24 * w * w * out[0] * out[0]:
             return u

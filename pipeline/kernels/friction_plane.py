@@ -13,88 +13,19 @@ import numpy as np
 
 from pipeline.kernels import kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
-from pipeline.kernels.friction_line import CAP
-from pipeline.kernels.plane_step import plane_rates, plane_step
+from pipeline.kernels.friction_line import CAP, FAINT
+from pipeline.kernels.plane_step import felt, plane_rates, plane_step, raise_peaks, slowest
 from pipeline.kernels.quiet import largest, next_above
 from pipeline.quantities import Array, G
 
 START = 1e-5
 """Speed, as a share of the scale of speeds, up to which the expansion at slip onset is used."""
+CREEP = 200.0
+"""Relaxations of the direction of friction in a stretch from which on a body of next to no speed is taken to creep."""
+FAINT_SPEED = 1e-6
+"""Speed, as a share of the scale of speeds, below which a body may creep."""
 STOP = 1e-5
 """Speed, as a share of the scale of speeds, below which a decelerating body is brought to rest in closed form."""
-
-
-@kernel
-def _felt(state: Array, grip: float, b: float, c: float) -> float:
-    # Absolute acceleration of a slipping body: what spring, dashpot and friction push it with.
-    vx, vy = state[2], state[3]
-    speed = math.hypot(vx, vy)
-    drag = c + (grip / speed if speed > 0.0 else 0.0)
-    return math.hypot(drag * vx + b * state[0], drag * vy + b * state[1])
-
-
-@kernel
-def _felt_rate(state: Array, ax: float, ay: float, grip: float, grip1: float, b: float, c: float) -> float:
-    # Half the rate of the squared absolute acceleration.
-    ux, uy, vx, vy = state[0], state[1], state[2], state[3]
-    speed = math.hypot(vx, vy)
-    if speed == 0.0:
-        return 0.0
-    qx, qy, _ = plane_rates(ux, uy, vx, vy, ax, ay, grip, b, c)
-    ex, ey = vx / speed, vy / speed
-    along = ex * qx + ey * qy
-    yx, yy = c * vx + b * ux + grip * ex, c * vy + b * uy + grip * ey
-    rx = c * qx + b * vx + grip1 * ex + grip * (qx - ex * along) / speed
-    ry = c * qy + b * vy + grip1 * ey + grip * (qy - ey * along) / speed
-    return yx * rx + yy * ry
-
-
-@kernel
-def _peaks(
-    state: Array, after: Array, trial: Array, load: Array, t: float, h: float, b: float, c: float, out: Array
-) -> None:
-    # Raise the running maxima by what happened inside an accepted step: the step is taken again to the instant at
-    # which the radius (or the felt acceleration) is stationary.
-    r0, r1 = math.hypot(state[0], state[1]), math.hypot(after[0], after[1])
-    out[0] = max(out[0], r1)
-    begin = state[0] * state[2] + state[1] * state[3]
-    end = after[0] * after[2] + after[1] * after[3]
-    if begin > 0.0 > end and max(r0, r1) + h * math.hypot(state[2], state[3]) > out[0]:
-        low, high, at_low, at_high = 0.0, h, begin, end
-        for k in range(24):
-            tau = (low * at_high - high * at_low) / (at_high - at_low) if k % 3 < 2 else 0.5 * (low + high)
-            plane_step(state, load, t, tau, b, c, trial)
-            value = trial[0] * trial[2] + trial[1] * trial[3]
-            if value > 0.0:
-                low, at_low = tau, value
-            else:
-                high, at_high = tau, value
-            if value == 0.0 or high - low < 1e-11 * h:
-                break
-        out[0] = max(out[0], math.hypot(trial[0], trial[1]))
-    g0, g1 = load[4] + load[5] * t, load[4] + load[5] * (t + h)
-    y0, y1 = _felt(state, g0, b, c), _felt(after, g1, b, c)
-    out[2] = max(out[2], y0, y1)
-    if b > 0.0 and 1.1 * max(y0, y1) > out[2]:
-        begin = _felt_rate(state, load[0] + load[1] * t, load[2] + load[3] * t, g0, load[5], b, c)
-        s = t + h
-        end = _felt_rate(after, load[0] + load[1] * s, load[2] + load[3] * s, g1, load[5], b, c)
-        if begin > 0.0 > end:
-            low, high, at_low, at_high = 0.0, h, begin, end
-            for k in range(24):
-                tau = (low * at_high - high * at_low) / (at_high - at_low) if k % 3 < 2 else 0.5 * (low + high)
-                plane_step(state, load, t, tau, b, c, trial)
-                s = t + tau
-                value = _felt_rate(
-                    trial, load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, load[5], b, c
-                )
-                if value > 0.0:
-                    low, at_low = tau, value
-                else:
-                    high, at_high = tau, value
-                if value == 0.0 or high - low < 1e-11 * h:
-                    break
-            out[2] = max(out[2], _felt(trial, load[4] + load[5] * (t + tau), b, c))
 
 
 @kernel
@@ -114,9 +45,7 @@ def _onset(qx: float, qy: float, q1x: float, q1y: float, l0: float, l1: float, s
 
 
 @kernel
-def _start(
-    state: Array, load: Array, t: float, left: float, qx: float, qy: float, scale: float, c: float
-) -> float:
+def _start(state: Array, load: Array, t: float, left: float, qx: float, qy: float, scale: float, c: float) -> float:
     # Slip from rest along the expansion v = (e t + j t^2 / 2) d, d = d0 + d1 t, up to START times the scale of speeds.
     # Returns the time used.
     size = math.hypot(qx, qy)
@@ -169,15 +98,13 @@ def _piece(
     guess: float,
     b: float,
     c: float,
-    mu_s: float,
-    mu_k: float,
     scale: float,
     rtol: float,
     out: Array,
 ) -> tuple[bool, float]:
-    # One stretch on which excitation and grip are linear.  load[4:6] is the kinetic grip mu_k N; state as in _step.
+    # One stretch on which excitation, grip and hold are linear.  load[4:6] is the kinetic grip mu_k N, load[6:8] the
+    # hold mu_s N; state as in plane_step.
     # Returns whether the body slips at the end, and the step size to begin the next stretch with.
-    share = mu_s / mu_k if mu_k > 0.0 else 0.0
     t = 0.0
     for _ in range(200000):
         left = span - t
@@ -188,7 +115,7 @@ def _piece(
         if not slipping:
             state[2], state[3] = 0.0, 0.0
             qx, qy = ax + b * state[0], ay + b * state[1]
-            hold, hold1 = share * grip, share * load[5]
+            hold, hold1 = load[6] + load[7] * t, load[7]
             if math.hypot(qx, qy) <= hold:
                 wait = _onset(qx, qy, load[1], load[3], hold, hold1, left)
                 out[2] = max(out[2], math.hypot(ax, ay))
@@ -205,7 +132,7 @@ def _piece(
                 return True, guess
             t += _start(state, load, t, left, qx, qy, scale, c)
             out[0] = max(out[0], math.hypot(state[0], state[1]))
-            out[2] = max(out[2], _felt(state, load[4] + load[5] * t, b, c))
+            out[2] = max(out[2], felt(state, load[4] + load[5] * t, b, c))
             guess = min(guess, left)
             continue
         vx, vy = state[2], state[3]
@@ -219,7 +146,8 @@ def _piece(
             size = math.hypot(rx, ry)
             astray = abs(rx * vy - ry * vx) / size if size > 0.0 else 0.0
             qx, qy = ax + b * state[0], ay + b * state[1]
-            stays = math.hypot(qx, qy) <= share * grip
+            push = math.hypot(qx, qy)
+            stays = push <= load[6] + load[7] * t
             wait = speed / slowing if slowing > 0.0 else math.inf
             if wait <= left and (stays or astray <= 1e-4 * speed):
                 gone = 0.5 * speed * wait
@@ -230,6 +158,21 @@ def _piece(
                 t += wait
                 slipping = False
                 continue
+            if speed <= FAINT_SPEED * scale and grip * left > CREEP * speed and push > 0.0:
+                # It creeps: friction keeps it on the line of the push, and its speed follows push and drag alone.
+                gain, rise = push - grip, (qx * load[1] + qy * load[3]) / push - load[5]
+                h = 0.25 * left
+                h = min(h, FAINT_SPEED * scale / max(abs(gain), 1e-300))
+                h = min(h, math.sqrt(FAINT_SPEED * scale / max(abs(rise), 1e-300)))
+                later = max(0.0, (speed + h * (gain + 0.5 * rise * h)) / (1.0 + c * h))
+                gone = 0.5 * h * (speed + later)
+                state[0] -= gone * qx / push
+                state[1] -= gone * qy / push
+                state[2], state[3] = -later * qx / push, -later * qy / push
+                state[4] += gone
+                out[0] = max(out[0], math.hypot(state[0], state[1]))
+                t += h
+                continue
         # The direction of friction relaxes at the rate grip / speed; a larger step would only be rejected.
         h = min(guess, left)
         if grip > 0.0:
@@ -239,13 +182,39 @@ def _piece(
         if error > allowed and h > 1e-13 * span:
             guess = h * max(0.2, 0.9 * (allowed / error) ** 0.2)
             continue
-        _peaks(state, after, trial, load, t, h, b, c, out)
+        begin, end = rx * vx + ry * vy, 0.0
+        if begin < 0.0:
+            fx, fy, _s = plane_rates(
+                after[0],
+                after[1],
+                after[2],
+                after[3],
+                load[0] + load[1] * (t + h),
+                load[2] + load[3] * (t + h),
+                load[4] + load[5] * (t + h),
+                b,
+                c,
+            )
+            end = fx * after[2] + fy * after[3]
+        if begin < 0.0 < end and speed > STOP * scale and load[6] + load[7] * t > 0.0:
+            # The speed has a least value inside: nothing, for a body that reverses on a line, and there it may stick.
+            # Go most of the way, until the closed form above takes over.
+            tau = slowest(state, trial, load, t, h, b, c, begin, end)
+            if math.hypot(trial[2], trial[3]) <= 1e-3 * speed:
+                guess = 0.9 * tau
+                continue
+        raise_peaks(state, after, trial, load, t, h, b, c, out)
         state[:] = after
         t += h
         grow = 5.0 if error == 0.0 else min(5.0, max(0.3, 0.9 * (allowed / error) ** 0.2))
         guess = min(h * grow, 4.0 * span)
     out[3] = float(int(out[3]) | EVENT_CAP)
     return slipping, guess
+
+
+@kernel
+def _weigh(load: Array, mu_s: float, mu_k: float, n0: float, n1: float) -> None:
+    load[4], load[5], load[6], load[7] = mu_k * n0, mu_k * n1, mu_s * n0, mu_s * n1
 
 
 @kernel
@@ -281,14 +250,13 @@ def _stretch(
         cut = -n0 / n1
     load[0], load[1], load[2], load[3] = x0, x1, y0, y1
     if cut < 0.0:
-        held = max(n0, end) > 0.0
-        load[4], load[5] = (mu_k * max(0.0, n0), mu_k * n1) if held else (0.0, 0.0)
-        return _piece(state, after, trial, load, span, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out)
-    load[4], load[5] = (mu_k * n0, mu_k * n1) if n0 > 0.0 else (0.0, 0.0)
-    slipping, guess = _piece(state, after, trial, load, cut, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out)
+        _weigh(load, mu_s, mu_k, max(0.0, n0), n1 if max(n0, end) > 0.0 else 0.0)
+        return _piece(state, after, trial, load, span, slipping, guess, b, c, scale, rtol, out)
+    _weigh(load, mu_s, mu_k, max(0.0, n0), n1 if n0 > 0.0 else 0.0)
+    slipping, guess = _piece(state, after, trial, load, cut, slipping, guess, b, c, scale, rtol, out)
     load[0], load[2] = x0 + x1 * cut, y0 + y1 * cut
-    load[4], load[5] = (0.0, mu_k * n1) if n0 < 0.0 else (0.0, 0.0)
-    return _piece(state, after, trial, load, span - cut, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out)
+    _weigh(load, mu_s, mu_k, 0.0, n1 if n0 < 0.0 else 0.0)
+    return _piece(state, after, trial, load, span - cut, slipping, guess, b, c, scale, rtol, out)
 
 
 @kernel
@@ -317,7 +285,8 @@ def friction_plane_one(
     ratio, maxima  : from kernels.quiet, of this very motion
     rtol           : tolerance of the velocity in each sample interval, relative to the scale of speeds
     out            : (4,) receives max |u| [m], path [m], max transmitted acceleration [m/s2], flags
-    history        : (m, 4) receives ux, uy and the absolute accelerations at the samples, as long as it is
+    history        : (m, 4) receives ux, uy and the absolute accelerations at the samples, as long as it is; rows after
+                     the record follow the body on without excitation
     """
     n = x.shape[0]
     out[:] = 0.0
@@ -327,7 +296,7 @@ def friction_plane_one(
     # Nothing to slip over a denormal friction: it divides grips by it.
     if mu_k < 1e-300:
         mu_k = 0.0
-    state, after, trial, load = np.zeros(5), np.zeros(5), np.zeros(5), np.zeros(6)
+    state, after, trial, load = np.zeros(5), np.zeros(5), np.zeros(5), np.zeros(8)
     scale = peak * dt
     slipping, guess = False, dt
     recording = history.shape[0] > 0
@@ -342,7 +311,7 @@ def friction_plane_one(
                 out[2] = max(out[2], largest(push, pushes, i, ahead))
                 i = ahead - 1
         if i < history.shape[0]:
-            _note(history, i, state, x[i], y[i], mu_k * max(0.0, G + z[i]), b, c, slipping)
+            _note(history, i, state, x[i], y[i], mu_s, mu_k, max(0.0, G + z[i]), b, c, slipping)
         slipping, guess = _stretch(
             state,
             after,
@@ -368,7 +337,13 @@ def friction_plane_one(
         scale = max(scale, math.hypot(state[2], state[3]))
         i += 1
     if n - 1 < history.shape[0]:
-        _note(history, n - 1, state, x[n - 1], y[n - 1], mu_k * max(0.0, G + z[n - 1]), b, c, slipping)
+        _note(history, n - 1, state, x[n - 1], y[n - 1], mu_s, mu_k, max(0.0, G + z[n - 1]), b, c, slipping)
+    if history.shape[0] > n:
+        load[:] = 0.0
+        _weigh(load, mu_s, mu_k, G, 0.0)
+        for k in range(n, history.shape[0]):
+            slipping, guess = _piece(state, after, trial, load, dt, slipping, guess, b, c, scale, rtol, out)
+            _note(history, k, state, 0.0, 0.0, mu_s, mu_k, G, b, c, slipping)
     _coast(state, after, trial, load, slipping, guess, w, zeta, mu_s, mu_k, tail, scale, rtol, dt, out)
     out[1] = state[4]
     return math.hypot(state[0], state[1])
@@ -376,13 +351,29 @@ def friction_plane_one(
 
 @kernel
 def _note(
-    history: Array, i: int, state: Array, ax: float, ay: float, grip: float, b: float, c: float, slipping: bool
+    history: Array,
+    i: int,
+    state: Array,
+    ax: float,
+    ay: float,
+    mu_s: float,
+    mu_k: float,
+    weight: float,
+    b: float,
+    c: float,
+    slipping: bool,
 ) -> None:
     history[i, 0], history[i, 1] = state[0], state[1]
     speed = math.hypot(state[2], state[3])
+    qx, qy = ax + b * state[0], ay + b * state[1]
+    push = math.hypot(qx, qy)
     if slipping and speed > 0.0:
-        drag = c + grip / speed
+        drag = c + mu_k * weight / speed
         history[i, 2], history[i, 3] = -drag * state[2] - b * state[0], -drag * state[3] - b * state[1]
+    elif push > mu_s * weight:
+        # A jump past the hold is not felt: what is felt is the friction of the slip that begins here.
+        history[i, 2] = mu_k * weight * qx / push - b * state[0]
+        history[i, 3] = mu_k * weight * qy / push - b * state[1]
     else:
         history[i, 2], history[i, 3] = ax, ay
 
@@ -419,12 +410,19 @@ def _coast(
     stop = tail if tail > 0.0 else CAP
     t = 0.0
     span = max(dt, min(0.1, 0.05 * stop)) if w == 0.0 else min(0.25 / (w * (1.0 + zeta)), max(dt, 0.01))
-    load[0], load[1], load[2], load[3], load[4], load[5] = 0.0, 0.0, 0.0, 0.0, mu_k * G, 0.0
+    load[:] = 0.0
+    _weigh(load, mu_s, mu_k, G, 0.0)
     while t < stop:
         now = min(span, stop - t)
-        slipping, guess = _piece(state, after, trial, load, now, slipping, guess, b, c, mu_s, mu_k, scale, rtol, out)
+        slipping, guess = _piece(state, after, trial, load, now, slipping, guess, b, c, scale, rtol, out)
         t += now
         if not slipping:
+            return
+        speed = math.hypot(state[2], state[3])
+        excess = abs(b * math.hypot(state[0], state[1]) - mu_k * G)
+        if tail < 0.0 and excess <= 2.0 * c * speed and c * speed <= FAINT * b * out[0]:
+            # Overdamped, it creeps towards the end of the friction's reach and never gets there: what is left of the
+            # way is less than any digit of it.
             return
         if tail < 0.0 and mu_k == 0.0:
             energy = state[2] * state[2] + state[3] * state[3] + b * (state[0] * state[0] + state[1] * state[1])

@@ -125,19 +125,24 @@ def peak_inside(
 
     span must be short against the period (w span < 1), so that y has at most two stationary points inside.
     """
+    low = 0.0
     begin = slope(u, v, f0, f1, w, zeta, 0.0, c1, cu, cv)
+    if begin == 0.0:
+        # A stationary beginning (a body at rest) has no sign of its own: look just behind it.
+        low = 1e-6 * span
+        begin = slope(u, v, f0, f1, w, zeta, low, c1, cu, cv)
     end = slope(u, v, f0, f1, w, zeta, span, c1, cu, cv)
     if begin == 0.0 and end == 0.0:
         return 0.0
     if begin * end < 0.0:
-        t = _root_of_slope(u, v, f0, f1, w, zeta, c1, cu, cv, 0.0, span, begin, end)
+        t = _root_of_slope(u, v, f0, f1, w, zeta, c1, cu, cv, low, span, begin, end)
         un, vn = advance(u, v, f0, f1, w, zeta, t)
         return abs(c0 + c1 * t + cu * un + cv * vn)
     best = 0.0
     middle = 0.5 * span
     inside = slope(u, v, f0, f1, w, zeta, middle, c1, cu, cv)
     if begin * inside < 0.0:
-        t = _root_of_slope(u, v, f0, f1, w, zeta, c1, cu, cv, 0.0, middle, begin, inside)
+        t = _root_of_slope(u, v, f0, f1, w, zeta, c1, cu, cv, low, middle, begin, inside)
         un, vn = advance(u, v, f0, f1, w, zeta, t)
         best = abs(c0 + c1 * t + cu * un + cv * vn)
         t = _root_of_slope(u, v, f0, f1, w, zeta, c1, cu, cv, middle, span, inside, end)

@@ -55,6 +55,11 @@ def oscillator_one(
         if i + 1 < history.shape[0]:
             history[i + 1, 0] = u
             history[i + 1, 1] = base[i + 1] * (1.0 - share) - share * (c * v + b * u)
+    for k in range(n, history.shape[0]):
+        for _ in range(pieces):
+            u, v = u * g + v * h, -u * b * h + v * (g - c * h)
+        history[k, 0] = u
+        history[k, 1] = -share * (c * v + b * u)
     # The excitation drops to zero at the last sample: a jump, felt when share is not 1.
     max_y = max(max_y, abs(share * (c * v + b * u)))
     # Free decay: u and y obey the same equation, so their largest extremes come within the first period; an

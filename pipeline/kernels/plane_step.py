@@ -136,3 +136,110 @@ def plane_step(state: Array, load: Array, t: float, h: float, b: float, c: float
     ex = e1 * kx1 + e3 * kx3 + e4 * kx4 + e5 * kx5 + e6 * kx6 + e7 * kx7
     ey = e1 * ky1 + e3 * ky3 + e4 * ky4 + e5 * ky5 + e6 * ky6 + e7 * ky7
     return h * math.hypot(ex, ey)
+
+
+@kernel
+def felt(state: Array, grip: float, b: float, c: float) -> float:
+    """Return the absolute acceleration of a slipping body [m/s2]: what spring, dashpot and friction push it with."""
+    vx, vy = state[2], state[3]
+    speed = math.hypot(vx, vy)
+    drag = c + (grip / speed if speed > 0.0 else 0.0)
+    return math.hypot(drag * vx + b * state[0], drag * vy + b * state[1])
+
+
+@kernel
+def felt_rate(state: Array, ax: float, ay: float, grip: float, grip1: float, b: float, c: float) -> float:
+    """Return half the rate of the squared absolute acceleration [m2/s5]."""
+    ux, uy, vx, vy = state[0], state[1], state[2], state[3]
+    speed = math.hypot(vx, vy)
+    if speed == 0.0:
+        return 0.0
+    qx, qy, _ = plane_rates(ux, uy, vx, vy, ax, ay, grip, b, c)
+    ex, ey = vx / speed, vy / speed
+    along = ex * qx + ey * qy
+    yx, yy = c * vx + b * ux + grip * ex, c * vy + b * uy + grip * ey
+    rx = c * qx + b * vx + grip1 * ex + grip * (qx - ex * along) / speed
+    ry = c * qy + b * vy + grip1 * ey + grip * (qy - ey * along) / speed
+    return yx * rx + yy * ry
+
+
+@kernel
+def raise_peaks(
+    state: Array, after: Array, trial: Array, load: Array, t: float, h: float, b: float, c: float, out: Array
+) -> None:
+    """Raise the running maxima of ``out`` by what happened inside an accepted step.
+
+    The step is taken again to the instant at which the radius (or the felt acceleration) is stationary.
+    """
+    r0, r1 = math.hypot(state[0], state[1]), math.hypot(after[0], after[1])
+    out[0] = max(out[0], r1)
+    begin = state[0] * state[2] + state[1] * state[3]
+    end = after[0] * after[2] + after[1] * after[3]
+    if begin > 0.0 > end and max(r0, r1) + h * math.hypot(state[2], state[3]) > out[0]:
+        low, high, at_low, at_high = 0.0, h, begin, end
+        for k in range(24):
+            tau = (low * at_high - high * at_low) / (at_high - at_low) if k % 3 < 2 else 0.5 * (low + high)
+            plane_step(state, load, t, tau, b, c, trial)
+            value = trial[0] * trial[2] + trial[1] * trial[3]
+            if value > 0.0:
+                low, at_low = tau, value
+            else:
+                high, at_high = tau, value
+            if value == 0.0 or high - low < 1e-11 * h:
+                break
+        out[0] = max(out[0], math.hypot(trial[0], trial[1]))
+    g0, g1 = load[4] + load[5] * t, load[4] + load[5] * (t + h)
+    y0, y1 = felt(state, g0, b, c), felt(after, g1, b, c)
+    out[2] = max(out[2], y0, y1)
+    if b > 0.0 and 1.1 * max(y0, y1) > out[2]:
+        begin = felt_rate(state, load[0] + load[1] * t, load[2] + load[3] * t, g0, load[5], b, c)
+        s = t + h
+        end = felt_rate(after, load[0] + load[1] * s, load[2] + load[3] * s, g1, load[5], b, c)
+        if begin > 0.0 > end:
+            low, high, at_low, at_high = 0.0, h, begin, end
+            for k in range(24):
+                tau = (low * at_high - high * at_low) / (at_high - at_low) if k % 3 < 2 else 0.5 * (low + high)
+                plane_step(state, load, t, tau, b, c, trial)
+                s = t + tau
+                value = felt_rate(
+                    trial, load[0] + load[1] * s, load[2] + load[3] * s, load[4] + load[5] * s, load[5], b, c
+                )
+                if value > 0.0:
+                    low, at_low = tau, value
+                else:
+                    high, at_high = tau, value
+                if value == 0.0 or high - low < 1e-11 * h:
+                    break
+            out[2] = max(out[2], felt(trial, load[4] + load[5] * (t + tau), b, c))
+
+
+@kernel
+def slowest(
+    state: Array, trial: Array, load: Array, t: float, h: float, b: float, c: float, begin: float, end: float
+) -> float:
+    """Return the step length at which the speed is least (its rate changes sign); trial receives the state there."""
+    low, high, at_low, at_high = 0.0, h, begin, end
+    tau = h
+    for k in range(40):
+        tau = (low * at_high - high * at_low) / (at_high - at_low) if k % 3 < 2 else 0.5 * (low + high)
+        plane_step(state, load, t, tau, b, c, trial)
+        s = t + tau
+        rx, ry, _s = plane_rates(
+            trial[0],
+            trial[1],
+            trial[2],
+            trial[3],
+            load[0] + load[1] * s,
+            load[2] + load[3] * s,
+            load[4] + load[5] * s,
+            b,
+            c,
+        )
+        value = rx * trial[2] + ry * trial[3]
+        if value < 0.0:
+            low, at_low = tau, value
+        else:
+            high, at_high = tau, value
+        if value == 0.0 or high - low < 1e-15 * h:
+            break
+    return tau

@@ -36,5 +36,5 @@ def model_named(name: str) -> Model:
             return model
     names = [m.name for m in MODELS]
     close = get_close_matches(name, names, n=1)
-    hint = f"; did you mean {close[0]!r}?" if close else ""
+    hint = f"; did you mean {close[0]!r}?" if close else "."
     raise ValueError(f"there is no model {name!r}{hint} The models are: {', '.join(names)}")

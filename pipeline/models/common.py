@@ -81,6 +81,11 @@ def _velocity(a: Array, dt: float) -> Array:
     return np.concatenate([[0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1]))])
 
 
+def after_record(motion: Excitation) -> int:
+    """Return how many samples a time history goes on after the record: those of its tail."""
+    return 0 if motion.tail is None else int(np.ceil(motion.tail / motion.dt))
+
+
 def lift_ratios(motion: Excitation) -> tuple[float, float]:
     """Return the largest -a / N and a / N over time, N = max(0, g + a_z): what lifts either edge of a body of slope 1.
 
@@ -95,8 +100,11 @@ def lift_ratios(motion: Excitation) -> tuple[float, float]:
 
 def _ratio(push: Array, weight: Array) -> float:
     push = np.maximum(push, 0.0)
-    free = (weight == 0.0) & (push > 0.0)
-    if free.any():
+    # A push at a neighbouring sample is a push at the instant at which the weight is lost between them.
+    nearby = push.copy()
+    nearby[1:] = np.maximum(nearby[1:], push[:-1])
+    nearby[:-1] = np.maximum(nearby[:-1], push[1:])
+    if ((weight == 0.0) & (nearby > 0.0)).any():
         return float("inf")
     return float(np.max(np.divide(push, weight, out=np.zeros_like(push), where=weight > 0.0)))
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from pipeline.kernels.friction_line import friction_line_batch, friction_line_one
 from pipeline.kernels.friction_plane import friction_plane_batch, friction_plane_one
-from pipeline.models.common import ROUNDING, Quiet
+from pipeline.models.common import ROUNDING, Quiet, after_record
 from pipeline.quantities import Array
 from pipeline.records import Columns, Excitation
 
@@ -67,13 +67,13 @@ def stick_slip_trace(motion: Excitation, w: float, zeta: float, mu_s: float, mu_
     quiet = Quiet(motion)
     out = np.empty(4)
     if motion.y is None:
-        line = np.zeros((quiet.x.size, 2))
+        line = np.zeros((quiet.x.size + after_record(motion), 2))
         friction_line_one(
             quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.pushes, quiet.dt, w, zeta, mu_s, mu_k, 0.0, 1, out, line
         )
-        still = np.zeros(quiet.x.size)
+        still = np.zeros(line.shape[0])
         return {"u_x": line[:, 0], "u_y": still, "a_x": line[:, 1], "a_y": still}
-    plane = np.zeros((quiet.x.size, 4))
+    plane = np.zeros((quiet.x.size + after_record(motion), 4))
     friction_plane_one(
         quiet.x,
         quiet.y,
@@ -97,6 +97,13 @@ def stick_slip_trace(motion: Excitation, w: float, zeta: float, mu_s: float, mu_
 
 
 def kinetic(parameters: Mapping[str, Array]) -> Array:
-    """Return the kinetic friction: the static one where none is given."""
-    mu_k = parameters["friction_kinetic"]
-    return np.where(np.isnan(mu_k), parameters["friction_static"], mu_k)
+    """Return the kinetic friction: the static one where none is given.
+
+    raises : ValueError where the kinetic friction is above the static one: such a body could neither slip nor stick
+    """
+    mu_s, mu_k = parameters["friction_static"], parameters["friction_kinetic"]
+    above = np.flatnonzero(mu_k > mu_s)
+    if above.size:
+        at = int(above[0])
+        raise ValueError(f"friction_kinetic ({mu_k[at]:g}) is above friction_static ({mu_s[at]:g}) (entry {at})")
+    return np.where(np.isnan(mu_k), mu_s, mu_k)

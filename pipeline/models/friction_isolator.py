@@ -22,8 +22,8 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
 
 
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
-    mu_s, mu_k = parameters["friction_static"], parameters["friction_kinetic"]
-    return stick_slip_trace(motion, 0.0, 0.0, mu_s, mu_s if np.isnan(mu_k) else mu_k)
+    mu_k = kinetic({name: np.array([value]) for name, value in parameters.items()})
+    return stick_slip_trace(motion, 0.0, 0.0, parameters["friction_static"], float(mu_k[0]))
 
 
 def _applies(scene: Scene) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from pipeline.kernels.oscillator import oscillator_batch, oscillator_one
-from pipeline.models.common import ROUNDING
+from pipeline.models.common import ROUNDING, after_record
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Columns, Excitation, Model, Scene
@@ -38,7 +38,7 @@ def _run(
 
 
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
-    history = np.zeros((motion.x.size, 2))
+    history = np.zeros((motion.x.size + after_record(motion), 2))
     w = 2.0 * np.pi * parameters["frequency"]
     oscillator_one(np.ascontiguousarray(motion.x), motion.dt, w, parameters["damping"], 1.0, 0.0, 1, history)
     # history holds a + u'' with the sign of the base's acceleration.

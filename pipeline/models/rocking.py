@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from pipeline.kernels import flags
 from pipeline.kernels.rocking import rocking_batch, rocking_one
 from pipeline.models.common import (
     NO_HISTORY,
@@ -52,15 +53,17 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
         rocking_batch(
             quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.dt, quiet.peak, body, initial, quiet.tail, steps, results
         )
-    note = fine[:, 5].astype(np.int64) | np.where(estimate & (coarse[:, 1] != fine[:, 1]), SENSITIVE, 0)
     to_positive, to_negative = lift_ratios(motion)
+    uplift = np.maximum(to_positive / np.tan(body[:, 0]), to_negative / np.tan(body[:, 1]))
+    note = fine[:, 5].astype(np.int64) | np.where(estimate & (coarse[:, 1] != fine[:, 1]), SENSITIVE, 0)
+    note |= np.where(np.isinf(uplift), flags.CONTACT_LOST, 0)
     return {
         "rotation_ratio": fine[:, 0],
         "overturned": fine[:, 1],
         "overturning_time": np.where(fine[:, 2] < 0.0, np.nan, fine[:, 2]),
         "uplift_time": np.where(fine[:, 3] < 0.0, np.nan, fine[:, 3]),
         "impacts": fine[:, 4],
-        "uplift_ratio": np.maximum(to_positive / np.tan(body[:, 0]), to_negative / np.tan(body[:, 1])),
+        "uplift_ratio": uplift,
         "error": np.abs(fine[:, 0] - coarse[:, 0]) + 1e-12 * fine[:, 0],
         "note": note.astype(np.float64),
     }
@@ -87,7 +90,7 @@ def _screen(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
 
 
 def _say(row: Mapping[str, float], parameters: Mapping[str, float]) -> str:
-    slope = parameters["half_width"] / parameters["cg_height"]
+    slope = float(np.fmin(parameters["half_width"], parameters["half_width_other"])) / parameters["cg_height"]
     rocks = "rocks" if row["uplift_ratio"] > 1.0 else "does not rock"
     falls = "overturns" if row["overturned"] else "does not overturn"
     return (

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from pipeline.kernels.oscillator import oscillator_one
-from pipeline.models.common import ROUNDING, needs
+from pipeline.models.common import ROUNDING, after_record, needs
 from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.models.oscillator import oscillate
 from pipeline.quantities import Array, Quantity
@@ -28,7 +28,7 @@ def _run(
 
 
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
-    history = np.zeros((motion.x.size, 2))
+    history = np.zeros((motion.x.size + after_record(motion), 2))
     w = 2.0 * np.pi * parameters["frequency"]
     share = 1.0 / parameters["inertia_ratio"]
     oscillator_one(np.ascontiguousarray(motion.x), motion.dt, w, parameters["damping"], share, 0.0, 1, history)

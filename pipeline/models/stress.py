@@ -41,13 +41,14 @@ def section_stresses(push: Array, parameters: Mapping[str, Array]) -> Columns:
     share = push / G
     too_much = share >= 1.0
     tilt = np.degrees(np.arcsin(np.where(too_much, 0.0, share)))
-    tension = bending - weight
+    tension, compression = bending - weight, bending + weight
     return {
         "tension": tension,
-        "compression": bending + weight,
+        "compression": compression,
         "shear": mass * push / area,
         "tilt": np.where(too_much, np.nan, tilt),
-        "error": ROUNDING * np.abs(tension),
+        # Tension is a difference: its error is of the size of what is subtracted.
+        "error": ROUNDING * compression,
         "note": np.where(too_much, float(NO_TILT), 0.0),
     }
 

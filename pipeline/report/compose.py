@@ -2,19 +2,18 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from math import inf
 
-from pipeline.records import Assessment, MotionSummary, Recommendation, RunRecord
-from pipeline.report.describe import Describer, approval, motion_anchor
+from pipeline.records import Assessment, Recommendation, RunRecord
+from pipeline.report.describe import Describer
 from pipeline.report.errors import ReportError
+from pipeline.report.ground import motion_view
 from pipeline.report.ranking import state_of, urgency
-from pipeline.report.text import clean, plain, slug, words
+from pipeline.report.text import clean, slug, words
 from pipeline.report.units import Units
 from pipeline.report.views import (
     STATES,
     Counts,
     GalleryView,
-    MotionView,
     MuseumView,
     ObjectView,
     State,
@@ -26,21 +25,6 @@ STORED_PAGE = "not-on-display.html"
 
 _HELPLESS = "\0"
 """Groups the objects for which nothing helps; no measure of a table can have this name."""
-
-_MEASURE_UNITS = (
-    ("pga", "m/s2"),
-    ("a_max", "m/s2"),
-    ("rms_acceleration", "m/s2"),
-    ("pgv", "m/s"),
-    ("v_max", "m/s"),
-    ("pgd", "m"),
-    ("d_max", "m"),
-    ("d5_", "s"),
-    ("significant_duration", "s"),
-    ("duration", "s"),
-    ("pulse_period", "s"),
-    ("tp", "s"),
-)
 
 
 def compose(record: RunRecord, units: Units) -> MuseumView:
@@ -71,11 +55,12 @@ def compose(record: RunRecord, units: Units) -> MuseumView:
         started=clean(record.started),
         finished=clean(record.finished),
         version=clean(record.version),
+        credit=clean(str(record.settings.get("credit") or "")),
         demonstration=record.demonstration,
         counts=_total(g.counts for g in galleries),
         galleries=tuple(galleries),
         first=tuple([o for o in order if o.state is State.ACT][:8]),
-        motions=tuple(_motion(m, units) for m in record.motions),
+        motions=tuple(motion_view(m, record.charts, units) for m in record.motions),
         level_notes=tuple(clean(n) for n in record.level_notes),
     )
 
@@ -108,7 +93,8 @@ def _gallery(
         counts=Counts(*(by_state[state] for state in STATES)),
         tasks=_tasks(list(zip(members, views, strict=True)), units),
         objects=tuple(views),
-        charts=tuple(dict.fromkeys(f.chart for v in views if v.carded for f in v.figures)),
+        charts=tuple(dict.fromkeys(f.chart for v in views for f in v.figures)),
+        motions=tuple(dict.fromkeys(f.motion for v in views for f in v.findings)),
         several_levels=several,
     )
 
@@ -120,7 +106,7 @@ def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], units: Units) -> tupl
     for assessment, view in pairs:
         for recommendation in assessment.recommendations:
             group = members.setdefault(recommendation.measure, [])
-            if view not in group:
+            if not group or group[-1] is not view:
                 group.append(view)
             advice.setdefault(recommendation.measure, []).append(recommendation)
         if view.state is State.ACT and not assessment.recommendations:
@@ -139,39 +125,6 @@ def _spans(advice: Sequence[Recommendation], units: Units) -> tuple[tuple[str, s
         for name, value in recommendation.parameters.items():
             values.setdefault((name, recommendation.units.get(name, "")), []).append(value)
     return tuple((words(name), units.pair(min(v), max(v), unit)) for (name, unit), v in values.items())
-
-
-def _motion(motion: MotionSummary, units: Units) -> MotionView:
-    return MotionView(
-        name=clean(motion.name),
-        hash=clean(motion.hash),
-        short=clean(motion.hash[:8]),
-        anchor=motion_anchor(motion.hash),
-        level=clean(motion.level),
-        source=clean(motion.source),
-        licence=clean(motion.licence),
-        approved=approval(motion),
-        sampling=f"{motion.samples} samples, {motion.dt:.6g} s apart, {(motion.samples - 1) * motion.dt:.4g} s",
-        measures=tuple((_measure_name(k), _measure(k, v, units)) for k, v in motion.measures.items()),
-        steps=tuple(clean(s) for s in motion.steps),
-    )
-
-
-def _measure_name(name: str) -> str:
-    head, _, rest = name.partition("_")
-    return (
-        f"{head.upper()} {rest.replace('_', ' ')}".strip()
-        if head in ("pga", "pgv", "pgd")
-        else words(plain(name)).capitalize()
-    )
-
-
-def _measure(name: str, value: float, units: Units) -> str:
-    unit = next((u for start, u in _MEASURE_UNITS if name.startswith(start)), None)
-    if unit is not None:
-        return units.text(value, unit)
-    # The Arias intensity is quoted in m/s everywhere; anything that is not known here is shown in SI and says so.
-    return f"{value:.3g} m/s" if name.startswith("arias") else f"{value:.3g} (SI)" if abs(value) < inf else "∞"
 
 
 def object_rows(record: RunRecord) -> list[Mapping[str, str | bool]]:

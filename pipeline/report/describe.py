@@ -1,6 +1,7 @@
 """One object in words and in the reader's units."""
 
 from collections import Counter
+from collections.abc import Sequence
 from math import isfinite, isnan
 
 from pipeline.records import (
@@ -25,11 +26,18 @@ from pipeline.report.views import (
     FigureView,
     FindingView,
     MeasureView,
+    MotionLink,
     NumberView,
     ObjectView,
+    State,
 )
 
-_ORIGIN_ORDER = {Origin.ASSUMED: 0, Origin.DERIVED: 1, Origin.MEASURED: 2}
+_ORIGIN_ORDER = {Origin.MEASURED: 0, Origin.DERIVED: 1, Origin.ASSUMED: 2}
+_DECIDED = {
+    "certificate": "a guaranteed bound, without integration",
+    "chart": "the response chart of this motion",
+    "history": "a time history of this object",
+}
 
 
 def motion_anchor(motion_hash: str) -> str:
@@ -66,6 +74,7 @@ class Describer:
     def __init__(self, record: RunRecord, units: Units) -> None:
         self._record, self._units = record, units
         self._motions = {m.hash: m for m in record.motions}
+        self._links: dict[tuple[str, str], MotionLink] = {}
         # Two records of one number in one gallery would share an id; the later ones are told apart by their place.
         seen: Counter[tuple[bool, str, str]] = Counter()
         self._twins: dict[int, int] = {}
@@ -86,7 +95,9 @@ class Describer:
         raises : ReportError naming the object, for a bad sentence or a mark on a chart that the run does not hold
         """
         scene, item = assessment.scene, assessment.scene.item
-        findings = tuple(self._finding(f) for f in sorted(assessment.findings, key=finding_order))
+        ordered = sorted(assessment.findings, key=finding_order)
+        findings = tuple(self._finding(f) for f in ordered)
+        state = state_of(assessment)
         named = [*scene.assumptions, *(text for f in assessment.findings for text in f.assumptions)]
         estimates = sorted(scene.parameters.items(), key=lambda pair: (_ORIGIN_ORDER[pair[1].origin], pair[0]))
         title = clean(item.title or item.object_name)
@@ -97,7 +108,7 @@ class Describer:
             anchor=self.anchor(assessment),
             gallery=clean(item.gallery),
             page=page,
-            state=state_of(assessment),
+            state=state,
             value_class=clean(item.value_class),
             object_class=clean(scene.object_class),
             rule=clean(scene.rule),
@@ -106,17 +117,15 @@ class Describer:
             lead=findings[0] if findings else None,
             findings=findings,
             measures=tuple(self._measure(r) for r in assessment.recommendations),
-            figures=self._figures(assessment),
+            figures=self._figures(ordered, assessment.recommendations) if state is State.ACT else (),
             numbers=tuple(self._number(name, estimate) for name, estimate in estimates),
             assumptions=tuple(dict.fromkeys(clean(text) for text in named)),
             missing=tuple(words(clean(m)) for m in scene.missing),
             problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
-            skipped=tuple((words(clean(model)), clean(why)) for model, why in scene.skipped.items()),
+            skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
         )
 
     def _finding(self, f: Finding) -> FindingView:
-        units = self._units
-        motion = self._motions.get(f.motion_hash)
         values: dict[str, tuple[float | None, str]] = {
             "demand": (f.demand, f.unit),
             "capacity": (f.capacity, f.unit),
@@ -124,29 +133,44 @@ class Describer:
             "high": (f.high, f.unit),
         }
         where = f"object {f.object_number}, finding {f.model}"
+        utilisation = percent(f.utilisation)
         return FindingView(
             title=clean(f.title),
             level=clean(f.level),
             state=finding_state(f),
             outcome=clean(f.outcome),
-            sentence=clean(units.fill(f.sentence, values, where)),
-            demand_name=words(clean(f.demand_name)),
-            demand=units.text(f.demand, f.unit),
-            span=self._span(f.low, f.high, f.unit),
-            capacity=units.text(f.capacity, f.unit),
-            capacity_origin=f.capacity_origin.value if f.capacity_origin else "",
-            utilisation=percent(f.utilisation),
+            sentence=clean(self._units.fill(f.sentence, values, where)),
+            numbers=self._sums(f, utilisation),
+            utilisation=utilisation,
             bar=bar(f.utilisation),
-            fidelity=clean(f.fidelity),
-            error=self._error(f),
-            decided_by=clean(f.decided_by),
             screen=clean(f.screen),
             note=clean(f.note),
-            motion=clean(f.motion),
-            motion_short=clean(f.motion_hash[:8]),
-            motion_anchor=motion_anchor(f.motion_hash) if motion else "",
-            approved=approval(motion) if motion else "",
+            motion=self._motion(f.motion_hash, f.motion),
+            assumptions=tuple(clean(text) for text in f.assumptions),
         )
+
+    def _sums(self, f: Finding, utilisation: str) -> str:
+        span = self._span(f.low, f.high, f.unit)
+        error = self._error(f)
+        origin = f" ({f.capacity_origin.value})" if f.capacity_origin else ""
+        return (
+            f"Demand {self._units.text(f.demand, f.unit)}{f' ({span} with what is uncertain)' if span else ''}, "
+            f"capacity {self._units.text(f.capacity, f.unit)}{origin}, utilisation {utilisation}. "
+            f"Decided by {_DECIDED.get(f.decided_by) or clean(f.decided_by)}"
+            f"{f', error {error}' if error else ''}."
+        )
+
+    def _motion(self, motion_hash: str, name: str) -> MotionLink:
+        key = (motion_hash, name)
+        if key not in self._links:
+            motion = self._motions.get(motion_hash)
+            self._links[key] = MotionLink(
+                name=clean(name),
+                short=clean(motion_hash[:8]),
+                anchor=motion_anchor(motion_hash) if motion else "",
+                approved=approval(motion) if motion else "",
+            )
+        return self._links[key]
 
     def _span(self, low: float | None, high: float | None, unit: str) -> str:
         if low is None or high is None or low == high:
@@ -171,7 +195,6 @@ class Describer:
             title=clean(r.title),
             level=clean(r.level),
             sentence=clean(self._units.fill(r.sentence, values, where)),
-            numbers=tuple((words(clean(k)), self._units.text(v, r.units[k])) for k, v in r.parameters.items()),
             checks=tuple(self._check(c) for c in r.checks),
             rejected=tuple(clean(text) for text in r.rejected),
             source=clean(r.source),
@@ -187,15 +210,18 @@ class Describer:
         )
 
     def _number(self, name: str, e: Estimate) -> NumberView:
-        value = self._units.text(e.value, e.unit)
         span = self._span(e.low, e.high, e.unit)
-        return NumberView(words(clean(name)), value, span, e.origin.value, clean(e.note), clean(e.source))
+        text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{f' ({span})' if span else ''}"
+        return NumberView(text, e.origin.value, clean(e.note), clean(e.source))
 
-    def _figures(self, assessment: Assessment) -> tuple[FigureView, ...]:
+    def _figures(
+        self, findings: Sequence[Finding], recommendations: Sequence[Recommendation]
+    ) -> tuple[FigureView, ...]:
         spots: dict[str, list[Spot]] = {}
-        for finding in sorted(assessment.findings, key=finding_order):
-            self._add(spots, finding.mark, finding.object_number, after=False)
-        for recommendation in assessment.recommendations:
+        for finding in findings:
+            if finding_state(finding) is not State.SAFE:
+                self._add(spots, finding.mark, finding.object_number, after=False)
+        for recommendation in recommendations:
             self._add(spots, recommendation.mark, recommendation.object_number, after=True)
         return tuple(FigureView(chart, tuple(marks)) for chart, marks in spots.items())
 

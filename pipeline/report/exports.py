@@ -163,4 +163,4 @@ def _write_parquet(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
 
 def _encodable(text: str) -> str:
     # A lone surrogate, as a badly decoded file leaves behind, cannot be written as UTF-8 at all.
-    return text.encode("utf-8", "replace").decode("utf-8")
+    return text if text.isascii() else text.encode("utf-8", "replace").decode("utf-8")

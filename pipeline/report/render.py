@@ -2,22 +2,25 @@
 
 import os
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from gettext import NullTranslations
 from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from pipeline.records import Chart, RunRecord
+from pipeline.records import RunRecord
 from pipeline.report.compose import STORED_PAGE, compose
 from pipeline.report.errors import ReportError
 from pipeline.report.exports import export
+from pipeline.report.notes import page_notes
 from pipeline.report.svg import PATTERNS, Drawing
-from pipeline.report.text import clean, plain
+from pipeline.report.text import clean, count, plain
 from pipeline.report.traces import trace
 from pipeline.report.units import Units
-from pipeline.report.views import FigureView, GalleryView
+from pipeline.report.views import FigureView, State
 from pipeline.resources import resource
 
 
@@ -49,25 +52,23 @@ def render(record: RunRecord, folder: Path, *, units: Units | None = None) -> Pa
 def _pages(record: RunRecord, units: Units) -> list[tuple[str, str]]:
     museum = compose(record, units)
     env = environment()
-    shared = {"museum": museum, "units": units, "stored_page": STORED_PAGE}
+    shared = {"museum": museum, "units": units, "stored_page": STORED_PAGE, "State": State}
+    shown = (*(m.charts for m in museum.motions), *(g.charts for g in museum.galleries))
+    used = dict.fromkeys(key for keys in shown for key in keys)
+    drawings = {key: Drawing(record.charts[key], units, f"c{i}") for i, key in enumerate(used)}
     traces = {
         view.anchor: Markup(trace(motion, units, view.anchor))  # noqa: S704 - svg.py escapes all text itself
         for view, motion in zip(museum.motions, record.motions, strict=True)
     }
+    shaken = _drawn([key for motion in museum.motions for key in motion.charts], drawings)
     pages = [
         ("index.html", _fill(env, "index.html", shared | {"here": "index"})),
         ("method.html", _fill(env, "method.html", shared | {"here": "method"})),
-        ("motion.html", _fill(env, "motion.html", shared | {"here": "motion", "traces": traces})),
+        ("motion.html", _fill(env, "motion.html", shared | shaken | {"here": "motion", "traces": traces})),
     ]
     for gallery in museum.galleries:
-        drawings = _drawings(gallery, record.charts, units)
-        context = shared | {
-            "here": "gallery",
-            "gallery": gallery,
-            "drawings": list(drawings.values()),
-            "symbols": Markup(PATTERNS + "".join(d.symbol() for d in drawings.values())),  # noqa: S704
-            "figure": _figure(drawings),
-        }
+        context = shared | _drawn(gallery.charts, drawings)
+        context |= {"here": "gallery", "gallery": gallery, "notes": page_notes(gallery.objects)}
         pages.append((gallery.page, _fill(env, "gallery.html", context)))
     return pages
 
@@ -84,28 +85,36 @@ def environment() -> Environment:
         extensions=["jinja2.ext.i18n"],
         finalize=_present,
     )
-    env.install_null_translations(newstyle=True)  # type: ignore[attr-defined]
+    phrases = NullTranslations()
+    env.install_gettext_translations(phrases, newstyle=True)  # type: ignore[attr-defined]
+    # The pages ask for the same few phrases a hundred thousand times.
+    env.globals["_"] = lru_cache(maxsize=1024)(lambda text: Markup(phrases.gettext(text)))  # noqa: S704
     env.filters["plain"] = plain
+    env.filters["thousands"] = count
     return env
 
 
 def _present(value: object) -> object:
-    """Refuse to print None, and clean any plain text once more on its way out."""
+    """Refuse to print None."""
     if value is None:
         raise ReportError("a template prints None; give the view a text for what is not known")
-    return clean(value) if type(value) is str else value
+    return value
 
 
 def _fill(env: Environment, template: str, context: Mapping[str, Any]) -> str:
-    return env.get_template(template).render(context)
+    # Once more over the whole page, because a template may print a text that no view has cleaned.
+    return clean(env.get_template(template).render(context))
 
 
-def _drawings(gallery: GalleryView, charts: Mapping[str, Chart], units: Units) -> dict[str, Drawing]:
-    return {key: Drawing(charts[key], units, f"c{i}") for i, key in enumerate(gallery.charts)}
+def _drawn(keys: Sequence[str], drawings: Mapping[str, Drawing]) -> dict[str, Any]:
+    """Return what a page needs to show these charts: their symbols, the charts themselves, and the marking of them."""
+    mine = {key: drawings[key] for key in keys}
+    symbols = PATTERNS + "".join(d.symbol() for d in mine.values())
 
-
-def _figure(drawings: Mapping[str, Drawing]) -> Callable[[FigureView, str, str], Markup]:
     def figure(view: FigureView, ident: str, subject: str) -> Markup:
-        return Markup(drawings[view.chart].figure(view.spots, ident, subject))  # noqa: S704
+        return Markup(mine[view.chart].figure(view.spots, ident, subject))  # noqa: S704
 
-    return figure
+    def bare(key: str, ident: str) -> Markup:
+        return Markup(mine[key].figure((), ident, ""))  # noqa: S704
+
+    return {"drawings": mine, "symbols": Markup(symbols), "figure": figure, "bare": bare}  # noqa: S704

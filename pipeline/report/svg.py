@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from html import escape
 from math import isnan
 
@@ -82,6 +83,10 @@ class Drawing:
 
     def symbol(self) -> str:
         """Return the chart without marks as a <symbol>, to be put once into a page."""
+        return self._symbol
+
+    @cached_property
+    def _symbol(self) -> str:
         parts = [f'<symbol id="{self.ident}" viewBox="0 0 {WIDTH} {HEIGHT}">']
         parts += [self._zone(zone) for zone in self.chart.zones]
         parts += self._grid()
@@ -184,20 +189,30 @@ class Drawing:
         """Return an <svg> that uses the symbol and marks an object on it, with a text alternative.
 
         ident   : prefix of the ids of the title and description within the page
-        subject : what is marked, in words, for the description
+        subject : what is marked, in words, for the description; "" for a chart that marks nothing
         """
         shown = [s for s in spots if not (isnan(s.x) or isnan(s.y))]
-        title = f"{plain(self.chart.title)}: {plain(short(subject, 60))}"
-        told = " ".join(self.say(s) for s in shown) or "Nothing is marked: the object's place is not known."
-        axes = f"Horizontal: {plain(self.axis_label('x'))}. Vertical: {plain(self.axis_label('y'))}."
+        title = plain(self.chart.title) + (f": {plain(short(subject, 60))}" if subject else "")
+        told = " ".join(self.say(s) for s in shown)
+        if subject and not shown:
+            told = "Nothing is marked: the object's place is not known."
+        elif not subject:
+            told = self._contents
+        said = f"Horizontal: {plain(self.axis_label('x'))}. Vertical: {plain(self.axis_label('y'))}. {told}".rstrip()
         marks = "".join(self._spot(s, self._label_line(s, shown)) for s in shown)
         taken = [(self.x.at(s.x * self._fx), self.y.at(s.y * self._fy)) for s in shown]
         return (
             f'<svg class="chart" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-labelledby="{ident}t {ident}d">'
-            f'<title id="{ident}t">{escape(title)}</title><desc id="{ident}d">{escape(f"{axes} {told}")}</desc>'
+            f'<title id="{ident}t">{escape(title)}</title><desc id="{ident}d">{escape(said)}</desc>'
             f'<use href="#{self.ident}" width="{WIDTH}" height="{HEIGHT}"/>'
             f"{self._zone_labels(taken)}{marks}</svg>"
         )
+
+    @cached_property
+    def _contents(self) -> str:
+        lines = ", ".join(plain(c.label) for c in self.chart.curves if c.label)
+        zones = ", ".join(plain(z.label) for z in self.chart.zones if z.label)
+        return (f"Lines: {lines}. " if lines else "") + (f"Zones: {zones}." if zones else "")
 
     def say(self, spot: Spot) -> str:
         """Tell in words and numbers where a mark lies, in which zone, and whether it is off the chart."""

@@ -3,6 +3,7 @@
 import hashlib
 import re
 import unicodedata
+from functools import lru_cache
 
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 _BIDI = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
@@ -11,7 +12,7 @@ _UNIT_SUFFIX = re.compile(r"_(m|kg|hz|pa|deg|s|g|rad)$")
 
 def clean(text: str) -> str:
     """Replace what no page or file may carry (control characters, lone surrogates) by the replacement character."""
-    return _UNFIT.sub("\ufffd", text)
+    return text if text.isprintable() else _UNFIT.sub("\ufffd", text)
 
 
 def plain(text: str) -> str:
@@ -32,6 +33,12 @@ def short(text: str, limit: int = 90) -> str:
     return (cut[:at] if at > limit // 2 else cut).rstrip() + "…"
 
 
+def count(number: int) -> str:
+    """Write how many there are, such as "2,000"."""
+    return f"{number:,}"
+
+
+@lru_cache(maxsize=4096)
 def words(name: str) -> str:
     """Say a field or parameter in plain words: "base_width_m" becomes "base width"."""
     bare = _UNIT_SUFFIX.sub("", name)

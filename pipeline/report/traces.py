@@ -13,7 +13,7 @@ from pipeline.report.units import Units
 WIDTH, ROW = 1050, 118
 _LEFT, _RIGHT, _TOP, _BOTTOM = 76, 16, 10, 42
 _TIMES = ("t", "time", "time_s")
-_NAMES = {"x": "x (horizontal)", "y": "y (horizontal)", "z": "z (up)"}
+_NAMES = {"x": "East (x)", "y": "North (y)", "z": "Up (z)"}
 
 
 def trace(motion: MotionSummary, units: Units, ident: str) -> str:
@@ -32,7 +32,8 @@ def trace(motion: MotionSummary, units: Units, ident: str) -> str:
     reach = limits([-peak, peak] if peak else [-1.0, 1.0], False, f"motion {motion.name!r}")
     duration = (motion.samples - 1) * motion.dt
     end = given[-1] if given else duration
-    x = Scale(0.0, max(end, motion.dt), _LEFT, WIDTH - _RIGHT)
+    start = given[0] if given else 0.0
+    x = Scale(start, max(end, start + motion.dt), _LEFT, WIDTH - _RIGHT)
     parts = []
     for row, (name, series) in enumerate(components.items()):
         if given and len(given) != len(series):
@@ -56,8 +57,8 @@ def trace(motion: MotionSummary, units: Units, ident: str) -> str:
     seconds = "".join(f'<text class="tx" x="{x.at(v):.1f}" y="{floor + 14}">{tick(v)}</text>' for v in x.ticks())
     symbol = units.symbol("m/s2")
     said = (
-        f"Acceleration in {symbol} against time over {x.high:.3g} seconds, components {', '.join(components)}; "
-        f"largest value drawn {units.text(peak / factor, 'm/s2')}."
+        f"Acceleration in {symbol} against time from {x.low:.3g} to {x.high:.3g} seconds, "
+        f"components {', '.join(components)}; largest value drawn {units.text(peak / factor, 'm/s2')}."
     )
     return (
         f'<svg class="chart wide" viewBox="0 0 {WIDTH} {height}" role="img" aria-labelledby="{ident}t {ident}d">'

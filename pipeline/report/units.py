@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from math import floor, inf, isfinite, isnan, log10
 from string import Formatter
 
@@ -21,6 +22,7 @@ _POWERS = {"m": ("", 1), "m2": ("²", 2), "m3": ("³", 3), "m/s": ("/s", 1)}
 _THIN = "\u202f"
 
 
+@lru_cache(maxsize=65536)
 def significant(value: float, digits: int, *, keep: bool = False) -> str:
     """Write a finite number with that many significant digits; zeros at the end go unless they are to be kept."""
     if value == 0.0:
@@ -33,6 +35,7 @@ def significant(value: float, digits: int, *, keep: bool = False) -> str:
     return (text.rstrip("0").rstrip(".") if "." in text and not keep else text).replace("-", "−")
 
 
+@lru_cache(maxsize=65536)
 def ratio(value: float) -> str:
     """Write a finite ratio with two significant digits, and more where two would hide on which side of 1 it lies."""
     if value == round(value):
@@ -123,10 +126,15 @@ class Units:
         return "".join(parts)
 
 
+@lru_cache(maxsize=4096)
+def _parse(sentence: str) -> tuple[tuple[str, str | None, str | None, str | None], ...]:
+    return tuple(Formatter().parse(sentence))
+
+
 def _pieces(sentence: str, where: str) -> Iterable[tuple[str, str | None]]:
     # Formatter.parse only splits; attribute access and indexing of str.format never happen on this path.
     try:
-        pieces = list(Formatter().parse(sentence))
+        pieces = _parse(sentence)
     except ValueError as error:
         raise ReportError(
             f"{where}: the sentence {sentence!r} has a stray brace ({error}); write {{{{ or }}}}"

@@ -43,30 +43,31 @@ class Bar:
 
 
 @dataclass(frozen=True, slots=True)
+class MotionLink:
+    """Which motion a finding rests on: its name, the start of its hash, its section, and who answers for it."""
+
+    name: str
+    short: str
+    anchor: str
+    approved: str
+
+
+@dataclass(frozen=True, slots=True)
 class FindingView:
-    """One finding in words; ``state`` is act, open or safe."""
+    """One finding in words; ``state`` is act, open or safe, ``numbers`` the sums behind the sentence in one line."""
 
     title: str
     level: str
     state: State
     outcome: str
     sentence: str
-    demand_name: str
-    demand: str
-    span: str
-    capacity: str
-    capacity_origin: str
+    numbers: str
     utilisation: str
     bar: Bar | None
-    fidelity: str
-    error: str
-    decided_by: str
     screen: str
     note: str
-    motion: str
-    motion_short: str
-    motion_anchor: str
-    approved: str
+    motion: MotionLink
+    assumptions: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +89,6 @@ class MeasureView:
     title: str
     level: str
     sentence: str
-    numbers: tuple[tuple[str, str], ...]
     checks: tuple[CheckView, ...]
     rejected: tuple[str, ...]
     source: str
@@ -96,11 +96,9 @@ class MeasureView:
 
 @dataclass(frozen=True, slots=True)
 class NumberView:
-    """A number that a model was run with: its value and range, and where it comes from."""
+    """A number that a model was run with: name, value and range in one text, and where it comes from."""
 
-    name: str
-    value: str
-    span: str
+    text: str
     origin: str
     note: str
     source: str
@@ -138,12 +136,33 @@ class ObjectView:
     assumptions: tuple[str, ...]
     missing: tuple[str, ...]
     problems: tuple[tuple[str, str, str], ...]
-    skipped: tuple[tuple[str, str], ...]
+    skipped: tuple[str, ...]
 
     @property
     def carded(self) -> bool:
-        """Whether the object has a card of its own: it fails or is open."""
-        return self.state in (State.ACT, State.OPEN)
+        """Whether the object has an entry of its own below the table: something was found about it."""
+        return self.state is not State.UNKNOWN
+
+    @property
+    def failing(self) -> tuple[FindingView, ...]:
+        """The findings that the entry explains at length: those that fail or are open."""
+        return tuple(f for f in self.findings if f.state is not State.SAFE)
+
+    @property
+    def passing(self) -> tuple[FindingView, ...]:
+        """The findings that pass."""
+        return tuple(f for f in self.findings if f.state is State.SAFE)
+
+    @property
+    def unsettled(self) -> tuple[str, ...]:
+        """What the open findings assume: measuring it settles them."""
+        return tuple(dict.fromkeys(text for f in self.findings if f.state is State.OPEN for text in f.assumptions))
+
+    @property
+    def assumed_besides(self) -> tuple[str, ...]:
+        """What is assumed besides what the entry asks to be measured."""
+        named = self.unsettled if self.state is State.OPEN else ()
+        return tuple(text for text in self.assumptions if text not in named)
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,34 +189,41 @@ class GalleryView:
     tasks: tuple[TaskView, ...]
     objects: tuple[ObjectView, ...]
     charts: tuple[str, ...]
+    motions: tuple[MotionLink, ...]
     several_levels: bool
 
-    @property
-    def cards(self) -> tuple[ObjectView, ...]:
-        """The objects that get a card."""
-        return tuple(o for o in self.objects if o.carded)
+    def standing(self, state: State) -> tuple[ObjectView, ...]:
+        """Return the objects in that state, the most urgent first."""
+        return tuple(o for o in self.objects if o.state is state)
 
 
 @dataclass(frozen=True, slots=True)
 class MotionView:
-    """One motion's section: measures with units, processing steps, who answers for it."""
+    """One motion's section: measures with units, charts, processing steps, who answers for it.
+
+    table  : rows of PGA, PGV, PGD, Arias intensity; one text a column (see ``columns``), "–" where not computed
+    others : measures that fit in no column
+    charts : keys of the charts that were drawn for this motion, in the order of the paper's figures
+    """
 
     name: str
     hash: str
-    short: str
     anchor: str
     level: str
     source: str
     licence: str
     approved: str
     sampling: str
-    measures: tuple[tuple[str, str], ...]
+    columns: tuple[str, ...]
+    table: tuple[tuple[str, tuple[str, ...]], ...]
+    others: tuple[tuple[str, str], ...]
+    charts: tuple[str, ...]
     steps: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class MuseumView:
-    """The index: all galleries, ranked, with totals over all objects."""
+    """The index: all galleries, ranked, with totals over all objects; ``credit`` is the source's own line."""
 
     museum: str
     site: str
@@ -205,6 +231,7 @@ class MuseumView:
     started: str
     finished: str
     version: str
+    credit: str
     demonstration: bool
     counts: Counts
     galleries: tuple[GalleryView, ...]

@@ -10,7 +10,7 @@ from pipeline.models.horizontal_isolator import HORIZONTAL_ISOLATOR
 from pipeline.models.oscillator import OSCILLATOR
 from pipeline.models.rotational_isolator import ROTATIONAL_ISOLATOR
 from pipeline.quantities import Array
-from pipeline.records import Columns, Excitation, Model, Motion
+from pipeline.records import Excitation, Model, Motion
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,34 @@ def resampled(motion: Motion, refine: int) -> Motion:
     return Motion(motion.dt / refine, rows, motion.name, motion.steps, motion.source)
 
 
-def _passed_on(motion: Motion, x: Array, y: Array, what: str) -> Motion:
-    rows = np.vstack([x, y, motion.acceleration[2]])
-    return Motion(motion.dt, rows, motion.name, (*motion.steps, f"passed on by {what}"), motion.source)
+AFTER = 60.0
+"""Seconds after the record for which the free motion of a support is passed on, at most."""
+
+QUIET = 1e-6
+"""Share of the largest acceleration passed on below which the free motion is left out."""
+
+
+def _passed_on(motion: Motion, model: Model, parameters: Mapping[str, float], two: bool, refine: int) -> Motion:
+    record = resampled(motion, refine)
+    x, y = _felt(model, record, parameters, two)
+    size = np.hypot(x, y)
+    loud = np.flatnonzero(size[record.samples :] > QUIET * float(size.max()))
+    end = record.samples + (int(loud[-1]) + 2 if loud.size else 0)
+    z = np.concatenate([record.acceleration[2], np.zeros(x.size - record.samples)])
+    step = f"passed on by {_described(model, parameters)}"
+    rows = np.vstack([x, y, z])[:, :end]
+    return Motion(record.dt, rows, motion.name, (*motion.steps, step), motion.source)
+
+
+def _felt(model: Model, motion: Motion, parameters: Mapping[str, float], two: bool) -> tuple[Array, Array]:
+    if model.trace is None:
+        raise ValueError(f"{model.name} passes no motion on")
+    x, y, z = motion.acceleration
+    if two:
+        columns = model.trace(Excitation(motion.dt, x, y, z, AFTER), parameters)
+        return columns["a_x"], columns["a_y"]
+    ways = [model.trace(Excitation(motion.dt, way, None, z, AFTER), parameters)["a_x"] for way in (x, y)]
+    return ways[0], ways[1]
 
 
 def _described(model: Model, parameters: Mapping[str, float]) -> str:
@@ -49,29 +74,11 @@ def _described(model: Model, parameters: Mapping[str, float]) -> str:
 
 
 def _in_plane(model: Model) -> Callable[[Motion, Mapping[str, float], int], Motion]:
-    def transmit(motion: Motion, parameters: Mapping[str, float], refine: int) -> Motion:
-        fine = resampled(motion, refine)
-        x, y, z = fine.acceleration
-        columns = _trace(model, Excitation(fine.dt, x, y, z, 0.0), parameters)
-        return _passed_on(fine, columns["a_x"], columns["a_y"], _described(model, parameters))
-
-    return transmit
+    return lambda motion, parameters, refine: _passed_on(motion, model, parameters, True, refine)
 
 
 def _each_way(model: Model) -> Callable[[Motion, Mapping[str, float], int], Motion]:
-    def transmit(motion: Motion, parameters: Mapping[str, float], refine: int) -> Motion:
-        fine = resampled(motion, refine)
-        x, y, z = fine.acceleration
-        ways = [_trace(model, Excitation(fine.dt, way, None, z, 0.0), parameters)["a_x"] for way in (x, y)]
-        return _passed_on(fine, ways[0], ways[1], _described(model, parameters))
-
-    return transmit
-
-
-def _trace(model: Model, motion: Excitation, parameters: Mapping[str, float]) -> Columns:
-    if model.trace is None:
-        raise ValueError(f"{model.name} passes no motion on")
-    return model.trace(motion, parameters)
+    return lambda motion, parameters, refine: _passed_on(motion, model, parameters, False, refine)
 
 
 SUPPORTS: tuple[SupportModel, ...] = (

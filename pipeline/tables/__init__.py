@@ -92,12 +92,14 @@ def damping_of(wall_surface: str = "", back_surface: str = "") -> Range:
 
 
 def _matching(name: str, wanted: Mapping[str, str]) -> list[Row]:
-    rows = list(table(name))
-    for column, text in wanted.items():
-        kept = [r for r in rows if r[column].lower() == text.strip().lower()]
-        if kept:
-            rows = kept
-    return rows
+    """Return the rows of the pair; where the table lacks it, those of either partner, so that the span says so."""
+    asked = {column: text.strip().lower() for column, text in wanted.items() if text.strip()}
+    found = [[r for r in table(name) if r[column].lower() == text] for column, text in asked.items()]
+    known = [rows for rows in found if rows]
+    pair = [r for r in table(name) if all(r in rows for rows in known)]
+    if pair:
+        return pair
+    return [r for r in table(name) if any(r in rows for rows in known)]
 
 
 def _span(rows: list[Row], name: str) -> Range:

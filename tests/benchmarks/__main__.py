@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from pipeline.models import model_named
 from pipeline.models.common import Quiet
 from pipeline.motions import read_motion
-from pipeline.quantities import G, Array
+from pipeline.quantities import Array, G
 from pipeline.records import Excitation, Motion
 from pipeline.resources import resource
 from pipeline.response import prepare

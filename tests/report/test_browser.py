@@ -93,7 +93,7 @@ def test_it_prints_on_a4_with_its_details(browser: Chrome, report: Path) -> None
     try:
         shown, split = browser.execute_script(
             "const c = [...document.querySelectorAll('.card')];"
-            "return [[...document.querySelectorAll('.card details table')].every(t => t.offsetHeight > 40),"
+            "return [[...document.querySelectorAll('.card details p')].every(p => p.offsetHeight > 10),"
             " c.map(e => getComputedStyle(e).breakInside)]"
         )
     finally:

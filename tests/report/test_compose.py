@@ -8,7 +8,7 @@ from pipeline.records import Assessment, Item, Mark
 from pipeline.report import ReportError, Units
 from pipeline.report.compose import compose
 from pipeline.report.ranking import urgency
-from pipeline.report.text import short, slug, words
+from pipeline.report.text import count, short, slug, words
 from pipeline.report.views import Counts, State
 
 from . import builder
@@ -117,6 +117,10 @@ def test_file_names_are_plain_short_and_tell_twins_apart(name: str) -> None:
     assert set(stem) <= set("abcdefghijklmnopqrstuvwxyz0123456789-")
     assert len(stem) <= 69
     assert slug(name + " ") != stem
+
+
+def test_counts_have_a_separator() -> None:
+    assert [count(n) for n in (0, 999, 1000, 12345, 2_000_000)] == ["0", "999", "1,000", "12,345", "2,000,000"]
 
 
 def test_plain_words() -> None:

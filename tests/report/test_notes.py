@@ -1,0 +1,104 @@
+"""What many objects share is told once a page, and nothing is lost by it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from lxml import etree
+from markupsafe import Markup
+
+from pipeline.records import Item, Mark, Verdict
+from pipeline.report import Units
+from pipeline.report.compose import compose
+from pipeline.report.notes import Notes, PageNotes
+from pipeline.report.views import GalleryView, NumberView
+
+from . import builder
+
+SHARED, ALONE = "friction: 0.18, not measured", "mass: weighed with <its> frame"
+MUSEUM = compose(builder.record(), Units())
+
+
+def test_what_recurs_is_listed_and_cited_and_what_does_not_stays_where_it_is() -> None:
+    notes = Notes("A", [(SHARED, ""), (ALONE, "a list"), (SHARED, "Table 3"), (SHARED, "Table 3")])
+    assert [(n.label, n.text, n.source) for n in notes.listed] == [("A1", SHARED, "Table 3")]
+    assert notes.cite([ALONE, SHARED]) == Markup('mass: weighed with &lt;its&gt; frame; <a href="#A1">friction A1</a>')
+
+
+@pytest.mark.parametrize("text", ["no colon at all", "x" * 60 + ": a long beginning"])
+def test_a_text_without_a_short_beginning_is_cited_by_its_number_alone(text: str) -> None:
+    assert Notes("R", [(text, ""), (text, "")]).cite([text]) == '<a href="#R1">R1</a>'
+
+
+def test_a_hostile_beginning_stays_text() -> None:
+    text = '<script>alert("1")</script>: it is rejected'
+    cited = Notes("R", [(text, ""), (text, "")]).cite([text])
+    assert cited == '<a href="#R1">&lt;script&gt;alert(&#34;1&#34;)&lt;/script&gt; R1</a>'
+
+
+def test_numbers_tell_their_origin_and_cite_their_note() -> None:
+    numbers = (
+        NumberView("mass 860\u202fkg", "measured", "", ""),
+        NumberView("friction 0.18 (0.12 to 0.37)", "assumed", SHARED, "Table 3"),
+        NumberView("height 1\u202fm", "assumed", ALONE, "a list"),
+    )
+    notes = PageNotes(Notes("A", [(SHARED, "Table 3"), (SHARED, "")]), Notes("R", ()), Notes("M", ()))
+    assert notes.numbers(numbers) == (
+        'Measured: mass 860\u202fkg. Assumed: friction 0.18 (0.12 to 0.37) <a href="#A1">A1</a>; '
+        "height 1\u202fm (mass: weighed with &lt;its&gt; frame; a list)."
+    )
+
+
+def _text(folder: Path, gallery: GalleryView) -> str:
+    page = etree.parse(str(folder / gallery.page))
+    return " ".join("".join(page.getroot().itertext()).split())
+
+
+@pytest.mark.parametrize("gallery", MUSEUM.galleries, ids=lambda g: g.page)
+def test_every_fact_about_every_object_is_on_its_page(report: Path, gallery: GalleryView) -> None:
+    said = _text(report, gallery)
+    for view in (o for o in gallery.objects if o.carded):
+        facts = [*view.assumptions, *view.skipped, *(n.text for n in view.numbers)]
+        facts += [text for f in view.findings for text in (f.sentence, f.numbers, f.screen, f.note)]
+        facts += [text for m in view.measures for text in (m.sentence, *m.rejected, m.source)]
+        facts += [text for m in view.measures for c in m.checks for text in (c.title, c.demand, c.capacity)]
+        assert [fact for fact in facts if " ".join(fact.split()) not in said] == []
+
+
+def test_each_object_links_only_to_notes_of_its_own(report: Path) -> None:
+    """An entry's links name exactly the texts that its view holds, read back through the page's lists."""
+    for gallery in MUSEUM.galleries:
+        page = etree.parse(str(report / gallery.page))
+        listed = {e.get("id"): " ".join("".join(e.itertext()).split()) for e in page.iterfind(".//li[@id]")}
+        for view in (o for o in gallery.objects if o.carded):
+            card = page.find(f".//article[@id='{view.anchor}']")
+            assert card is not None
+            cited = {(a.get("href") or "")[1:] for a in card.iter("a")} & set(listed)
+            own = {*view.assumptions, *view.skipped, *(n.note for n in view.numbers)}
+            own |= {text for m in view.measures for text in m.rejected} | {
+                t for f in view.findings for t in f.assumptions
+            }
+            assert cited
+            assert all(any(" ".join(text.split()) in listed[label] for text in own if text) for label in cited)
+
+
+def test_pictures_are_for_what_fails_and_for_the_measure_never_for_what_passes(report: Path) -> None:
+    for gallery in MUSEUM.galleries:
+        page = etree.parse(str(report / gallery.page))
+        for view in gallery.objects:
+            card = page.find(f".//article[@id='{view.anchor}']")
+            pictures = [] if card is None else list(card.iter("figure"))
+            assert len(pictures) == len(view.figures)
+            assert view.state == "act" or not pictures
+
+
+def test_a_passing_finding_marks_no_chart() -> None:
+    whole = builder.rocking(Item("1", "g"))
+    failing, passing = whole.findings
+    marked = replace(passing, mark=Mark(f"friction:{builder.HASH}", 0.2, 0.041))
+    for verdict, kinds in ((Verdict.PASS, ["stability"]), (Verdict.UNDETERMINED, ["stability", "friction"])):
+        both = replace(whole, findings=(failing, replace(marked, verdict=verdict)))
+        (gallery,) = compose(replace(builder.record(), assessments=(both,)), Units()).galleries
+        assert [figure.chart.partition(":")[0] for figure in gallery.objects[0].figures] == kinds
