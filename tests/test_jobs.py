@@ -165,6 +165,9 @@ def test_a_part_of_the_collection_does_not_become_the_latest_report(tmp_path: Pa
     assert (tmp_path / "reports" / "latest").resolve() == whole.report.parent.resolve()
     one = run(settings, SILENT, Selection(objects=("2",)), dry_run=True)
     assert (one.objects, one.report) == (1, None)
+    again = run(settings, SILENT)
+    assert again.changes is not None
+    assert not again.changes  # compared with the last whole run, not with the part
 
 
 def test_an_unknown_gallery_is_an_error_that_helps(tmp_path: Path) -> None:
@@ -239,9 +242,10 @@ def test_the_night_on_a_postgresql_server(tmp_path: Path, postgresql_url: str, m
     assert other.charts == one.charts
 
 
-def test_findings_do_not_depend_on_the_rest_of_the_collection(demo_folder: Path) -> None:
+def test_findings_do_not_depend_on_the_rest_of_the_collection(demo_folder: Path, tmp_path: Path) -> None:
     """One gallery alone gives bit for bit what it gave among all 2,000 objects."""
-    settings = load_settings(demo_folder / "kouros.toml")
+    copy = shutil.copytree(demo_folder, tmp_path / "copy", symlinks=True)
+    settings = load_settings(copy / "kouros.toml")
     engine = open_database(settings.database)
     whole = load_run(engine)
     part = run(settings, SILENT, Selection(galleries=("Hall of Sculpture Balcony",)))

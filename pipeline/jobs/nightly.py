@@ -23,8 +23,8 @@ from pipeline.motions.site import Site, read_site, summaries
 from pipeline.records import Assessment, Chart, Executor, Item, Motion, Progress, RunRecord, Verdict
 from pipeline.report import Units, publish, render
 from pipeline.settings import Settings
-from pipeline.store.reuse import KERNELS, stored_charts
-from pipeline.store.runs import compare_runs, latest_run_id, save_run
+from pipeline.store.reuse import KERNELS, SELECTION, stored_charts, whole_runs
+from pipeline.store.runs import compare_runs, save_run
 
 if TYPE_CHECKING:
     from pipeline.store.changes import RunChanges
@@ -87,18 +87,19 @@ def run(
         items = _choose(read_inventory(workspace.engine), chosen)
         site = _read_site(workspace, progress)
         record = _assess(workspace, items, site, started, progress)
-        record = replace(record, settings={**record.settings, "selection": bool(chosen)})
+        record = replace(record, settings={**record.settings, SELECTION: bool(chosen)})
         summary = summarise(record)
         if dry_run:
             return summary
-        before = latest_run_id(workspace.engine)
+        # A part is not compared: what was left out of it has not changed.
+        before = [] if chosen else whole_runs(workspace.engine)[:1]
         save_run(workspace.engine, record)
         progress.step("report", 0, 1)
         index = render(record, workspace.reports / record.run_id, units=Units(length=settings.report.length))
         # A part of the collection is worth a report, but not the name of the museum's latest one.
         latest = None if chosen else publish(index.parent, workspace.reports)
         progress.step("report", 1, 1)
-        changes = compare_runs(workspace.engine, before, record.run_id) if before else None
+        changes = compare_runs(workspace.engine, before[0], record.run_id) if before else None
         return replace(summary, report=index, latest=latest, changes=changes)
 
 
@@ -166,7 +167,7 @@ def _assess(
     drawn = _charts(workspace, [motion for level in levels for motion in level.motions], executor, progress)
     info = latest_import(workspace.engine)
     return RunRecord(
-        run_id=f"{started:%Y%m%dT%H%M%S}-{os.getpid()}",
+        run_id=f"{started:%Y%m%dT%H%M%S}.{started.microsecond // 1000:03d}-{os.getpid()}",
         started=started.isoformat(timespec="milliseconds"),
         finished=datetime.now(UTC).isoformat(timespec="milliseconds"),
         version=__version__,

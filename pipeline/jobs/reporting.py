@@ -6,23 +6,24 @@ from typing import TYPE_CHECKING
 from pipeline.jobs.workspace import UsageError, locked, open_workspace
 from pipeline.report import Units, publish, render
 from pipeline.settings import Settings
-from pipeline.store.runs import compare_runs, list_runs, load_run
+from pipeline.store.reuse import whole_runs
+from pipeline.store.runs import compare_runs, load_run
 
 if TYPE_CHECKING:
     from pipeline.store.changes import RunChanges
 
 
 def render_again(settings: Settings, run_id: str | None) -> Path:
-    """Render a run from the store into a new folder; the newest whole one becomes the latest report.
+    """Render a run from the store into a new folder; the newest of the whole collection becomes the latest report.
 
     returns : the report's index
     """
     with locked(settings):
         workspace = open_workspace(settings)
-        record = load_run(workspace.engine, run_id)
+        newest = whole_runs(workspace.engine)[:1]
+        record = load_run(workspace.engine, run_id or (newest[0] if newest else None))
         index = render(record, _free(workspace.reports / record.run_id), units=Units(length=settings.report.length))
-        newest = load_run(workspace.engine).run_id if run_id else record.run_id
-        if record.run_id == newest and not record.settings.get("selection"):
+        if [record.run_id] == newest:
             publish(index.parent, workspace.reports)
         return index
 
@@ -38,14 +39,17 @@ def _free(folder: Path) -> Path:
 
 
 def compare(settings: Settings, old: str | None, new: str | None) -> "RunChanges":
-    """Return what changed between two runs; the last two where none is named, the last one where one is.
+    """Return what changed between two runs; the last two of the whole collection where none is named.
 
     raises : UsageError where there are not two runs yet
     """
     engine = open_workspace(settings).engine
-    runs = [run.run_id for run in list_runs(engine) if run.status == "finished"]
+    runs = whole_runs(engine)
     if new is None:
         if not runs or (old is None and len(runs) < 2):
-            raise UsageError(f"there are {len(runs)} finished runs; two are needed: make another with `kouros run`")
+            raise UsageError(
+                f"there are {len(runs)} finished runs of the whole collection and two are needed; "
+                "make another with `kouros run`"
+            )
         new = runs[0]
     return compare_runs(engine, old or runs[1], new)

@@ -11,6 +11,17 @@ KERNELS = "kernels"
 """Key of a run's settings under which the version of the compiled models is kept."""
 
 
+SELECTION = "selection"
+"""Key of a run's settings that is true for a run of a part of the collection."""
+
+
+def whole_runs(engine: Engine) -> list[str]:
+    """Return the finished runs of the whole collection, the newest first."""
+    finished = select(RUN.c.run_id, RUN.c.settings).where(RUN.c.status == "finished").order_by(RUN.c.started.desc())
+    with engine.connect() as connection:
+        return [row.run_id for row in connection.execute(finished) if not row.settings.get(SELECTION)]
+
+
 def stored_charts(engine: Engine, keys: Iterable[str], kernels: str) -> dict[str, Chart]:
     """Return those of the charts that the newest finished run has, if it ran the same kernels.
 
