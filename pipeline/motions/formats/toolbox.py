@@ -169,7 +169,7 @@ def fixed(lines: Lines, start: int, count: int, columns: int, width: int, what: 
     """Read a Fortran block: ``count`` numbers in ``columns`` fields of ``width`` characters a line.
 
     returns : (count,) and the index of the line after the block
-    raises  : FormatError at the first line that is missing, too long, or holds something else than numbers
+    raises  : FormatError at the first line that is missing, too short or long, or holds something else than numbers
     """
     if not (1 <= columns <= 100 and 1 <= width <= 40):
         raise lines.error(start - 1, f"{columns} columns of {width} characters make no block of numbers")
@@ -185,9 +185,10 @@ def fixed(lines: Lines, start: int, count: int, columns: int, width: int, what: 
     for index in range(start, end):
         size = last if index == end - 1 else full
         line = lines.lines[index].rstrip(b" \0\x1a")
-        if line.translate(None, _NUMERIC) or len(line) > size:
+        # Fortran fills its fields to their right end: a shorter line has lost a value, or the end of one.
+        if line.translate(None, _NUMERIC) or len(line) != size:
             raise _no_numbers(lines, index, what, size // width, width)
-        block.append(line.ljust(size))
+        block.append(line)
     joined = b"".join(block).translate(_PLAIN)
     try:
         values = np.frombuffer(joined, dtype=f"S{width}").astype(np.float64)

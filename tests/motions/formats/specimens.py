@@ -49,7 +49,9 @@ def geonet(volume: int = 2, components: tuple[str, ...] = ("N16E", "N74W", "Up")
     for component in components:
         corrected = volume == 2
         step = "0.010 sec intervals" if corrected else "intervals of 0.010 s"
-        data = f"Instrument corrected data at {step}" if corrected else f"Raw readings in units of 1.00 mm/s/s  at {step}"
+        data = (
+            f"Instrument corrected data at {step}" if corrected else f"Raw readings in units of 1.00 mm/s/s  at {step}"
+        )
         lines += [
             f"{'Corrected' if corrected else 'Uncorrected'} accelerogram 20010101_000000_TEST GNS Science",
             "Site TEST      43 30 25S  172 43 53E     Cusp file:  20010101_000000_TEST", "Nowhere", "Instrument Cusp_1",
@@ -137,9 +139,10 @@ def cosmos(stage: int = 1, azimuths: tuple[int, ...] = (90, 360, 400), apart: bo
         for kinds in blocks:
             lines += _cosmos_header(title.replace("acceleration", kinds[0]), number, azimuth, stage)
             for kind in kinds:
-                unit, form = {"acceleration": "cm/sec2 (04)", "velocity": "cm/sec (05)", "displacement": "cm (06)"}[
-                    kind
-                ], "(8F10.5)"
+                unit, form = (
+                    {"acceleration": "cm/sec2 (04)", "velocity": "cm/sec (05)", "displacement": "cm (06)"}[kind],
+                    "(8F10.5)",
+                )
                 data = fortran(SHAPE[kind] * tone(), 8, "{:10.5f}")
                 if stage == 0:
                     unit, form = "counts (50)", "(10I8)"
@@ -163,7 +166,9 @@ def _cosmos_header(title: str, number: int, azimuth: int, stage: int) -> list[st
     return [*lines, "   1 Comment line(s) follow, each starting with a |", "| by hand"]
 
 
-def csv(header: str = "time (s),HNE (cm/s2),H2 360 (g),V up [m/s^2]", separator: str = ",", comments: str = "") -> bytes:
+def csv(
+    header: str = "time (s),HNE (cm/s2),H2 360 (g),V up [m/s^2]", separator: str = ",", comments: str = ""
+) -> bytes:
     data = [(f"{DT * i:.3f}", f"{100 * a:.6f}", f"{a:.6f}", f"{9 * a:.6f}") for i, a in enumerate(tone())]
     rows = [separator.join(row[: header.count("(") + header.count("[")]) for row in data]
     return joined([*comments.splitlines(), header.replace(",", separator), *rows], "\n")
