@@ -13,7 +13,7 @@ import re
 from typing import Any
 
 from pipeline.motions.formats import toolbox
-from pipeline.motions.formats.toolbox import Lines, Series, Source
+from pipeline.motions.formats.toolbox import NUMBER, Lines, Series, Source
 from pipeline.quantities import Array
 
 _TITLE = re.compile(r"^\s*(un)?corrected accelerogram\b", re.IGNORECASE)
@@ -27,11 +27,11 @@ _FORMAT = re.compile(r"\(\s*(\d{1,2})\s*f\s*(\d{1,2})\.\d{1,2}\s*\)", re.IGNOREC
 _CHANNEL = re.compile(r"^\s*chan\s*(\d{1,3}):\s*(.*?)\s*(?:\(|\s{2}|$)", re.IGNORECASE)
 _STATION = re.compile(r"station no\.\s*(\w{1,8})", re.IGNORECASE)
 _PEAKS = {
-    "acceleration": re.compile(r"peak\s+acceleration\s*=\s*(-?\d{0,7}\.\d{0,6})\s*cm/sec/sec", re.IGNORECASE),
-    "velocity": re.compile(r"peak\s+velocity\s*=\s*(-?\d{0,7}\.\d{0,6})\s*cm/sec\b", re.IGNORECASE),
-    "displacement": re.compile(r"peak\s+displacement\s*=\s*(-?\d{0,7}\.\d{0,6})\s*cm\b", re.IGNORECASE),
+    "acceleration": re.compile(rf"peak\s+acceleration\s*=\s*({NUMBER})\s*cm/sec/sec", re.IGNORECASE),
+    "velocity": re.compile(rf"peak\s+velocity\s*=\s*({NUMBER})\s*cm/sec\b", re.IGNORECASE),
+    "displacement": re.compile(rf"peak\s+displacement\s*=\s*({NUMBER})\s*cm\b", re.IGNORECASE),
 }
-_UNCORRECTED_PEAK = re.compile(r"\bmax\s*=\s*(-?\d{0,4}\.\d{0,6})\s*g\b", re.IGNORECASE)
+_UNCORRECTED_PEAK = re.compile(rf"\bmax\s*=\s*({NUMBER})\s*g\b", re.IGNORECASE)
 _TIME = re.compile(
     r"(?:start|trigger)\s+time:\s*(\d{1,2})/(\d{1,2})/(\d\d),\s*(\d{1,2}):(\d\d):(\d\d(?:\.\d{0,3})?)\s*(UTC|GMT|P[SD]T)",
     re.IGNORECASE,

@@ -12,7 +12,7 @@ import re
 from typing import Any
 
 from pipeline.motions.formats import toolbox
-from pipeline.motions.formats.toolbox import Lines, Series, Source
+from pipeline.motions.formats.toolbox import NUMBER, Lines, Series, Source
 from pipeline.quantities import Array
 
 _TITLE = re.compile(r"^\s*(Uncorrected|Corrected) accelerogram\b.*GNS Science", re.IGNORECASE)
@@ -21,7 +21,7 @@ _POINTS = re.compile(r"Number of points\s+(\d{1,8})")
 _CORRECTED = re.compile(r"corrected data at\s+(\d{0,3}\.\d{1,6}) sec intervals", re.IGNORECASE)
 _RAW = re.compile(r"readings in units of\s+(\d{0,4}\.\d{1,6}) mm/s/s\s+at intervals of\s+(\d{0,3}\.\d{1,6}) s", re.I)
 _COMPONENT = re.compile(r"^Component\s+(\S+(?:\s?\d\d?[EW]\b)?)")
-_PEAK = re.compile(r"peak\s+(-?\d{0,7}\.\d{0,6}) (mm/s/s|mm/s|mm)\b", re.IGNORECASE)
+_PEAK = re.compile(rf"peak\s+({NUMBER}) (mm/s/s|mm/s|mm)\b", re.IGNORECASE)
 _HEADER = 26
 
 

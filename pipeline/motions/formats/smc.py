@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from pipeline.motions.formats import toolbox
-from pipeline.motions.formats.toolbox import Lines, Orientation, Source
+from pipeline.motions.formats.toolbox import NUMBER, Lines, Orientation, Source
 from pipeline.quantities import Array
 
 RESAMPLED = 0.005
@@ -28,7 +28,7 @@ _TITLE = re.compile(r"^\s*([1-5]) (UNCORRECTED ACCELEROGRAM|CORRECTED ACCELEROGR
 _INTEGERS = re.compile(r"^(?:[ \d-]{10}){8}$")
 _COMPONENT = re.compile(r"component=\s*(.*)$")
 _STATION = re.compile(r"station\s*=\s*(.*?)\s*component")
-_PEAK = re.compile(r"\bpk(?: acc)?\s*=\s*(-?\d{0,7}\.\d{0,6})")
+_PEAK = re.compile(rf"\bpk(?: acc)?\s*=\s*({NUMBER})")
 _TEXT, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
 _FORMS = {"1": "SMC uncorrected", "2": "SMC corrected"}
 

@@ -29,6 +29,9 @@ HEAD = 8192
 FACTORS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "in/s2": 0.0254, "g": G, "mg": 0.001 * G}
 """Metres per second squared in one of each unit of acceleration."""
 
+NUMBER = r"-?(?:\d{1,7}\.?\d{0,6}|\.\d{1,6})"
+"""A number in the text of a header, as a pattern; always one that float() takes."""
+
 STEP_LEAST, STEP_MOST = 1e-5, 1.0
 """Time steps in s that an accelerograph can have."""
 
