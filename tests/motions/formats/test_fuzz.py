@@ -114,6 +114,31 @@ def test_cut_off_at_each_line_and_within(name):
                     assert trace.stats.kouros == full.stats.kouros
 
 
+AGENCY = {
+    "np01002r_4225b_u.smc": "smc", "0111a.smc": "smc", "CHAN14.V2": "csmip", "CE89146.V1": "csmip",
+    "ce36456p_CE36456.V2": "csmip", "20180212_211557_WPWS_20.V2A": "geonet", "NP1795-n.305.v0c": "cosmos",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", AGENCY)
+def test_agency_records_cut_off(agency_file, name):
+    """At places drawn by lot: what is read are whole channels of the record."""
+    reader = importlib.import_module(f"pipeline.motions.formats.{AGENCY[name]}")
+    content = agency_file(name).read_bytes()
+    whole = reader.read_format(io.BytesIO(content))
+    chance = random.Random(3)  # noqa: S311
+    refused = 0
+    for _ in range(12):
+        try:
+            part = reader.read_format(io.BytesIO(content[: chance.randrange(len(content) - 200)]))
+        except FormatError as refusal:
+            refused += "line " in str(refusal)
+        else:
+            assert all(np.array_equal(a.data, b.data) for a, b in zip(part, whole, strict=False))
+            refused += 1
+    assert refused == 12
+
+
 @pytest.mark.parametrize("name", SPECIMENS)
 def test_damage(name):
     seed = 1 if SECONDS is None else random.SystemRandom().randrange(2**32)
