@@ -127,16 +127,16 @@ def test_agency_records_cut_off(agency_file, name):
     content = agency_file(name).read_bytes()
     whole = reader.read_format(io.BytesIO(content))
     chance = random.Random(3)  # noqa: S311
-    refused = 0
     for _ in range(12):
         try:
             part = reader.read_format(io.BytesIO(content[: chance.randrange(len(content) - 200)]))
         except FormatError as refusal:
-            refused += "line " in str(refusal)
+            said = str(refusal)
         else:
+            said = f"line 0: {len(part)} of {len(whole)} channels"
             assert all(np.array_equal(a.data, b.data) for a, b in zip(part, whole, strict=False))
-            refused += 1
-    assert refused == 12
+            assert len(part) < len(whole)
+        assert re.search(r"line \d+: ", said)
 
 
 @pytest.mark.parametrize("name", SPECIMENS)
