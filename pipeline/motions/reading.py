@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.motions.errors import refusal
+from pipeline.motions.errors import MotionError, refusal
 from pipeline.motions.manifest import Component, Record
 from pipeline.quantities import Array, G
 
@@ -35,6 +35,9 @@ class Recording:
     data     : (3, n), rows the channels that the manifest calls x, y, z; z positive up
     azimuths : degrees clockwise from north of the first two rows
     channels : what the files call the three rows
+    processed: whether the agency has filtered it already, by the manifest, or else by the files
+    velocity : (3, n) m/s as the agency computed it, with the velocity that the record starts with, of which the
+               acceleration knows nothing; None unless all three files hold it
     """
 
     dt: float
@@ -42,6 +45,8 @@ class Recording:
     azimuths: tuple[float, float]
     channels: tuple[str, str, str]
     steps: tuple[str, ...]
+    processed: bool
+    velocity: Array | None = None
 
 
 def prefilter(sampling_hz: float, highpass_hz: float | None) -> tuple[float, float, float, float]:
@@ -67,6 +72,7 @@ def read_record(folder: str | Path, record: Record) -> Recording:
     inventory = None if record.response is None else _inventory(folder / record.response, steps)
     rows: dict[str, tuple[Path, Any, str]] = {}
     azimuths: dict[str, float] = {}
+    velocities: dict[str, Array] = {}
     taken: set[int] = set()
     for key, component in record.components.items():
         file, trace = _component(folder=folder, record=record, key=key, component=component, traces=traces, taken=taken)
@@ -74,17 +80,25 @@ def read_record(folder: str | Path, record: Record) -> Recording:
         if inventory is not None:
             _check_orientation(folder / str(record.response), key, component, trace, inventory)
         steps += _in_si(file, key, record, trace, inventory)
-        if component.axis == "z":
-            if component.orientation == "down":
-                trace.data = -trace.data
-                steps.append(f"{key}: turned over, positive up")
-        else:
-            azimuths[component.axis] = component.orientation
+        said = trace.stats.get("kouros", {})
+        if "velocity" in said:
+            velocities[component.axis] = np.asarray(said.velocity)
+        oriented = _oriented(file, key, component.axis, component.orientation, said, steps)
+        if isinstance(oriented, float):
+            azimuths[component.axis] = oriented
+        elif oriented == "down":
+            trace.data = -trace.data
+            velocities |= {axis: -values for axis, values in velocities.items() if axis == component.axis}
+            steps.append(f"{key}: turned over, positive up")
         _check_size(file, key, component, trace)
         rows[component.axis] = (file, trace, key)
-    data, dt = _aligned(rows, steps)
+    processed = _processed(folder, record.name, record.processed, [trace for _, trace, _ in rows.values()], steps)
+    data, dt, first = _aligned(rows, steps)
+    velocity = None
+    if processed and velocities.keys() == rows.keys():
+        velocity = np.stack([velocities[axis][first[axis] : first[axis] + data.shape[1]] for axis in "xyz"])
     channels = (rows["x"][2], rows["y"][2], rows["z"][2])
-    return Recording(dt, data, (azimuths["x"], azimuths["y"]), channels, tuple(steps))
+    return Recording(dt, data, (azimuths["x"], azimuths["y"]), channels, tuple(steps), processed, velocity)
 
 
 def _obspy() -> Any:
@@ -109,6 +123,8 @@ def _open(file: Path, steps: list[str]) -> list[Any]:
         try:
             # Escaped, because obspy expands wildcards; never unpacked, so that what is read is what was hashed.
             stream = obspy.read(glob.escape(str(file)), check_compression=False)
+        except MotionError:  # Kouros's own readers say file, line and remedy themselves
+            raise
         except Exception as error:  # on a broken file obspy's readers raise anything
             wrong = f"cannot be read ({type(error).__name__}: {str(error)[:200]})"
             raise refusal(
@@ -232,6 +248,50 @@ def _check_orientation(file: Path, key: str, component: Component, trace: Any, i
         raise refusal(file, place, wrong, "find out which is right, and mend the manifest's orientation")
 
 
+def _oriented(
+    file: Path, key: str, axis: str, manifest: float | str | None, said: Any, steps: list[str]
+) -> float | str:
+    """Return the orientation by the manifest, or, where it is silent, by the file's header; degrees, "up" or "down"."""
+    header = said.get("orientation")
+    known = header in {"up", "down"} if axis == "z" else isinstance(header, float)
+    place = f"component {axis} ({key!r})"
+    if manifest is None:
+        if not known:
+            needed = "up or down" if axis == "z" else "an azimuth"
+            wrong = f"its orientation is not known: the file says {header!r}, and not {needed}"
+            raise refusal(file, place, wrong, "give orientation in the manifest")
+        steps.append(f"{key}: orientation {header}, by the file")
+        return header if isinstance(header, str) else float(header)
+    vertical = header in {"up", "down"}
+    if vertical != (axis == "z") and (vertical or isinstance(header, float)):
+        wrong = f"the file says that it is oriented {header!r}, which is no component {axis}"
+        raise refusal(file, place, wrong, "name the right channel in components")
+    if known and isinstance(header, str):
+        differs = header != manifest
+    else:
+        differs = known and abs((header - float(manifest) + 180.0) % 360.0 - 180.0) > AZIMUTH_TOLERANCE
+    if differs:
+        steps.append(f"{key}: the manifest's orientation {manifest} overrules the file's {header}")
+    return manifest if isinstance(manifest, str) else float(manifest)
+
+
+def _processed(folder: Path, name: str, manifest: bool | None, traces: list[Any], steps: list[str]) -> bool:
+    words = {True: "processed", False: "raw", None: "neither"}
+    headers = {trace.stats.get("kouros", {}).get("processed") for trace in traces}
+    if manifest is not None:
+        if manifest not in headers and headers != {None}:
+            told = " and ".join(sorted(words[header] for header in headers - {None}))
+            steps.append(f"the manifest says that the record is {words[manifest]}, and overrules its files ({told})")
+        return manifest
+    if len(headers) != 1 or None in headers:
+        told = ", ".join(sorted(words[header] for header in headers))
+        wrong = f"neither the manifest nor the files say whether it is processed (the files: {told})"
+        raise refusal(folder, f"record {name!r}", wrong, "give processed = true or false in the manifest")
+    (header,) = headers
+    steps.append(f"{words[header]}, by the files")
+    return bool(header)
+
+
 def _in_si(file: Path, key: str, record: Record, trace: Any, inventory: Any) -> list[str]:
     stats = trace.stats
     own, factor = _own_unit(stats)
@@ -257,6 +317,8 @@ def _in_si(file: Path, key: str, record: Record, trace: Any, inventory: Any) -> 
         step = f"{key}: response of {record.response} removed to m/s2, {how}"
         return [step, *said]
     unit = record.units or own
+    if "kouros" in stats:
+        return _by_header(file, key, record, trace)
     if own and record.units and UNITS[record.units] != factor:
         wrong = f"the file says {own}, the manifest {record.units}"
         raise refusal(file, f"component {key!r}", wrong, "drop units from the manifest, which may only fill a silence")
@@ -273,7 +335,24 @@ def _in_si(file: Path, key: str, record: Record, trace: Any, inventory: Any) -> 
     return [f"{key}: {unit} to m/s2, times {factor:.9g}"]
 
 
+def _by_header(file: Path, key: str, record: Record, trace: Any) -> list[str]:
+    """Bring a trace of Kouros's own readers to m/s2: its header knows the factor, which the manifest may overrule."""
+    said = trace.stats.kouros
+    unit, factor = said.units, said.si_factor
+    steps = [f"{key}: {said[word]}" for word in ("notes", "resampled") if said.get(word)]
+    if record.units is not None and UNITS[record.units] != factor:
+        steps.append(f"{key}: the manifest's unit {record.units} overrules the file's {unit}")
+        unit, factor = record.units, UNITS[record.units]
+    if factor is None:
+        wrong = f"is in {unit}, and the file does not say their sensitivity"
+        raise refusal(file, f"component {key!r}", wrong, "name its response in the manifest")
+    trace.data = factor * trace.data
+    return [*steps, f"{key}: {unit} to m/s2, times {factor:.9g}"]
+
+
 def _own_unit(stats: Any) -> tuple[str, float]:
+    if "kouros" in stats:
+        return stats.kouros.units, stats.kouros.si_factor or 0.0
     if stats._format == "KNET":
         return "m/s2", 1.0
     said = str(stats.get("ascii", {}).get("unit", "")).strip().lower()
@@ -293,7 +372,7 @@ def _check_size(file: Path, key: str, component: Component, trace: Any) -> None:
         raise refusal(file, place, wrong, "this is the wrong unit; mend units or response in the manifest")
 
 
-def _aligned(rows: dict[str, tuple[Path, Any, str]], steps: list[str]) -> tuple[Array, float]:
+def _aligned(rows: dict[str, tuple[Path, Any, str]], steps: list[str]) -> tuple[Array, float, dict[str, int]]:
     dt = rows["x"][1].stats.delta
     for axis, (file, trace, key) in rows.items():
         if abs(trace.stats.delta - dt) > 1e-6 * dt:
@@ -313,4 +392,4 @@ def _aligned(rows: dict[str, tuple[Path, Any, str]], steps: list[str]) -> tuple[
     if skew > 1e-3 * dt:
         steps.append(f"aligned to the nearest sample; the components' clocks differ by up to {skew:.3g} s")
     data = np.stack([rows[axis][1].data[first[axis] : first[axis] + n] for axis in "xyz"])
-    return data, float(dt)
+    return data, float(dt), first

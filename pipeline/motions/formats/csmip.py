@@ -1,0 +1,189 @@
+"""CSMIP (CDMG, CGS) volume 1 and 2: channels of a station one after the other, also as the USGS wrote them.
+
+Volume 1 has the uncorrected acceleration, volume 2 the corrected acceleration with its velocity and displacement.  A
+channel is 13 (volume 1) or 25 lines of text, integer and real headers, then each series behind a line that gives its
+length, step, unit and mostly its Fortran format, then "/&".
+
+source : Shakal and Huang (1985), Standard tape format for CSMIP strong-motion data tapes, OSMS 85-03
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from pipeline.motions.formats import toolbox
+from pipeline.motions.formats.toolbox import NUMBER, Lines, Series, Source
+from pipeline.quantities import Array
+
+_TITLE = re.compile(r"^\s*(un)?corrected accelerogram\b", re.IGNORECASE)
+_DATA = re.compile(
+    r"^\s*(?P<count>\d{1,8})\s+(?:points of (?P<kind>accel|veloc|displ)\w* data|accelerogram points)\s+"
+    r"(?:equally spaced at\s+(?P<step>\d{0,3}\.\d{1,6})\s*sec|at\s+(?P<rate>\d{1,4}(?:\.\d{0,4})?)\s*pts/sec)",
+    re.IGNORECASE,
+)
+_UNIT = re.compile(r"\b(?:units\s?:|units of|in)\s*([a-z]{1,3}(?:/sec(?:/sec|2|\*\*2)?)?)(?=[\s).,]|$)", re.IGNORECASE)
+_FORMAT = re.compile(r"\(\s*(\d{1,2})\s*f\s*(\d{1,2})\.\d{1,2}\s*\)", re.IGNORECASE)
+_CHANNEL = re.compile(r"^\s*chan\s*(\d{1,3}):\s*(.*?)\s*(?:\(|\s{2}|$)", re.IGNORECASE)
+_STATION = re.compile(r"station no\.\s*(\w{1,8})", re.IGNORECASE)
+_PEAKS = {
+    "acceleration": re.compile(rf"peak\s+acceleration\s*=\s*({NUMBER})\s*cm/sec/sec", re.IGNORECASE),
+    "velocity": re.compile(rf"peak\s+velocity\s*=\s*({NUMBER})\s*cm/sec\b", re.IGNORECASE),
+    "displacement": re.compile(rf"peak\s+displacement\s*=\s*({NUMBER})\s*cm\b", re.IGNORECASE),
+}
+_UNCORRECTED_PEAK = re.compile(rf"\bmax\s*=\s*({NUMBER})\s*g\b", re.IGNORECASE)
+_TIME = re.compile(
+    r"(?:start|trigger)\s+time:\s*(\d{1,2})/(\d{1,2})/(\d\d),\s*(\d{1,2}):(\d\d):(\d\d(?:\.\d{0,3})?)\s*(UTC|GMT|P[SD]T)",
+    re.IGNORECASE,
+)
+_ZONES = {"UTC": 0, "GMT": 0, "PST": 8, "PDT": 7}
+_TEXT_LINES = {1: 13, 2: 25}
+_FARTHEST = 60
+_END = "/&"
+_KINDS = {"accel": "acceleration", "veloc": "velocity", "displ": "displacement"}
+_LENGTHS = {"cm": 0.01, "in": 0.0254}
+_UNITS = {"g": "g", "cm/sec/sec": "cm/s2", "cm/sec2": "cm/s2", "cm/sec**2": "cm/s2", "gal": "gal"}
+
+
+def is_format(source: Source) -> bool:
+    """Whether a source is a CSMIP file of volume 1 or 2, from its first channel's header."""
+    lines = toolbox.head(source).splitlines()
+    # GeoNet and COSMOS open alike; both say who they are in the same line.
+    if not lines or not _TITLE.search(lines[0]) or re.search(r"GNS Science|\(Format v", lines[0], re.IGNORECASE):
+        return False
+    return any(_DATA.search(line) for line in lines[:_FARTHEST])
+
+
+def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
+    """Return the Stream of a CSMIP file: one trace a channel, in g (volume 1) or cm/s2 (volume 2).
+
+    raises : FormatError naming file and line
+    """
+    from obspy import Stream
+
+    lines = toolbox.open_lines(source)
+    traces: list[Any] = []
+    index = 0
+    while not traces or not lines.blank_until_end(index):
+        trace, index = _channel(lines, index, headonly)
+        traces.append(trace)
+    return Stream(traces)
+
+
+def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
+    volume = 1 if lines.match(top, _TITLE, "'Corrected accelerogram', or 'Uncorrected ...'")[1] else 2
+    text = [lines.text(top + i, "the header") for i in range(_TEXT_LINES[volume])]
+    named = next(((i, found) for i, line in enumerate(text) if (found := _CHANNEL.match(line))), None)
+    if named is None:
+        raise lines.error(top + len(text) - 1, "the header ends without a line 'Chan  1: 360 Deg'")
+    direction = toolbox.orientation(named[1][2])
+    station = next((found[1] for line in text if (found := _STATION.search(line))), "")
+    index = next((i for i in range(top, min(top + _FARTHEST, len(lines))) if _DATA.search(lines.text(i))), None)
+    if index is None:
+        wrong = f"no line such as '5696 points of accel data equally spaced at .010 sec' in the next {_FARTHEST} lines"
+        raise lines.error(min(top + _FARTHEST, len(lines)), wrong)
+    precise = _precise_step(lines, index) if volume == 2 else None
+    series: dict[str, Array] = {}
+    unit, dt, count = "", 0.0, 0
+    while not lines.text(index, f"'{_END}', the end of the channel,").startswith(_END):
+        kind, values, its_unit, its_dt, end = _series(lines, index, precise)
+        if kind in series or (not series and kind != "acceleration"):
+            raise lines.error(index, f"{kind} is out of order; acceleration, velocity, displacement were expected")
+        if series and (its_dt != dt or len(values) != count):
+            wrong = f"{kind} has {len(values)} samples of {its_dt:g} s, the acceleration {count} of {dt:g} s"
+            raise lines.error(index, wrong)
+        series[kind] = values
+        if kind == "acceleration":
+            unit, dt, count = its_unit, its_dt, len(values)
+        index = end
+    if not series:
+        raise lines.error(index, "the channel holds no acceleration")
+    when = _start(lines, top, text)
+    trace = toolbox.make_trace(
+        lines,
+        data=series["acceleration"],
+        dt=dt,
+        form=f"CSMIP V{volume}",
+        units=unit,
+        si_factor=toolbox.FACTORS[unit],
+        direction=direction,
+        processed=volume == 2,
+        station=station,
+        location=f"{int(named[1][1]):02d}",
+        channel=toolbox.channel_code(1.0 / dt, direction, int(named[1][1])),
+        start=when,
+        start_is="unknown" if when is None else "record",
+        headonly=headonly,
+        peak=_peaks(text, volume),
+        series={kind: Series(values) for kind, values in series.items() if kind != "acceleration"},
+    )
+    return trace, index + 1
+
+
+def _series(lines: Lines, index: int, precise: float | None) -> tuple[str, Array, str, float, int]:
+    found = lines.match(index, _DATA, f"a line of data, or '{_END}'")
+    kind = _KINDS[(found["kind"] or "accel").lower()]
+    count = toolbox.samples(lines, index, int(found["count"]))
+    rest = lines.text(index)[found.end() :]
+    said = _UNIT.search(rest)
+    if said is None:
+        raise lines.error(index, "the line does not say the unit of its data")
+    word = said[1].lower()
+    factor = 1.0
+    if kind == "acceleration":
+        if word not in _UNITS:
+            raise lines.error(index, f"{toolbox.shown(said[1])} is no unit of acceleration that is known")
+        unit = _UNITS[word]
+    else:
+        length, _, per = word.partition("/")
+        if length not in _LENGTHS or per != ("sec" if kind == "velocity" else ""):
+            raise lines.error(index, f"{toolbox.shown(said[1])} is no unit of {kind} that is known")
+        unit, factor = word, _LENGTHS[length]
+    if found["rate"]:
+        dt = 1.0 / max(float(found["rate"]), 1e-9)
+    else:
+        dt = float(found["step"])
+        # Lines with three decimals round the step of 400 samples a second; the real header does not.
+        half = 0.51 * 10.0 ** -len(found["step"].partition(".")[2])
+        if precise is not None and abs(precise - dt) <= half:
+            dt = precise
+    toolbox.step(lines, index, dt)
+    shape = _FORMAT.search(rest)
+    columns, width = (int(shape[1]), int(shape[2])) if shape else (8, 10)
+    values, end = toolbox.fixed(lines, index + 1, count, columns, width, kind)
+    return kind, factor * values, unit, dt, end
+
+
+def _precise_step(lines: Lines, data_line: int) -> float | None:
+    # Volume 2 has 100 reals in the 13 lines before its data; the 53rd is the step in s.
+    top = data_line - 13
+    if top < 0:
+        return None
+    try:
+        reals, _ = toolbox.fixed(lines, top, 100, 8, 10, "the real header")
+    except toolbox.FormatError:
+        # Older files leave fields of this header blank; the line of data then has the only word on the step.
+        return None
+    return float(reals[52]) if reals[52] > 0.0 else None
+
+
+def _start(lines: Lines, top: int, text: list[str]) -> Any:
+    for offset, line in enumerate(text):
+        if found := _TIME.search(line):
+            month, day, year, hour, minute, second = (float(part) for part in found.groups()[:6])
+            # Two digits of the year: the first accelerogram was written in 1933.
+            year += 1900 if year >= 33 else 2000
+            when = toolbox.start_time(lines, top + offset, year, month, day, hour, minute, second)
+            return when + 3600 * _ZONES[found[7].upper()]
+    return None
+
+
+def _peaks(text: list[str], volume: int) -> dict[str, float | None]:
+    if volume == 1:
+        found = next((found for line in text if (found := _UNCORRECTED_PEAK.search(line))), None)
+        return {"acceleration": None if found is None else toolbox.FACTORS["g"] * float(found[1])}
+    peaks: dict[str, float | None] = {}
+    for kind, pattern in _PEAKS.items():
+        found = next((found for line in text if (found := pattern.search(line))), None)
+        peaks[kind] = None if found is None else 0.01 * float(found[1])
+    return peaks

@@ -1,0 +1,111 @@
+"""ESM ASCII (DYNA 1.2): one component of the European Engineering Strong-Motion database.
+
+Lines of "KEY: value" as far as USER5, then one number a line.  The orientation is the one that the channel code stands
+for (SEED: N and E within 5 degrees); a channel that ends in 1 or 2 has none in its file.
+
+source : ESM, header format DYNA 1.2, https://esm-db.eu
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from pipeline.motions.formats import toolbox
+from pipeline.motions.formats.toolbox import Lines, Source
+
+_KEY = re.compile(r"^([A-Z][A-Z0-9_/^]{1,59}):(.*)$")
+_DATE = re.compile(r"^(\d{4})(\d\d)(\d\d)_(\d\d)(\d\d)(\d\d(?:\.\d{1,6})?)$")
+_NUMBER = re.compile(r"^[+-]?\d{0,9}\.?\d{1,12}(?:[Ee][+-]?\d{1,2})?$")
+_MOST_KEYS = 200
+_UNITS = {"cm/s^2": "cm/s2", "cm/s2": "cm/s2", "cm/s**2": "cm/s2", "m/s^2": "m/s2", "m/s2": "m/s2", "g": "g"}
+
+
+def is_format(source: Source) -> bool:
+    """Whether a source is an ESM file, from its first keys."""
+    text = toolbox.head(source)
+    return text.startswith("EVENT_NAME:") and "\nSTATION_CODE:" in text and "\nSAMPLING_INTERVAL_S:" in text
+
+
+def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
+    """Return the Stream of an ESM file: one trace of acceleration.
+
+    raises : FormatError naming file and line
+    """
+    from obspy import Stream
+
+    lines = toolbox.open_lines(source)
+    keys, start = _header(lines)
+
+    def said(key: str) -> tuple[int, str]:
+        if key not in keys:
+            raise lines.error(start, f"the header ends without {key}", "fetch the file again")
+        return keys[key]
+
+    at, kind = said("DATA_TYPE")
+    if kind.upper() != "ACCELERATION":
+        raise lines.error(at, f"the file holds {toolbox.shown(kind)}", "give the file of the acceleration")
+    at, unit = said("UNITS")
+    if unit.lower() not in _UNITS:
+        raise lines.error(at, f"expected one of {', '.join(_UNITS)}, found {toolbox.shown(unit)}")
+    unit = _UNITS[unit.lower()]
+    dt = toolbox.step(lines, said("SAMPLING_INTERVAL_S")[0], _number(lines, *said("SAMPLING_INTERVAL_S")))
+    at, number = said("NDATA")
+    if not re.fullmatch(r"\d{1,9}", number):
+        raise lines.error(at, f"expected the number of samples, found {toolbox.shown(number)}")
+    count = toolbox.samples(lines, at, int(number))
+    data = toolbox.free(lines, start, count, "acceleration")
+    at, first = said("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS")
+    date = _DATE.match(first)
+    if first and date is None:
+        raise lines.error(at, f"expected a time such as 20190728_160919.870, found {toolbox.shown(first)}")
+    when = None if date is None else toolbox.start_time(lines, at, *map(float, date.groups()))
+    at, peak = keys.get("PGA_CM/S^2", (0, ""))
+    channel = said("STREAM")[1]
+    trace = toolbox.make_trace(
+        lines,
+        data=data,
+        dt=dt,
+        form="ESM ASCII",
+        units=unit,
+        si_factor=toolbox.FACTORS[unit],
+        direction=toolbox.seed_orientation(channel),
+        processed=_processed(keys),
+        station=said("STATION_CODE")[1],
+        network=said("NETWORK")[1],
+        location=keys.get("LOCATION", (0, ""))[1],
+        channel=channel,
+        start=when,
+        start_is="unknown" if when is None else "record",
+        headonly=headonly,
+        peak={"acceleration": 0.01 * _number(lines, at, peak) if peak else None},
+        more={"notes": "orientation by the channel code (SEED: N and E within 5 degrees)"},
+    )
+    return Stream([trace])
+
+
+def _header(lines: Lines) -> tuple[dict[str, tuple[int, str]], int]:
+    keys: dict[str, tuple[int, str]] = {}
+    for index in range(min(len(lines), _MOST_KEYS)):
+        found = _KEY.match(lines.text(index))
+        if found is None:
+            return keys, index
+        if found[1] in keys:
+            raise lines.error(index, f"{found[1]} is given twice")
+        keys[found[1]] = (index, found[2].strip())
+    raise lines.error(min(len(lines), _MOST_KEYS), "expected the first value of acceleration", "fetch the file again")
+
+
+def _number(lines: Lines, index: int, text: str) -> float:
+    if not _NUMBER.match(text):
+        raise lines.error(index, f"expected a number, found {toolbox.shown(text)}")
+    return float(text)
+
+
+def _processed(keys: dict[str, tuple[int, str]]) -> bool | None:
+    how = keys.get("PROCESSING", (0, ""))[1].lower()
+    filtered = keys.get("FILTER_TYPE", (0, ""))[1]
+    if how.startswith(("manual", "automatic")) or filtered:
+        return True
+    baseline = keys.get("BASELINE_CORRECTION", (0, ""))[1].upper()
+    return False if how == "none" or baseline == "BASELINE NOT REMOVED" else None

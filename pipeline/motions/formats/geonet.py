@@ -1,0 +1,106 @@
+"""GeoNet V1A (uncorrected) and V2A (corrected): the components of a New Zealand record, one after the other.
+
+Sixteen lines of text, four of ten integers, six of ten reals, then acceleration [mm/s2] and, where they were computed,
+velocity [mm/s] and displacement [mm], ten fields of eight characters a line.
+
+source : GNS Science, "Accelerogram data file format", 2012-03-15
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from pipeline.motions.formats import toolbox
+from pipeline.motions.formats.toolbox import NUMBER, Lines, Series, Source
+from pipeline.quantities import Array
+
+_TITLE = re.compile(r"^\s*(Uncorrected|Corrected) accelerogram\b.*GNS Science", re.IGNORECASE)
+_SITE = re.compile(r"^Site\s+(\w{1,8})")
+_POINTS = re.compile(r"Number of points\s+(\d{1,8})")
+_CORRECTED = re.compile(r"corrected data at\s+(\d{0,3}\.\d{1,6}) sec intervals", re.IGNORECASE)
+_RAW = re.compile(r"readings in units of\s+(\d{0,4}\.\d{1,6}) mm/s/s\s+at intervals of\s+(\d{0,3}\.\d{1,6}) s", re.I)
+_COMPONENT = re.compile(r"^Component\s+(\S+(?:\s?\d\d?[EW]\b)?)")
+_PEAK = re.compile(rf"peak\s+({NUMBER}) (mm/s/s|mm/s|mm)\b", re.IGNORECASE)
+_HEADER = 26
+
+
+def is_format(source: Source) -> bool:
+    """Whether a source is a GeoNet V1A or V2A file, from its first two lines."""
+    lines = toolbox.head(source).splitlines()[:2]
+    return len(lines) == 2 and bool(_TITLE.search(lines[0])) and bool(_SITE.search(lines[1]))
+
+
+def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
+    """Return the Stream of a GeoNet file: one trace a component, in mm/s2.
+
+    raises : FormatError naming file and line
+    """
+    from obspy import Stream
+
+    lines = toolbox.open_lines(source)
+    traces: list[Any] = []
+    index = 0
+    while not traces or not lines.blank_until_end(index):
+        trace, index = _component(lines, index, len(traces) + 1, headonly)
+        traces.append(trace)
+    return Stream(traces)
+
+
+def _component(lines: Lines, top: int, number: int, headonly: bool) -> tuple[Any, int]:
+    corrected = lines.match(top, _TITLE, "'... accelerogram ... GNS Science'")[1].lower() == "corrected"
+    station = lines.match(top + 1, _SITE, "'Site CODE'")[1]
+    points = int(lines.match(top + 9, _POINTS, "'Number of points'")[1])
+    if corrected:
+        scale, dt = 1.0, float(lines.match(top + 10, _CORRECTED, "'... corrected data at 0.020 sec intervals'")[1])
+    else:
+        expected = "'Raw readings in units of 1.00 mm/s/s at intervals of 0.005 s'"
+        raw = lines.match(top + 10, _RAW, expected)
+        scale, dt = float(raw[1]), float(raw[2])
+    toolbox.step(lines, top + 10, dt)
+    if scale <= 0.0:
+        raise lines.error(top + 10, "the readings are in units of 0 mm/s/s")
+    direction = toolbox.orientation(lines.match(top + 12, _COMPONENT, "'Component N16E', or 'Component Up'")[1])
+    integers, _ = toolbox.fixed(lines, top + 16, 40, 10, 8, "the integer header")
+    reals, _ = toolbox.fixed(lines, top + 20, 60, 10, 8, "the real header")
+    counts = integers[33:36]
+    if counts[0] != points or any(count not in {0.0, counts[0]} for count in counts[1:]):
+        told = ", ".join(f"{count:g}" for count in counts)
+        wrong = f"announces {told} values of acceleration, velocity and displacement; line {top + 10} says {points}"
+        raise lines.error(top + 19, wrong)
+    # The header's text has three decimals, its field four; the field is the better of two that agree.
+    if abs(reals[25] - dt) <= 0.00051 and reals[25] > 0.0:
+        dt = float(reals[25])
+    else:
+        raise lines.error(top + 22, f"says a time step of {reals[25]:g} s, and line {top + 11} one of {dt:g} s")
+    toolbox.samples(lines, top + 9, points)
+    index = top + _HEADER
+    series: dict[str, Array] = {}
+    for what, count in zip(("acceleration", "velocity", "displacement"), counts, strict=True):
+        if count:
+            series[what], index = toolbox.fixed(lines, index, points, 10, 8, what)
+    start = [integers[8], integers[9], integers[18], integers[19], integers[38], integers[39] / 1000.0]
+    trace = toolbox.make_trace(
+        lines,
+        data=scale * series["acceleration"],
+        dt=dt,
+        form="GeoNet V2A" if corrected else "GeoNet V1A",
+        units="mm/s2",
+        si_factor=toolbox.FACTORS["mm/s2"],
+        direction=direction,
+        processed=corrected,
+        station=station,
+        network="NZ",
+        channel=toolbox.channel_code(1.0 / dt, direction, number),
+        start=toolbox.start_time(lines, top + 19, *map(float, start)),
+        start_is="record",
+        headonly=headonly,
+        peak={what: _peak(lines, top + 13 + i) for i, what in enumerate(("acceleration", "velocity", "displacement"))},
+        series={what: Series(0.001 * values) for what, values in series.items() if what != "acceleration"},
+    )
+    return trace, index
+
+
+def _peak(lines: Lines, index: int) -> float | None:
+    found = _PEAK.search(lines.text(index))
+    return None if found is None else 0.001 * float(found[1])

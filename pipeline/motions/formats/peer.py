@@ -1,0 +1,63 @@
+"""PEER AT2: one component of acceleration in g, as the NGA databases and the older PEER database give it.
+
+Four lines of text, the last with the number of samples and the step ("NPTS=  7818, DT= .0050 SEC" or "7818 .0050 NPTS,
+DT"), then numbers.  The orientation is the last item of the second line.  The header does not say whether a record is
+processed: the manifest must.
+
+source : header of the files of the PEER NGA-West2 database
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from pipeline.motions.formats import toolbox
+from pipeline.motions.formats.toolbox import Source
+
+_UNIT = re.compile(r"ACCELERATION TIME (SERIES|HISTORY) IN UNITS OF (G\b|CM/S|.*)", re.IGNORECASE)
+_NEW = re.compile(r"NPTS\s*=\s*(\d{1,9})\s*,\s*DT\s*=\s*(\d{0,4}\.\d{1,9}(?:E-?\d)?)", re.IGNORECASE)
+_OLD = re.compile(r"^\s*(\d{1,9})\s+(\d{0,4}\.\d{1,9})\s+NPTS\s*,\s*DT", re.IGNORECASE)
+
+
+def is_format(source: Source) -> bool:
+    """Whether a source is a PEER AT2 file, from its first four lines."""
+    lines = toolbox.head(source).splitlines()[:4]
+    return len(lines) == 4 and bool(_UNIT.search(lines[2])) and bool(_NEW.search(lines[3]) or _OLD.search(lines[3]))
+
+
+def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
+    """Return the Stream of a PEER AT2 file: one trace in g.
+
+    raises : FormatError naming file and line
+    """
+    from obspy import Stream
+
+    lines = toolbox.open_lines(source)
+    unit = lines.match(2, _UNIT, "'ACCELERATION TIME SERIES IN UNITS OF G'")
+    if unit[2].upper() != "G":
+        wrong = f"the unit is {toolbox.shown(unit[2])}, and an AT2 file is in g"
+        raise lines.error(2, wrong, "give the file as CSV with its unit declared")
+    text = lines.text(3, "the number of samples and the step")
+    found = _NEW.search(text) or _OLD.search(text)
+    if found is None:
+        raise lines.error(3, f"expected 'NPTS= 7818, DT= .0050 SEC', found {toolbox.shown(text)}")
+    count = toolbox.samples(lines, 3, int(found[1]))
+    dt = toolbox.step(lines, 3, float(found[2]))
+    data = toolbox.free(lines, 4, count, "acceleration")
+    title = lines.text(1)
+    direction = toolbox.orientation(title.rpartition(",")[2]) if "," in title else None
+    trace = toolbox.make_trace(
+        lines,
+        data=data,
+        dt=dt,
+        form="PEER AT2",
+        units="g",
+        si_factor=toolbox.FACTORS["g"],
+        direction=direction,
+        processed=None,
+        channel=toolbox.channel_code(1.0 / dt, direction, 1),
+        headonly=headonly,
+        more={"title": title},
+    )
+    return Stream([trace])

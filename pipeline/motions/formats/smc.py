@@ -1,0 +1,168 @@
+"""USGS SMC: one component of acceleration in cm/s2, uncorrected or corrected.
+
+Eleven lines of text, 48 integers, 50 reals, comments, then eight fields of ten characters a line.  A file without a
+sampling rate holds pairs of time and acceleration as they were digitised from film, at irregular times; they are
+resampled linearly, which the trace says.  Files may end in a stale record or in NUL bytes, left by the system that
+wrote them; the count in the header says where the data end.
+
+source : USGS National Strong-Motion Program, SMC-format data files, https://nsmp.wr.usgs.gov/smcfmt.html
+"""
+
+from __future__ import annotations
+
+import re
+from datetime import date, timedelta
+from typing import Any
+
+import numpy as np
+
+from pipeline.motions.formats import toolbox
+from pipeline.motions.formats.toolbox import NUMBER, Lines, Orientation, Source
+from pipeline.quantities import Array
+
+RESAMPLED = 0.005
+"""Step in s that irregular pairs are resampled onto, unless the caller asks for another: the USGS's own choice for the
+corrected version of such records."""
+
+_TITLE = re.compile(r"^\s*([1-5]) (UNCORRECTED ACCELEROGRAM|CORRECTED ACCELEROGRAM|VELOCITY|DISPLACEMENT|RESPONSE)")
+_INTEGERS = re.compile(r"^(?:[ \d-]{10}){8}$")
+_COMPONENT = re.compile(r"component=\s*(.*)$")
+_STATION = re.compile(r"station\s*=\s*(.*?)\s*component")
+_PEAK = re.compile(rf"\bpk(?: acc)?\s*=\s*({NUMBER})")
+_TEXT, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
+_FORMS = {"1": "SMC uncorrected", "2": "SMC corrected"}
+
+
+def is_format(source: Source) -> bool:
+    """Whether a source is an SMC file, from its first line and its integer header."""
+    lines = toolbox.head(source).splitlines()
+    if len(lines) < _TEXT + _INTEGER_LINES or not _TITLE.search(lines[0]):
+        return False
+    return all(_INTEGERS.match(line.rstrip().ljust(80)) for line in lines[_TEXT : _TEXT + _INTEGER_LINES])
+
+
+def read_format(source: Source, headonly: bool = False, resample: float = RESAMPLED, **_: Any) -> Any:
+    """Return the Stream of an SMC file: one trace in cm/s2.
+
+    resample : s, the step for irregular times; without effect on a file that has its own step
+    raises   : FormatError naming file and line
+    """
+    from obspy import Stream
+
+    lines = toolbox.open_lines(source)
+    kind = lines.match(0, _TITLE, "'1 UNCORRECTED ACCELEROGRAM', or '2 CORRECTED ACCELEROGRAM'")
+    if kind[1] not in _FORMS:
+        raise lines.error(0, f"the file holds {kind[2].lower()}", "give the file of the acceleration")
+    integers, index = toolbox.fixed(lines, _TEXT, 48, 8, 10, "the integer header")
+    reals, index = toolbox.fixed(lines, index, 50, 5, 15, "the real header")
+    index = _after_comments(lines, index, integers)
+    count = _whole(lines, _TEXT + 2, integers[16], "the number of values")
+    toolbox.samples(lines, _TEXT + 2, count)
+    values, end = toolbox.fixed(lines, index, count, 8, 10, "acceleration")
+    more = _rest(lines, end)
+    direction = _direction(lines, integers)
+    if _missing(reals, reals[1]):
+        data, dt, more["resampled"] = _resampled(lines, index, values, resample)
+    else:
+        data, dt = values, toolbox.step(lines, _TEXT + _INTEGER_LINES, 1.0 / max(float(reals[1]), 1e-9))
+    found, when = _PEAK.search(lines.text(6)), _earthquake(lines, integers)
+    if name := _STATION.search(lines.text(5)):
+        more["station_name"] = name[1]
+    trace = toolbox.make_trace(
+        lines,
+        data=data,
+        dt=dt,
+        form=_FORMS[kind[1]],
+        units="cm/s2",
+        si_factor=toolbox.FACTORS["cm/s2"],
+        direction=direction,
+        processed=kind[1] == "2",
+        station="" if integers[7] == integers[0] else f"{integers[7]:.0f}",
+        channel=toolbox.channel_code(1.0 / dt, direction, max(0, int(integers[8]))),
+        start=when,
+        start_is="unknown" if when is None else "earthquake",
+        headonly=headonly,
+        peak={"acceleration": None if found is None else 0.01 * float(found[1])},
+        more=more,
+    )
+    return Stream([trace])
+
+
+def _missing(header: Array, value: float) -> bool:
+    # The first number of each header is what stands for an unknown one.
+    return bool(value == header[0])
+
+
+def _whole(lines: Lines, index: int, value: float, what: str) -> int:
+    if value != int(value) or not 0 <= value < 1e8:
+        raise lines.error(index, f"{value:g} cannot be {what}")
+    return int(value)
+
+
+def _after_comments(lines: Lines, index: int, integers: Array) -> int:
+    comments = 0 if _missing(integers, integers[15]) else _whole(lines, _TEXT + 1, integers[15], "a number of comments")
+    for line in range(index, min(index + comments, len(lines))):
+        if not lines.text(line).startswith("|"):
+            raise lines.error(line, f"expected a comment that starts with |, found {toolbox.shown(lines.text(line))}")
+    return index + comments
+
+
+def _rest(lines: Lines, end: int) -> dict[str, str]:
+    if lines.blank_until_end(end):
+        return {}
+    if lines.blank_until_end(end + 1):
+        return {"notes": f"line {end + 1}, after the announced values, is a stale record and was not read"}
+    raise lines.error(end + 1, "the file goes on after the number of values that its header announces")
+
+
+def _direction(lines: Lines, integers: Array) -> Orientation:
+    vertical, azimuth = integers[12], integers[13]
+    said: Orientation = None
+    if vertical == 0.0:
+        said = "up"
+    elif vertical == 180.0:
+        said = "down"
+    elif vertical == 90.0 and 0.0 <= azimuth <= 360.0:
+        said = float(azimuth) % 360.0
+    component = _COMPONENT.search(lines.text(5))
+    words = toolbox.orientation(component[1]) if component else None
+    if said is None:
+        return words
+    if (isinstance(words, float) or words in {"up", "down"}) and words != said:
+        wrong = f"the text says that the component is {words}, the integer header in line {_TEXT + 2} {said}"
+        raise lines.error(5, wrong, "find out which is right, and mend the other")
+    return said
+
+
+def _earthquake(lines: Lines, integers: Array) -> Any:
+    year, day, hour, minute, second = (float(value) for value in integers[1:6])
+    if _missing(integers, year) or _missing(integers, day):
+        return None
+    if not (1850 <= year <= 2200 and 1 <= day <= 366):
+        raise lines.error(_TEXT, f"day {day:g} of {year:g} is no date")
+    when = date(int(year), 1, 1) + timedelta(days=int(day) - 1)
+    parts = [0.0 if _missing(integers, part) else part for part in (hour, minute, second)]
+    return toolbox.start_time(lines, _TEXT, when.year, when.month, when.day, *parts)
+
+
+def _resampled(lines: Lines, index: int, values: Array, dt: float) -> tuple[Array, float, str]:
+    if len(values) % 2:
+        raise lines.error(_TEXT + 2, f"{len(values)} values make no pairs of time and acceleration")
+    toolbox.step(lines, index, dt)
+    times, data = values[::2], values[1::2]
+    spacing = np.diff(times)
+    if (spacing < 0.0).any():
+        at = int(np.argmax(spacing < 0.0)) + 1
+        wrong = f"time goes back from {times[at - 1]:g} s to {times[at]:g} s"
+        raise lines.error(index + (2 * at) // 8, wrong)
+    count = int((times[-1] - times[0]) / dt + 1e-9) + 1
+    toolbox.samples(lines, index, count)
+    # Digitised times come by the thousandth of a second; a time in days or a typing error would ask for gigabytes.
+    if count > 100 * len(times):
+        wrong = f"{len(times)} pairs over {times[-1] - times[0]:g} s are too few to be resampled to {dt:g} s"
+        raise lines.error(index, wrong, "ask for a longer step, or fetch the file again")
+    told = (
+        f"linearly from {len(times)} pairs at irregular times ({np.median(spacing):.3g} s apart on the middle, at most "
+        f"{spacing.max():.3g} s) to a step of {dt:g} s"
+    )
+    return np.interp(times[0] + dt * np.arange(count), times, data), dt, told

@@ -1,0 +1,196 @@
+"""Plain CSV with declared units: a column of time and one or more columns of acceleration.
+
+The header row names each column with its unit in parentheses or brackets; a channel's name may end in its orientation::
+
+    # processed: no
+    # station: XX.TEST
+    # start: 2019-07-06T03:19:53Z
+    time (s), H1 90 deg (g), H2 360 (g), V up (g)
+    0.000, 0.0012, -0.0003, 0.0004
+
+Comma, semicolon or tab between the columns, a point in the numbers, equal time steps.  A SEED code (HNE) states its
+orientation by itself.  The lines with # are optional, and what they do not say, the file does not say.
+"""
+
+from __future__ import annotations
+
+import re
+from array import array
+from typing import Any
+
+import numpy as np
+
+from pipeline.motions.formats import toolbox
+from pipeline.motions.formats.toolbox import FACTORS, Lines, Orientation, Source
+from pipeline.quantities import Array
+
+_CELL = re.compile(r'^\s*"?\s*([^()\[\]"]{1,60}?)\s*[(\[]\s*([^()\[\]"]{1,20}?)\s*[)\]]\s*"?\s*$')
+_TIME = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 0.001}
+_SPELLINGS = {
+    "m/s^2": "m/s2", "m/s**2": "m/s2", "m/s/s": "m/s2", "m/s²": "m/s2", "cm/s^2": "cm/s2", "cm/s**2": "cm/s2",
+    "cm/s/s": "cm/s2", "cm/s²": "cm/s2", "mm/s^2": "mm/s2", "mm/s/s": "mm/s2",
+}  # fmt: skip
+_KEY = re.compile(r"^#\s*(processed|station|start)\s*:\s*(.*)$", re.IGNORECASE)
+_START = re.compile(r"^(\d{4})-(\d\d)-(\d\d)[T ](\d\d):(\d\d):(\d\d(?:\.\d{1,6})?)Z?$")
+_STATION = re.compile(r"^(?:(\w{1,8})\.)?(\w{1,8})$")
+_SAID = {"yes": True, "true": True, "no": False, "false": False}
+_NUMBER = rb"[ \t]*[+-]?(?:\d{1,20}(?:\.\d{0,20})?|\.\d{1,20})(?:[Ee][+-]?\d{1,3})?[ \t]*"
+_MOST_COMMENTS = 100
+_MOST_COLUMNS = 100
+
+
+def is_format(source: Source) -> bool:
+    """Whether a source is such a table: its first row names a time and only accelerations, each with a known unit."""
+    for line in toolbox.head(source).splitlines()[:_MOST_COMMENTS]:
+        if line.strip() and not line.startswith("#"):
+            cells = _cells(line.encode("latin-1"))
+            return len(cells) >= 2 and all(cell is not None for cell in cells) and _is_table([c for c in cells if c])
+    return False
+
+
+def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
+    """Return the Stream of a table: one trace a column, in its declared unit.
+
+    raises : FormatError naming file and line
+    """
+    from obspy import Stream
+
+    lines = toolbox.open_lines(source)
+    top, keys = _top(lines)
+    row = lines.lines[top]
+    cells = [cell for cell in _cells(row) if cell is not None]
+    if len(cells) != row.count(_separator(row)) + 1 or not _is_table(cells):
+        wrong = f"expected 'time (s), name (unit), ...' with units of {', '.join(FACTORS)}, found"
+        raise lines.error(top, f"{wrong} {toolbox.shown(lines.text(top))}", "declare each column's unit")
+    if len(cells) > _MOST_COLUMNS:
+        raise lines.error(top, f"{len(cells)} columns are more than a record has", "split it by stations")
+    table = _numbers(lines, top + 1, _separator(row), len(cells))
+    dt = _step(lines, top + 1, _TIME[cells[0][1]] * table[:, 0], _TIME[cells[0][1]])
+    processed, network, station, when = _facts(lines, keys)
+    traces = []
+    for number, (name, unit) in enumerate(cells[1:], start=1):
+        code, direction = _channel(name)
+        traces.append(
+            toolbox.make_trace(
+                lines,
+                data=table[:, number].copy(),
+                dt=dt,
+                form="CSV",
+                units=unit,
+                si_factor=FACTORS[unit],
+                direction=direction,
+                processed=processed,
+                network=network,
+                station=station,
+                location=f"{number:02d}",
+                channel=code or toolbox.channel_code(1.0 / dt, direction, number),
+                start=when,
+                start_is="unknown" if when is None else "record",
+                headonly=headonly,
+                more={"column": name},
+            )
+        )
+    return Stream(traces)
+
+
+def _separator(row: bytes) -> bytes:
+    return max((b",", b";", b"\t"), key=row.count)
+
+
+def _cells(row: bytes) -> list[tuple[str, str] | None]:
+    cells: list[tuple[str, str] | None] = []
+    for cell in row.removeprefix(b"\xef\xbb\xbf").split(_separator(row)):
+        text = cell.decode("utf-8", errors="replace")
+        found = _CELL.match(text) if text.isprintable() or b"\t" in cell else None
+        unit = found[2].lower() if found else ""
+        cells.append((found[1], _SPELLINGS.get(unit, unit)) if found else None)
+    return cells
+
+
+def _is_table(cells: list[tuple[str, str]]) -> bool:
+    first = len(cells) >= 2 and cells[0][0].lower() in {"time", "t"} and cells[0][1] in _TIME
+    return first and all(unit in FACTORS for _, unit in cells[1:])
+
+
+def _top(lines: Lines) -> tuple[int, dict[str, tuple[int, str]]]:
+    keys: dict[str, tuple[int, str]] = {}
+    for index in range(min(len(lines), _MOST_COMMENTS)):
+        text = lines.text(index)
+        if found := _KEY.match(text):
+            if found[1].lower() in keys:
+                raise lines.error(index, f"{found[1]} is given twice")
+            keys[found[1].lower()] = (index, found[2].strip())
+        elif text.strip() and not text.startswith("#"):
+            return index, keys
+    raise lines.error(min(len(lines), _MOST_COMMENTS), "expected a row such as 'time (s), HNE (cm/s2)'")
+
+
+def _numbers(lines: Lines, start: int, separator: bytes, columns: int) -> Array:
+    # The whole row at once: a value that is missing is found in its line, and does not shift the values after it.
+    row = re.compile(_NUMBER + (re.escape(separator) + _NUMBER) * (columns - 1))
+    values = array("d")
+    end = len(lines)
+    while end > start and not lines.lines[end - 1].strip(b" \t\0\x1a"):
+        end -= 1
+    for index in range(start, end):
+        line = lines.lines[index]
+        if row.fullmatch(line) is None:
+            wrong = f"expected {columns} numbers with a decimal point, found {toolbox.shown(lines.text(index))}"
+            raise lines.error(index, wrong)
+        values.extend(map(float, line.split(separator)))
+    toolbox.samples(lines, start, end - start)
+    table = np.array(values).reshape(-1, columns)
+    if not np.isfinite(table).all():
+        bad = start + int(np.flatnonzero(~np.isfinite(table).all(axis=1))[0])
+        raise lines.error(bad, "holds a number beyond all bounds")
+    return table
+
+
+def _step(lines: Lines, start: int, times: Array, unit: float) -> float:
+    dt = float(times[-1] - times[0]) / (len(times) - 1)
+    toolbox.step(lines, start, dt)
+    # Times may be rounded to what is printed, not more: 1/128 s comes as 0.008, 0.016, 0.023.
+    decimals = max(len(line.split()[0].partition(b".")[2]) for line in map(_first, lines.lines[start : start + 20]))
+    slack = 0.51 * unit * 10.0 ** -min(decimals, 15) + 1e-9 * abs(float(times[-1]))
+    rate = round(1.0 / dt)
+    if rate > 0 and abs(1.0 / rate - dt) * (len(times) - 1) <= 2.0 * slack:
+        dt = 1.0 / rate
+    off = np.abs(times - (times[0] + dt * np.arange(len(times))))
+    worst = int(np.argmax(off > min(2.0 * slack, 0.2 * dt)))
+    if off[worst] > min(2.0 * slack, 0.2 * dt):
+        wrong = f"time {times[worst]:g} s is off the even step of {dt:g} s"
+        raise lines.error(start + worst, wrong, "give equal time steps: resample the record first")
+    return dt
+
+
+def _first(line: bytes) -> bytes:
+    # What stands before the first separator: its decimals tell how finely the times are printed.
+    found = re.match(rb"[ \t]*([+-]?[0-9.]+)", line)
+    return found[1] if found else b"0"
+
+
+def _channel(name: str) -> tuple[str, Orientation]:
+    code, _, said = name.partition(" ")
+    seed = code if re.fullmatch(r"[A-Z]{2}[A-Z0-9]", code) else ""
+    if said.strip():
+        return seed, toolbox.orientation(said)
+    words = toolbox.orientation(name)
+    known = isinstance(words, float) or words in {"up", "down"}
+    return seed, words if known else toolbox.seed_orientation(name)
+
+
+def _facts(lines: Lines, keys: dict[str, tuple[int, str]]) -> tuple[bool | None, str, str, Any]:
+    at, word = keys.get("processed", (0, ""))
+    if word and word.lower() not in _SAID:
+        raise lines.error(at, f"expected processed: yes, or no, found {toolbox.shown(word)}")
+    processed = _SAID.get(word.lower())
+    at, word = keys.get("station", (0, ""))
+    station = _STATION.match(word)
+    if word and station is None:
+        raise lines.error(at, f"expected station: NETWORK.STATION, found {toolbox.shown(word)}")
+    at, word = keys.get("start", (0, ""))
+    start = _START.match(word)
+    if word and start is None:
+        raise lines.error(at, f"expected start: 2019-07-06T03:19:53Z, found {toolbox.shown(word)}")
+    when = None if start is None else toolbox.start_time(lines, at, *map(float, start.groups()))
+    return processed, (station[1] or "") if station else "", station[2] if station else "", when
