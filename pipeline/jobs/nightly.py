@@ -216,9 +216,8 @@ def _level_note(level: Any) -> str:
         else "no engineer has approved these motions"
     )
     number = len(level.motions)
-    return (
-        f"Level {level.name}{period}: {number} motion{'s' if number != 1 else ''}, {level.combine} of them; {answers}."
-    )
+    how = "1 motion" if number == 1 else f"the {level.combine} of {number} motions"
+    return f"Level {level.name}{period}: {how}; {answers}."
 
 
 def summarise(record: RunRecord) -> Summary:
