@@ -53,20 +53,20 @@ class _Table(BaseModel):
 
 
 class Horizontal(_Table):
-    """A horizontal channel and its azimuth in degrees clockwise from north.
+    """A horizontal channel and its azimuth in degrees clockwise from north; left out, the file's header says it.
 
     The two axes only tell the channels apart: the azimuths decide what is turned into east and north.
     """
 
     axis: Literal["x", "y"]
-    orientation: float = Field(ge=0.0, le=360.0)
+    orientation: float | None = Field(default=None, ge=0.0, le=360.0)
 
 
 class Vertical(_Table):
-    """A vertical channel: positive up or positive down."""
+    """A vertical channel: positive up or positive down; left out, the file's header says it."""
 
     axis: Literal["z"]
-    orientation: Literal["up", "down"]
+    orientation: Literal["up", "down"] | None = None
 
 
 Component = Annotated[Horizontal | Vertical, Discriminator("axis")]
@@ -78,7 +78,8 @@ class Record(_Table):
     files      : paths inside the site's folder; `response` is their StationXML, where they hold counts
     components : file name, channel code or full channel id -> axis and orientation; x, y and z once each
     units      : only where the file itself does not say
-    processed  : whether the agency has filtered it already; such a record is never filtered again
+    processed  : whether the agency has filtered it already; such a record is never filtered again.  Left out, the
+                 files' headers say it
     scale, scale_to_pga_g : one factor for all three components, or the PGA in g that the larger recorded horizontal
                  component shall have; neither leaves the record as it was recorded
     window_s   : start and end in s from the first common sample
@@ -111,7 +112,7 @@ class Record(_Table):
     response: FileName | None = None
     components: dict[Text, Component] = Field(min_length=3, max_length=3)
     units: Unit | None = None
-    processed: bool
+    processed: bool | None = None
     scale: float | None = Field(default=None, gt=0.0)
     scale_to_pga_g: float | None = Field(default=None, gt=0.0, le=20.0)
     highpass_hz: float | None = Field(default=None, gt=0.0)

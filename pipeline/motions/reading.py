@@ -239,10 +239,11 @@ def _check_orientation(file: Path, key: str, component: Component, trace: Any, i
         raise refusal(file, place, wrong, "name the StationXML of this channel and time") from error
     if component.axis == "z":
         said = {-90.0: "up", 90.0: "down"}.get(known["dip"])
-        agrees = said in {None, component.orientation}
+        agrees = said is None or component.orientation in {None, said}
     else:
         said = known["azimuth"]
-        agrees = said is None or abs((said - component.orientation + 180.0) % 360.0 - 180.0) <= AZIMUTH_TOLERANCE
+        meant = component.orientation
+        agrees = None in {said, meant} or abs((said - meant + 180.0) % 360.0 - 180.0) <= AZIMUTH_TOLERANCE
     if not agrees:
         wrong = f"the manifest orients it {component.orientation}, the StationXML {said}"
         raise refusal(file, place, wrong, "find out which is right, and mend the manifest's orientation")

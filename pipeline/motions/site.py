@@ -11,7 +11,7 @@ import numpy as np
 from pipeline.motions.errors import MotionError, refusal
 from pipeline.motions.intensity import measures, strong_part
 from pipeline.motions.manifest import FloorTable, Record, load_manifest, manifest_file
-from pipeline.motions.processing import process
+from pipeline.motions.processing import process, starting_velocity
 from pipeline.motions.reading import read_record
 from pipeline.records import Motion, MotionSummary
 
@@ -141,8 +141,9 @@ def _site_motion(file: Path, key: str, record: Record) -> SiteMotion:
     recording = read_record(file.parent, record)
     try:
         motion = process(recording, record)
+        start = starting_velocity(recording, record)
     except MotionError:
         raise
     except ValueError as error:
         raise refusal(file, key, str(error), "mend that key of the manifest") from error
-    return SiteMotion(motion, measures(motion), record.licence, record.source)
+    return SiteMotion(motion, measures(motion, start), record.licence, record.source)
