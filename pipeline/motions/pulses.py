@@ -187,13 +187,15 @@ def _refined(acceleration: Array, dt: float, initial_velocity: float) -> tuple[A
     a = np.asarray(acceleration, dtype=np.float64)
     if a.ndim != 1 or a.size < 2 or not np.isfinite(a).all():
         raise ValueError(f"half-cycles need a history of at least two finite values, not an array of shape {a.shape}")
-    t: Array = np.arange(a.size) * dt
+    t = np.asarray(np.arange(a.size) * dt, dtype=np.float64)
     crossing = np.flatnonzero(a[:-1] * a[1:] < 0.0)
     share = a[crossing] / (a[crossing] - a[crossing + 1])
-    t = np.insert(t, crossing + 1, (crossing + share) * dt)
+    t = np.asarray(np.insert(t, crossing + 1, (crossing + share) * dt), dtype=np.float64)
     a = np.insert(a, crossing + 1, 0.0)
     h = np.diff(t)
-    v: Array = initial_velocity + np.concatenate([[0.0], np.cumsum(0.5 * h * (a[:-1] + a[1:]))])
+    v: Array = np.zeros_like(a)
+    v[1:] = np.cumsum(0.5 * h * (a[:-1] + a[1:]))
+    v += initial_velocity
     u: Array = np.concatenate([[0.0], np.cumsum(h * v[:-1] + h * h * (a[:-1] / 3.0 + a[1:] / 6.0))])
     return t, a, v, u
 
