@@ -164,8 +164,14 @@ def choose_corner(
     if pre_event is None:
         reasons.append("no pre-event noise to compare with")
     else:
-        by_noise = _noise_corner(motion, _samples_before(motion, pre_event, "pre_event"), margin)
-        reasons.append(f"a signal {margin:g} times the noise of the first {pre_event:g} s asks for {by_noise:.3g} Hz")
+        count = _samples_before(motion, pre_event, "pre_event")
+        if not 20 <= count <= motion.samples // 2:
+            raise ValueError(
+                f"pre_event {pre_event:g} s holds {count} samples; noise needs at least 20 and at most half the record"
+            )
+        by_noise = _noise_corner(motion, count, margin)
+        asked = f"asks for {by_noise:.3g} Hz" if by_noise > 0.0 else f"is there down to {1.0 / pre_event:.3g} Hz"
+        reasons.append(f"a signal {margin:g} times the noise of the first {pre_event:g} s {asked}")
         if by_noise > corner:
             corner, decided = by_noise, "pre-event noise"
     flat, _ = remove_baseline(motion.acceleration, motion.dt)
@@ -256,7 +262,7 @@ def _samples_before(motion: Motion, until: float, name: str) -> int:
 
 
 def _noise_corner(motion: Motion, count: int, margin: float) -> float:
-    """The lowest frequency down to which the event stands out from the noise before it, in every component."""
+    """The frequency down to which the event stands out from the noise before it in every component; 0: all the way."""
     centres, noise = _bands(motion.acceleration[:, :count], motion.dt, count)
     # The strong part only: the quiet end of a long record would thin the event out.
     end = max(int(strong_part(motion)[1] / motion.dt) + 1, 2 * count)
@@ -272,9 +278,8 @@ def _noise_corner(motion: Motion, count: int, margin: float) -> float:
                 f"motion {motion.name!r}, component {'xyz'[row]}: the shaking is nowhere {margin:g} times the noise "
                 f"before it; check pre_event, or use another record"
             )
-        worst = max(
-            worst, float(centres[below[-1]]) * 2 ** (1 / 6) if below.size else float(centres[0]) * 2 ** (-1 / 6)
-        )
+        if below.size:
+            worst = max(worst, float(centres[below[-1]]) * 2 ** (1 / 6))
     return worst
 
 

@@ -149,6 +149,10 @@ def test_corner_of_a_clean_record_comes_from_its_length():
     assert corner.frequency == pytest.approx(3.0 / 59.99, rel=1e-12)
     assert corner.reason.startswith("record length: 3 periods in 59.99 s")
     assert "no pre-event noise" in corner.reason
+    # Without any noise the pre-event part asks for nothing, and says how far down it can be trusted.
+    quiet = choose_corner(clean(), 5.0)
+    assert quiet.frequency == corner.frequency
+    assert "is there down to 0.2 Hz" in quiet.reason
 
 
 @pytest.mark.parametrize("cross", [0.2, 0.4])
@@ -178,6 +182,8 @@ def test_corner_refusals():
         choose_corner(Motion(DT, np.random.default_rng(0).normal(size=(3, 6000))), 10.0)
     with pytest.raises(ValueError, match="pre_event must be"):
         choose_corner(clean(), 100.0)
+    with pytest.raises(ValueError, match="at most half the record"):
+        choose_corner(clean(), 40.0)
     with pytest.raises(ValueError, match="tail_share between"):
         choose_corner(clean(), tail_share=0.0)
 
