@@ -1,0 +1,319 @@
+"""Baselines, corner frequencies and resampling of raw records; every step is written into the motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from pipeline.motions.intensity import integrate, strong_part
+from pipeline.motions.processing import highpass, pad_seconds, remove_baseline
+from pipeline.quantities import Array
+from pipeline.records import Motion
+
+IWAN_THRESHOLD = 0.5
+"""m/s2: the baseline is taken to shift between the first and the last time it is exceeded (Iwan et al. 1985)."""
+
+CYCLES = 3.0
+"""Periods of the corner frequency that a record must hold."""
+
+NOISE_MARGIN = 3.0
+"""Least ratio of signal to pre-event noise above the corner."""
+
+TAIL_SHARE = 0.2
+"""Largest displacement allowed in the tail of the record, relative to its peak."""
+
+HIGHEST_CORNER = 1.0
+"""Hz: a record that would need a higher corner is not usable for displacement."""
+
+_LANCZOS_WIDTH = 30
+
+
+@dataclass(frozen=True, slots=True)
+class Corner:
+    """A corner for the high-pass of a record.
+
+    frequency : Hz
+    reason    : which of record length, noise and displacement tail decided, with what each of them asked for
+    """
+
+    frequency: float
+    reason: str
+
+
+def remove_pre_event_mean(motion: Motion, until: float) -> Motion:
+    """Subtract from each component its mean over the samples before the event.
+
+    until  : s from the first sample to where the shaking starts
+    raises : ValueError unless at least two samples lie before it
+    """
+    count = _samples_before(motion, until, "until")
+    mean = motion.acceleration[:, :count].mean(axis=1)
+    step = f"mean of the first {count * motion.dt:g} s removed: {_told(mean, 'm/s2')}"
+    return _stepped(motion, motion.acceleration - mean[:, None], step)
+
+
+def polynomial_baseline(
+    motion: Motion, degree: int, *, of: Literal["acceleration", "velocity"] = "acceleration"
+) -> Motion:
+    """Subtract a least-squares polynomial from each component.
+
+    of     : "acceleration" fits and subtracts it there; "velocity" fits a polynomial without constant term to the
+             velocity from rest and subtracts its derivative from the acceleration, so that the motion still starts
+             from rest (as Boore, Stephens and Joyner 2002 do with a quadratic)
+    degree : of the fitted polynomial, 0 to 6 (1 to 6 for the velocity)
+    raises : ValueError for another degree or a record with no more samples than coefficients
+    """
+    least = 0 if of == "acceleration" else 1
+    if isinstance(degree, bool) or not isinstance(degree, int) or not least <= degree <= 6:
+        raise ValueError(f"degree must be a whole number from {least} to 6 for the {of}, not {degree!r}")
+    if motion.samples <= degree + 1:
+        raise ValueError(f"a record of {motion.samples} samples is too short for a polynomial of degree {degree}")
+    n = motion.samples
+    # Time runs from 0 to 1: the powers stay of one size.
+    s = np.linspace(0.0, 1.0, n)
+    out = np.array(motion.acceleration)
+    if of == "acceleration":
+        fitted = [Polynomial.fit(s, row, degree, domain=[0.0, 1.0])(s) for row in out]
+    elif of == "velocity":
+        powers = s[:, None] ** np.arange(1, degree + 1)
+        coefficients = [np.linalg.lstsq(powers, row, rcond=None)[0] for row in integrate(motion)[0]]
+        fitted = [Polynomial([0.0, *c]).deriv()(s) / motion.duration for c in coefficients]
+    else:
+        raise ValueError(f"of must be 'acceleration' or 'velocity', not {of!r}")
+    sizes = [float(np.abs(f).max()) for f in fitted]
+    step = f"polynomial baseline of degree {degree}, fitted to the {of}, removed; largest value {_told(sizes, 'm/s2')}"
+    return _stepped(motion, out - np.asarray(fitted), step)
+
+
+def two_segment_baseline(
+    motion: Motion, t1: float | None = None, t2: float | None = None, fit_from: float | None = None
+) -> Motion:
+    """Remove the two baseline shifts that strong shaking leaves in a record, so that its velocity ends at zero.
+
+    A line v0 + af t is fitted to the end of the velocity; af is subtracted from the acceleration after t2, and the
+    constant am = (v0 + af t2) / (t2 - t1) between t1 and t2, which makes the two segments meet.  Remove the pre-event
+    mean first.
+
+    t1, t2   : s; None: for each component the first and the last time that IWAN_THRESHOLD is exceeded, or, where it
+               never is, when 5 and 95 % of the Arias intensity of the horizontals have arrived
+    fit_from : s, start of the fitted end; None: t2
+    raises   : ValueError for times that are not in order, or an end with fewer than ten samples
+    error    : the permanent displacement depends on t1 and t2, which nothing in the record fixes (Boore 2001)
+    source   : Iwan, Moser and Peng (1985), BSSA 75, 1225-1246; Boore (2001), Effect of baseline corrections on
+               displacements and response spectra, BSSA 91, 1199-1211
+    """
+    v, _ = integrate(motion)
+    t = np.asarray(np.arange(motion.samples) * motion.dt, dtype=np.float64)
+    out = np.array(motion.acceleration)
+    told = []
+    for row, axis in enumerate("xyz"):
+        first, last = _segment(motion, row)
+        a, b = first if t1 is None else t1, last if t2 is None else t2
+        start = b if fit_from is None else fit_from
+        if not 0.0 <= a < b <= start < motion.duration:
+            raise ValueError(
+                f"two-segment baseline, component {axis}: t1 {a:g}, t2 {b:g} and fit_from {start:g} s must be in this "
+                f"order inside the record of {motion.duration:g} s; give them"
+            )
+        end = t >= start - 1e-9 * motion.dt
+        if np.count_nonzero(end) < 10:
+            raise ValueError(
+                f"two-segment baseline, component {axis}: fewer than 10 samples after {start:g} s; use an earlier "
+                f"fit_from or a longer record"
+            )
+        # About the middle of the end, where level and slope are independent of each other.
+        middle = 0.5 * (float(t[end][0]) + float(t[end][-1]))
+        level, slope = (float(c) for c in Polynomial.fit(t[end] - middle, v[row, end], 1, domain=[-1.0, 1.0]).coef)
+        at_b = level + slope * (b - middle)
+        shift = at_b / (b - a)
+        out[row] -= _held(t, a, b) * shift + _held(t, b, motion.duration + motion.dt) * slope
+        told.append(
+            f"{axis} {shift:.3g} m/s2 from {a:g} to {b:g} s and {slope:.3g} m/s2 after, fitted from {start:g} s"
+        )
+    return _stepped(motion, out, "two-segment baseline (Boore 2001) removed: " + "; ".join(told))
+
+
+def choose_corner(
+    motion: Motion,
+    pre_event: float | None = None,
+    *,
+    cycles: float = CYCLES,
+    margin: float = NOISE_MARGIN,
+    tail_share: float = TAIL_SHARE,
+) -> Corner:
+    """Choose one high-pass corner for the three components of a raw record: the highest that any reason asks for.
+
+    pre_event : s of noise before the event at the start of the record; None: the record has none
+    cycles    : the record must hold so many periods of the corner
+    margin    : above the corner the Fourier amplitude is at least so many times that of the noise, in bands of a
+                third of an octave, down from the band where it is best; nothing is known below 1 / pre_event
+    tail_share: after the filter the displacement in the last tenth of the record stays below this share of its peak
+    raises    : ValueError when a corner above HIGHEST_CORNER would be needed, or a parameter is not usable
+    """
+    if not (cycles > 0.0 and margin >= 1.0 and 0.0 < tail_share < 1.0):
+        raise ValueError("choose_corner: cycles must be above 0, margin at least 1 and tail_share between 0 and 1")
+    if motion.samples < 100:
+        raise ValueError(f"choose_corner: a record of {motion.samples} samples is too short to choose a corner from")
+    by_length = cycles / motion.duration
+    reasons = [f"{cycles:g} periods in {motion.duration:g} s ask for {by_length:.3g} Hz"]
+    corner, decided = by_length, "record length"
+    if pre_event is None:
+        reasons.append("no pre-event noise to compare with")
+    else:
+        count = _samples_before(motion, pre_event, "pre_event")
+        if not 20 <= count <= motion.samples // 2:
+            raise ValueError(
+                f"pre_event {pre_event:g} s holds {count} samples; noise needs at least 20 and at most half the record"
+            )
+        by_noise = _noise_corner(motion, count, margin)
+        asked = f"asks for {by_noise:.3g} Hz" if by_noise > 0.0 else f"is there down to {1.0 / pre_event:.3g} Hz"
+        reasons.append(f"a signal {margin:g} times the noise of the first {pre_event:g} s {asked}")
+        if by_noise > corner:
+            corner, decided = by_noise, "pre-event noise"
+    flat, _ = remove_baseline(motion.acceleration, motion.dt)
+    start = 0.9 * motion.duration
+    while corner <= HIGHEST_CORNER:
+        rest = _tail(flat, motion.dt, corner, start)
+        if rest <= tail_share:
+            reasons.append(f"the displacement after {start:.3g} s is {rest:.1%} of its peak")
+            return Corner(corner, f"{decided}: " + "; ".join(reasons))
+        corner, decided = corner * 1.1, "displacement tail"
+    raise ValueError(
+        f"motion {motion.name!r}: no corner up to {HIGHEST_CORNER:g} Hz is enough ({'; '.join(reasons)}); give "
+        f"highpass_hz, correct the baseline first, or use another record"
+    )
+
+
+def resample(motion: Motion, dt: float, *, method: Literal["fft", "lanczos"] = "fft") -> Motion:
+    """Return the motion on another time step, taken as band-limited between its samples.
+
+    method : "fft" goes through the Fourier transform of the record padded with zeros to twice its length (scipy) and
+             cuts off what the new step cannot hold; the steps must be as two whole numbers.  "lanczos" weighs 2 x 30
+             neighbours with a windowed sinc (obspy), for any shorter step, and never filters.
+    error  : the objects are shaken by the polygon through the samples, so a finer step changes the motion between
+             them: to subdivide without a change there is no need to resample
+    raises : ValueError for a step that is not positive, that the method cannot reach, or longer than the record
+    """
+    if not (np.isfinite(dt) and 0.0 < dt <= motion.duration):
+        raise ValueError(f"dt must be above 0 and at most the record's {motion.duration:g} s, not {dt!r}")
+    samples = int(np.floor(motion.duration / dt * (1.0 + 1e-12))) + 1
+    if method == "fft":
+        ratio = Fraction(motion.dt / dt).limit_denominator(1000)
+        if abs(float(ratio) * dt / motion.dt - 1.0) > 1e-9:
+            raise ValueError(f"{motion.dt:g} s and {dt:g} s are not as two whole numbers up to 1000; use lanczos")
+        out = _by_fourier(motion.acceleration, ratio, samples)
+    elif method == "lanczos":
+        if dt > motion.dt:
+            raise ValueError(f"lanczos does not filter, so dt must be at most {motion.dt:g} s, not {dt:g} s; use fft")
+        out = _by_lanczos(motion, dt, samples)
+    else:
+        raise ValueError(f"method must be 'fft' or 'lanczos', not {method!r}")
+    step = f"resampled from {motion.dt:g} s to {dt:g} s ({method})"
+    return Motion(dt, out, motion.name, (*motion.steps, step), motion.source)
+
+
+def _by_fourier(data: Array, ratio: Fraction, samples: int) -> Array:
+    from scipy.signal import resample as through_fourier
+
+    n = data.shape[1]
+    # The transform repeats its record for ever: zeros keep one end away from the other.  Whole new samples fit in.
+    padded = -(-2 * n // ratio.denominator) * ratio.denominator
+    rows = np.pad(data, ((0, 0), (0, padded - n)))
+    out = through_fourier(rows, padded // ratio.denominator * ratio.numerator, axis=1)
+    return np.asarray(out, dtype=np.float64)[:, :samples]
+
+
+def _by_lanczos(motion: Motion, dt: float, samples: int) -> Array:
+    from obspy.signal.interpolation import lanczos_interpolation
+
+    pad = _LANCZOS_WIDTH + 1
+    rows = np.pad(motion.acceleration, ((0, 0), (pad, pad)))
+    return np.stack(
+        [lanczos_interpolation(row, -pad * motion.dt, motion.dt, 0.0, dt, samples, a=_LANCZOS_WIDTH) for row in rows]
+    )
+
+
+def _held(t: Array, start: float, end: float) -> Array:
+    """1 between two times and 0 outside, with the share of a step at each edge that keeps the integral exact."""
+    dt = float(t[1] - t[0])
+    reach = np.clip((t + 0.5 * dt - start) / dt, 0.0, 1.0) - np.clip((t + 0.5 * dt - end) / dt, 0.0, 1.0)
+    return np.asarray(reach, dtype=np.float64)
+
+
+def _segment(motion: Motion, row: int) -> tuple[float, float]:
+    above = np.flatnonzero(np.abs(motion.acceleration[row]) > IWAN_THRESHOLD)
+    if above.size >= 2:
+        return float(above[0] * motion.dt), float(above[-1] * motion.dt)
+    return strong_part(motion)
+
+
+def _samples_before(motion: Motion, until: float, name: str) -> int:
+    count = int(np.floor(until / motion.dt * (1.0 + 1e-12))) if np.isfinite(until) else 0
+    if not 2 <= count < motion.samples:
+        raise ValueError(
+            f"{name} must be a time in s with at least two samples before it, inside the record of "
+            f"{motion.duration:g} s, not {until!r}"
+        )
+    return count
+
+
+def _noise_corner(motion: Motion, count: int, margin: float) -> float:
+    """The frequency down to which the event stands out from the noise before it in every component; 0: all the way."""
+    centres, noise = _bands(motion.acceleration[:, :count], motion.dt, count)
+    # The strong part only: the quiet end of a long record would thin the event out.
+    end = max(int(strong_part(motion)[1] / motion.dt) + 1, 2 * count)
+    _, signal = _bands(motion.acceleration[:, count:end], motion.dt, count)
+    worst = 0.0
+    for row in range(3):
+        silent = noise[row] == 0.0
+        ratio = np.where(silent, np.inf, signal[row] / np.where(silent, 1.0, noise[row]))
+        best = int(np.argmax(ratio))
+        below = np.flatnonzero(ratio[: best + 1] < margin)
+        if ratio[best] < margin:
+            raise ValueError(
+                f"motion {motion.name!r}, component {'xyz'[row]}: the shaking is nowhere {margin:g} times the noise "
+                f"before it; check pre_event, or use another record"
+            )
+        if below.size:
+            worst = max(worst, float(centres[below[-1]]) * 2 ** (1 / 6))
+    return worst
+
+
+def _bands(data: Array, dt: float, count: int) -> tuple[Array, Array]:
+    """Root mean square Fourier amplitude per square root of a second in third octaves from 1 / (count dt) up."""
+    n = data.shape[1]
+    window = np.hanning(n)
+    level = data.mean(axis=1, keepdims=True)
+    lines = np.abs(np.fft.rfft((data - level) * window, axis=1)) / np.sqrt(float(window @ window))
+    frequency = np.fft.rfftfreq(n, dt)
+    lowest = 2 ** (1 / 6) / (count * dt)
+    centres = lowest * 2 ** (np.arange(max(1, int(np.floor(3 * np.log2(0.4 / dt / lowest))) + 1)) / 3)
+    out = np.zeros((3, centres.size))
+    for k, centre in enumerate(centres):
+        inside = (frequency >= centre * 2 ** (-1 / 6)) & (frequency < centre * 2 ** (1 / 6))
+        if not inside.any():
+            inside[np.argmin(np.abs(frequency - centre))] = True
+        out[:, k] = np.sqrt(np.mean(lines[:, inside] ** 2, axis=1))
+    return np.asarray(centres, dtype=np.float64), out
+
+
+def _tail(flat: Array, dt: float, corner: float, start: float) -> float:
+    """The largest filtered displacement after a time relative to the largest of all, of the worst component."""
+    # The pads belong to the filtered motion (Boore 2005): cut off, its displacement would drift from the first sample.
+    pad = int(np.ceil(pad_seconds(corner) / dt))
+    filtered, _ = highpass(np.pad(flat, ((0, 0), (pad, pad))), dt, corner)
+    size = np.abs(integrate(Motion(dt, filtered))[1])[:, pad : pad + flat.shape[1]]
+    peaks, rest = size.max(axis=1), size[:, int(start / dt) :].max(axis=1)
+    return float(np.max(rest[peaks > 0.0] / peaks[peaks > 0.0], initial=0.0))
+
+
+def _told(values: Array | list[float], unit: str) -> str:
+    return ", ".join(f"{axis} {value:.3g} {unit}" for axis, value in zip("xyz", values, strict=True))
+
+
+def _stepped(motion: Motion, data: Array, step: str) -> Motion:
+    return Motion(motion.dt, data, motion.name, (*motion.steps, step), motion.source)

@@ -1,0 +1,249 @@
+"""Response spectra of a motion, exact for its polygon, and its Fourier amplitude spectrum."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline.kernels.linear import advance, transition
+from pipeline.kernels.oscillator import oscillator_batch, oscillator_one
+from pipeline.quantities import Array
+from pipeline.records import Motion
+from pipeline.supports import resampled
+
+COMPONENTS = ("x", "y", "z", "rotd50", "rotd100")
+
+NODE_PHASE = 0.2
+"""Radians of the oscillator's own phase between two nodes of a rotated history, at most."""
+
+NODE_PARTS = 16
+"""Points at which each interval that may hold a rotated peak is looked at."""
+
+_ANGLES = np.arange(180)
+_NORMALS = np.vstack([np.cos(np.radians(_ANGLES)), np.sin(np.radians(_ANGLES))])
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """Peak response of oscillators to one component of a motion.
+
+    component    : "x", "y", "z", "rotd50" (median over the horizontal directions) or "rotd100" (largest of them)
+    periods      : (m,) s
+    damping      : (k,), ratio to critical
+    displacement : (k, m) m, largest |u| relative to the base (Sd)
+    absolute_acceleration : (k, m) m/s2, largest |a + u''| (SA); None for rotd50 and rotd100
+    """
+
+    component: str
+    periods: Array
+    damping: Array
+    displacement: Array
+    absolute_acceleration: Array | None = None
+
+    @property
+    def pseudo_velocity(self) -> Array:
+        """PSV = w Sd, (k, m) m/s."""
+        return 2.0 * np.pi / self.periods * self.displacement
+
+    @property
+    def pseudo_acceleration(self) -> Array:
+        """PSA = w^2 Sd, (k, m) m/s2."""
+        return (2.0 * np.pi / self.periods) ** 2 * self.displacement
+
+
+def standard_periods(n: int = 200) -> Array:
+    """Return n periods in s from 0.01 to 20 s in equal ratios, which is 100 to 0.05 Hz.
+
+    raises : ValueError for fewer than two
+    """
+    if n < 2:
+        raise ValueError(f"a spectrum needs at least 2 periods, not {n}")
+    return np.geomspace(0.01, 20.0, n)
+
+
+def response_spectra(
+    motion: Motion,
+    periods: Sequence[float] | Array,
+    damping: float | Sequence[float] | Array = 0.05,
+    components: Iterable[str] = COMPONENTS,
+) -> dict[str, Spectrum]:
+    """Return the response spectra of a motion, by component, free decay after the record included.
+
+    periods    : (m,) s, each above 0
+    damping    : (k,) or one number, ratio to critical, each at least 0
+    components : any of "x", "y", "z", "rotd50", "rotd100"
+    raises     : ValueError naming the value that is not allowed
+    error      : x, y and z: rounding, about 1e-11 relative, peaks between samples included.  rotd50 and rotd100 are
+                 within 1e-4 of the exact peaks of their directions (measured: 4e-5 below critical damping, 1e-4 at
+                 twice critical): the histories are rotated as cubics between nodes NODE_PHASE rad of the oscillator's
+                 phase apart and looked at in NODE_PARTS points of each interval that may hold a peak.  rotd50 is the
+                 median of the directions 0, 1, ... 179 degrees; rotd100 is the peak resultant, over all directions.
+    source     : Nigam and Jennings (1969), exact for piecewise-linear input; Boore (2010), orientation-independent
+                 measures RotDnn.  A linear oscillator lets the two histories be rotated instead of the input.
+    """
+    t = _allowed("period", periods, above=True)
+    z = _allowed("damping", np.atleast_1d(np.asarray(damping, dtype=np.float64)), above=False)
+    wanted = tuple(dict.fromkeys(components))
+    for name in wanted:
+        if name not in COMPONENTS:
+            raise ValueError(f"component {name!r} is not known; use {', '.join(COMPONENTS)}")
+    out: dict[str, Spectrum] = {}
+    for name in wanted:
+        if name in "xyz":
+            u, a = _one_direction(motion, "xyz".index(name), t, z)
+            out[name] = Spectrum(name, t, z, u, a)
+    if "rotd50" in wanted or "rotd100" in wanted:
+        median, largest = _rotated(motion, t, z)
+        for name, u in (("rotd50", median), ("rotd100", largest)):
+            if name in wanted:
+                out[name] = Spectrum(name, t, z, u)
+    return {name: out[name] for name in wanted}
+
+
+def psa(motion: Motion, periods: Sequence[float] | Array, damping: float = 0.05, component: str = "rotd100") -> Array:
+    """Return the pseudo-acceleration spectrum (m,) m/s2 of one component at one damping, as `response_spectra`."""
+    acceleration: Array = response_spectra(motion, periods, damping, (component,))[component].pseudo_acceleration[0]
+    return acceleration
+
+
+def fourier_amplitude(motion: Motion) -> tuple[Array, Array]:
+    """Return frequencies (m,) Hz and the Fourier amplitude spectra (3, m) m/s of the samples.
+
+    The record is padded with zeros to a length that transforms fast.  The amplitude is |dt * DFT|, so that the sum of
+    its squares over both signs of frequency, times the frequency step, is the sum of a^2 dt (Parseval).
+    """
+    from scipy.fft import next_fast_len, rfft, rfftfreq
+
+    n = int(next_fast_len(motion.samples, real=True))
+    amplitude = motion.dt * np.abs(rfft(motion.acceleration, n, axis=1))
+    return np.asarray(rfftfreq(n, motion.dt), dtype=np.float64), np.asarray(amplitude, dtype=np.float64)
+
+
+def response_history(motion: Motion, row: int, period: float, damping: float) -> tuple[Array, Array]:
+    """Return u (n,) m and a + u'' (n,) m/s2 at the samples for one oscillator on component ``row`` (0 x, 1 y, 2 z).
+
+    error : rounding, about 1e-12 of the largest value
+    """
+    history = np.zeros((motion.samples, 2))
+    base = np.ascontiguousarray(motion.acceleration[row])
+    oscillator_one(base, motion.dt, 2.0 * np.pi / period, damping, 1.0, 0.0, 1, history)
+    return history[:, 0].copy(), history[:, 1].copy()
+
+
+def _allowed(name: str, values: Sequence[float] | Array, *, above: bool) -> Array:
+    array = np.array(values, dtype=np.float64, ndmin=1)
+    if array.ndim != 1 or array.size == 0:
+        raise ValueError(f"{name}: give a list of at least one number, not an array of shape {array.shape}")
+    bad = ~np.isfinite(array) | ((array <= 0.0) if above else (array < 0.0))
+    if bad.any():
+        at = int(np.argmax(bad))
+        raise ValueError(f"{name} must be {'above' if above else 'at least'} 0, not {array[at]:g} (entry {at})")
+    return array
+
+
+def _one_direction(motion: Motion, row: int, periods: Array, damping: Array) -> tuple[Array, Array]:
+    w = np.tile(2.0 * np.pi / periods, damping.size)
+    zeta = np.repeat(damping, periods.size)
+    u, a = np.empty(w.size), np.empty(w.size)
+    base = np.ascontiguousarray(motion.acceleration[row])
+    oscillator_batch(base, motion.dt, w, zeta, np.ones_like(w), -1.0, 1, u, a)
+    shape = (damping.size, periods.size)
+    return u.reshape(shape), a.reshape(shape)
+
+
+def _rotated(motion: Motion, periods: Array, damping: Array) -> tuple[Array, Array]:
+    median = np.zeros((damping.size, periods.size))
+    largest = np.zeros_like(median)
+    if motion.samples < 2 or not motion.acceleration[:2].any():
+        return median, largest
+    fine: dict[int, Motion] = {}
+    for i, zeta in enumerate(damping):
+        for j, period in enumerate(periods):
+            # A strongly damped oscillator answers with rates up to 2 zeta w.
+            pieces = max(1, int(np.ceil(2.0 * np.pi / period * (1.0 + zeta) * motion.dt / NODE_PHASE)))
+            if pieces not in fine:
+                fine = {pieces: resampled(motion, pieces)}  # neighbouring periods share it; the others are let go
+            median[i, j], largest[i, j] = _rotd(fine[pieces], float(period), float(zeta))
+    return median, largest
+
+
+def _rotd(motion: Motion, period: float, zeta: float) -> tuple[float, float]:
+    """RotD50 and RotD100 of the displacement [m] of one oscillator; the motion is sampled finely enough."""
+    w, h = 2.0 * np.pi / period, motion.dt
+    u = np.empty((2, motion.samples))
+    bend = np.empty_like(u)
+    ends = np.empty((2, 2))
+    for row in range(2):
+        a = motion.acceleration[row]
+        u[row], absolute = response_history(motion, row, period, zeta)
+        bend[row] = absolute - a
+        ends[row] = u[row, -1], _last_velocity(u[row, -2], u[row, -1], a[-2], a[-1], w, zeta, h)
+    steps, tail, tail_bend = _free_decay(ends, w, zeta)
+    peaks, resultant = _support(u, bend, np.full(motion.samples - 1, h), (w * (1.0 + zeta) * h) ** 2)
+    after, far = _support(tail, tail_bend, steps, NODE_PHASE**2)
+    return float(np.median(np.maximum(peaks, after))), max(resultant, far)
+
+
+def _last_velocity(u0: float, u1: float, a0: float, a1: float, w: float, zeta: float, h: float) -> float:
+    # The velocity that carries u0 into u1 under the last piece of the polygon, and what becomes of it.
+    g, by_velocity, by_step, by_ramp = transition(w, zeta, h)
+    f0, f1 = -a0, -(a1 - a0) / h
+    v0 = (u1 - u0 * g - f0 * by_step - f1 * by_ramp) / by_velocity
+    return float(advance(u0, v0, f0, f1, w, zeta, h)[1])
+
+
+def _free_decay(ends: Array, w: float, zeta: float) -> tuple[Array, Array, Array]:
+    """Steps (m,) s, displacement (2, m + 1) m and its second derivative after the record, past every later peak."""
+    if zeta < 1.0:
+        # The peaks decay, so that the largest of any direction lies within the first damped period.
+        span = 2.0 * np.pi / (w * np.sqrt((1.0 - zeta) * (1.0 + zeta)))
+        span = min(span, 60.0 / (w * max(zeta, 1e-300)))
+        count = int(np.ceil(span * w * (1.0 + zeta) / NODE_PHASE))
+        times = np.linspace(0.0, span, count + 1)
+    else:
+        first = NODE_PHASE / (w * (1.0 + zeta))
+        times = np.concatenate([[0.0], np.geomspace(first, 60.0 * (1.0 + zeta) / w, 60 * int(np.ceil(2.0 + zeta)))])
+    u, bend = np.empty((2, times.size)), np.empty((2, times.size))
+    for row in range(2):
+        for k, t in enumerate(times):
+            u[row, k], v = advance(ends[row, 0], ends[row, 1], 0.0, 0.0, w, zeta, t)
+            bend[row, k] = -2.0 * zeta * w * v - w * w * u[row, k]
+    return np.diff(times), u, bend
+
+
+def _support(u: Array, bend: Array, steps: Array, phase_squared: float) -> tuple[Array, float]:
+    """Peak |u . n| over time in each of 180 directions (180,), and the peak |u|.
+
+    u, bend : (2, n) displacement and its second derivative at the nodes; steps : (n - 1,) s between them
+    Between two nodes the cubic with the right second derivatives at both ends is used: off by 5/384 (w h)^4, 2e-5.
+    """
+    radius = np.hypot(u[0], u[1])
+    if not radius.any():
+        # An interval that starts and ends at rest cannot hold a peak between its ends that matters.
+        return np.zeros(180), 0.0
+    # A first guess from the farthest node of each sector: never above the truth.
+    sector = np.floor(np.degrees(np.arctan2(u[1], u[0])) % 180.0).astype(int) % 180
+    order = np.lexsort((radius, sector))
+    last = np.flatnonzero(np.diff(sector[order], append=180))
+    guess = np.abs(_NORMALS.T @ u[:, order[last]]).max(axis=1)
+    # A peak inside an interval exceeds its nodes by at most (w h)^2 / 8 and a little; four times that is safe.
+    slack = 1.0 - min(0.5, 0.5 * phase_squared)
+    near = np.flatnonzero(radius >= slack * guess.min())
+    chosen = np.zeros(radius.size, dtype=bool)
+    for part in np.array_split(near, max(1, near.size // 20_000)):
+        chosen[part] = (np.abs(_NORMALS.T @ u[:, part]) >= slack * guess[:, None]).any(axis=0)
+    starts = np.flatnonzero(chosen[:-1] | chosen[1:])
+    s = np.arange(NODE_PARTS + 1)[:, None] / NODE_PARTS
+    curve = np.empty((2, s.size * starts.size))
+    for row in range(2):
+        left, right = u[row, starts], u[row, starts + 1]
+        b0, b1 = bend[row, starts], bend[row, starts + 1]
+        scale = steps[starts] ** 2 / 6.0
+        cubic = (1.0 - s) * left + s * right + scale * (((1.0 - s) ** 3 - (1.0 - s)) * b0 + (s**3 - s) * b1)
+        curve[row] = cubic.ravel()
+    peaks = guess
+    for piece in np.array_split(curve, max(1, curve.shape[1] // 20_000), axis=1):
+        peaks = np.maximum(peaks, np.abs(_NORMALS.T @ piece).max(axis=1))
+    return peaks, float(max(radius.max(), np.hypot(curve[0], curve[1]).max()))
