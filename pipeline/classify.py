@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from functools import cache
 from math import pi
 
-from pipeline.quantities import G
 from pipeline.records import Estimate, Item, Origin, Scene, Support
 from pipeline.tables import Row, TableError, damping_of, friction_of, spread, table
 
@@ -288,7 +287,7 @@ class _Builder:
                 note,
                 where,
             )
-        self._keep("object_mass", mass)
+        self._keep("mass", mass)
 
     def _section(self, width: Estimate | None, depth: Estimate | None) -> None:
         item = self.item
@@ -305,13 +304,12 @@ class _Builder:
             allowable = _assumed(
                 span.value * condition, span.low * condition, span.high * condition, "Pa", note, span.source or where
             )
-        mass, cg = self.found.get("object_mass"), self.found.get("cg_height")
+        mass, cg = self.found.get("mass"), self.found.get("cg_height")
         section = self._section_size(width, depth)
         if mass is None or cg is None or section is None:
             return
         shape, size, deep, count, wall, base = section
         self._keep("allowable_stress", allowable)
-        self._keep("mass", mass)
         height = item.section_height_m or 0.0
         lever = max(cg.value - height, 0.0)
         note = (
@@ -443,9 +441,3 @@ MODELS_OF: Mapping[Support, tuple[str, ...]] = {
 def needs_size(models: Iterable[str]) -> bool:
     """Say whether any of the models needs the object's dimensions."""
     return bool(set(models) - {"sliding", "friction_isolator"})
-
-
-def weight(scene: Scene) -> float | None:
-    """Return the object's weight [N], or None where its mass is neither recorded nor estimated."""
-    mass = scene.parameters.get("object_mass")
-    return None if mass is None else G * mass.value

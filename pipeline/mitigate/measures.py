@@ -227,7 +227,7 @@ def restrain(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) ->
     """Fix a hung object to the wall as well: nothing is left that swings; the fixings bear the push."""
     if scene.support is not Support.HUNG:
         return _not("it does not hang on a wall")
-    mass = scene.parameters.get("object_mass")
+    mass = scene.parameters.get("mass")
     if mass is None:
         return _not("its mass is not known, so the force on the fixings cannot be given")
     remaining = replace(scene, support=Support.FASTENED, models=MODELS_OF[Support.FASTENED])

@@ -95,7 +95,7 @@ def _say(row: Mapping[str, float], parameters: Mapping[str, float]) -> str:
     falls = "overturns" if row["overturned"] else "does not overturn"
     return (
         f"A_max/g = {row['uplift_ratio'] * slope:.2f} against B/H' = {slope:.2f}: {rocks}. "
-        f"V_max is {row['velocity_ratio']:.2f} times 10 B/sqrt(H'): {falls}."
+        f"V_max is {row['velocity_ratio']:.2g} times 10 B/sqrt(H'): {falls}."
     )
 
 

@@ -123,8 +123,8 @@ def baker_pulse(velocity: Array, dt: float) -> WaveletPulse:
                order 4; ten wavelets of that scale; PI = 1/(1 + exp(-23.3 + 14.6 PGV ratio + 20.5 energy ratio)); late
                when the pulse reaches 10 % of its energy after the motion reached 20 %.  The scales are in ratios of
                1.05, refined around the largest, and the energy is the sum of squares.
-    error    : Tp of pulses of one or two lobes is within 6 % of the period that they were made with; of pulses with
-               more lobes it is up to 17 % longer, because the wavelet itself has few
+    error    : Tp of Ricker pulses and of most pulses of one or two lobes is within 10 % of the period that they were
+               made with; with more lobes, or between odd and even, it is up to 17 % off: the wavelet has few lobes
     """
     v = _checked(velocity, dt, rows=1)[0]
     scales = _scales(dt)
