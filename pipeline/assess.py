@@ -28,8 +28,6 @@ from pipeline.response import run_model
 CHUNK = 96
 """Parameter sets in one task: small enough to share between workers, large enough to make the task worth its call."""
 
-NEVER = 1e300
-
 
 @dataclass(frozen=True)
 class LevelMotions:
@@ -42,10 +40,9 @@ class LevelMotions:
 
 @dataclass(frozen=True)
 class Demands:
-    """The columns of one model under one motion, row for row of its work's values, with the certificate beside."""
+    """The columns of one model under one motion, row for row of its work's values, and which rows were integrated."""
 
     columns: Columns
-    certificate: Array | None
     integrated: Array
 
 
@@ -97,7 +94,7 @@ def demands(
             columns[name][chunk] = column
     if certificate is not None and model.exact:
         columns[model.demand] = np.where(np.isnan(certificate), columns[model.demand], certificate)
-    return Demands(columns, certificate, needed)
+    return Demands(columns, needed)
 
 
 @dataclass(frozen=True)

@@ -82,6 +82,11 @@ def _motions(settings: Settings) -> tuple[str, str]:
     peaks = [f"{m.motion.name} {m.measures['pga'] / G:.2f} g" for level in site.levels for m in level.motions]
     nobody = [level.name for level in site.levels if not level.approved_by]
     text = f"{site.name} ({site.folder}): {', '.join(peaks)}"
+    if site.floors:
+        return (
+            "warning",
+            f"{text}; its {len(site.floors)} floors are not used yet: every gallery is taken on the ground",
+        )
     if nobody:
         return "warning", f"{text}; nobody has approved: {', '.join(nobody)} (approved_by in the manifest)"
     return "ok", text

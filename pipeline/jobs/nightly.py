@@ -30,6 +30,10 @@ if TYPE_CHECKING:
     from pipeline.store.changes import RunChanges
 
 
+GROUND = "Every gallery is taken to stand on the ground: upper floors shake more, and that is not modelled yet."
+"""What every report says as long as floors are not part of the chain."""
+
+
 @dataclass(frozen=True)
 class Selection:
     """Which part of the collection to run; nothing named means all of it."""
@@ -173,7 +177,7 @@ def _assess(
         version=__version__,
         site=site.name,
         museum=settings.museum.name or (info.museum if info else ""),
-        level_notes=tuple(_level_note(level) for level in site.levels),
+        level_notes=(*(_level_note(level) for level in site.levels), GROUND),
         settings=_stored_settings(settings, info.credit if info else ""),
         assessments=tuple(
             Assessment(scene, tuple(found), tuple(advised))
