@@ -2,7 +2,6 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -152,13 +151,14 @@ def assess(
     for level in levels:
         for work in todo.work:
             results = []
+            screens = [_screens(work, motion) for motion in level.motions]
             wanted = _wanted(work, scenes)
             for motion in level.motions:
                 results.append(demands(work, motion, executor, wanted, fidelity=fidelity, azimuth_step=azimuth_step))
                 done += 1
                 progress.step("analyses", done, total)
             for at, index in enumerate(work.scenes):
-                findings[index].append(_finding(scenes[index], work, at, level, results, fidelity))
+                findings[index].append(_finding(scenes[index], work, at, level, results, screens, fidelity))
     return todo, findings
 
 
@@ -182,7 +182,13 @@ def capacity_of(model: Model, scene: Scene) -> tuple[str, Estimate]:
 
 
 def _finding(
-    scene: Scene, work: Work, at: int, level: LevelMotions, results: Sequence[Demands], fidelity: str
+    scene: Scene,
+    work: Work,
+    at: int,
+    level: LevelMotions,
+    results: Sequence[Demands],
+    screens: Sequence[Columns],
+    fidelity: str,
 ) -> Finding:
     model = work.model
     output, capacity = capacity_of(model, scene)
@@ -227,7 +233,7 @@ def _finding(
         motion=motion.name,
         motion_hash=motion.hash,
         sentence=f"{other[2] if other else model.sentence} {sentence}".strip(),
-        screen=_screened(model, motion, parameters),
+        screen=_said(model, screens[governing], best, parameters),
         outcome=outcome,
         note=_note(row),
         assumptions=_assumptions(scene, model, capacity),
@@ -242,12 +248,17 @@ def _note(row: Mapping[str, float]) -> str:
     return words(row["note"])
 
 
-def _screened(model: Model, motion: Motion, parameters: Mapping[str, Any]) -> str:
-    if model.screen is None:
+def _screens(work: Work, motion: Motion) -> Columns:
+    """Return the paper's criterion for all parameter sets of a work at once; nothing where it has none."""
+    if work.model.screen is None:
+        return {}
+    return run_model(work.model, motion, work.values, "screen", None, None)[0]
+
+
+def _said(model: Model, screens: Columns, row: int, parameters: Mapping[str, float]) -> str:
+    if not screens:
         return ""
-    values = {name: np.array([value]) for name, value in parameters.items()}
-    columns = run_model(model, motion, values, "screen", None, None)[0]
-    return model.say_screen({name: float(column[0]) for name, column in columns.items()}, parameters)
+    return model.say_screen({name: float(column[row]) for name, column in screens.items()}, parameters)
 
 
 def _assumptions(scene: Scene, model: Model, capacity: Estimate) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from pipeline.collection.errors import ShrunkError
 from pipeline.jobs.nightly import Selection, run, summarise
 from pipeline.jobs.reporting import compare, render_again
 from pipeline.jobs.workspace import LockedError, UsageError, locked
+from pipeline.motions import read_site
 from pipeline.motions.errors import MotionError
 from pipeline.resources import resource
 from pipeline.settings import Settings, SettingsError, load_settings, template
@@ -264,3 +265,18 @@ def test_the_motion_of_the_demonstration(demo_folder: Path) -> None:
     (curve,) = path.curves
     assert 0.05 < np.hypot(curve.x, curve.y).max() < 0.30
     assert replace(path, curves=()).equal
+
+
+def test_a_kept_motion_is_the_motion_and_a_changed_manifest_is_another(tmp_path: Path) -> None:
+    """Read twice from what was kept: the same to the last bit; another corner, or a damaged file: processed again."""
+    site, kept = own_site(tmp_path), tmp_path / "kept"
+    first = read_site(site, kept=kept).levels[0].motions[0]
+    (file,) = kept.glob("*.npz")
+    again = read_site(site, kept=kept).levels[0].motions[0]
+    assert again.motion.hash == first.motion.hash
+    assert (again.motion.steps, again.measures) == (first.motion.steps, first.measures)
+    file.write_bytes(file.read_bytes()[:1000])
+    assert read_site(site, kept=kept).levels[0].motions[0].motion.hash == first.motion.hash
+    manifest = site / "manifest.toml"
+    manifest.write_text(manifest.read_text(encoding="utf-8").replace("highpass_hz = 0.1", "highpass_hz = 0.2"))
+    assert read_site(site, kept=kept).levels[0].motions[0].motion.hash != first.motion.hash

@@ -30,6 +30,9 @@ if TYPE_CHECKING:
     from pipeline.store.changes import RunChanges
 
 
+KEPT = ".kouros-kept"
+"""Folder beside the settings in which processed motions are kept between nights."""
+
 GROUND = "Every gallery is taken to stand on the ground: upper floors shake more, and that is not modelled yet."
 """What every report says as long as floors are not part of the chain."""
 
@@ -146,7 +149,8 @@ def _known(what: str, wanted: Sequence[str], known: set[str]) -> None:
 
 def _read_site(workspace: Workspace, progress: Progress) -> Site:
     progress.step("motions", 0, 1)
-    site = read_site(site_folder(workspace.settings, workspace.settings.site.folder))
+    settings = workspace.settings
+    site = read_site(site_folder(settings, settings.site.folder), kept=settings.path(KEPT))
     progress.step("motions", 1, 1)
     return site
 

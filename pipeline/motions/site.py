@@ -10,6 +10,7 @@ import numpy as np
 
 from pipeline.motions.errors import MotionError, refusal
 from pipeline.motions.intensity import measures, strong_part
+from pipeline.motions.keeping import keep, recall
 from pipeline.motions.manifest import FloorTable, Record, load_manifest, manifest_file
 from pipeline.motions.processing import process, starting_velocity
 from pipeline.motions.reading import read_record
@@ -54,10 +55,11 @@ class Site:
     floors: tuple[FloorTable, ...]
 
 
-def read_site(folder: str | Path) -> Site:
+def read_site(folder: str | Path, *, kept: Path | None = None) -> Site:
     """Read, check and process everything that a site's manifest names.
 
     folder : the site's folder, or its manifest.toml
+    kept   : where processed motions are kept between nights; None keeps nothing
     raises : MotionError (exit code 4) naming the file, the place in it and the remedy
     """
     file = manifest_file(folder)
@@ -70,7 +72,7 @@ def read_site(folder: str | Path) -> Site:
             approved_by=level.approved_by,
             approved_on="" if level.approved_on is None else level.approved_on.isoformat(),
             motions=tuple(
-                _site_motion(file, f"level[{i}].record[{j}]", record) for j, record in enumerate(level.record)
+                _site_motion(file, f"level[{i}].record[{j}]", record, kept) for j, record in enumerate(level.record)
             ),
         )
         for i, level in enumerate(manifest.level)
@@ -137,7 +139,10 @@ def thinned(motion: Motion, points: int = PICTURE_POINTS) -> dict[str, tuple[flo
     return {"t": tuple(t)} | {axis: tuple(row) for axis, row in zip("xyz", rows, strict=True)}
 
 
-def _site_motion(file: Path, key: str, record: Record) -> SiteMotion:
+def _site_motion(file: Path, key: str, record: Record, kept: Path | None) -> SiteMotion:
+    known = None if kept is None else recall(kept, record)
+    if known is not None:
+        return SiteMotion(*known, record.licence, record.source)
     recording = read_record(file.parent, record)
     try:
         motion = process(recording, record)
@@ -146,4 +151,7 @@ def _site_motion(file: Path, key: str, record: Record) -> SiteMotion:
         raise
     except ValueError as error:
         raise refusal(file, key, str(error), "mend that key of the manifest") from error
-    return SiteMotion(motion, measures(motion, start), record.licence, record.source)
+    measured = measures(motion, start)
+    if kept is not None:
+        keep(kept, record, (motion, measured))
+    return SiteMotion(motion, measured, record.licence, record.source)
