@@ -1,11 +1,10 @@
 """One model on one site, ad hoc."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pipeline.jobs.workspace import UsageError
-from pipeline.resources import resource
+from pipeline.jobs.workspace import UsageError, site_folder
+from pipeline.settings import Settings
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,9 +27,8 @@ def respond_on_site(
 
     given: dict[str, Any] = dict(_parsed(word) for word in parameters)
     direction = None if angle == "worst" else _number("angle", angle)
-    folder = resource("site_motions", "demo") if site == "demo" else Path(site)
     tables = []
-    for motion in read_motion(folder):
+    for motion in read_motion(site_folder(Settings(), site)):
         table = respond(model, motion, fidelity=fidelity, angle=direction, tail=tail, **given)
         rows = len(table)
         for at, (name, values) in enumerate(given.items()):

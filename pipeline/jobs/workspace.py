@@ -35,11 +35,6 @@ class Workspace:
         """The folder of all reports."""
         return self.settings.path(self.settings.report.folder)
 
-    @property
-    def site(self) -> Path:
-        """The folder of the site's motions; "demo" is the bundled one."""
-        return site_folder(self.settings, self.settings.site.folder)
-
 
 def site_folder(settings: Settings, name: str) -> Path:
     """Return a site's folder: the bundled one for "demo", else relative to the settings."""
