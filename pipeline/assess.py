@@ -11,7 +11,6 @@ from pipeline.quantities import Array
 from pipeline.records import (
     Columns,
     Estimate,
-    Excitation,
     Executor,
     Finding,
     Mark,
@@ -72,8 +71,7 @@ def demands(
     certificate = None
     needed = np.ones(size, dtype=bool)
     if model.certificate is not None:
-        x, y, z = motion.acceleration
-        certificate = model.certificate(Excitation(motion.dt, x, y, z, None), values)
+        certificate = model.certificate(motion.excitation(None), values)
         if model.rests is not None:
             needed = certificate > model.rests
         if model.exact and model.rests is not None:

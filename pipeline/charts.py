@@ -7,7 +7,7 @@ import numpy as np
 from pipeline.models.common import largest_push, largest_speed
 from pipeline.models.rocking import VELOCITY_SCREEN
 from pipeline.quantities import Array, G
-from pipeline.records import Axis, Chart, Curve, Excitation, Executor, Motion, Zone
+from pipeline.records import Axis, Chart, Curve, Executor, Motion, Zone
 from pipeline.response import respond, trace
 
 FRICTIONS = tuple(float(v) for v in np.round(np.geomspace(0.02, 0.8, 48), 4))
@@ -59,8 +59,7 @@ def stability_chart(motion: Motion) -> Chart:
     The lines are the paper's screens A_max/g = B/H' and V_max = 10 B/sqrt(H') (Ishiyama 1982).  Overturning asks for
     both: below their crossing no object rocks without overturning.
     """
-    x, y, z = motion.acceleration
-    excitation = Excitation(motion.dt, x, y, z, None)
+    excitation = motion.excitation(None)
     slope = largest_push(excitation) / G
     speed = largest_speed(excitation) / VELOCITY_SCREEN
     heights = np.geomspace(0.02, 5.0, 40)

@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.models import model_named
 from pipeline.models.common import words
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Columns, Excitation, Model, Motion
+from pipeline.records import Columns, Model, Motion
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -131,20 +131,17 @@ def run_model(
         if asked.size > 1 or asked[0] not in (1.0, 2.0):
             raise ValueError(f"directions must be 1 or 2 for all rows, not {asked.tolist()}")
         directions = int(asked[0])
-    x, y, z = motion.acceleration
     if fidelity == "screen":
         if model.screen is None:
             raise ValueError(f"the paper gives no closed-form criterion for {model.name}; ask for history")
-        both = angle is None or directions == 2
-        along = x if both else motion.along(angle or 0.0)
-        columns = model.screen(Excitation(motion.dt, along, y if both else None, z, tail), values)
-        return columns, np.full(size, np.nan if both else angle)
+        way = None if directions == 2 else angle
+        columns = model.screen(motion.excitation(way, tail), values)
+        return columns, np.full(size, np.nan if way is None else way)
     refine = REFINE[fidelity]
     if directions == 2:
-        return model.run(Excitation(motion.dt, x, y, z, tail), values, refine, True), np.full(size, np.nan)
+        return model.run(motion.excitation(None, tail), values, refine, True), np.full(size, np.nan)
     if angle is not None:
-        one = Excitation(motion.dt, motion.along(angle), None, z, tail)
-        return model.run(one, values, refine, True), np.full(size, angle)
+        return model.run(motion.excitation(angle, tail), values, refine, True), np.full(size, angle)
     if not 0.0 < azimuth_step <= 90.0:
         raise ValueError(f"azimuth_step must be above 0 and at most 90 degrees, not {azimuth_step!r}")
     return _worst_direction(model, motion, values, refine, tail, azimuth_step)
@@ -159,7 +156,6 @@ def _worst_direction(
     model: Model, motion: Motion, values: Mapping[str, Array], refine: int, tail: float | None, azimuth_step: float
 ) -> tuple[Columns, Array]:
     # RotD100: find the worst direction of each row without error estimates, then integrate that one with them.
-    z = motion.acceleration[2]
     size = next(iter(values.values())).size
     turn = 180.0 if model.symmetric(values) else 360.0
     scan = max(1, refine // 2)
@@ -167,8 +163,7 @@ def _worst_direction(
     where = np.zeros(size)
     most, push = np.full(size, -np.inf), np.full(size, -np.inf)
     for direction in np.arange(0.0, turn - 1e-9, azimuth_step):
-        one = Excitation(motion.dt, motion.along(direction), None, z, tail)
-        columns = model.run(one, values, scan, False)
+        columns = model.run(motion.excitation(float(direction), tail), values, scan, False)
         # Where the first output ties (nothing moved in either direction), the demand decides.
         larger = (columns[first] > most) | ((columns[first] == most) & (columns[demand] > push))
         most[larger], push[larger] = columns[first][larger], columns[demand][larger]
@@ -176,8 +171,8 @@ def _worst_direction(
     best: Columns = {}
     for direction in np.unique(where):
         rows = where == direction
-        one = Excitation(motion.dt, motion.along(float(direction)), None, z, tail)
-        columns = model.run(one, {name: v[rows] for name, v in values.items()}, refine, True)
+        one = {name: v[rows] for name, v in values.items()}
+        columns = model.run(motion.excitation(float(direction), tail), one, refine, True)
         for name, column in columns.items():
             best.setdefault(name, np.empty(size))[rows] = column
     # A worst direction that the finer integration does not confirm (a block that fell, and then did not) says nothing:
@@ -205,9 +200,7 @@ def trace(model: str, motion: Motion, *, angle: float = 0.0, **parameters: Any) 
     _finite_angle(angle)
     one = _single(row, parameters, "trace follows one object at a time")
     two = row.directions == 2 or (row.directions == 0 and one["directions"] == 2.0)
-    x = motion.acceleration[0] if two else motion.along(angle)
-    y = motion.acceleration[1] if two else None
-    columns = row.trace(Excitation(motion.dt, x, y, motion.acceleration[2], 0.0), one)
+    columns = row.trace(motion.excitation(None if two else angle, 0.0), one)
     return pd.DataFrame({"t": motion.dt * np.arange(motion.samples), **columns})
 
 

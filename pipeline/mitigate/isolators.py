@@ -6,7 +6,7 @@ from typing import Any
 
 from pipeline.models.common import largest_push, lift_ratios
 from pipeline.models.horizontal_isolator import HORIZONTAL_ISOLATOR
-from pipeline.records import Excitation, Executor, Motion
+from pipeline.records import Executor, Motion
 from pipeline.response import prepare, respond, transmit
 from pipeline.tables import number, table
 
@@ -45,15 +45,11 @@ def _run(trial: _Trial) -> Isolator:
     stroke = acceleration = lift = 0.0
     passed_on = []
     for motion in trial.motions:
-        x, y, z = motion.acceleration
         # One pass without an error estimate: the trials only rank, and the room asked for has a margin of its own.
-        own = HORIZONTAL_ISOLATOR.run(
-            Excitation(motion.dt, x, y, z, None), prepare(HORIZONTAL_ISOLATOR, given), 2, False
-        )
+        own = HORIZONTAL_ISOLATOR.run(motion.excitation(None), prepare(HORIZONTAL_ISOLATOR, given), 2, False)
         passed = transmit("horizontal_isolator", motion, refine=1, **given)
         passed_on.append(passed)
-        x, y, z = passed.acceleration
-        shaken = Excitation(passed.dt, x, y, z, None)
+        shaken = passed.excitation(None)
         stroke = max(stroke, float(own["displacement"][0]))
         acceleration = max(acceleration, float(own["acceleration"][0]), largest_push(shaken))
         lift = max(lift, *lift_ratios(shaken))

@@ -14,7 +14,7 @@ from pipeline.models import model_named
 from pipeline.models.common import largest_push, lift_ratios
 from pipeline.models.stress import section_stresses
 from pipeline.quantities import G
-from pipeline.records import Check, Estimate, Excitation, Executor, Finding, Motion, Origin, Scene, Support, Verdict
+from pipeline.records import Check, Estimate, Executor, Finding, Motion, Origin, Scene, Support, Verdict
 from pipeline.response import respond
 from pipeline.tables import Row, number, table
 
@@ -57,22 +57,17 @@ class Site:
     @cached_property
     def push(self) -> float:
         """A_max [m/s2]: the largest resultant of all motions."""
-        return max(largest_push(self._both(m)) for m in self.motions)
+        return max(largest_push(m.excitation(None)) for m in self.motions)
 
     @cached_property
     def lift(self) -> float:
         """The largest |a_h| / N of all motions."""
-        return max(max(lift_ratios(self._both(m))) for m in self.motions)
+        return max(max(lift_ratios(m.excitation(None))) for m in self.motions)
 
     @cached_property
     def isolators(self) -> list[Isolator]:
         """The horizontal isolators of the catalogue under these motions, gentlest first."""
         return horizontal_isolators(self.motions, self._executor)
-
-    @staticmethod
-    def _both(motion: Motion) -> Excitation:
-        x, y, z = motion.acceleration
-        return Excitation(motion.dt, x, y, z, None)
 
     def slide(self, friction: float, motions: Sequence[Motion] | None = None) -> float:
         """Return the largest sliding displacement [m] at a friction, over all motions of the level or those given."""

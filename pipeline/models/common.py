@@ -62,10 +62,12 @@ def largest_push(motion: Excitation) -> float:
 
 
 def largest_speed(motion: Excitation) -> float:
-    """Return V_max [m/s]: the peak ground velocity from rest, at the samples and inside the intervals."""
-    speeds = [_velocity(motion.x, motion.dt)]
+    """Return V_max [m/s]: what the manifest says, or the peak ground velocity, between the samples too."""
+    if motion.v_max is not None:
+        return motion.v_max
+    v = _velocity(motion.x, motion.dt, motion.start[0])
     if motion.y is None:
-        v, a = speeds[0], motion.x
+        a = motion.x
         best = float(np.max(np.abs(v)))
         turning = np.flatnonzero(a[:-1] * a[1:] < 0.0)
         if turning.size:
@@ -74,11 +76,11 @@ def largest_speed(motion: Excitation) -> float:
             inside = v[turning] + 0.5 * a0 * motion.dt * a0 / (a0 - a1)
             best = max(best, float(np.max(np.abs(inside))))
         return best
-    return float(np.max(np.hypot(speeds[0], _velocity(motion.y, motion.dt))))
+    return float(np.max(np.hypot(v, _velocity(motion.y, motion.dt, motion.start[1]))))
 
 
-def _velocity(a: Array, dt: float) -> Array:
-    return np.concatenate([[0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1]))])
+def _velocity(a: Array, dt: float, start: float) -> Array:
+    return start + np.concatenate([[0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1]))])
 
 
 def after_record(motion: Excitation) -> int:

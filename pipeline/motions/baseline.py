@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from pipeline.motions.filtering import highpass, pad_seconds, remove_baseline
 from pipeline.motions.intensity import integrate, strong_part
-from pipeline.motions.processing import highpass, pad_seconds, remove_baseline
 from pipeline.quantities import Array
 from pipeline.records import Motion
 

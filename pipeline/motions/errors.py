@@ -1,5 +1,6 @@
-"""How a refused motion is told."""
+"""How a refused motion is told, and what a person may overrule."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import ClassVar
 
@@ -8,11 +9,30 @@ class MotionError(ValueError):
     """A record or a manifest that Kouros refuses to assess anything with.
 
     The message names the file, the place in it (key path, component, sample), what is wrong and what mends it.
+    judgement : the name under which a person may overrule it in the record's table `accept`; "" for what is corrupt
     """
 
     exit_code: ClassVar[int] = 4
 
+    def __init__(self, message: str, judgement: str = "") -> None:
+        super().__init__(message)
+        self.judgement = judgement
 
-def refusal(file: Path, place: str, wrong: str, remedy: str) -> MotionError:
+
+def refusal(file: Path, place: str, wrong: str, remedy: str, judgement: str = "") -> MotionError:
     """Return the error, so that every refusal reads alike: file: place: what is wrong; remedy."""
-    return MotionError(f"{file}: {place}: {wrong}; {remedy}")
+    return MotionError(f"{file}: {place}: {wrong}; {remedy}", judgement)
+
+
+def judged(
+    accept: Mapping[str, str], judgement: str, file: Path, place: str, wrong: str, remedy: str, steps: list[str]
+) -> None:
+    """Refuse what is a matter of judgement, unless the manifest's record accepts it: then its reason becomes a step.
+
+    accept : the record's table of overruled refusals, by name
+    raises : MotionError with its `judgement`
+    """
+    if judgement not in accept:
+        way = f'or look at it and overrule by accept.{judgement} = "REASON" in the manifest\'s record'
+        raise refusal(file, place, wrong, f"{remedy}, {way}", judgement)
+    steps.append(f"{place} {wrong}; accepted: {accept[judgement]}")

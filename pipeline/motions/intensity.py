@@ -11,25 +11,22 @@ from pipeline.quantities import Array, G
 from pipeline.records import Motion
 
 
-def integrate(motion: Motion, start: Array | None = None) -> tuple[Array, Array]:
+def integrate(motion: Motion) -> tuple[Array, Array]:
     """Return velocity and displacement at the samples, (3, n) m/s and (3, n) m, exact to rounding.
 
-    start : (3,) m/s, velocity at the first sample; rest where None
+    The velocity begins with the motion's own `start`, the displacement with zero.
     """
     a, dt = motion.acceleration, motion.dt
     v = np.zeros_like(a)
     u = np.zeros_like(a)
-    if start is not None:
-        v[:, 0] = start
+    v[:, 0] = motion.start
     v[:, 1:] = v[:, :1] + np.cumsum(0.5 * dt * (a[:, :-1] + a[:, 1:]), axis=1)
     u[:, 1:] = np.cumsum(dt * v[:, :-1] + dt * dt * (a[:, :-1] / 3.0 + a[:, 1:] / 6.0), axis=1)
     return v, u
 
 
-def measures(motion: Motion, start: Array | None = None) -> dict[str, float]:
+def measures(motion: Motion) -> dict[str, float]:
     """Return the intensity measures of a motion, in SI, over its samples' span.
-
-    start : (3,) m/s, velocity at the first sample, as an agency's own series gives it; rest where None
 
     pga_x, pga_y, pga_z, pga (larger horizontal component), pga_resultant (peak of the horizontal vector) [m/s2];
     pgv and pgd likewise [m/s, m]; arias_x, arias_y, arias_z [m/s]; duration_5_95 [s], of the horizontal components
@@ -41,7 +38,7 @@ def measures(motion: Motion, start: Array | None = None) -> dict[str, float]:
     source : Arias (1970), pi/(2g) int a^2 dt; Trifunac and Brady (1975) for the significant duration
     """
     a, dt = motion.acceleration, motion.dt
-    v, u = integrate(motion, start)
+    v, u = integrate(motion)
     a0, da = a[:, :-1], np.diff(a, axis=1)
     v0, u0 = v[:, :-1], u[:, :-1]
     # Each interval as a polynomial in s = (t - t_k) / dt, lowest power first.

@@ -3,57 +3,76 @@
 import hashlib
 import json
 import os
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from zipfile import BadZipFile
 
 import numpy as np
 
-from pipeline.motions.manifest import Record
 from pipeline.records import Motion
 
 Processed = tuple[Motion, dict[str, float]]
 """A motion and its measures."""
 
 
-def key_of(record: Record) -> str:
-    """Return the identity of all that a processed motion depends on.
-
-    The manifest's record (with the hashes of its files, which loading the manifest has checked), the sources of this
-    package, and the versions of the libraries that read and filter.
-    """
-    digest = hashlib.sha256(record.model_dump_json().encode())
+@cache
+def _code() -> bytes:
+    """What this package's sources and the libraries that read and filter are, as one hash."""
+    digest = hashlib.sha256()
     for source in sorted(Path(__file__).parent.rglob("*.py")):
         digest.update(source.read_bytes())
-    for library in ("obspy", "scipy", "numpy"):
+    for library in ("obspy", "scipy", "numpy", "pywavelets"):
         digest.update(version(library).encode())
+    return digest.digest()
+
+
+def key_of(*parts: str) -> str:
+    """Return the identity of a processed motion: of the code, and of all that it depends on besides.
+
+    parts : such as the manifest's record (with the hashes of its files, which loading the manifest has checked)
+    """
+    digest = hashlib.sha256(_code())
+    for part in parts:
+        digest.update(hashlib.sha256(part.encode()).digest())
     return digest.hexdigest()
 
 
-def recall(folder: Path, record: Record) -> Processed | None:
-    """Return what an earlier night kept of this very record, or None; a damaged file counts as none."""
+def recall(folder: Path, key: str) -> Processed | None:
+    """Return what an earlier night kept under this very key, or None; a damaged file counts as none."""
     try:
-        with np.load(folder / f"{key_of(record)}.npz", allow_pickle=False) as kept:
+        with np.load(folder / f"{key}.npz", allow_pickle=False) as kept:
             said = json.loads(str(kept["said"]))
-            motion = Motion(float(kept["dt"]), kept["acceleration"], said["name"], said["steps"], said["source"])
+            motion = Motion(
+                float(kept["dt"]),
+                kept["acceleration"],
+                said["name"],
+                said["steps"],
+                said["source"],
+                said["start"],
+                said["v_max"],
+            )
         return (motion, said["measures"]) if motion.hash == said["hash"] else None
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
+    except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile):
         return None
 
 
-def keep(folder: Path, record: Record, processed: Processed) -> None:
+def keep(folder: Path, key: str, processed: Processed) -> None:
     """Keep a processed motion, atomically; a folder that cannot be written only costs the next night its time."""
     motion, measured = processed
-    said = {"name": motion.name, "steps": motion.steps, "source": motion.source, "hash": motion.hash}
+    said = {
+        "name": motion.name,
+        "steps": motion.steps,
+        "source": motion.source,
+        "start": motion.start,
+        "v_max": motion.v_max,
+        "hash": motion.hash,
+        "measures": measured,
+    }
     aside = folder / f".{os.getpid()}.npz"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        np.savez(
-            aside,
-            dt=np.float64(motion.dt),
-            acceleration=motion.acceleration,
-            said=np.array(json.dumps({**said, "measures": measured})),
-        )
-        aside.replace(folder / f"{key_of(record)}.npz")
+        np.savez(aside, dt=np.float64(motion.dt), acceleration=motion.acceleration, said=np.array(json.dumps(said)))
+        aside.replace(folder / f"{key}.npz")
     except OSError:
         aside.unlink(missing_ok=True)

@@ -4,164 +4,74 @@ from __future__ import annotations
 
 import hashlib
 import json
-import re
 import tomllib
 from datetime import date
+from itertools import pairwise
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    ConfigDict,
-    Discriminator,
-    Field,
-    StringConstraints,
-    ValidationError,
-    model_validator,
-)
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError, model_validator
 
 from pipeline.motions.errors import MotionError, refusal
+from pipeline.motions.record import PRINTABLE, BaselineTable, Horizontal, Record, Table, Text
 
 MANIFEST = "manifest.toml"
 
-# A control character in a name could rewrite a terminal or break a table; nothing that people write needs one.
-_PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
-Text = Annotated[str, StringConstraints(min_length=1, max_length=500, pattern=_PRINTABLE)]
-
-# The same rule as _inside below, for validators of the schema; in Python the message can say what is wrong.
-_INSIDE = r"^(?!/)(?![A-Za-z]:)(?!(.*/)?\.\.(/|$))[^\\\x00-\x1f\x7f]+$(?!\n)"
+GROUND_FLOOR = "ground"
+"""What the floor is called on which a gallery stands that is assigned to no other."""
 
 
-def _inside(name: str) -> str:
-    drive = re.match(r"[A-Za-z]:", name)
-    control = re.search(r"[\x00-\x1f\x7f]", name)
-    if not name or name.startswith("/") or drive or control or "\\" in name or ".." in name.split("/"):
-        raise ValueError(
-            f"{name!r} leaves the site's folder: name a file inside it, with / between folders and without '..'"
-        )
-    return name
+class TargetTable(Table):
+    """A target response spectrum: PSA in g at periods in s, read on straight lines in log-log.
 
-
-FileName = Annotated[str, AfterValidator(_inside), Field(json_schema_extra={"pattern": _INSIDE, "minLength": 1})]
-Digest = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
-Unit = Literal["m/s2", "cm/s2", "mm/s2", "gal", "g", "mg"]
-
-
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-
-class Horizontal(_Table):
-    """A horizontal channel and its azimuth in degrees clockwise from north; left out, the file's header says it.
-
-    The two axes only tell the channels apart: the azimuths decide what is turned into east and north.
+    period_range_s : compared from here to there; left out, the whole target
+    component      : of the motion's spectrum that is brought to the target
+    measure        : "log" fits the ratio, "linear" the difference, by least squares
     """
 
-    axis: Literal["x", "y"]
-    orientation: float | None = Field(default=None, ge=0.0, le=360.0)
-
-
-class Vertical(_Table):
-    """A vertical channel: positive up or positive down; left out, the file's header says it."""
-
-    axis: Literal["z"]
-    orientation: Literal["up", "down"] | None = None
-
-
-Component = Annotated[Horizontal | Vertical, Discriminator("axis")]
-
-
-class Record(_Table):
-    """One three-component record and what is to be done to it.
-
-    files      : paths inside the site's folder; `response` is their StationXML, where they hold counts
-    components : file name, channel code or full channel id -> axis and orientation; x, y and z once each
-    units      : only where the file itself does not say
-    processed  : whether the agency has filtered it already; such a record is never filtered again.  Left out, the
-                 files' headers say it
-    scale, scale_to_pga_g : one factor for all three components, or the PGA in g that the larger recorded horizontal
-                 component shall have; neither leaves the record as it was recorded
-    window_s   : start and end in s from the first common sample
-    sha256     : of every file named, the response included
-    """
-
-    model_config = ConfigDict(
-        json_schema_extra={
-            "allOf": [
-                {"not": {"required": ["scale", "scale_to_pga_g"]}},
-                {"not": {"required": ["units", "response"]}},
-                {
-                    "if": {"properties": {"processed": {"const": True}}, "required": ["processed"]},
-                    "then": {
-                        "not": {
-                            "anyOf": [
-                                {"required": ["highpass_hz"]},
-                                {"required": ["lowpass_hz"]},
-                                {"required": ["response"]},
-                            ]
-                        }
-                    },
-                },
-            ]
-        }
-    )
-
-    name: Text
-    files: tuple[FileName, ...] = Field(min_length=1)
-    response: FileName | None = None
-    components: dict[Text, Component] = Field(min_length=3, max_length=3)
-    units: Unit | None = None
-    processed: bool | None = None
-    scale: float | None = Field(default=None, gt=0.0)
-    scale_to_pga_g: float | None = Field(default=None, gt=0.0, le=20.0)
-    highpass_hz: float | None = Field(default=None, gt=0.0)
-    lowpass_hz: float | None = Field(default=None, gt=0.0)
-    window_s: tuple[Annotated[float, Field(ge=0.0)], Annotated[float, Field(gt=0.0)]] | None = None
-    source: Text
-    licence: Text
-    sha256: dict[FileName, Digest]
+    periods_s: tuple[Annotated[float, Field(gt=0.0)], ...] = Field(min_length=2)
+    psa_g: tuple[Annotated[float, Field(gt=0.0)], ...] = Field(min_length=2)
+    damping: float = Field(default=0.05, ge=0.0, lt=1.0)
+    period_range_s: tuple[Annotated[float, Field(gt=0.0)], Annotated[float, Field(gt=0.0)]] | None = None
+    component: Literal["x", "y", "rotd50", "rotd100"] = "rotd100"
+    measure: Literal["log", "linear"] = "log"
+    source: Text | None = None
 
     @property
-    def all_files(self) -> tuple[str, ...]:
-        """Every file that the record is made of, the response included."""
-        return self.files if self.response is None else (*self.files, self.response)
+    def compared(self) -> tuple[float, float]:
+        """The periods in s between which spectra are compared."""
+        return self.period_range_s or (self.periods_s[0], self.periods_s[-1])
 
     @model_validator(mode="after")
-    def _consistent(self) -> Record:
-        if len(set(self.all_files)) < len(self.all_files):
-            raise ValueError("files: a file is named twice; name each file once")
-        axes = sorted(c.axis for c in self.components.values())
-        if axes != ["x", "y", "z"]:
-            raise ValueError(f"components: the axes are {', '.join(axes)}; give each of x, y and z exactly once")
-        given = {key for key in ("scale", "scale_to_pga_g") if getattr(self, key) is not None}
-        if len(given) > 1:
-            raise ValueError("scale and scale_to_pga_g are both given; keep one of them")
-        if self.response is not None and self.units is not None:
-            raise ValueError("units and response are both given; counts with a response have no other unit, drop units")
-        again = [key for key in ("response", "highpass_hz", "lowpass_hz") if getattr(self, key) is not None]
-        if self.processed and again:
-            raise ValueError(
-                f"{', '.join(again)}: a processed record is never processed again; drop it, or give raw files"
-            )
-        if self.highpass_hz is not None and self.lowpass_hz is not None and self.highpass_hz >= self.lowpass_hz:
-            raise ValueError(f"highpass_hz {self.highpass_hz:g} must be below lowpass_hz {self.lowpass_hz:g}")
-        if self.window_s is not None and self.window_s[0] >= self.window_s[1]:
-            raise ValueError(f"window_s {list(self.window_s)} must be [start, end] with start before end")
+    def _consistent(self) -> TargetTable:
+        if len(self.periods_s) != len(self.psa_g):
+            raise ValueError(f"{len(self.periods_s)} periods_s and {len(self.psa_g)} psa_g; give one value a period")
+        if any(b <= a for a, b in pairwise(self.periods_s)):
+            raise ValueError("periods_s must increase")
+        low, high = self.compared
+        if not (self.periods_s[0] <= low < high <= self.periods_s[-1]):
+            raise ValueError(f"period_range_s [{low:g}, {high:g}] must increase and lie inside periods_s")
         return self
 
 
-class LevelTable(_Table):
+LEAST_FOR_MEAN = 7
+"""Records from which their mean may decide (ASCE/SEI 7-10, 16.1.4; with fewer the worst one does)."""
+
+
+class LevelTable(Table):
     """A level of shaking: its records, how several are combined, and the engineer who answers for it.
 
-    combine : "max" (the worst record decides) or "mean" (an object overturns when half the records overturn it)
+    combine : "max" (the worst record decides) or "mean" of seven records and more (an object overturns when half the
+              records overturn it)
+    target  : the spectrum that records with `scale_to_target` are brought to
     approved_by, approved_on : both or neither; reports say so when nobody answers
     """
 
     name: Text
     return_period_years: float | None = Field(default=None, gt=0.0)
     combine: Literal["max", "mean"]
-    approved_by: Annotated[str, StringConstraints(max_length=500, pattern=_PRINTABLE)] = ""
+    target: TargetTable | None = None
+    approved_by: Annotated[str, StringConstraints(max_length=500, pattern=PRINTABLE)] = ""
     approved_on: date | None = None
     record: tuple[Record, ...] = Field(min_length=1)
 
@@ -169,47 +79,101 @@ class LevelTable(_Table):
     def _consistent(self) -> LevelTable:
         if bool(self.approved_by) != (self.approved_on is not None):
             raise ValueError("approved_by and approved_on belong together; give both, or leave both out")
+        if self.combine == "mean" and len(self.record) < LEAST_FOR_MEAN:
+            raise ValueError(
+                f'combine = "mean" needs {LEAST_FOR_MEAN} records and there are {len(self.record)}: use "max"'
+            )
+        without = [record.name for record in self.record if record.scale_to_target]
+        if without and self.target is None:
+            raise ValueError(f"record {without[0]!r} has scale_to_target, but the level has no target; add its table")
         return self
 
 
-class FloorTable(_Table):
-    """A floor above the ground: a height ratio with the building's period in s, or a record made on that floor."""
+class FloorRecord(Record):
+    """A record made on the floor itself, and the level of shaking that it belongs to (all levels where left out)."""
+
+    level: Text | None = None
+
+
+_MODAL = ("damping", "stiffness_ratio", "modes")
+
+
+class FloorTable(Table):
+    """A floor above the ground, by one of three methods.
+
+    record : made on that floor; one, or several that name their levels
+    method "factor" : the ground's horizontals times the factor of ASCE/SEI 7-22, 13.3.1.1, from height_ratio (0 base to
+        1 roof) and, where it is known, the building's period_s
+    method "modal"  : modes of a shear-flexural beam (Miranda and Taghavi 2005) from height_ratio, period_s, damping (a
+        ratio), stiffness_ratio (alpha0: 0 bends as a shear wall, 20 and more shears as a frame) and number of modes
+    """
 
     model_config = ConfigDict(
         json_schema_extra={
             "oneOf": [
-                {"required": ["height_ratio", "period_s"], "not": {"required": ["record"]}},
+                {"required": ["height_ratio"], "not": {"required": ["record"]}},
                 {
                     "required": ["record"],
-                    "not": {"anyOf": [{"required": ["height_ratio"]}, {"required": ["period_s"]}]},
+                    "not": {"anyOf": [{"required": [key]} for key in ("height_ratio", "period_s", "method", *_MODAL)]},
                 },
-            ]
+            ],
+            "if": {"properties": {"method": {"const": "modal"}}, "required": ["method"]},
+            "then": {"required": ["period_s", *_MODAL]},
+            "else": {"not": {"anyOf": [{"required": [key]} for key in _MODAL]}},
         }
     )
 
     name: Text
     height_ratio: float | None = Field(default=None, ge=0.0, le=1.0)
     period_s: float | None = Field(default=None, gt=0.0)
-    record: Record | None = None
+    method: Literal["factor", "modal"] | None = None
+    damping: float | None = Field(default=None, gt=0.0, lt=1.0)
+    stiffness_ratio: float | None = Field(default=None, ge=0.0, le=650.0)
+    modes: int | None = Field(default=None, ge=1, le=30)
+    record: FloorRecord | Annotated[tuple[FloorRecord, ...], Field(min_length=1)] | None = None
+
+    @property
+    def records(self) -> tuple[FloorRecord, ...]:
+        """The records made on this floor; none where it is computed."""
+        if self.record is None:
+            return ()
+        return self.record if isinstance(self.record, tuple) else (self.record,)
 
     @model_validator(mode="after")
     def _consistent(self) -> FloorTable:
-        building = (self.height_ratio is not None, self.period_s is not None)
-        if building != ((True, True) if self.record is None else (False, False)):
-            raise ValueError("give either height_ratio with period_s, or record alone")
+        if self.name == GROUND_FLOOR:
+            raise ValueError(f"the name {GROUND_FLOOR!r} is the ground's own; call the floor otherwise")
+        computed = [key for key in ("height_ratio", "period_s", "method", *_MODAL) if getattr(self, key) is not None]
+        if self.records:
+            if computed:
+                raise ValueError(f"record and {', '.join(computed)} exclude each other; keep one of them")
+            return self
+        if self.height_ratio is None:
+            raise ValueError("give height_ratio (with period_s where the building's period is known), or record alone")
+        modal = [key for key in ("period_s", *_MODAL) if getattr(self, key) is None]
+        if self.method == "modal" and modal:
+            raise ValueError(f"the method modal needs {', '.join(modal)}")
+        extra = [key for key in _MODAL if getattr(self, key) is not None]
+        if self.method != "modal" and extra:
+            raise ValueError(f'{", ".join(extra)}: only of method = "modal"; name it, or drop them')
         return self
 
 
-class SiteTable(_Table):
-    """Where the site is: degrees north and east, and the shear-wave velocity of the upper 30 m in m/s where known."""
+class SiteTable(Table):
+    """Where the site is: degrees north and east, and the shear-wave velocity of the upper 30 m in m/s where known.
+
+    x_azimuth : degrees clockwise from north of the x axis that motions are turned to; east where left out, else an axis
+                of the building
+    """
 
     name: Text
     latitude: float = Field(ge=-90.0, le=90.0)
     longitude: float = Field(ge=-180.0, le=180.0)
     vs30: float | None = Field(default=None, gt=0.0)
+    x_azimuth: float = Field(default=90.0, ge=0.0, lt=360.0)
 
 
-class Manifest(_Table):
+class Manifest(Table):
     """A site's manifest.toml."""
 
     site: SiteTable
@@ -218,12 +182,15 @@ class Manifest(_Table):
 
     def records(self) -> list[tuple[str, Record]]:
         """Return every record with its key path, those of the floors included."""
-        found = [
+        found: list[tuple[str, Record]] = [
             (f"level[{i}].record[{j}]", record)
             for i, level in enumerate(self.level)
             for j, record in enumerate(level.record)
         ]
-        return found + [(f"floor[{i}].record", f.record) for i, f in enumerate(self.floor) if f.record is not None]
+        for i, floor in enumerate(self.floor):
+            several = isinstance(floor.record, tuple)
+            found += [(f"floor[{i}].record{f'[{j}]' if several else ''}", r) for j, r in enumerate(floor.records)]
+        return found
 
     @model_validator(mode="after")
     def _consistent(self) -> Manifest:
@@ -235,6 +202,17 @@ class Manifest(_Table):
             twice = sorted({name for name in names if names.count(name) > 1})
             if twice:
                 raise ValueError(f"two {key}s are called {twice[0]!r}; give each {key} its own name")
+        levels = [level.name for level in self.level]
+        for floor in self.floor:
+            named = [r.level for r in floor.records]
+            for level in named:
+                if level is not None and level not in levels:
+                    raise ValueError(f"floor {floor.name!r}: there is no level {level!r}; use {', '.join(levels)}")
+            for level in levels:
+                if floor.records and level not in named and None not in named:
+                    raise ValueError(f"floor {floor.name!r} has no record for level {level!r}; add one")
+            if any(r.scale_to_target for r in floor.records):
+                raise ValueError(f"floor {floor.name!r}: scale_to_target is for records of the ground; use scale")
         return self
 
 
@@ -245,6 +223,8 @@ _TABLES: dict[str, type[BaseModel]] = {
     "record": Record,
     "floor": FloorTable,
     "components": Horizontal,
+    "baseline": BaselineTable,
+    "target": TargetTable,
 }
 
 
@@ -311,6 +291,8 @@ def _told(problem: Any) -> str:
         tag = loc.index("components") + 2
         if tag < len(loc) and loc[tag] in {"x", "y", "z"}:
             del loc[tag]
+    # Where a table or a list of them is allowed, the names of both stand in the place as well.
+    loc = [part for part in loc if part != "FloorRecord" and not str(part).startswith("tuple[")]
     path = ""
     for part in loc:
         path += f"[{part}]" if isinstance(part, int) else f"{'.' if path else ''}{part}"

@@ -2,145 +2,171 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.motions.manifest import Record
+from pipeline.motions.baseline import (
+    choose_corner,
+    polynomial_baseline,
+    remove_pre_event_mean,
+    resample,
+    two_segment_baseline,
+)
+from pipeline.motions.filtering import highpass, lowpass, remove_baseline
+from pipeline.motions.manifest import TargetTable
 from pipeline.motions.reading import PGA_MOST, Recording
+from pipeline.motions.record import BaselineTable, Record
+from pipeline.motions.suites import scale_to_spectrum
 from pipeline.quantities import Array, G
 from pipeline.records import Motion
 
-POLES = 2
-"""Poles of the Butterworth filters; run forwards and backwards they fall off as four."""
+EAST = 90.0
+"""Azimuth of the x axis in degrees clockwise from north, unless the manifest turns it to the building."""
 
 ORTHOGONAL_WITHIN = 2.0
 """Degrees that two horizontal channels may be off a right angle (the usual care of an installation)."""
 
 
-def process(recording: Recording, record: Record) -> Motion:
+@dataclass(frozen=True, eq=False)
+class Processed:
+    """A record made ready, beside what it was before.
+
+    motion  : what objects are shaken by
+    before  : the same span as recorded: only its mean removed (it would hide everything else), turned and scaled alike
+    filtered: whether its baseline was corrected and it was filtered here, or by its source long ago
+    corners : of high-pass and low-pass [Hz], None where there was none
+    """
+
+    motion: Motion
+    before: Motion
+    filtered: bool
+    corners: tuple[float | None, float | None]
+
+
+def process(
+    recording: Recording, record: Record, target: TargetTable | None = None, x_azimuth: float = EAST
+) -> Processed:
     """Turn a recording into the motion that the manifest asks for.
 
-    In this order: linear baseline, high-pass, low-pass (none of the three for a processed record), window, rotation
-    to east and north, scaling.  The scale counts the larger *recorded* horizontal component, before the rotation.
+    In this order: baseline, high-pass, low-pass (none of the three for a processed record), resampling, window,
+    rotation to x and y, scaling.  A scale to a PGA counts the larger *recorded* horizontal component, before rotation.
 
-    raises : ValueError naming the manifest's key
+    target    : the level's spectrum, for a record with `scale_to_target`
+    x_azimuth : degrees clockwise from north of the x axis
+    raises    : ValueError naming the manifest's key
     """
-    data, steps = recording.data, list(recording.steps)
+    source = f"{record.source}; licence: {record.licence}"
+    start = (0.0, 0.0, 0.0) if recording.velocity is None else recording.velocity[:, 0]
+    motion = Motion(recording.dt, recording.data, record.name, recording.steps, source, start)
+    before = motion.changed(motion.acceleration - motion.acceleration.mean(axis=1, keepdims=True), "mean removed")
+    corners: tuple[float | None, float | None] = (None, None)
     if recording.processed:
-        if record.highpass_hz is not None or record.lowpass_hz is not None:
-            raise ValueError("highpass_hz, lowpass_hz: the files say that the record is processed; drop both")
-        steps.append("processed by its source: no baseline correction, no filter")
+        if record.raw_only:
+            keys = ", ".join(record.raw_only)
+            raise ValueError(f"{keys}: the files say that the record is processed; drop what is for raw records")
+        motion = motion.called(motion.name, "processed by its source: no baseline correction, no filter")
     else:
-        data, said = remove_baseline(data, recording.dt)
-        steps.append(said)
-        if record.highpass_hz is not None:
-            data, said = highpass(data, recording.dt, record.highpass_hz)
-            steps.append(said)
-        if record.lowpass_hz is not None:
-            data, said = lowpass(data, recording.dt, record.lowpass_hz)
-            steps.append(said)
+        motion, corners = _filtered(_flattened(motion, record), record)
+    if record.resample_s is not None:
+        if recording.processed and record.resample_s > motion.dt:
+            raise ValueError(
+                f"resample_s: a step above the record's {motion.dt:g} s would filter it again; use a shorter one"
+            )
+        motion = resample(motion, record.resample_s)
     if record.window_s is not None:
-        data, said = cut(data, recording.dt, *record.window_s)
-        steps.append(said)
-    factor, why = _scale(recording, record, data)
-    data, said = rotate(data, *recording.azimuths)
-    steps.append(said)
-    motion = Motion(recording.dt, data, record.name, steps, f"{record.source}; licence: {record.licence}")
-    if why:
-        motion = motion.scaled(factor, why)
+        motion, before = (_windowed(one, recording, *record.window_s) for one in (motion, before))
+    motion, before = _scaled_to_pga(motion, before, record, recording)
+    motion, before = (_turned(one, recording.azimuths, x_azimuth) for one in (motion, before))
+    if record.scale_to_target:
+        if target is None:
+            raise ValueError("scale_to_target: the level has no target spectrum; add its table")
+        wanted = [G * psa for psa in target.psa_g]
+        fitted = scale_to_spectrum(
+            motion,
+            target.periods_s,
+            wanted,
+            target.compared,
+            damping=target.damping,
+            component=target.component,
+            measure=target.measure,
+        )
+        size = float(np.abs(motion.acceleration).max())
+        before = before.scaled(float(np.abs(fitted.acceleration).max()) / size, "as the processed motion")
+        motion = fitted
+    if record.v_max_cm_s is not None:
+        motion = Motion(
+            motion.dt, motion.acceleration, motion.name, motion.steps, source, motion.start, 0.01 * record.v_max_cm_s
+        )
     peak = float(np.abs(motion.acceleration).max())
     if peak > PGA_MOST:
         raise ValueError(f"scale: the scaled motion peaks at {peak / G:.3g} g, above 20 g; lower the scale")
+    return Processed(motion, before, not recording.processed, corners)
+
+
+def _flattened(motion: Motion, record: Record) -> Motion:
+    """Correct the baseline as the manifest says; by a straight line where it says nothing."""
+    table = record.baseline or BaselineTable(method="linear")
+    method = table.method
+    if method == "none":
+        return motion.called(motion.name, "no baseline correction, as the manifest says")
+    if method == "linear":
+        return motion.changed(*remove_baseline(motion.acceleration, motion.dt))
+    if method == "mean":
+        return polynomial_baseline(motion, 0)
+    if method == "polynomial":
+        return polynomial_baseline(motion, table.degree or 0, of=table.of or "acceleration")
+    if record.pre_event_s is not None:
+        motion = remove_pre_event_mean(motion, record.pre_event_s)
+    if method == "two-segment":
+        motion = two_segment_baseline(motion, table.t1_s, table.t2_s, table.fit_from_s)
     return motion
 
 
-def _scale(recording: Recording, record: Record, data: Array) -> tuple[float, str]:
-    """Return the factor of all three components and its reason; (1, "") where the manifest asks for none."""
-    if record.scale is not None:
-        return record.scale, "as the manifest says"
-    if record.scale_to_pga_g is None:
-        return 1.0, ""
-    peaks = np.abs(data[:2]).max(axis=1)
-    larger = int(np.argmax(peaks))
-    if peaks[larger] == 0.0:
-        raise ValueError("scale_to_pga_g: both horizontal components are zero in the window; widen window_s")
-    why = f"{recording.channels[larger]}, the larger recorded horizontal component, from {peaks[larger] / G:.4f} g"
-    return record.scale_to_pga_g * G / float(peaks[larger]), f"{why} to {record.scale_to_pga_g:g} g"
+def _filtered(motion: Motion, record: Record) -> tuple[Motion, tuple[float | None, float | None]]:
+    corner = record.corner_hz
+    wanted = record.highpass_hz
+    if wanted is None and record.baseline is not None and record.baseline.method == "two-segment":
+        wanted = "none"
+    if wanted in {None, "auto"}:
+        chosen = choose_corner(motion, record.pre_event_s)
+        corner = chosen.frequency
+        motion = motion.called(motion.name, f"high-pass corner {corner:.4g} Hz chosen by {chosen.reason}")
+    if corner is None:
+        motion = motion.called(motion.name, "no high-pass: a permanent displacement is kept, and noise with it")
+    else:
+        motion = motion.changed(*highpass(motion.acceleration, motion.dt, corner))
+    if record.lowpass_hz is not None:
+        if corner is not None and corner >= record.lowpass_hz:
+            raise ValueError(f"lowpass_hz {record.lowpass_hz:g} must be above the high-pass corner of {corner:.4g} Hz")
+        motion = motion.changed(*lowpass(motion.acceleration, motion.dt, record.lowpass_hz))
+    return motion, (corner, record.lowpass_hz)
 
 
-def starting_velocity(recording: Recording, record: Record) -> Array | None:
-    """Return the velocity (3,) m/s, x east, y north, z up, that a processed record starts with, scaled like its motion.
-
-    An agency's own velocity series may start with a velocity that its acceleration does not show; integrating from rest
-    is 3.5 % off in PGV on one near-fault record.  None where the files carry no velocity.
-    """
+def _windowed(motion: Motion, recording: Recording, start: float, end: float) -> Motion:
+    part, said = cut(motion.acceleration, motion.dt, start, end)
+    kept = motion.changed(part, said)
     if recording.velocity is None:
-        return None
-    data, velocity = recording.data, recording.velocity
-    if record.window_s is not None:
-        data, _ = cut(data, recording.dt, *record.window_s)
-        velocity, _ = cut(velocity, recording.dt, *record.window_s)
-    factor, _ = _scale(recording, record, data)
-    turned, _ = rotate(velocity, *recording.azimuths)
-    return factor * np.asarray(turned)[:, 0]
+        return kept
+    begin = recording.velocity[:, min(round(start / recording.dt), recording.velocity.shape[1] - 1)]
+    return Motion(kept.dt, kept.acceleration, kept.name, kept.steps, kept.source, begin)
 
 
-def remove_baseline(data: Array, dt: float) -> tuple[Array, str]:
-    """Subtract from each row its least-squares straight line (mean and drift), and say which.
-
-    data    : (3, n) m/s2
-    returns : (3, n) m/s2 and the step
-    """
-    n = data.shape[1]
-    # Time about the middle: the mean and the slope are then independent of each other.
-    t = (np.arange(n) - 0.5 * (n - 1)) * dt
-    mean = data.mean(axis=1)
-    slope = (data @ t) / float(t @ t)
-    line = mean[:, None] + slope[:, None] * t
-    told = ", ".join(f"{axis} {m:.3g} m/s2 and {s:.3g} m/s3" for axis, m, s in zip("xyz", mean, slope, strict=True))
-    return data - line, f"linear baseline removed (mean and drift): {told}"
-
-
-def pad_seconds(corner_hz: float) -> float:
-    """Return the zeros in s before and after a record that its high-pass needs: 1.5 n / fc.
-
-    source : Boore, D.M. (2005), On pads and filters: processing strong-motion data, BSSA 95, 745-750; n is the order,
-             here the four of both passes together, and the whole length goes to each end.
-    """
-    return 1.5 * (2 * POLES) / corner_hz
-
-
-def highpass(data: Array, dt: float, corner_hz: float) -> tuple[Array, str]:
-    """Zero-phase Butterworth high-pass of each row, padded with zeros and cut back to the record.
-
-    data   : (rows, n) m/s2
-    raises : ValueError unless the corner is below the Nyquist frequency
-    """
-    return _filtered(data, dt, corner_hz, "highpass")
-
-
-def lowpass(data: Array, dt: float, corner_hz: float) -> tuple[Array, str]:
-    """Zero-phase Butterworth low-pass of each row, padded with zeros and cut back to the record.
-
-    data   : (rows, n) m/s2
-    raises : ValueError unless the corner is below the Nyquist frequency
-    """
-    return _filtered(data, dt, corner_hz, "lowpass")
-
-
-def _filtered(data: Array, dt: float, corner_hz: float, kind: Literal["highpass", "lowpass"]) -> tuple[Array, str]:
-    from scipy.signal import butter, sosfiltfilt
-
-    if not 0.0 < corner_hz < 0.5 / dt:
-        raise ValueError(f"{kind}_hz {corner_hz:g} must be below the Nyquist frequency of {0.5 / dt:g} Hz")
-    sos = butter(POLES, corner_hz, kind, fs=1.0 / dt, output="sos")
-    pad = int(np.ceil(pad_seconds(corner_hz) / dt))
-    padded = np.pad(data, ((0, 0), (pad, pad)))
-    out = np.asarray(sosfiltfilt(sos, padded, axis=1, padtype=None), dtype=np.float64)
-    how = f"Butterworth of {POLES} poles forwards and backwards, padded by {pad * dt:g} s of zeros at each end"
-    step = f"{kind.replace('pass', '-pass')} {corner_hz:g} Hz, {how}"
-    return np.ascontiguousarray(out[:, pad : pad + data.shape[1]]), step
+def _scaled_to_pga(motion: Motion, before: Motion, record: Record, recording: Recording) -> tuple[Motion, Motion]:
+    """Apply the manifest's factor, if any, to both."""
+    if record.scale is not None:
+        factor, why = record.scale, "as the manifest says"
+    elif record.scale_to_pga_g is not None:
+        peaks = np.abs(motion.acceleration[:2]).max(axis=1)
+        larger = int(np.argmax(peaks))
+        if peaks[larger] == 0.0:
+            raise ValueError("scale_to_pga_g: both horizontal components are zero in the window; widen window_s")
+        which = f"{recording.channels[larger]}, the larger recorded horizontal component"
+        factor = record.scale_to_pga_g * G / float(peaks[larger])
+        why = f"{which}, from {peaks[larger] / G:.4f} g to {record.scale_to_pga_g:g} g"
+    else:
+        return motion, before
+    return motion.scaled(factor, why), before.scaled(factor, "as the processed motion")
 
 
 def cut(data: Array, dt: float, start: float, end: float) -> tuple[Array, str]:
@@ -161,23 +187,35 @@ def cut(data: Array, dt: float, start: float, end: float) -> tuple[Array, str]:
     return part, f"cut to {a * dt:g} s to {b * dt:g} s of the record; velocity left at the end [m/s]: {told}"
 
 
-def rotate(data: Array, first: float, second: float) -> tuple[Array, str]:
-    """Rotate two horizontal channels into x (east) and y (north).
+def _turned(motion: Motion, azimuths: tuple[float, float], x_azimuth: float) -> Motion:
+    turned, said = rotate(motion.acceleration, *azimuths, x_azimuth)
+    start, _ = rotate(np.array(motion.start)[:, None], *azimuths, x_azimuth)
+    return Motion(motion.dt, turned, motion.name, (*motion.steps, said), motion.source, start[:, 0], motion.v_max)
+
+
+def rotate(data: Array, first: float, second: float, x_azimuth: float = EAST) -> tuple[Array, str]:
+    """Rotate two horizontal channels into x and y.
 
     data          : (3, n) m/s2, rows first channel, second channel, up
     first, second : azimuths in degrees clockwise from north
+    x_azimuth     : of the x axis; y is 90 degrees anticlockwise of it, as north is of east
     raises        : ValueError unless the two are at right angles within 2 degrees
     """
     between = (second - first) % 180.0
     if abs(between - 90.0) > ORTHOGONAL_WITHIN:
         raise ValueError(f"components: the horizontal azimuths {first:g} and {second:g} are not at right angles")
-    if (first % 360.0, second % 360.0) == (90.0, 0.0):
-        return data, "x is east and y is north as recorded"
-    # Rows: what each channel measures of east and north; solved, so that a small skew of the channels is undone too.
-    seen = np.array([[_sine(azimuth), _sine(azimuth + 90.0)] for azimuth in (first, second)])
+    axes = (
+        "x east, y north"
+        if x_azimuth == EAST
+        else f"the building's axes, x at {x_azimuth:g} and y at {(x_azimuth - 90.0) % 360.0:g} degrees"
+    )
+    if ((first - x_azimuth) % 360.0, (second - x_azimuth) % 360.0) == (0.0, 270.0):
+        return data, f"{axes} as recorded"
+    # Rows: what each channel measures of x and y; solved, so that a small skew of the channels is undone too.
+    seen = np.array([[_sine(azimuth - x_azimuth + 90.0), _sine(x_azimuth - azimuth)] for azimuth in (first, second)])
     out = np.array(data)
     out[:2] = np.linalg.inv(seen) @ data[:2]
-    return out, f"rotated from azimuths {first:g} and {second:g} degrees to x east, y north"
+    return out, f"rotated from azimuths {first:g} and {second:g} degrees to {axes}"
 
 
 def _sine(degrees: float) -> float:

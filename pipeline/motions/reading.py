@@ -5,14 +5,15 @@ from __future__ import annotations
 import glob
 import re
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from pipeline.motions.errors import MotionError, refusal
-from pipeline.motions.manifest import Component, Record
+from pipeline.motions.errors import MotionError, judged, refusal
+from pipeline.motions.record import Component, Record
 from pipeline.quantities import Array, G
 
 UNITS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "g": G, "mg": 0.001 * G}
@@ -78,7 +79,7 @@ def read_record(folder: str | Path, record: Record) -> Recording:
         file, trace = _component(folder=folder, record=record, key=key, component=component, traces=traces, taken=taken)
         _check(file, key, component, trace)
         if inventory is not None:
-            _check_orientation(folder / str(record.response), key, component, trace, inventory)
+            _check_orientation(folder / str(record.response), key, component, trace, inventory, record.accept, steps)
         steps += _in_si(file, key, record, trace, inventory)
         said = trace.stats.get("kouros", {})
         if "velocity" in said:
@@ -90,7 +91,7 @@ def read_record(folder: str | Path, record: Record) -> Recording:
             trace.data = -trace.data
             velocities |= {axis: -values for axis, values in velocities.items() if axis == component.axis}
             steps.append(f"{key}: turned over, positive up")
-        _check_size(file, key, component, trace)
+        _check_size(file, key, component, trace, record.accept, steps)
         rows[component.axis] = (file, trace, key)
     processed = _processed(folder, record.name, record.processed, [trace for _, trace, _ in rows.values()], steps)
     data, dt, first = _aligned(rows, steps)
@@ -230,7 +231,15 @@ def _check(file: Path, key: str, component: Component, trace: Any) -> None:
     trace.data = values
 
 
-def _check_orientation(file: Path, key: str, component: Component, trace: Any, inventory: Any) -> None:
+def _check_orientation(
+    file: Path,
+    key: str,
+    component: Component,
+    trace: Any,
+    inventory: Any,
+    accept: Mapping[str, str],
+    steps: list[str],
+) -> None:
     place = f"component {component.axis} ({key!r})"
     try:
         known = inventory.get_channel_metadata(trace.id, trace.stats.starttime)
@@ -246,7 +255,8 @@ def _check_orientation(file: Path, key: str, component: Component, trace: Any, i
         agrees = None in {said, meant} or abs((said - meant + 180.0) % 360.0 - 180.0) <= AZIMUTH_TOLERANCE
     if not agrees:
         wrong = f"the manifest orients it {component.orientation}, the StationXML {said}"
-        raise refusal(file, place, wrong, "find out which is right, and mend the manifest's orientation")
+        remedy = "find out which is right and mend the manifest's orientation"
+        judged(accept, "orientation", file, place, wrong, remedy, steps)
 
 
 def _oriented(
@@ -299,7 +309,7 @@ def _in_si(file: Path, key: str, record: Record, trace: Any, inventory: Any) -> 
     if inventory is not None:
         if own not in {"", "counts"}:
             raise refusal(file, f"component {key!r}", f"is in {own} already", "drop response from the manifest")
-        corners = prefilter(stats.sampling_rate, record.highpass_hz)
+        corners = prefilter(stats.sampling_rate, record.corner_hz)
         try:
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
@@ -363,14 +373,17 @@ def _own_unit(stats: Any) -> tuple[str, float]:
     return unit, UNITS.get(unit, 0.0)
 
 
-def _check_size(file: Path, key: str, component: Component, trace: Any) -> None:
+def _check_size(
+    file: Path, key: str, component: Component, trace: Any, accept: Mapping[str, str], steps: list[str]
+) -> None:
     # About the mean, because a raw accelerometer carries an offset that is not shaking.
     size = np.abs(trace.data - np.mean(trace.data))
     at = int(np.argmax(size))
     if not PGA_LEAST <= size[at] <= PGA_MOST:
         place = f"component {component.axis} ({key!r})"
         wrong = f"peaks at {size[at] / G:.3g} g (sample {at}), outside of 1e-9 g to 20 g"
-        raise refusal(file, place, wrong, "this is the wrong unit; mend units or response in the manifest")
+        remedy = "this looks like a wrong unit: mend units or response in the manifest"
+        judged(accept, "size", file, place, wrong, remedy, steps)
 
 
 def _aligned(rows: dict[str, tuple[Path, Any, str]], steps: list[str]) -> tuple[Array, float, dict[str, int]]:

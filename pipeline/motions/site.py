@@ -2,27 +2,46 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from math import ceil
 from pathlib import Path
 
 import numpy as np
 
 from pipeline.motions.errors import MotionError, refusal
-from pipeline.motions.intensity import measures, strong_part
-from pipeline.motions.keeping import keep, recall
-from pipeline.motions.manifest import FloorTable, Record, load_manifest, manifest_file
-from pipeline.motions.processing import process, starting_velocity
+from pipeline.motions.intensity import integrate, measures, strong_part
+from pipeline.motions.keeping import keep, key_of, recall
+from pipeline.motions.manifest import (
+    GROUND_FLOOR,
+    FloorTable,
+    Manifest,
+    TargetTable,
+    load_manifest,
+    manifest_file,
+)
+from pipeline.motions.processing import Processed, process
+from pipeline.motions.pulses import PERIODS, shahi_baker_pulse
 from pipeline.motions.reading import read_record
+from pipeline.motions.record import Record
+from pipeline.motions.suites import beam_modes, floor_motion, scale_to_floor
 from pipeline.records import Motion, MotionSummary
+from pipeline.supports import resampled
 
 PICTURE_POINTS = 600
 PICTURE_MARGIN = 5.0
 
+MODE_POINTS = 20
+"""Corners of a floor's polygon in one period of its highest mode: a peak between two is missed by at most 1.2 %."""
+
+MOST_REFINED = 16
+"""Most samples of a computed floor's motion for one of the ground's."""
+
 
 @dataclass(frozen=True, slots=True)
 class SiteMotion:
-    """A processed motion with its measures (SI, see `intensity.measures`) and where it comes from."""
+    """A processed motion with its measures (SI, see `measured`) and where it comes from."""
 
     motion: Motion
     measures: dict[str, float]
@@ -44,19 +63,31 @@ class Level:
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """A site as its manifest describes it; degrees north and east, vs30 in m/s where it is known."""
+    """A site as its manifest describes it, with the processed motions of the ground."""
 
-    name: str
-    folder: Path
-    latitude: float
-    longitude: float
-    vs30: float | None
+    file: Path
+    manifest: Manifest
     levels: tuple[Level, ...]
-    floors: tuple[FloorTable, ...]
+    kept: Path | None = None
+
+    @property
+    def name(self) -> str:
+        """What the site is called."""
+        return self.manifest.site.name
+
+    @property
+    def folder(self) -> Path:
+        """Where its manifest lies."""
+        return self.file.parent
+
+    @property
+    def floors(self) -> tuple[str, ...]:
+        """The names of the floors above the ground."""
+        return tuple(floor.name for floor in self.manifest.floor)
 
 
 def read_site(folder: str | Path, *, kept: Path | None = None) -> Site:
-    """Read, check and process everything that a site's manifest names.
+    """Read, check and process the records of the ground that a site's manifest names.
 
     folder : the site's folder, or its manifest.toml
     kept   : where processed motions are kept between nights; None keeps nothing
@@ -64,6 +95,7 @@ def read_site(folder: str | Path, *, kept: Path | None = None) -> Site:
     """
     file = manifest_file(folder)
     manifest = load_manifest(file)
+    site = Site(file, manifest, (), kept)
     levels = tuple(
         Level(
             name=level.name,
@@ -72,13 +104,74 @@ def read_site(folder: str | Path, *, kept: Path | None = None) -> Site:
             approved_by=level.approved_by,
             approved_on="" if level.approved_on is None else level.approved_on.isoformat(),
             motions=tuple(
-                _site_motion(file, f"level[{i}].record[{j}]", record, kept) for j, record in enumerate(level.record)
+                _site_motion(site, f"level[{i}].record[{j}]", record, level.target)
+                for j, record in enumerate(level.record)
             ),
         )
         for i, level in enumerate(manifest.level)
     )
-    site = manifest.site
-    return Site(site.name, file.parent, site.latitude, site.longitude, site.vs30, levels, manifest.floor)
+    return replace(site, levels=levels)
+
+
+def levels_at(site: Site, floor: str) -> tuple[Level, ...]:
+    """Return the levels of shaking as a floor feels them: the ground's motions carried up, or records made there.
+
+    floor  : a name of `site.floors`, or "ground"
+    raises : ValueError for a floor that the manifest does not have; MotionError as `read_site`
+    """
+    if floor == GROUND_FLOOR:
+        return site.levels
+    for number, table in enumerate(site.manifest.floor):
+        if table.name == floor:
+            return tuple(replace(level, motions=_on_floor(site, number, table, level)) for level in site.levels)
+    known = ", ".join([GROUND_FLOOR, *site.floors])
+    raise ValueError(f"{site.file}: there is no floor {floor!r}; it has {known}")
+
+
+def _on_floor(site: Site, number: int, table: FloorTable, level: Level) -> tuple[SiteMotion, ...]:
+    if table.records:
+        several = isinstance(table.record, tuple)
+        return tuple(
+            _site_motion(site, f"floor[{number}].record{f'[{j}]' if several else ''}", record, None)
+            for j, record in enumerate(table.records)
+            if record.level in {None, level.name}
+        )
+    return tuple(_carried(site, table, one) for one in level.motions)
+
+
+def _carried(site: Site, table: FloorTable, ground: SiteMotion) -> SiteMotion:
+    motion = ground.motion
+    key = key_of(motion.hash, motion.name, table.model_dump_json(), *motion.steps)
+    known = None if site.kept is None else recall(site.kept, key)
+    if known is None:
+        up = carry(motion, table).called(f"{motion.name}, floor {table.name}")
+        known = up, measured(up)
+        if site.kept is not None:
+            keep(site.kept, key, known)
+    return SiteMotion(*known, ground.licence, ground.source)
+
+
+def carry(motion: Motion, table: FloorTable) -> Motion:
+    """Return a motion of the ground as a floor feels it, by the method of the manifest's table.
+
+    raises : ValueError for a table of records, which are not computed
+    """
+    if table.height_ratio is None:
+        raise ValueError(f"floor {table.name!r} has records of its own")
+    if table.method != "modal" or table.period_s is None or table.damping is None:
+        return scale_to_floor(motion, table.height_ratio, table.period_s)
+    stiffness, modes = table.stiffness_ratio or 0.0, table.modes or 1
+    shortest = table.period_s * float(beam_modes(stiffness, modes).period_ratios[-1])
+    # The floor's motion is taken as a polygon: its highest mode gets at least this many corners in a period.
+    refine = min(MOST_REFINED, max(1, ceil(MODE_POINTS * motion.dt / shortest)))
+    return floor_motion(
+        resampled(motion, refine),
+        table.height_ratio,
+        table.period_s,
+        damping=table.damping,
+        alpha0=stiffness,
+        modes=modes,
+    )
 
 
 def read_motion(path: str | Path) -> list[Motion]:
@@ -89,13 +182,31 @@ def read_motion(path: str | Path) -> list[Motion]:
     return [one.motion for level in read_site(path).levels for one in level.motions]
 
 
-def summaries(site: Site) -> tuple[MotionSummary, ...]:
-    """Return what a report shows of each motion, in the manifest's order, with thinned series for its picture."""
+def measured(motion: Motion) -> dict[str, float]:
+    """Return the measures of a motion (`intensity.measures`), and those of its near-fault pulse where it has one.
+
+    pulse_period [s], pulse_pgv [m/s], pulse_angle [degrees from x towards y], by Shahi and Baker (2014)
+    """
+    out = measures(motion)
+    v, _ = integrate(motion)
+    if motion.samples > 1 and v[:2].any() and motion.duration > PERIODS[0]:
+        pulse = shahi_baker_pulse(v, motion.dt)
+        if pulse.is_pulse:
+            out |= {"pulse_period": pulse.period, "pulse_pgv": pulse.pulse_pgv, "pulse_angle": pulse.angle}
+    return out
+
+
+def summaries(levels: Sequence[Level], floor: str = "") -> tuple[MotionSummary, ...]:
+    """Return what a report shows of each motion, level for level, with thinned series for its picture.
+
+    floor : the floor on which these are felt; "" for the ground
+    """
     return tuple(
         MotionSummary(
             name=one.motion.name,
             hash=one.motion.hash,
             level=level.name,
+            floor=floor,
             source=one.source,
             dt=one.motion.dt,
             samples=one.motion.samples,
@@ -106,7 +217,7 @@ def summaries(site: Site) -> tuple[MotionSummary, ...]:
             licence=one.licence,
             series=thinned(one.motion),
         )
-        for level in site.levels
+        for level in levels
         for one in level.motions
     )
 
@@ -139,19 +250,31 @@ def thinned(motion: Motion, points: int = PICTURE_POINTS) -> dict[str, tuple[flo
     return {"t": tuple(t)} | {axis: tuple(row) for axis, row in zip("xyz", rows, strict=True)}
 
 
-def _site_motion(file: Path, key: str, record: Record, kept: Path | None) -> SiteMotion:
-    known = None if kept is None else recall(kept, record)
-    if known is not None:
-        return SiteMotion(*known, record.licence, record.source)
+def _site_motion(site: Site, key: str, record: Record, target: TargetTable | None) -> SiteMotion:
+    identity = key_of(
+        record.model_dump_json(),
+        "" if target is None else target.model_dump_json(),
+        str(site.manifest.site.x_azimuth),
+    )
+    known = None if site.kept is None else recall(site.kept, identity)
+    if known is None:
+        motion = prepare(site.file, key, record, target, site.manifest.site.x_azimuth).motion
+        known = motion, measured(motion)
+        if site.kept is not None:
+            keep(site.kept, identity, known)
+    return SiteMotion(*known, record.licence, record.source)
+
+
+def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_azimuth: float) -> Processed:
+    """Read and process one record of a manifest.
+
+    file, key : the manifest and the record's place in it, for messages
+    raises    : MotionError
+    """
     recording = read_record(file.parent, record)
     try:
-        motion = process(recording, record)
-        start = starting_velocity(recording, record)
+        return process(recording, record, target, x_azimuth)
     except MotionError:
         raise
     except ValueError as error:
         raise refusal(file, key, str(error), "mend that key of the manifest") from error
-    measured = measures(motion, start)
-    if kept is not None:
-        keep(kept, record, (motion, measured))
-    return SiteMotion(motion, measured, record.licence, record.source)

@@ -133,8 +133,10 @@ def scale_to_floor(motion: Motion, height_ratio: float, period: float | None = N
         f"floor at z/h {height_ratio:g}, building period {known}: horizontals times {factor:.4g} (ASCE 7-22, 13.3.1.1)"
         f", vertical unchanged"
     )
-    data = motion.acceleration * np.array([[factor], [factor], [1.0]])
-    return Motion(motion.dt, data, motion.name, (*motion.steps, step), motion.source)
+    by = np.array([factor, factor, 1.0])
+    data = motion.acceleration * by[:, None]
+    v_max = None if motion.v_max is None else factor * motion.v_max
+    return Motion(motion.dt, data, motion.name, (*motion.steps, step), motion.source, by * motion.start, v_max)
 
 
 @dataclass(frozen=True, eq=False)

@@ -35,7 +35,7 @@ def resampled(motion: Motion, refine: int) -> Motion:
     fine = np.arange(n) / refine
     grid = np.arange(motion.samples)
     rows: Array = np.vstack([np.interp(fine, grid, row) for row in motion.acceleration])
-    return Motion(motion.dt / refine, rows, motion.name, motion.steps, motion.source)
+    return Motion(motion.dt / refine, rows, motion.name, motion.steps, motion.source, motion.start, motion.v_max)
 
 
 AFTER = 60.0

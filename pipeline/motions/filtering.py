@@ -1,0 +1,69 @@
+"""Zero-phase filters with pads, and the straight baseline that goes before them; arrays in, arrays out."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from pipeline.quantities import Array
+
+POLES = 2
+"""Poles of the Butterworth filters; run forwards and backwards they fall off as four."""
+
+
+def remove_baseline(data: Array, dt: float) -> tuple[Array, str]:
+    """Subtract from each row its least-squares straight line (mean and drift), and say which.
+
+    data    : (3, n) m/s2
+    returns : (3, n) m/s2 and the step
+    """
+    n = data.shape[1]
+    # Time about the middle: the mean and the slope are then independent of each other.
+    t = (np.arange(n) - 0.5 * (n - 1)) * dt
+    mean = data.mean(axis=1)
+    slope = (data @ t) / float(t @ t)
+    line = mean[:, None] + slope[:, None] * t
+    told = ", ".join(f"{axis} {m:.3g} m/s2 and {s:.3g} m/s3" for axis, m, s in zip("xyz", mean, slope, strict=True))
+    return data - line, f"linear baseline removed (mean and drift): {told}"
+
+
+def pad_seconds(corner_hz: float) -> float:
+    """Return the zeros in s before and after a record that its high-pass needs: 1.5 n / fc.
+
+    source : Boore, D.M. (2005), On pads and filters: processing strong-motion data, BSSA 95, 745-750; n is the order,
+             here the four of both passes together, and the whole length goes to each end.
+    """
+    return 1.5 * (2 * POLES) / corner_hz
+
+
+def highpass(data: Array, dt: float, corner_hz: float) -> tuple[Array, str]:
+    """Zero-phase Butterworth high-pass of each row, padded with zeros and cut back to the record.
+
+    data   : (rows, n) m/s2
+    raises : ValueError unless the corner is below the Nyquist frequency
+    """
+    return _filtered(data, dt, corner_hz, "highpass")
+
+
+def lowpass(data: Array, dt: float, corner_hz: float) -> tuple[Array, str]:
+    """Zero-phase Butterworth low-pass of each row, padded with zeros and cut back to the record.
+
+    data   : (rows, n) m/s2
+    raises : ValueError unless the corner is below the Nyquist frequency
+    """
+    return _filtered(data, dt, corner_hz, "lowpass")
+
+
+def _filtered(data: Array, dt: float, corner_hz: float, kind: Literal["highpass", "lowpass"]) -> tuple[Array, str]:
+    from scipy.signal import butter, sosfiltfilt
+
+    if not 0.0 < corner_hz < 0.5 / dt:
+        raise ValueError(f"{kind}_hz {corner_hz:g} must be below the Nyquist frequency of {0.5 / dt:g} Hz")
+    sos = butter(POLES, corner_hz, kind, fs=1.0 / dt, output="sos")
+    pad = int(np.ceil(pad_seconds(corner_hz) / dt))
+    padded = np.pad(data, ((0, 0), (pad, pad)))
+    out = np.asarray(sosfiltfilt(sos, padded, axis=1, padtype=None), dtype=np.float64)
+    how = f"Butterworth of {POLES} poles forwards and backwards, padded by {pad * dt:g} s of zeros at each end"
+    step = f"{kind.replace('pass', '-pass')} {corner_hz:g} Hz, {how}"
+    return np.ascontiguousarray(out[:, pad : pad + data.shape[1]]), step

@@ -1,0 +1,198 @@
+"""A record of a site's manifest: its files, and what is to be done to them."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Literal
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    StringConstraints,
+    model_validator,
+)
+
+# A control character in a name could rewrite a terminal or break a table; nothing that people write needs one.
+PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
+Text = Annotated[str, StringConstraints(min_length=1, max_length=500, pattern=PRINTABLE)]
+
+# The same rule as _inside below, for validators of the schema; in Python the message can say what is wrong.
+_INSIDE = r"^(?!/)(?![A-Za-z]:)(?!(.*/)?\.\.(/|$))[^\\\x00-\x1f\x7f]+$(?!\n)"
+
+
+def _inside(name: str) -> str:
+    drive = re.match(r"[A-Za-z]:", name)
+    control = re.search(r"[\x00-\x1f\x7f]", name)
+    if not name or name.startswith("/") or drive or control or "\\" in name or ".." in name.split("/"):
+        raise ValueError(
+            f"{name!r} leaves the site's folder: name a file inside it, with / between folders and without '..'"
+        )
+    return name
+
+
+FileName = Annotated[str, AfterValidator(_inside), Field(json_schema_extra={"pattern": _INSIDE, "minLength": 1})]
+Digest = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
+Unit = Literal["m/s2", "cm/s2", "mm/s2", "gal", "g", "mg"]
+
+
+_RAW_ONLY = ("response", "baseline", "pre_event_s", "highpass_hz", "lowpass_hz")
+"""Keys of what is done to raw records only."""
+
+
+class Table(BaseModel):
+    """A table of the manifest: no key that is not known, no value that is not finite."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class Horizontal(Table):
+    """A horizontal channel and its azimuth in degrees clockwise from north; left out, the file's header says it.
+
+    The two axes only tell the channels apart: the azimuths decide what is turned into east and north.
+    """
+
+    axis: Literal["x", "y"]
+    orientation: float | None = Field(default=None, ge=0.0, le=360.0)
+
+
+class Vertical(Table):
+    """A vertical channel: positive up or positive down; left out, the file's header says it."""
+
+    axis: Literal["z"]
+    orientation: Literal["up", "down"] | None = None
+
+
+Component = Annotated[Horizontal | Vertical, Discriminator("axis")]
+
+
+Judgement = Literal["clipping", "cut_off", "size", "orientation"]
+"""Refusals that a person may overrule; what is corrupt is refused whatever is accepted."""
+
+
+class BaselineTable(Table):
+    """How the baseline of a raw record is corrected (see `baseline`); left out, a straight line is removed.
+
+    method   : none; mean; pre-event (the mean of the first `pre_event_s`); linear; polynomial; two-segment (Iwan et al.
+               1985, Boore 2001), which keeps a permanent displacement, so that no corner is chosen for it
+    degree, of : of the polynomial, and whether it is fitted to the acceleration or the velocity
+    t1_s, t2_s, fit_from_s : of the two segments; left out, they follow from the record
+    """
+
+    method: Literal["none", "mean", "pre-event", "linear", "polynomial", "two-segment"]
+    degree: int | None = Field(default=None, ge=0, le=6)
+    of: Literal["acceleration", "velocity"] | None = None
+    t1_s: float | None = Field(default=None, ge=0.0)
+    t2_s: float | None = Field(default=None, gt=0.0)
+    fit_from_s: float | None = Field(default=None, gt=0.0)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> BaselineTable:
+        belongs = {"degree": "polynomial", "of": "polynomial"} | dict.fromkeys(
+            ("t1_s", "t2_s", "fit_from_s"), "two-segment"
+        )
+        for key, method in belongs.items():
+            if getattr(self, key) is not None and self.method != method:
+                raise ValueError(f"{key} belongs to method {method!r}, not {self.method!r}; drop it")
+        if self.method == "polynomial" and self.degree is None:
+            raise ValueError("a polynomial baseline needs its degree, 0 to 6")
+        return self
+
+
+class Record(Table):
+    """One three-component record and what is to be done to it.
+
+    files      : paths inside the site's folder; `response` is their StationXML, where they hold counts
+    components : file name, channel code or full channel id -> axis and orientation; x, y and z once each
+    units      : only where the file itself does not say
+    processed  : whether the agency has filtered it already; such a record is never filtered again.  Left out, the
+                 files' headers say it
+    baseline   : of a raw record; pre_event_s: s of noise before the event at its start
+    highpass_hz: of a raw record: a corner; "auto" or left out, one is chosen from length, noise and tail (see
+                 `baseline.choose_corner`); "none", it is not filtered
+    resample_s : another time step
+    scale, scale_to_pga_g, scale_to_target : one factor for all three components; the PGA in g that the larger recorded
+                 horizontal component shall have; or the factor that fits the level's target spectrum best.  None of
+                 them leaves the record as it was recorded
+    v_max_cm_s : the velocity for the overturning criterion, after scaling, where it is not to be the PGV
+    window_s   : start and end in s from the first common sample
+    accept     : refusals that a person has judged and overruled, each with the reason
+    sha256     : of every file named, the response included
+    """
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "allOf": [
+                {"not": {"required": ["scale", "scale_to_pga_g"]}},
+                {"not": {"required": ["scale", "scale_to_target"]}},
+                {"not": {"required": ["scale_to_pga_g", "scale_to_target"]}},
+                {"not": {"required": ["units", "response"]}},
+                {
+                    "if": {"properties": {"processed": {"const": True}}, "required": ["processed"]},
+                    "then": {"not": {"anyOf": [{"required": [key]} for key in _RAW_ONLY]}},
+                },
+            ]
+        }
+    )
+
+    name: Text
+    files: tuple[FileName, ...] = Field(min_length=1)
+    response: FileName | None = None
+    components: dict[Text, Component] = Field(min_length=3, max_length=3)
+    units: Unit | None = None
+    processed: bool | None = None
+    scale: float | None = Field(default=None, gt=0.0)
+    scale_to_pga_g: float | None = Field(default=None, gt=0.0, le=20.0)
+    scale_to_target: Literal[True] | None = None
+    baseline: BaselineTable | None = None
+    pre_event_s: float | None = Field(default=None, gt=0.0)
+    highpass_hz: Annotated[float, Field(gt=0.0)] | Literal["auto", "none"] | None = None
+    lowpass_hz: float | None = Field(default=None, gt=0.0)
+    resample_s: float | None = Field(default=None, gt=0.0)
+    window_s: tuple[Annotated[float, Field(ge=0.0)], Annotated[float, Field(gt=0.0)]] | None = None
+    v_max_cm_s: float | None = Field(default=None, gt=0.0)
+    accept: dict[Judgement, Text] = Field(default_factory=dict)
+    source: Text
+    licence: Text
+    sha256: dict[FileName, Digest]
+
+    @property
+    def all_files(self) -> tuple[str, ...]:
+        """Every file that the record is made of, the response included."""
+        return self.files if self.response is None else (*self.files, self.response)
+
+    @property
+    def corner_hz(self) -> float | None:
+        """The high-pass corner that the manifest gives as a number, else None."""
+        return self.highpass_hz if isinstance(self.highpass_hz, float) else None
+
+    @property
+    def raw_only(self) -> tuple[str, ...]:
+        """The keys given here that a processed record must not have."""
+        return tuple(key for key in _RAW_ONLY if getattr(self, key) is not None)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Record:
+        if len(set(self.all_files)) < len(self.all_files):
+            raise ValueError("files: a file is named twice; name each file once")
+        axes = sorted(c.axis for c in self.components.values())
+        if axes != ["x", "y", "z"]:
+            raise ValueError(f"components: the axes are {', '.join(axes)}; give each of x, y and z exactly once")
+        given = [key for key in ("scale", "scale_to_pga_g", "scale_to_target") if getattr(self, key) is not None]
+        if len(given) > 1:
+            raise ValueError(f"{' and '.join(given)} exclude each other; keep one")
+        if self.units is not None and self.response is not None:
+            raise ValueError("units and response exclude each other: the response turns counts into m/s2; drop one")
+        if self.processed and self.raw_only:
+            raise ValueError(
+                f"{', '.join(self.raw_only)}: a processed record is never processed again; drop it, or give raw files"
+            )
+        if self.corner_hz is not None and self.lowpass_hz is not None and self.corner_hz >= self.lowpass_hz:
+            raise ValueError(f"highpass_hz {self.corner_hz:g} must be below lowpass_hz {self.lowpass_hz:g}")
+        if self.window_s is not None and self.window_s[0] >= self.window_s[1]:
+            raise ValueError(f"window_s {list(self.window_s)} must be [start, end] with start before end")
+        if self.baseline is not None and self.baseline.method == "pre-event" and self.pre_event_s is None:
+            raise ValueError("baseline: the method pre-event needs pre_event_s, the seconds of noise at the start")
+        return self

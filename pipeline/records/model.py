@@ -1,0 +1,72 @@
+"""A row of the registry of generic models."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from pipeline.quantities import Array, Quantity
+from pipeline.records.motion import Excitation
+from pipeline.records.scene import Scene
+
+Columns = dict[str, Array]
+"""Output name -> (n,) values; "error" and "note" (bit flags, see models.NOTES) are always there."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A generic model or isolator: one row of the registry (see pipeline.models.MODELS).
+
+    needs      : its parameters, in the order a caller would name them
+    gives      : its outputs; the first is the one that ranks directions (RotD100) and carries the error
+    directions : 1 (along an angle), 2 (both horizontal directions) or 0 (the parameter `directions` says)
+    run        : (excitation, parameters, refine, estimate) -> columns; parameters are broadcast (n,) arrays, refine
+                 divides the standard step; without estimate the error is left out (NaN) and the cost is a third
+    demand     : which output is set against the capacity
+    capacity   : parameter of the scene that the demand is held against, or a constant
+    applies    : scene -> "" where the model applies, else the reason why not
+    symmetric  : parameters -> True when the response does not change with the sign of the motion
+    screen     : (excitation, parameters) -> columns by the paper's closed-form criterion; reported, never deciding
+    say_screen : (one row of the screen, one set of parameters) -> the criterion in words
+    trace      : (excitation, one set of parameters) -> time histories at the samples, (n,) each
+    certificate: (excitation in two directions, parameters) -> the demand itself or an upper bound of it for any
+                 direction, without integration; what it shows to be below the capacity is never integrated
+    exact      : the certificate is the demand itself, not only a bound
+    rests      : certificate up to which nothing moves, so that there is nothing to integrate; None: always integrate
+    outcome    : (one row, one set of parameters) -> what the object does, in a word and in a sentence
+    otherwise  : scene -> (output, capacity, sentence) that take the place of its own for this scene, or None
+    mark       : (one set of parameters, demand) -> (kind of chart, x, y), or None
+    fails      : what an object does whose demand exceeds the capacity, such as "slides"
+    """
+
+    name: str
+    title: str
+    kind: str
+    source: str
+    equation: str
+    needs: tuple[Quantity, ...]
+    gives: tuple[Quantity, ...]
+    directions: int
+    run: Callable[[Excitation, Mapping[str, Array], int, bool], Columns]
+    demand: str
+    capacity: str | float
+    applies: Callable[[Scene], str]
+    sentence: str
+    fails: str
+    symmetric: Callable[[Mapping[str, Array]], bool] = lambda _: True
+    screen: Callable[[Excitation, Mapping[str, Array]], Columns] | None = None
+    say_screen: Callable[[Mapping[str, float], Mapping[str, float]], str] = lambda _row, _parameters: ""
+    trace: Callable[[Excitation, Mapping[str, float]], Columns] | None = None
+    certificate: Callable[[Excitation, Mapping[str, Array]], Array] | None = None
+    exact: bool = False
+    rests: float | None = None
+    outcome: Callable[[Mapping[str, float], Mapping[str, float]], tuple[str, str]] = lambda _row, _parameters: ("", "")
+    otherwise: Callable[[Scene], tuple[str, float, str] | None] = lambda _scene: None
+    mark: Callable[[Mapping[str, float], float], tuple[str, float, float] | None] = lambda _parameters, _demand: None
+
+    def output(self, name: str) -> Quantity:
+        """Return the output of that name.
+
+        raises : KeyError
+        """
+        return next(q for q in self.gives if q.name == name)

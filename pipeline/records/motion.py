@@ -1,0 +1,179 @@
+"""A motion, what a model is shaken by, and what a report shows of it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pipeline.quantities import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """The acceleration history of a base, piecewise linear between samples, at rest before and unexcited after.
+
+    dt           : s, the uniform time step
+    acceleration : (3, n) m/s2, rows x (east), y (north), z (up)
+    name         : what a report calls it
+    steps        : what was done to the record, in order, each step with its parameters
+    source       : who recorded it and under which licence
+    start        : m/s, the velocity (x, y, z) that the record starts with, as an agency's own velocity series may say;
+                   no model is moved by it, but the PGV and the overturning criterion are
+    v_max        : m/s, what the manifest says the velocity of the overturning criterion is; None: the PGV
+    raises       : ValueError for a shape that is not (3, n), values that are not finite, a dt that is not positive
+    """
+
+    dt: float
+    acceleration: Array
+    name: str = "motion"
+    steps: tuple[str, ...] = ()
+    source: str = ""
+    start: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    v_max: float | None = None
+
+    def __init__(
+        self,
+        dt: float,
+        acceleration: ArrayLike,
+        name: str = "motion",
+        steps: Iterable[str] = (),
+        source: str = "",
+        start: Iterable[float] = (0.0, 0.0, 0.0),
+        v_max: float | None = None,
+    ) -> None:
+        a = np.array(acceleration, dtype=np.float64, order="C", copy=True)
+        if a.ndim != 2 or a.shape[0] != 3 or a.shape[1] == 0:
+            raise ValueError(f"motion {name!r}: acceleration must have the shape (3, n), rows x, y, z; it is {a.shape}")
+        bad = ~np.isfinite(a)
+        if bad.any():
+            row, sample = (int(i[0]) for i in np.nonzero(bad))
+            raise ValueError(f"motion {name!r}: component {'xyz'[row]} is {a[row, sample]} at sample {sample}")
+        if not (np.isfinite(dt) and dt > 0.0):
+            raise ValueError(f"motion {name!r}: dt must be a positive number of seconds, not {dt!r}")
+        a.setflags(write=False)
+        begin = tuple(float(v) for v in start)
+        if len(begin) != 3 or not np.isfinite(begin).all():
+            raise ValueError(f"motion {name!r}: start must be three finite velocities in m/s, not {begin}")
+        if v_max is not None and not (np.isfinite(v_max) and v_max > 0.0):
+            raise ValueError(f"motion {name!r}: v_max must be a velocity above 0 m/s, not {v_max!r}")
+        given = {"dt": float(dt), "acceleration": a, "name": name, "source": source, "start": begin, "v_max": v_max}
+        for key, value in given.items():
+            object.__setattr__(self, key, value)
+        object.__setattr__(self, "steps", tuple(steps))
+
+    @property
+    def samples(self) -> int:
+        """Number of samples of each component."""
+        return int(self.acceleration.shape[1])
+
+    @property
+    def duration(self) -> float:
+        """Seconds from the first to the last sample."""
+        return (self.samples - 1) * self.dt
+
+    @cached_property
+    def hash(self) -> str:
+        """SHA-256 of the time step and the samples: the identity of the excitation, whatever it is called."""
+        digest = hashlib.sha256(np.float64(self.dt).tobytes())
+        digest.update(self.acceleration.tobytes())
+        return digest.hexdigest()
+
+    def along(self, angle: float) -> Array:
+        """Return the horizontal acceleration (n,) m/s2 along ``angle`` degrees from x towards y."""
+        # Exact zeros at multiples of 90 degrees: cos(pi/2) is 6e-17, which would wake an object that must stay at rest.
+        turn = angle % 360.0
+        exact = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
+        c, s = exact.get(turn) or (float(np.cos(np.radians(turn))), float(np.sin(np.radians(turn))))
+        x, y = self.acceleration[0], self.acceleration[1]
+        if s == 0.0:
+            return np.ascontiguousarray(c * x)
+        if c == 0.0:
+            return np.ascontiguousarray(s * y)
+        return np.ascontiguousarray(c * x + s * y)
+
+    def excitation(self, angle: float | None, tail: float | None = None) -> Excitation:
+        """Return what a model is shaken by: along ``angle`` degrees from x towards y, or (None) in both directions.
+
+        tail : s after the record; None: until rest or past the peak
+        """
+        x, y, z = self.acceleration
+        v_x, v_y, _ = self.start
+        if angle is None:
+            return Excitation(self.dt, x, y, z, tail, (v_x, v_y), self.v_max)
+        turn = np.radians(angle)
+        begin = float(np.cos(turn) * v_x + np.sin(turn) * v_y)
+        return Excitation(self.dt, self.along(angle), None, z, tail, (begin, 0.0), self.v_max)
+
+    def changed(self, acceleration: ArrayLike, step: str, dt: float | None = None) -> Motion:
+        """Return the motion with other samples (and time step), and what was done recorded as its last step."""
+        return Motion(
+            self.dt if dt is None else dt,
+            acceleration,
+            self.name,
+            (*self.steps, step),
+            self.source,
+            self.start,
+            self.v_max,
+        )
+
+    def called(self, name: str, *steps: str) -> Motion:
+        """Return the motion under another name, with further steps recorded."""
+        return Motion(self.dt, self.acceleration, name, (*self.steps, *steps), self.source, self.start, self.v_max)
+
+    def scaled(self, factor: float, why: str) -> Motion:
+        """Return the motion with all three components multiplied by one factor, and the step recorded."""
+        return Motion(
+            self.dt,
+            factor * self.acceleration,
+            self.name,
+            (*self.steps, f"scaled by {factor:.6g} ({why})"),
+            self.source,
+            [factor * v for v in self.start],
+            None if self.v_max is None else factor * self.v_max,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Excitation:
+    """What a one-direction or two-direction model is shaken by.
+
+    dt, x, y, z : s and (n,) m/s2; y is None for a one-direction model
+    tail        : s of rest after the record; None means until rest or past the peak, capped
+    start       : m/s, horizontal velocity that the record starts with (along x, and along y)
+    v_max       : m/s, the velocity of the overturning criterion where the manifest says it; None: the peak velocity
+    """
+
+    dt: float
+    x: Array
+    y: Array | None
+    z: Array
+    tail: float | None
+    start: tuple[float, float] = (0.0, 0.0)
+    v_max: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class MotionSummary:
+    """A motion as the report shows it: measures in SI, processing steps, and thinned series for its picture.
+
+    floor : on which it is felt; "" for the ground
+    """
+
+    name: str
+    hash: str
+    level: str
+    source: str
+    dt: float
+    samples: int
+    measures: Mapping[str, float]
+    steps: tuple[str, ...]
+    approved_by: str = ""
+    approved_on: str = ""
+    licence: str = ""
+    floor: str = ""
+    series: Mapping[str, tuple[float, ...]] = field(default_factory=dict)

@@ -1,0 +1,128 @@
+"""What a run finds and advises."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from pipeline.records.motion import MotionSummary
+from pipeline.records.picture import Chart, Mark
+from pipeline.records.scene import Origin, Scene
+
+
+class Verdict(StrEnum):
+    """What a finding says."""
+
+    PASS = "pass"  # noqa: S105
+    FAIL = "fail"
+    UNDETERMINED = "undetermined"
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One demand set against one capacity (contract "A finding").
+
+    low, high : the range of the demand that the uncertain inputs span
+    sentence  : what it means, with {demand}, {capacity}, {low} and {high} to be filled in the reader's units
+    title     : the failure in the field's words ("Rocking", "Sliding")
+    screen    : the paper's closed-form criterion in words; reported, never deciding
+    """
+
+    object_number: str
+    gallery: str
+    level: str
+    model: str
+    title: str
+    demand_name: str
+    demand: float | None
+    unit: str
+    low: float | None
+    high: float | None
+    capacity: float | None
+    capacity_origin: Origin | None
+    utilisation: float | None
+    verdict: Verdict
+    fidelity: str
+    error: float | None
+    decided_by: str
+    motion: str
+    motion_hash: str
+    sentence: str
+    screen: str = ""
+    outcome: str = ""
+    note: str = ""
+    assumptions: tuple[str, ...] = ()
+    mark: Mark | None = None
+    version: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One model run again on the changed chain, as evidence that a recommendation works."""
+
+    model: str
+    title: str
+    demand: float
+    unit: str
+    capacity: float
+    utilisation: float
+    passes: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Recommendation:
+    """A measure for one object, with the evidence of the models run again on the changed chain.
+
+    measure    : identity of the row in tables/measures.csv
+    parameters : what to build or buy, by name with unit, such as {"clearance_m": 0.14}
+    sentence   : the advice in words, with {parameter} placeholders to be filled in the reader's units
+    checks     : the models run again; every one passes, except for removal, which has none
+    rejected   : the less intrusive measures that were tried or do not apply, and why not
+    """
+
+    object_number: str
+    gallery: str
+    level: str
+    measure: str
+    title: str
+    sentence: str
+    parameters: Mapping[str, float]
+    units: Mapping[str, str]
+    checks: tuple[Check, ...]
+    rejected: tuple[str, ...] = ()
+    mark: Mark | None = None
+    source: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Assessment:
+    """One object with everything that was found about it."""
+
+    scene: Scene
+    findings: tuple[Finding, ...]
+    recommendations: tuple[Recommendation, ...]
+
+    @property
+    def assessed(self) -> bool:
+        """Whether at least one verdict could be reached."""
+        return bool(self.findings) and not self.scene.missing
+
+
+@dataclass(frozen=True, slots=True)
+class RunRecord:
+    """A whole run, as the store gives it back: all that the reports need, and nothing is computed again."""
+
+    run_id: str
+    started: str
+    finished: str
+    version: str
+    site: str
+    museum: str
+    level_notes: tuple[str, ...]
+    settings: Mapping[str, Any]
+    assessments: tuple[Assessment, ...]
+    charts: Mapping[str, Chart]
+    motions: tuple[MotionSummary, ...]
+    demonstration: bool = False
