@@ -5,7 +5,7 @@ import tomllib
 from pathlib import Path
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, RootModel, ValidationError, model_validator
 
 DATABASE_VARIABLE = "KOUROS_DATABASE"
 """Environment variable that names the database, with its password, in place of the file's."""
@@ -47,6 +47,28 @@ class SiteFolder(_Part):
     folder: str = Field(default="site_motions/site", description="folder with manifest.toml, or 'demo'")
 
 
+class Floors(RootModel[dict[str, tuple[str, ...]]]):
+    """Which galleries stand on which floor of the site's manifest; the others stand on the ground.
+
+    "*" among a floor's galleries stands for all that no floor names.
+    """
+
+    model_config = ConfigDict(frozen=True)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Floors":
+        named = [gallery for galleries in self.root.values() for gallery in galleries]
+        twice = sorted({gallery for gallery in named if named.count(gallery) > 1})
+        if twice:
+            raise ValueError(f"gallery {twice[0]!r} is on two floors; keep one")
+        return self
+
+    def of(self, gallery: str) -> str | None:
+        """Return the floor of a gallery, or None for the ground."""
+        floors = {name: floor for floor, galleries in self.root.items() for name in galleries}
+        return floors.get(gallery, floors.get("*"))
+
+
 class Analysis(_Part):
     """How finely to look."""
 
@@ -69,6 +91,7 @@ class Settings(_Part):
     inventory: Inventory = Inventory()
     collection: Collection = Collection()
     site: SiteFolder = SiteFolder()
+    floors: Floors = Floors({})
     analysis: Analysis = Analysis()
     report: Report = Report()
     home: Path = Field(default=Path(), exclude=True)
@@ -137,6 +160,10 @@ shrink_limit = 0.2
 [site]
 # The folder with manifest.toml and the records of your site; "demo" is the bundled record.
 folder = {site}
+
+[floors]
+# Which galleries stand on which floor of the site's manifest; the others stand on the ground.  "*": all the others.
+# "2" = ["Hall of Sculpture", "Gallery 12"]
 
 [analysis]
 # fidelity = "reference" integrates eight times finer.

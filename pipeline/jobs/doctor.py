@@ -74,22 +74,23 @@ def _collection(settings: Settings) -> tuple[str, str]:
 
 
 def _motions(settings: Settings) -> tuple[str, str]:
+    from pipeline.jobs.levels import known
     from pipeline.jobs.workspace import site_folder
-    from pipeline.motions.site import read_site
+    from pipeline.motions.site import levels_at, read_site
     from pipeline.quantities import G
 
     site = read_site(site_folder(settings, settings.site.folder))
     peaks = [f"{m.motion.name} {m.measures['pga'] / G:.2f} g" for level in site.levels for m in level.motions]
-    nobody = [level.name for level in site.levels if not level.approved_by]
     text = f"{site.name} ({site.folder}): {', '.join(peaks)}"
-    if site.floors:
-        return (
-            "warning",
-            f"{text}; its {len(site.floors)} floors are not used yet: every gallery is taken on the ground",
-        )
+    known(settings, site)
+    for floor in site.floors:
+        levels_at(site, floor)
+        text += f"; floor {floor}"
+    doubts = [f"level {level.name}: {level.caution}" for level in site.levels if level.caution]
+    nobody = [level.name for level in site.levels if not level.approved_by]
     if nobody:
-        return "warning", f"{text}; nobody has approved: {', '.join(nobody)} (approved_by in the manifest)"
-    return "ok", text
+        doubts.append(f"nobody has approved: {', '.join(nobody)} (approved_by in the manifest)")
+    return ("warning", "; ".join([text, *doubts])) if doubts else ("ok", text)
 
 
 def _disk(settings: Settings) -> tuple[str, str]:
@@ -118,11 +119,16 @@ def _lock(settings: Settings) -> tuple[str, str]:
 
 
 def _inventory(workspace: Workspace) -> tuple[str, str]:
+    from pipeline.jobs.levels import strangers
+
     info = latest_import(workspace.engine)
     if info is None:
         return "warning", "nothing imported yet; `kouros import FILE` does that, `kouros run` too where a source is set"
     items = read_inventory(workspace.engine)
     shown = sum(galleries(items).values())
+    doubts = strangers(workspace.settings.floors, {item.gallery for item in items})
+    if doubts:
+        return "warning", "; ".join(doubts)
     return "ok", f"{len(items)} objects, {shown} on display, from {info.source} on {info.imported_at}"
 
 

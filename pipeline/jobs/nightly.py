@@ -10,16 +10,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pipeline import __version__
-from pipeline.assess import LevelMotions, assess
+from pipeline.assess import assess
 from pipeline.charts import chart_keys, charts
 from pipeline.classify import classify
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.execute import Threads
 from pipeline.jobs.importing import import_collection
+from pipeline.jobs.levels import notes, storeys
 from pipeline.jobs.workspace import UsageError, Workspace, locked, open_workspace, site_folder
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import advise
-from pipeline.motions.site import Site, read_site, summaries
+from pipeline.motions.site import Level, Site, read_site
 from pipeline.records import Assessment, Chart, Executor, Item, Motion, Progress, RunRecord, Verdict
 from pipeline.report import Units, publish, render
 from pipeline.settings import Settings
@@ -32,9 +33,6 @@ if TYPE_CHECKING:
 
 KEPT = ".kouros-kept"
 """Folder beside the settings in which processed motions are kept between nights."""
-
-GROUND = "Every gallery is taken to stand on the ground: upper floors shake more, and that is not modelled yet."
-"""What every report says as long as floors are not part of the chain."""
 
 
 @dataclass(frozen=True)
@@ -91,9 +89,10 @@ def run(
         started = datetime.now(UTC)
         workspace = open_workspace(settings)
         _refresh(workspace, progress, dry_run=dry_run)
-        items = _choose(read_inventory(workspace.engine), chosen)
+        inventory = read_inventory(workspace.engine)
+        items = _choose(inventory, chosen)
         site = _read_site(workspace, progress)
-        record = _assess(workspace, items, site, started, progress)
+        record = assess_items(workspace, items, inventory, site, started, progress)
         record = replace(record, settings={**record.settings, SELECTION: bool(chosen)})
         summary = summarise(record)
         if dry_run:
@@ -155,25 +154,44 @@ def _read_site(workspace: Workspace, progress: Progress) -> Site:
     return site
 
 
-def _assess(
-    workspace: Workspace, items: Sequence[Item], site: Site, started: datetime, progress: Progress
+def assess_items(
+    workspace: Workspace,
+    items: Sequence[Item],
+    inventory: Sequence[Item],
+    site: Site,
+    started: datetime,
+    progress: Progress,
 ) -> RunRecord:
+    """Run everything that the objects require under the site's motions, floor by floor, judge it and advise.
+
+    inventory : all objects, the others included: which galleries there are
+    started   : when the run began, which names it
+    raises  : SettingsError for a floor that the site does not have, MotionError for a floor's record
+    """
     settings = workspace.settings
     executor = Threads(settings.analysis.workers or None)
-    levels = [LevelMotions(v.name, v.combine, tuple(m.motion for m in v.motions)) for v in site.levels]
-    scenes = [classify(item) for item in items]
-    plan, findings = assess(
-        scenes,
-        levels,
-        executor,
-        progress,
-        fidelity=settings.analysis.fidelity,
-        azimuth_step=settings.analysis.azimuth_step,
-    )
-    scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
-    advice = advise(scenes, findings, {level.name: level.motions for level in levels}, executor, progress)
-    drawn = _charts(workspace, [motion for level in levels for motion in level.motions], executor, progress)
+    floors = storeys(settings, site, items)
+    assessments: dict[int, Assessment] = {}
+    for storey in floors:
+        scenes = [replace(classify(items[index]), floor=storey.name) for index in storey.members]
+        levels = storey.shaking
+        plan, findings = assess(
+            scenes,
+            levels,
+            executor,
+            progress,
+            fidelity=settings.analysis.fidelity,
+            azimuth_step=settings.analysis.azimuth_step,
+        )
+        scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
+        advice = advise(scenes, findings, {level.name: level.motions for level in levels}, executor, progress)
+        for index, scene, found, advised in zip(storey.members, scenes, findings, advice, strict=True):
+            assessments[index] = Assessment(scene, tuple(found), tuple(advised))
+    # Motions that two floors share (one record for several) are drawn once.
+    motions = {one.motion.hash: one.motion for f in floors for level in f.levels for one in level.motions}
+    drawn = _charts(workspace, list(motions.values()), executor, progress)
     info = latest_import(workspace.engine)
+    levels_said = [_level_note(level) for level in site.levels]
     return RunRecord(
         run_id=f"{started:%Y%m%dT%H%M%S}.{started.microsecond // 1000:03d}-{os.getpid()}",
         started=started.isoformat(timespec="milliseconds"),
@@ -181,14 +199,11 @@ def _assess(
         version=__version__,
         site=site.name,
         museum=settings.museum.name or (info.museum if info else ""),
-        level_notes=(*(_level_note(level) for level in site.levels), GROUND),
+        level_notes=(*levels_said, *notes(settings, site, {item.gallery for item in inventory})),
         settings=_stored_settings(settings, info.credit if info else ""),
-        assessments=tuple(
-            Assessment(scene, tuple(found), tuple(advised))
-            for scene, found, advised in zip(scenes, findings, advice, strict=True)
-        ),
+        assessments=tuple(assessments[index] for index in range(len(items))),
         charts=drawn,
-        motions=summaries(site),
+        motions=tuple(summary for storey in floors for summary in storey.summaries),
         demonstration=settings.demonstration,
     )
 
@@ -201,6 +216,7 @@ def _stored_settings(settings: Settings, credit: str) -> dict[str, Any]:
         "analysis": settings.analysis.model_dump(),
         "length": settings.report.length,
         "site": settings.site.folder,
+        "floors": settings.floors.model_dump(),
     }
 
 
@@ -216,7 +232,7 @@ def _charts(
     return drawn
 
 
-def _level_note(level: Any) -> str:
+def _level_note(level: Level) -> str:
     period = "" if level.return_period_years is None else f", return period {level.return_period_years:g} years"
     answers = (
         f"approved by {level.approved_by} on {level.approved_on}"
@@ -225,7 +241,8 @@ def _level_note(level: Any) -> str:
     )
     number = len(level.motions)
     how = "1 motion" if number == 1 else f"the {level.combine} of {number} motions"
-    return f"Level {level.name}{period}: {how}; {answers}."
+    caution = f"; {level.caution}" if level.caution else ""
+    return f"Level {level.name}{period}: {how}{caution}; {answers}."
 
 
 def summarise(record: RunRecord) -> Summary:

@@ -2,7 +2,10 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, Literal
+
+Judgement = Literal["clipping", "cut_off", "size", "orientation"]
+"""Refusals that a person may overrule; what is corrupt is refused whatever is accepted."""
 
 
 class MotionError(ValueError):
@@ -14,18 +17,24 @@ class MotionError(ValueError):
 
     exit_code: ClassVar[int] = 4
 
-    def __init__(self, message: str, judgement: str = "") -> None:
+    def __init__(self, message: str, judgement: Judgement | Literal[""] = "") -> None:
         super().__init__(message)
         self.judgement = judgement
 
 
-def refusal(file: Path, place: str, wrong: str, remedy: str, judgement: str = "") -> MotionError:
+def refusal(file: Path, place: str, wrong: str, remedy: str, judgement: Judgement | Literal[""] = "") -> MotionError:
     """Return the error, so that every refusal reads alike: file: place: what is wrong; remedy."""
     return MotionError(f"{file}: {place}: {wrong}; {remedy}", judgement)
 
 
 def judged(
-    accept: Mapping[str, str], judgement: str, file: Path, place: str, wrong: str, remedy: str, steps: list[str]
+    accept: Mapping[Judgement, str],
+    judgement: Judgement,
+    file: Path,
+    place: str,
+    wrong: str,
+    remedy: str,
+    steps: list[str],
 ) -> None:
     """Refuse what is a matter of judgement, unless the manifest's record accepts it: then its reason becomes a step.
 

@@ -55,14 +55,14 @@ class TargetTable(Table):
 
 
 LEAST_FOR_MEAN = 7
-"""Records from which their mean may decide (ASCE/SEI 7-10, 16.1.4; with fewer the worst one does)."""
+"""Records from which building codes let the mean decide (ASCE/SEI 7-10, 16.1.4); `Level.caution` says so below it."""
 
 
 class LevelTable(Table):
     """A level of shaking: its records, how several are combined, and the engineer who answers for it.
 
-    combine : "max" (the worst record decides) or "mean" of seven records and more (an object overturns when half the
-              records overturn it)
+    combine : "max" (the worst record decides) or "mean" (an object overturns when half the records overturn it), which
+              codes allow for seven records and more
     target  : the spectrum that records with `scale_to_target` are brought to
     approved_by, approved_on : both or neither; reports say so when nobody answers
     """
@@ -79,10 +79,6 @@ class LevelTable(Table):
     def _consistent(self) -> LevelTable:
         if bool(self.approved_by) != (self.approved_on is not None):
             raise ValueError("approved_by and approved_on belong together; give both, or leave both out")
-        if self.combine == "mean" and len(self.record) < LEAST_FOR_MEAN:
-            raise ValueError(
-                f'combine = "mean" needs {LEAST_FOR_MEAN} records and there are {len(self.record)}: use "max"'
-            )
         without = [record.name for record in self.record if record.scale_to_target]
         if without and self.target is None:
             raise ValueError(f"record {without[0]!r} has scale_to_target, but the level has no target; add its table")

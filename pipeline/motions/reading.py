@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.motions.errors import MotionError, judged, refusal
+from pipeline.motions.errors import Judgement, MotionError, judged, refusal
 from pipeline.motions.record import Component, Record
 from pipeline.quantities import Array, G
 
@@ -237,7 +237,7 @@ def _check_orientation(
     component: Component,
     trace: Any,
     inventory: Any,
-    accept: Mapping[str, str],
+    accept: Mapping[Judgement, str],
     steps: list[str],
 ) -> None:
     place = f"component {component.axis} ({key!r})"
@@ -374,7 +374,7 @@ def _own_unit(stats: Any) -> tuple[str, float]:
 
 
 def _check_size(
-    file: Path, key: str, component: Component, trace: Any, accept: Mapping[str, str], steps: list[str]
+    file: Path, key: str, component: Component, trace: Any, accept: Mapping[Judgement, str], steps: list[str]
 ) -> None:
     # About the mean, because a raw accelerometer carries an offset that is not shaking.
     size = np.abs(trace.data - np.mean(trace.data))

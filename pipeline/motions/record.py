@@ -15,6 +15,8 @@ from pydantic import (
     model_validator,
 )
 
+from pipeline.motions.errors import Judgement
+
 # A control character in a name could rewrite a terminal or break a table; nothing that people write needs one.
 PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
 Text = Annotated[str, StringConstraints(min_length=1, max_length=500, pattern=PRINTABLE)]
@@ -66,10 +68,6 @@ class Vertical(Table):
 
 
 Component = Annotated[Horizontal | Vertical, Discriminator("axis")]
-
-
-Judgement = Literal["clipping", "cut_off", "size", "orientation"]
-"""Refusals that a person may overrule; what is corrupt is refused whatever is accepted."""
 
 
 class BaselineTable(Table):

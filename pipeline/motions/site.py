@@ -15,6 +15,7 @@ from pipeline.motions.intensity import integrate, measures, strong_part
 from pipeline.motions.keeping import keep, key_of, recall
 from pipeline.motions.manifest import (
     GROUND_FLOOR,
+    LEAST_FOR_MEAN,
     FloorTable,
     Manifest,
     TargetTable,
@@ -59,6 +60,16 @@ class Level:
     approved_by: str
     approved_on: str
     motions: tuple[SiteMotion, ...]
+
+    @property
+    def caution(self) -> str:
+        """What a code would say against how the motions are combined; "" where nothing."""
+        if self.combine != "mean" or len(self.motions) >= LEAST_FOR_MEAN:
+            return ""
+        return (
+            f"codes let the mean decide from {LEAST_FOR_MEAN} motions on, and there are {len(self.motions)}: "
+            f'use combine = "max"'
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -117,6 +117,7 @@ class Scene:
     parameters : by name (SI), for example half_width, cg_height, friction_static, length, clearance
     missing    : the fields without which no model can be run, in the museum's words
     skipped    : models that do not apply, with the reason
+    floor      : of the building that it stands on; "" for the ground
     """
 
     item: Item
@@ -128,3 +129,4 @@ class Scene:
     assumptions: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
     skipped: Mapping[str, str] = field(default_factory=dict)
+    floor: str = ""

@@ -104,7 +104,7 @@ def _in_both(old: str, new: str) -> tuple[FromClause, FromClause, ColumnElement[
     return before, after, same
 
 
-_INPUTS = ("support", "object_class", "models", "parameters")
+_INPUTS = ("support", "floor", "object_class", "models", "parameters")
 
 
 def _inputs(connection: Connection, old: str, new: str) -> tuple[InputChange, ...]:

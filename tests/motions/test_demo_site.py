@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from pipeline.motions import MotionError, measures, read_motion, read_site, summaries
+from pipeline.motions.filtering import highpass, remove_baseline
 from pipeline.motions.intensity import strong_part
 from pipeline.motions.manifest import load_manifest
-from pipeline.motions.processing import highpass, process, remove_baseline
+from pipeline.motions.processing import process
 from pipeline.motions.reading import read_record
 from pipeline.quantities import G
 from pipeline.records import Motion
@@ -59,8 +60,8 @@ def test_velocities_after_the_high_pass(recording):
 def test_the_window_changes_no_peak(recording, record):
     """Cut or whole, the velocity peaks agree to 0.5 %: what happens outside of the window does not matter."""
     plain = record.model_copy(update={"scale_to_pga_g": None})
-    windowed = measures(process(recording, plain))
-    whole = measures(process(recording, plain.model_copy(update={"window_s": None})))
+    windowed = measures(process(recording, plain).motion)
+    whole = measures(process(recording, plain.model_copy(update={"window_s": None})).motion)
     for key in ("pga_x", "pga_y", "pga_z"):
         assert windowed[key] == whole[key]
     for key in ("pgv_x", "pgv_y", "pgv_z", "pgv_resultant"):
@@ -101,7 +102,7 @@ def test_reading_twice_gives_the_same_motion(site):
 
 
 def test_summary_keeps_the_peaks(site):
-    (summary,) = summaries(site)
+    (summary,) = summaries(site.levels)
     motion = site.levels[0].motions[0].motion
     assert summary.hash == motion.hash
     assert (summary.samples, summary.dt, summary.level) == (motion.samples, motion.dt, "design")

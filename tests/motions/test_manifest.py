@@ -42,6 +42,31 @@ GOOD = [
     ((*RECORD, "files"), ["sub/a.mseed", "b..c.mseed"]),
     ((*RECORD, "components", "HNZ", "orientation"), "down"),
     (("floor",), [{"name": "2", "height_ratio": 0.5, "period_s": 0.4}]),
+    (("floor",), [{"name": "2", "height_ratio": 0.5}]),
+    (
+        ("floor",),
+        [
+            {
+                "name": "2",
+                "height_ratio": 0.5,
+                "period_s": 0.4,
+                "method": "modal",
+                "damping": 0.05,
+                "stiffness_ratio": 5.0,
+                "modes": 4,
+            }
+        ],
+    ),
+    (("floor",), [{"name": "2", "record": [demo()["level"][0]["record"][0] | {"name": "up", "level": "design"}]}]),
+    ((*RECORD, "highpass_hz"), "auto"),
+    ((*RECORD, "highpass_hz"), "none"),
+    ((*RECORD, "baseline"), {"method": "polynomial", "degree": 2, "of": "velocity"}),
+    ((*RECORD, "baseline"), {"method": "two-segment", "t1_s": 10.0, "t2_s": 30.0}),
+    ((*RECORD, "accept"), {"clipping": "the peak was compared with a neighbouring station"}),
+    ((*RECORD, "resample_s"), 0.005),
+    ((*RECORD, "v_max_cm_s"), 55.0),
+    (("level", 0, "target"), {"periods_s": [0.1, 1.0], "psa_g": [1.0, 0.5]}),
+    (("site", "x_azimuth"), 30.0),
     (("floor",), [{"name": "2", "record": demo()["level"][0]["record"][0] | {"name": "measured on the floor"}}]),
 ]
 BAD = [
@@ -76,8 +101,15 @@ BAD = [
     ((*RECORD, "components", "HNE", "orientation"), "up"),
     ((*RECORD, "components", "HNE", "orientation"), 361),
     ((*RECORD, "components", "HNZ", "orientation"), 0),
-    (("floor",), [{"name": "2", "height_ratio": 0.5}]),
     (("floor",), [{"name": "2"}]),
+    (("floor",), [{"name": "2", "height_ratio": 0.5, "damping": 0.05}]),
+    (("floor",), [{"name": "2", "height_ratio": 0.5, "period_s": 0.4, "method": "modal"}]),
+    (("floor",), [{"name": "2", "height_ratio": 0.5, "period_s": 0.4, "method": "spectral"}]),
+    ((*RECORD, "highpass_hz"), "low"),
+    ((*RECORD, "baseline"), {"method": "spline"}),
+    ((*RECORD, "accept"), {"nan": "it looks fine"}),
+    ((*RECORD, "accept"), {"clipping": ""}),
+    ((*RECORD, "scale_to_target"), False),
     (("floor",), [{"name": "2", "height_ratio": 2.0, "period_s": 0.4}]),
 ]
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from pipeline.motions.processing import cut, highpass, lowpass, pad_seconds, remove_baseline, rotate
+from pipeline.motions.filtering import highpass, lowpass, pad_seconds, remove_baseline
+from pipeline.motions.processing import cut, rotate
 
 from .conftest import DT, tone
 

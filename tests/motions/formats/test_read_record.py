@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from pipeline.motions import MotionError, load_manifest, read_motion
-from pipeline.motions.record import Horizontal, Record, Vertical
 from pipeline.motions.reading import read_record
+from pipeline.motions.record import Horizontal, Record, Vertical
 from pipeline.quantities import G
 from tests.motions.formats import specimens as hand
 
