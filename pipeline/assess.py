@@ -35,6 +35,10 @@ class LevelMotions:
     combine: str
     motions: tuple[Motion, ...]
 
+    def combined(self, each: Sequence[float] | Array) -> float:
+        """Return the demand of the level from that under each of its motions."""
+        return float(np.mean(each) if self.combine == "mean" else np.max(each))
+
 
 @dataclass(frozen=True)
 class Demands:
@@ -195,10 +199,7 @@ def _finding(
     lows = np.array([r.columns[output][span].min() for r in results])
     highs = np.array([r.columns[output][span].max() for r in results])
     governing = int(np.argmax(each))
-    if level.combine == "mean":
-        verdict = judge(float(each.mean()), float(lows.mean()), float(highs.mean()), capacity)
-    else:
-        verdict = judge(float(each.max()), float(lows.max()), float(highs.max()), capacity)
+    verdict = judge(level.combined(each), level.combined(lows), level.combined(highs), capacity)
     result, motion = results[governing], level.motions[governing]
     row = {name: float(column[best]) for name, column in result.columns.items()}
     parameters = {name: float(column[best]) for name, column in work.values.items()}

@@ -184,7 +184,7 @@ def assess_items(
             azimuth_step=settings.analysis.azimuth_step,
         )
         scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
-        advice = advise(scenes, findings, {level.name: level.motions for level in levels}, executor, progress)
+        advice = advise(scenes, findings, levels, executor, progress)
         for index, scene, found, advised in zip(storey.members, scenes, findings, advice, strict=True):
             assessments[index] = Assessment(scene, tuple(found), tuple(advised))
     # Motions that two floors share (one record for several) are drawn once.

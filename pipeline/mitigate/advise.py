@@ -2,9 +2,10 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
+from pipeline.assess import LevelMotions
 from pipeline.charts import chart_key
 from pipeline.mitigate import measures as m
-from pipeline.records import Executor, Finding, Mark, Motion, Progress, Recommendation, Scene, Verdict
+from pipeline.records import Executor, Finding, Mark, Progress, Recommendation, Scene, Verdict
 from pipeline.tables import Row, TableError
 
 Measure = Callable[[Scene, Sequence[Finding], m.Site, Row], m.Tried]
@@ -29,16 +30,16 @@ ROOM = ("clearance", "rubber_pads", "restrain")
 def advise(
     scenes: Sequence[Scene],
     findings: Sequence[Sequence[Finding]],
-    motions: Mapping[str, tuple[Motion, ...]],
+    levels: Sequence[LevelMotions],
     executor: Executor,
     progress: Progress,
 ) -> list[list[Recommendation]]:
     """Recommend one measure for each object and level at which something fails, or is open for want of room.
 
-    motions : the motions of each level, by its name
+    levels  : of shaking, with the motions that the findings were made under
     returns : the recommendations of each scene, in the order of the scenes
     """
-    sites = {name: m.Site(of_level, executor) for name, of_level in motions.items()}
+    sites = {level.name: m.Site(level, executor) for level in levels}
     out: list[list[Recommendation]] = []
     for done, (scene, found) in enumerate(zip(scenes, findings, strict=True), start=1):
         mine = []
@@ -79,7 +80,7 @@ def _recommendation(
     mark = None
     if tried.mark is not None:
         kind, x, y = tried.mark
-        mark = Mark(chart_key(kind, site.motions[0]), x, y, row["title"])
+        mark = Mark(chart_key(kind, site.level.motions[0]), x, y, row["title"])
     return Recommendation(
         object_number=scene.item.object_number,
         gallery=scene.item.gallery,

@@ -1,9 +1,9 @@
 """What each isolator of the catalogue does under the site's motions: run once, used by all that may stand on it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from pipeline.assess import LevelMotions
 from pipeline.models.common import largest_push, lift_ratios
 from pipeline.models.horizontal_isolator import HORIZONTAL_ISOLATOR
 from pipeline.records import Executor, Motion
@@ -15,10 +15,10 @@ from pipeline.tables import number, table
 class Isolator:
     """A row of the catalogue with its own demand under the motions of a level.
 
-    stroke       : m, the largest displacement over the motions
+    stroke       : m, its largest displacement
     acceleration : m/s2, the largest horizontal acceleration passed on
     lift         : -, the largest |a_h| / N passed on: what an object's slope b/h is held against
-    passed       : the motions that it passes on
+    passed       : the motions that it passes on; the others are combined from them as the level says
     """
 
     frequency: float
@@ -37,36 +37,36 @@ class _Trial:
     damping: float
     friction: float
     source: str
-    motions: tuple[Motion, ...]
+    level: LevelMotions
 
 
 def _run(trial: _Trial) -> Isolator:
     given: dict[str, Any] = {"frequency": trial.frequency, "damping": trial.damping, "friction": trial.friction}
-    stroke = acceleration = lift = 0.0
-    passed_on = []
-    for motion in trial.motions:
+    strokes, accelerations, lifts, passed_on = [], [], [], []
+    for motion in trial.level.motions:
         # One pass without an error estimate: the trials only rank, and the room asked for has a margin of its own.
         own = HORIZONTAL_ISOLATOR.run(motion.excitation(None), prepare(HORIZONTAL_ISOLATOR, given), 2, False)
         passed = transmit("horizontal_isolator", motion, refine=1, **given)
         passed_on.append(passed)
         shaken = passed.excitation(None)
-        stroke = max(stroke, float(own["displacement"][0]))
-        acceleration = max(acceleration, float(own["acceleration"][0]), largest_push(shaken))
-        lift = max(lift, *lift_ratios(shaken))
+        strokes.append(float(own["displacement"][0]))
+        accelerations.append(max(float(own["acceleration"][0]), largest_push(shaken)))
+        lifts.append(max(lift_ratios(shaken)))
+    stroke, acceleration, lift = (trial.level.combined(each) for each in (strokes, accelerations, lifts))
     return Isolator(
         trial.frequency, trial.damping, trial.friction, trial.source, stroke, acceleration, lift, tuple(passed_on)
     )
 
 
-def horizontal_isolators(motions: Sequence[Motion], executor: Executor) -> list[Isolator]:
-    """Run every horizontal isolator of tables/isolators.csv under every motion, gentlest first."""
+def horizontal_isolators(level: LevelMotions, executor: Executor) -> list[Isolator]:
+    """Run every horizontal isolator of tables/isolators.csv under every motion of a level, gentlest first."""
     trials = [
         _Trial(
             number(row, "frequency", "isolators.csv"),
             number(row, "damping", "isolators.csv"),
             number(row, "friction", "isolators.csv"),
             row["source"],
-            tuple(motions),
+            level,
         )
         for row in table("isolators")
         if row["kind"] == "horizontal_isolator"
@@ -92,10 +92,10 @@ def rotational_pads() -> list[Pad]:
     ]
 
 
-def on_pad(motions: Sequence[Motion], pad: Pad, cg_height: float, inertia_ratio: float) -> tuple[float, float]:
-    """Return rotation [rad] and acceleration of the centre of gravity [m/s2] of an object on a pad, worst motion."""
-    rotation = acceleration = 0.0
-    for motion in motions:
+def on_pad(level: LevelMotions, pad: Pad, cg_height: float, inertia_ratio: float) -> tuple[float, float]:
+    """Return rotation [rad] and acceleration of the centre of gravity [m/s2] of an object on a pad."""
+    rotations, accelerations = [], []
+    for motion in level.motions:
         row = respond(
             "rotational_isolator",
             motion,
@@ -106,6 +106,6 @@ def on_pad(motions: Sequence[Motion], pad: Pad, cg_height: float, inertia_ratio:
             cg_height=cg_height,
             inertia_ratio=inertia_ratio,
         )
-        rotation = max(rotation, float(row["rotation"].iloc[0]))
-        acceleration = max(acceleration, float(row["acceleration"].iloc[0]))
-    return rotation, acceleration
+        rotations.append(float(row["rotation"].iloc[0]))
+        accelerations.append(float(row["acceleration"].iloc[0]))
+    return level.combined(rotations), level.combined(accelerations)

@@ -7,7 +7,7 @@ from math import ceil
 
 import numpy as np
 
-from pipeline.assess import judge
+from pipeline.assess import LevelMotions, judge
 from pipeline.classify import MODELS_OF
 from pipeline.mitigate.isolators import Isolator, horizontal_isolators, on_pad, rotational_pads
 from pipeline.models import model_named
@@ -46,47 +46,50 @@ def _not(reason: str) -> Tried:
 
 
 class Site:
-    """The motions of one level with what all objects share: peaks, lift ratios, isolators; each computed once."""
+    """One level of shaking with what all objects share: peaks, lift ratios, isolators; each computed once.
 
-    def __init__(self, motions: Sequence[Motion], executor: Executor) -> None:
-        self.motions = tuple(motions)
+    What is said of the level is combined from its motions as its findings are: the largest, or the mean.
+    """
+
+    def __init__(self, level: LevelMotions, executor: Executor) -> None:
+        self.level = level
         self._executor = executor
         self._slides: dict[tuple[str, float], float] = {}
         self._swings: dict[tuple[str, float, float], float] = {}
 
     @cached_property
     def push(self) -> float:
-        """A_max [m/s2]: the largest resultant of all motions."""
-        return max(largest_push(m.excitation(None)) for m in self.motions)
+        """A_max [m/s2], resultant."""
+        return self.level.combined([largest_push(m.excitation(None)) for m in self.level.motions])
 
     @cached_property
     def lift(self) -> float:
-        """The largest |a_h| / N of all motions."""
-        return max(max(lift_ratios(m.excitation(None))) for m in self.motions)
+        """The largest |a_h| / N."""
+        return self.level.combined([max(lift_ratios(m.excitation(None))) for m in self.level.motions])
 
     @cached_property
     def isolators(self) -> list[Isolator]:
         """The horizontal isolators of the catalogue under these motions, gentlest first."""
-        return horizontal_isolators(self.motions, self._executor)
+        return horizontal_isolators(self.level, self._executor)
 
     def slide(self, friction: float, motions: Sequence[Motion] | None = None) -> float:
-        """Return the largest sliding displacement [m] at a friction, over all motions of the level or those given."""
-        under = self.motions if motions is None else motions
+        """Return the sliding displacement [m] at a friction, under the motions of the level or those given."""
+        under = self.level.motions if motions is None else motions
         key = (under[0].hash, friction)
         if key not in self._slides:
             runs = [respond("sliding", m, friction_static=friction)["displacement"].iloc[0] for m in under]
-            self._slides[key] = float(max(runs))
+            self._slides[key] = self.level.combined(runs)
         return self._slides[key]
 
     def swing(self, model: str, length: float, damping: float) -> float:
-        """Return the largest swing [m] in the worst direction, over all motions."""
+        """Return the swing [m] in the worst direction."""
         key = (model, length, damping)
         if key not in self._swings:
             runs = [
                 respond(model, m, angle=None, length=length, damping=damping)["displacement"].iloc[0]
-                for m in self.motions
+                for m in self.level.motions
             ]
-            self._swings[key] = float(max(runs))
+            self._swings[key] = self.level.combined(runs)
         return self._swings[key]
 
 
@@ -250,7 +253,7 @@ def low_friction_pad(scene: Scene, findings: Sequence[Finding], site: Site, row:
     checks = [upright, _check("friction_isolator", "Friction isolator", moved, "m", _exactly(room, "m"))]
     if _knows_section(scene):
         # It passes on at most friction times the largest normal acceleration.
-        down = max(float(np.max(np.maximum(0.0, G + m.acceleration[2]))) for m in site.motions)
+        down = max(float(np.max(np.maximum(0.0, G + m.acceleration[2]))) for m in site.level.motions)
         checks.append(_stress(scene, min(site.push, friction * down)))
     if not all(check.passes for check in checks):
         return _not("sliding on a low friction it still breaks")
@@ -319,7 +322,7 @@ def rotational_isolator(scene: Scene, findings: Sequence[Finding], site: Site, r
     # A uniform body about the middle of its base: I = m h^2 + m (b^2 + h^2) / 3.
     ratio = 1.0 + (width**2 + cg**2) / (3.0 * cg**2)
     for pad in rotational_pads():
-        rotation, acceleration = on_pad(site.motions, pad, cg, ratio)
+        rotation, acceleration = on_pad(site.level, pad, cg, ratio)
         checks = (
             _check("rotational_isolator", "Turn on its pad", rotation, "rad", _exactly(limit(row), "rad")),
             _stress(scene, acceleration),
