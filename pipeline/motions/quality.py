@@ -68,8 +68,8 @@ def clipped(data: Array, dt: float, channels: tuple[str, str, str]) -> str | Non
             if longest >= TOP_RUN or uneven:
                 at = int(starts[np.argmax(lengths)])
                 return (
-                    f"{channel} is clipped: its {side} limit of {row[at]:.6g} is held for {longest} samples from sample "
-                    f"{at} ({at * dt:.6g} s), and {starts.size} tops in all are flat"
+                    f"{channel} is clipped: its {side} limit of {row[at]:.6g} is held for {longest} samples from "
+                    f"sample {at} ({at * dt:.6g} s), and {starts.size} tops in all are flat"
                 )
     return None
 
@@ -105,9 +105,9 @@ def cut_off(data: Array, dt: float, channels: tuple[str, str, str]) -> str | Non
         row = int(np.argmax(ratio))
         if ratio[row] > share:
             return (
-                f"{channels[row]} {what} during strong shaking: over {count * dt:.3g} s from sample {at} ({at * dt:.6g} s) "
-                f"its r.m.s. acceleration is {ratio[row]:.0%} of that of the strong part ({first * dt:.6g} to "
-                f"{last * dt:.6g} s), more than {share:.0%}"
+                f"{channels[row]} {what} during strong shaking: over {count * dt:.3g} s from sample {at} "
+                f"({at * dt:.6g} s) its r.m.s. acceleration is {ratio[row]:.0%} of that of the strong part "
+                f"({first * dt:.6g} to {last * dt:.6g} s), more than {share:.0%}"
             )
     return None
 
