@@ -96,20 +96,20 @@ def cut_off(data: Array, dt: float, channels: tuple[str, str, str]) -> str | Non
     first, last = (int(np.searchsorted(arrived, share * arrived[-1])) for share in (0.05, 0.95))
     strong = np.sqrt(square[:, first : last + 1].mean(axis=1))
     count = max(2, round(min(ENDS / dt, 0.1 * n)))
-    for share, part, at, what in (
-        (END_SHARE, slice(n - count, n), n - count, "ends"),
-        (START_SHARE, slice(0, count), 0, "begins"),
-    ):
-        size = np.sqrt(square[:, part].mean(axis=1))
+    said, most = None, 1.0
+    for share, at, what in ((END_SHARE, n - count, "ends"), (START_SHARE, 0, "begins")):
+        size = np.sqrt(square[:, at : at + count].mean(axis=1))
         ratio = np.divide(size, strong, out=np.zeros(2), where=strong > 0.0)
         row = int(np.argmax(ratio))
-        if ratio[row] > share:
-            return (
+        # Of a record that begins late, what is left is flat to its end: the graver of the two is told.
+        if ratio[row] / share > most:
+            most = float(ratio[row]) / share
+            said = (
                 f"{channels[row]} {what} during strong shaking: over {count * dt:.3g} s from sample {at} "
                 f"({at * dt:.6g} s) its r.m.s. acceleration is {ratio[row]:.0%} of that of the strong part "
                 f"({first * dt:.6g} to {last * dt:.6g} s), more than {share:.0%}"
             )
-    return None
+    return said
 
 
 def _flat_tops(row: Array) -> tuple[Array, Array]:
