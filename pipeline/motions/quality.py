@@ -1,0 +1,135 @@
+"""What an engineer must be told about a record before its shaking is believed: flat tops, and ends amid the shaking."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pipeline.quantities import Array
+
+TOP_RUN = 3
+"""Samples in a row at the extreme value that make a flat top by themselves."""
+
+TOP_PAIRS = 3
+"""Pairs of samples at the extreme value, at uneven distances, that make a clipped channel together."""
+
+SHOULDER_COUNTS = 10.0
+"""Counts by which the samples on both sides of a flat top lie below it.
+
+A crest that is smooth (a parabola over its few samples) and holds three samples within one count falls by at most 5.3
+counts to the next sample on either side, one that holds two by at most 9: what falls by more was cut off.
+"""
+
+SHOULDER_SHARE = 2e-3
+"""The same relative to the peak, for numbers without counts: twenty times the coarsest step of five printed digits."""
+
+LONG_RUN = 5
+"""Samples in a row whose edges may take two samples, because the limit may lie just above the first one outside.
+
+The parabola of SHOULDER_COUNTS with five samples within one count falls by at most 4.3 counts over two more.
+"""
+
+COUNT_SHARE = 1e-3
+"""Most that samples of a flat top may differ, relative to the peak: a coarser count must be hit exactly."""
+
+ENDS = 1.0
+"""Seconds at either end whose shaking is compared with the strong part (a tenth of a record shorter than 10 s)."""
+
+END_SHARE = 0.15
+"""Most r.m.s. acceleration of the last second relative to that of the strong part, of a horizontal component.
+
+Complete records (eight, on film and digital, raw and processed, of 30 to 390 s) have at most 0.10; cut off anywhere
+between 6 and 95 % of their Arias intensity they have 0.25 and more, half of the cuts 1.2 and more.
+"""
+
+START_SHARE = 0.5
+"""The same for the first second: an accelerograph that waits for a trigger begins in the P waves, with up to 0.26 in
+those records; begun anywhere between 6 and 95 % of their Arias intensity they have 0.64 and more."""
+
+
+def clipped(data: Array, dt: float, channels: tuple[str, str, str]) -> str | None:
+    """Say which channel was cut off at the limit of its instrument, and where; None where none was.
+
+    Looked for are tops that are flat to within a digitiser's count and have sharp edges: three samples in a row, or
+    several pairs at uneven distances (a sine that is sampled in step with its period repeats its pairs evenly).  A
+    single sample at the limit cannot be told from a crest, and a limit that was filtered or whose instrument's response
+    was removed is no longer flat: give the samples as the file has them.
+
+    data    : (3, n) in any unit, counts included
+    dt      : s
+    returns : a sentence with the channel, the level in the data's unit, the sample and the time from the first sample
+    source  : the flat top as in Kleckner et al. (2022), Automated detection of clipping in broadband earthquake
+              records, SRL 93, 880-896; the bounds follow from the parabola of a crest, see SHOULDER_COUNTS
+    """
+    for row, channel in zip(data, channels, strict=True):
+        for sign, side in ((1.0, "upper"), (-1.0, "lower")):
+            starts, lengths = _flat_tops(sign * row)
+            longest = int(lengths.max(initial=0))
+            uneven = starts.size >= TOP_PAIRS and int(np.ptp(np.diff(starts))) > 2
+            if longest >= TOP_RUN or uneven:
+                at = int(starts[np.argmax(lengths)])
+                return (
+                    f"{channel} is clipped: its {side} limit of {row[at]:.6g} is held for {longest} samples from "
+                    f"sample {at} ({at * dt:.6g} s), and {starts.size} tops in all are flat"
+                )
+    return None
+
+
+def cut_off(data: Array, dt: float, channels: tuple[str, str, str]) -> str | None:
+    """Say whether a record ends, or begins, during strong shaking, and of which channel; None where it is complete.
+
+    The r.m.s. acceleration of the last and of the first second, about the median, is compared with that of the strong
+    part, when 5 to 95 % of the Arias intensity of both horizontals arrive.  The vertical is not asked: a triggered
+    instrument misses the beginning of the P waves as a rule.
+
+    data    : (3, n) in any unit, the horizontals first
+    dt      : s
+    returns : a sentence with the channel, the sample and the time from the first sample
+    source  : Trifunac and Brady (1975) for the strong part, outside of which a complete record is quiet; the shares are
+              between what complete and cut records have, see END_SHARE
+    """
+    level = data[:2] - np.median(data[:2], axis=1, keepdims=True)
+    square = level * level
+    arrived = np.cumsum(square.sum(axis=0))
+    n = arrived.size
+    if arrived[-1] == 0.0:
+        return None
+    first, last = (int(np.searchsorted(arrived, share * arrived[-1])) for share in (0.05, 0.95))
+    strong = np.sqrt(square[:, first : last + 1].mean(axis=1))
+    count = max(2, round(min(ENDS / dt, 0.1 * n)))
+    said, most = None, 1.0
+    for share, at, what in ((END_SHARE, n - count, "ends"), (START_SHARE, 0, "begins")):
+        size = np.sqrt(square[:, at : at + count].mean(axis=1))
+        ratio = np.divide(size, strong, out=np.zeros(2), where=strong > 0.0)
+        row = int(np.argmax(ratio))
+        # Of a record that begins late, what is left is flat to its end: the graver of the two is told.
+        if ratio[row] / share > most:
+            most = float(ratio[row]) / share
+            said = (
+                f"{channels[row]} {what} during strong shaking: over {count * dt:.3g} s from sample {at} "
+                f"({at * dt:.6g} s) its r.m.s. acceleration is {ratio[row]:.0%} of that of the strong part "
+                f"({first * dt:.6g} to {last * dt:.6g} s), more than {share:.0%}"
+            )
+    return said
+
+
+def _flat_tops(row: Array) -> tuple[Array, Array]:
+    """First samples and lengths, two and more, of the tops that are flat and have sharp edges."""
+    top = float(row.max())
+    size = top - float(np.median(row))
+    if size <= 0.0:
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+    # Near the middle, numbers printed with so many digits have finer steps than at the top.
+    steps = np.diff(np.unique(row[row - (top - size) >= 0.05 * size]))
+    count = float(steps.min(initial=size))
+    shoulder = max(SHOULDER_COUNTS * count, SHOULDER_SHARE * size)
+    # Half a count more, so that the rounding of a factor between counts and unit does not matter.
+    high = row >= top - min(1.5 * count, COUNT_SHARE * size)
+    edges = np.diff(np.concatenate([[False], high, [False]]).astype(np.int8))
+    starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    lengths = ends - starts
+    # Beyond the record's own ends there is nothing to compare with.
+    outside = np.concatenate([[-np.inf, -np.inf], row, [-np.inf, -np.inf]])
+    reach = np.where(lengths >= LONG_RUN, 2, 1)
+    edge = np.maximum(outside[starts + 2 - reach], outside[ends + 1 + reach])
+    sharp = (lengths >= 2) & (edge < top - shoulder)
+    return starts[sharp], lengths[sharp]

@@ -1,0 +1,161 @@
+"""Clipped channels and records that are cut off: real records, whole, and spoilt in known ways."""
+
+from __future__ import annotations
+
+import numpy as np
+import obspy
+import pytest
+
+from pipeline.motions.quality import clipped, cut_off
+from pipeline.resources import resource
+from tests.motions.formats.conftest import agency_file
+
+__all__ = ["agency_file"]
+
+CHANNELS = ("one", "two", "up")
+RECORDS = {
+    "redwood raw": [f"np01002r_4225{c}_u.smc" for c in "acb"],
+    "redwood": [f"np01002p_4225{c}_a.smc" for c in "acb"],
+    "shafter": ["0111a.smc", "0111c.smc", "0111b.smc"],
+    "meloland": ["CHAN15.V2", "CHAN24.V2", "CHAN14.V2"],
+    "weitchpec raw": ["CE89146.V1"],
+    "weitchpec": ["CE89146.V2"],
+    "coalinga": ["ce36456p_CE36456.V2"],
+    "waipawa": ["20180212_211557_WPWS_20.V2A"],
+    "ridgecrest": [],
+}
+
+
+@pytest.fixture
+def record(agency_file):
+    """Return the samples of a record as its files have them, (3, n), horizontals first, and its step in s."""
+
+    def read(name):
+        if name == "ridgecrest":
+            stream = obspy.read(str(resource("site_motions", "demo") / "*.mseed"))
+            traces = [stream.select(channel=channel)[0] for channel in ("HNE", "HNN", "HNZ")]
+        else:
+            traces = [t for file in RECORDS[name] for t in obspy.read(str(agency_file(file)))]
+            traces.sort(key=lambda t: t.stats.kouros.orientation == "up")
+        n = min(t.stats.npts for t in traces)
+        return np.stack([np.asarray(t.data[:n], dtype=float) for t in traces]), traces[0].stats.delta
+
+    return read
+
+
+def runs(held):
+    """The lengths of the runs of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], held.astype(int), [0]])))
+    return edges[1::2] - edges[::2]
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_good_records_are_neither_clipped_nor_cut_off(record, name):
+    data, dt = record(name)
+    assert clipped(data, dt, CHANNELS) is None
+    assert cut_off(data, dt, CHANNELS) is None
+
+
+@pytest.mark.parametrize("name", RECORDS)
+@pytest.mark.parametrize("share", [0.5, 0.8, 0.95])
+def test_a_clipped_record_is_found(record, name, share):
+    """Each channel by itself is cut off at a share of its peak, as an instrument does: about its level.
+
+    Four samples in a row at the limit must be found; three may be missed where their edges are blunt.  Of one sample
+    there is nothing to be seen: at 95 % some crests of 50 and 100 samples a second have no more.
+    """
+    data, dt = record(name)
+    level = data.mean(axis=1)
+    for row, channel in enumerate(CHANNELS):
+        limit = share * np.abs(data[row] - level[row]).max()
+        spoilt = np.array(data)
+        spoilt[row] = np.clip(data[row], level[row] - limit, level[row] + limit)
+        held = spoilt[row] != data[row]
+        said = clipped(spoilt, dt, CHANNELS)
+        if runs(held).max() >= 4:
+            assert said is not None
+        if said is not None:
+            assert said.startswith(f"{channel} is clipped")
+            at = int(said.split("sample ")[1].split(" ")[0])
+            assert held[at : at + 2].any()
+            assert f"({at * dt:.6g} s)" in said
+
+
+def test_every_strong_record_clipped_at_half_its_peak_is_found(record):
+    for name in RECORDS:
+        data, dt = record(name)
+        level = data.mean(axis=1, keepdims=True)
+        limit = 0.5 * np.abs(data - level).max(axis=1, keepdims=True)
+        assert clipped(np.clip(data, level - limit, level + limit), dt, CHANNELS) is not None, name
+
+
+def test_a_limit_that_wavers_by_a_count_is_found(record):
+    """The converter of a clipped amplifier still flickers: counts, and the limit or one below it by chance."""
+    data, dt = record("ridgecrest")
+    limit = np.floor(0.5 * np.abs(data).max())
+    spoilt = np.array(data)
+    over = data > limit
+    spoilt[over] = limit - np.random.default_rng(3).integers(0, 2, size=np.count_nonzero(over))
+    assert clipped(spoilt, dt, CHANNELS) is not None
+    assert clipped(spoilt * 4.6e-6, dt, CHANNELS) is not None
+
+
+@pytest.mark.parametrize("dt", [0.005, 0.01, 0.02])
+@pytest.mark.parametrize("step", [0.0, 1e-5, 1e-3, 1e-2])
+@pytest.mark.parametrize("phase", [0.0, 0.3, np.pi / 8, np.pi / 4, np.pi / 2])
+def test_sines_and_sweeps_are_not_clipped(dt, step, phase):
+    """From 200 samples a period to three, also in step with the sampling, where every crest has the same samples.
+
+    step : what numbers are rounded to, relative to the peak
+    """
+    t = np.arange(round(40.0 / dt)) * dt
+    envelope = np.minimum(1.0, np.minimum(t, t[-1] - t) / 3.0)
+    tones = [np.sin(2 * np.pi * f * t + phase) for f in (0.25, 1.0, 1.3, 2.5, 5.0, 6.25, 10.0, 12.5, 16.0)]
+    sweep = np.sin(2 * np.pi * (0.5 * t + 0.25 * t * t) + phase)
+    for row in (*tones, sweep, *(envelope * tone for tone in tones), envelope * sweep):
+        rounded = np.round(row / step) * step if step else row
+        assert clipped(np.stack([rounded] * 3), dt, CHANNELS) is None
+
+
+def test_pairs_are_enough_where_they_come_unevenly():
+    """Two samples at the limit, three times: at even distances a sine may do that, at uneven ones a clipped channel."""
+    t = np.arange(3000) * 0.01
+    row = np.random.default_rng(5).normal(size=3000) * 0.1
+    for starts, found in (((500, 1000, 1500), False), ((500, 1000, 1730), True)):
+        spoilt = np.array(row)
+        for at in starts:
+            spoilt[at : at + 2] = 1.0
+        said = clipped(np.stack([0.1 * np.sin(t), spoilt, row]), 0.01, CHANNELS)
+        assert (said is not None) == found
+    assert "held for 2 samples from sample 500 (5 s), and 3 tops" in said
+
+
+@pytest.mark.parametrize("name", RECORDS)
+@pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.7, 0.9, 0.95])
+def test_a_record_cut_between_d5_and_d95_is_found(record, name, share):
+    """Cut off, and begun, when a share of the Arias intensity of its horizontals has arrived."""
+    data, dt = record(name)
+    level = data[:2] - np.median(data[:2], axis=1, keepdims=True)
+    arrived = np.cumsum((level**2).sum(axis=0))
+    at = int(np.searchsorted(arrived, share * arrived[-1]))
+    said = cut_off(data[:, :at], dt, CHANNELS)
+    assert " ends during strong shaking" in said
+    assert said.split()[0] in CHANNELS[:2]
+    # The start of the last second is named, to the sample.
+    assert f"from sample {at - round(min(1.0 / dt, 0.1 * at))} " in said
+    assert " begins during strong shaking: over 1 s from sample 0 (0 s)" in cut_off(data[:, at:], dt, CHANNELS)
+
+
+def test_shares_by_hand():
+    """A tone of 1 for 20 s, then a rest of 0.14 or 0.16 of it: 15 % is where a record counts as complete."""
+    t = np.arange(4000) * 0.01
+    for rest, complete in ((0.14, True), (0.16, False)):
+        row = np.sin(2 * np.pi * 5.0 * t) * np.where((t > 5.0) & (t < 25.0), 1.0, rest)
+        said = cut_off(np.stack([row, 0.0 * t, 50.0 * row]), 0.01, CHANNELS)
+        assert (said is None) == complete
+    assert said.startswith("one ends during strong shaking: over 1 s from sample 3900 (39 s)")
+
+
+def test_silence_is_not_judged():
+    assert cut_off(np.zeros((3, 100)), 0.01, CHANNELS) is None
+    assert clipped(np.zeros((3, 100)), 0.01, CHANNELS) is None
