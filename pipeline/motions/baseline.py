@@ -335,7 +335,7 @@ def _unsettled(flat: Array, dt: float, corner: float, start: float) -> tuple[flo
     """
     # The pads belong to the filtered motion (Boore 2005): cut off, its displacement would drift from the first sample.
     n, pad = flat.shape[1], int(np.ceil(pad_seconds(corner) / dt))
-    filtered, _ = highpass(np.pad(flat, ((0, 0), (pad, pad))), dt, corner)
+    filtered, _, _ = highpass(np.pad(flat, ((0, 0), (pad, pad))), dt, corner)
     speed, moved = (history[:2, pad : pad + n] for history in integrate(Motion(dt, filtered)))
     peaks = np.abs(moved).max(axis=1)
     s = np.linspace(-1.0, 1.0, n)

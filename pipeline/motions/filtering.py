@@ -37,13 +37,19 @@ def pad_seconds(corner_hz: float) -> float:
     return 1.5 * (2 * POLES) / corner_hz
 
 
-def highpass(data: Array, dt: float, corner_hz: float) -> tuple[Array, str]:
+def highpass(data: Array, dt: float, corner_hz: float) -> tuple[Array, str, Array]:
     """Zero-phase Butterworth high-pass of each row, padded with zeros and cut back to the record.
 
-    data   : (rows, n) m/s2
-    raises : ValueError unless the corner is below the Nyquist frequency
+    data    : (rows, n) m/s2
+    returns : (rows, n) m/s2, the step, and the velocity (rows,) m/s at the first sample.  A zero-phase filter answers
+              before the record begins: cut off without that velocity, the displacement would drift from there on
+    raises  : ValueError unless the corner is below the Nyquist frequency
+    source  : Boore (2005), as `pad_seconds`
     """
-    return _filtered(data, dt, corner_hz, "highpass")
+    out, pad, step = _filtered(data, dt, corner_hz, "highpass")
+    lead = out[:, : pad + 1]
+    start = dt * (lead.sum(axis=1) - 0.5 * (lead[:, 0] + lead[:, -1]))
+    return np.ascontiguousarray(out[:, pad : pad + data.shape[1]]), step, start
 
 
 def lowpass(data: Array, dt: float, corner_hz: float) -> tuple[Array, str]:
@@ -52,10 +58,11 @@ def lowpass(data: Array, dt: float, corner_hz: float) -> tuple[Array, str]:
     data   : (rows, n) m/s2
     raises : ValueError unless the corner is below the Nyquist frequency
     """
-    return _filtered(data, dt, corner_hz, "lowpass")
+    out, pad, step = _filtered(data, dt, corner_hz, "lowpass")
+    return np.ascontiguousarray(out[:, pad : pad + data.shape[1]]), step
 
 
-def _filtered(data: Array, dt: float, corner_hz: float, kind: Literal["highpass", "lowpass"]) -> tuple[Array, str]:
+def _filtered(data: Array, dt: float, corner_hz: float, kind: Literal["highpass", "lowpass"]) -> tuple[Array, int, str]:
     from scipy.signal import butter, sosfiltfilt
 
     if not 0.0 < corner_hz < 0.5 / dt:
@@ -65,5 +72,4 @@ def _filtered(data: Array, dt: float, corner_hz: float, kind: Literal["highpass"
     padded = np.pad(data, ((0, 0), (pad, pad)))
     out = np.asarray(sosfiltfilt(sos, padded, axis=1, padtype=None), dtype=np.float64)
     how = f"Butterworth of {POLES} poles forwards and backwards, padded by {pad * dt:g} s of zeros at each end"
-    step = f"{kind.replace('pass', '-pass')} {corner_hz:g} Hz, {how}"
-    return np.ascontiguousarray(out[:, pad : pad + data.shape[1]]), step
+    return out, pad, f"{kind.replace('pass', '-pass')} {corner_hz:g} Hz, {how}"

@@ -14,6 +14,7 @@ from pipeline.motions.baseline import (
     two_segment_baseline,
 )
 from pipeline.motions.filtering import highpass, lowpass, remove_baseline
+from pipeline.motions.intensity import integrate
 from pipeline.motions.manifest import TargetTable
 from pipeline.motions.reading import PGA_MOST, Recording
 from pipeline.motions.record import BaselineTable, Record
@@ -135,7 +136,8 @@ def _filtered(motion: Motion, record: Record) -> tuple[Motion, tuple[float | Non
     if corner is None:
         motion = motion.called(motion.name, "no high-pass: a permanent displacement is kept, and noise with it")
     else:
-        motion = motion.changed(*highpass(motion.acceleration, motion.dt, corner))
+        data, said, start = highpass(motion.acceleration, motion.dt, corner)
+        motion = Motion(motion.dt, data, motion.name, (*motion.steps, said), motion.source, start)
     if record.lowpass_hz is not None:
         if corner is not None and corner >= record.lowpass_hz:
             raise ValueError(f"lowpass_hz {record.lowpass_hz:g} must be above the high-pass corner of {corner:.4g} Hz")
@@ -145,11 +147,11 @@ def _filtered(motion: Motion, record: Record) -> tuple[Motion, tuple[float | Non
 
 def _windowed(motion: Motion, recording: Recording, start: float, end: float) -> Motion:
     part, said = cut(motion.acceleration, motion.dt, start, end)
-    kept = motion.changed(part, said)
-    if recording.velocity is None:
-        return kept
-    begin = recording.velocity[:, min(round(start / recording.dt), recording.velocity.shape[1] - 1)]
-    return Motion(kept.dt, kept.acceleration, kept.name, kept.steps, kept.source, begin)
+    if recording.velocity is not None:
+        begin = recording.velocity[:, min(round(start / recording.dt), recording.velocity.shape[1] - 1)]
+    else:
+        begin = integrate(motion)[0][:, round(start / motion.dt)]
+    return Motion(motion.dt, part, motion.name, (*motion.steps, said), motion.source, begin)
 
 
 def _scaled_to_pga(motion: Motion, before: Motion, record: Record, recording: Recording) -> tuple[Motion, Motion]:

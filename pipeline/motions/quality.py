@@ -46,7 +46,7 @@ START_SHARE = 0.5
 those records; begun anywhere between 6 and 95 % of their Arias intensity they have 0.64 and more."""
 
 
-def clipped(data: Array, dt: float, channels: tuple[str, str, str]) -> str | None:
+def clipped(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
     """Say which channel was cut off at the limit of its instrument, and where; None where none was.
 
     Looked for are tops that are flat to within a digitiser's count and have sharp edges: three samples in a row, or
@@ -54,7 +54,7 @@ def clipped(data: Array, dt: float, channels: tuple[str, str, str]) -> str | Non
     single sample at the limit cannot be told from a crest, and a limit that was filtered or whose instrument's response
     was removed is no longer flat: give the samples as the file has them.
 
-    data    : (3, n) in any unit, counts included
+    data    : (rows, n) in any unit, counts included; channels names the rows
     dt      : s
     returns : a sentence with the channel, the level in the data's unit, the sample and the time from the first sample
     source  : the flat top as in Kleckner et al. (2022), Automated detection of clipping in broadband earthquake
@@ -74,7 +74,7 @@ def clipped(data: Array, dt: float, channels: tuple[str, str, str]) -> str | Non
     return None
 
 
-def cut_off(data: Array, dt: float, channels: tuple[str, str, str]) -> str | None:
+def cut_off(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
     """Say whether a record ends, or begins, during strong shaking, and of which channel; None where it is complete.
 
     The r.m.s. acceleration of the last and of the first second, about the median, is compared with that of the strong

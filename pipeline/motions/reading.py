@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from pipeline.motions.errors import Judgement, MotionError, judged, refusal
+from pipeline.motions.quality import clipped
 from pipeline.motions.record import Component, Record
 from pipeline.quantities import Array, G
 
@@ -78,6 +79,10 @@ def read_record(folder: str | Path, record: Record) -> Recording:
     for key, component in record.components.items():
         file, trace = _component(folder=folder, record=record, key=key, component=component, traces=traces, taken=taken)
         _check(file, key, component, trace)
+        flat = clipped(trace.data[None, :], trace.stats.delta, (f"component {component.axis} ({key!r})",))
+        if flat is not None:
+            remedy = "use a record that was not clipped"
+            judged(record.accept, "clipping", file, f"record {record.name!r}", flat, remedy, steps)
         if inventory is not None:
             _check_orientation(folder / str(record.response), key, component, trace, inventory, record.accept, steps)
         steps += _in_si(file, key, record, trace, inventory)
@@ -91,7 +96,8 @@ def read_record(folder: str | Path, record: Record) -> Recording:
             trace.data = -trace.data
             velocities |= {axis: -values for axis, values in velocities.items() if axis == component.axis}
             steps.append(f"{key}: turned over, positive up")
-        _check_size(file, key, component, trace, record.accept, steps)
+        if not component.silent:
+            _check_size(file, key, component, trace, record.accept, steps)
         rows[component.axis] = (file, trace, key)
     processed = _processed(folder, record.name, record.processed, [trace for _, trace, _ in rows.values()], steps)
     data, dt, first = _aligned(rows, steps)
@@ -226,7 +232,11 @@ def _check(file: Path, key: str, component: Component, trace: Any) -> None:
     if bad.size:
         wrong = f"is {values[bad[0]]} at sample {bad[0]} ({bad.size} such samples)"
         raise refusal(file, place, wrong, "use a record without missing samples")
-    if np.ptp(values) == 0.0:
+    if component.silent and values.any():
+        at = int(np.flatnonzero(values)[0])
+        wrong = f"is declared silent and is {values[at]:g} at sample {at}"
+        raise refusal(file, place, wrong, "drop silent from the manifest, or name the right channel")
+    if np.ptp(values) == 0.0 and not component.silent:
         raise refusal(file, place, f"is dead: every sample is {values[0]:g}", "use a record of a working channel")
     trace.data = values
 

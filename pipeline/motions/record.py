@@ -54,17 +54,23 @@ class Horizontal(Table):
     """A horizontal channel and its azimuth in degrees clockwise from north; left out, the file's header says it.
 
     The two axes only tell the channels apart: the azimuths decide what is turned into east and north.
+    silent : the channel is zero and meant to be, as in a test signal of one direction; otherwise it would be dead
     """
 
     axis: Literal["x", "y"]
     orientation: float | None = Field(default=None, ge=0.0, le=360.0)
+    silent: bool = False
 
 
 class Vertical(Table):
-    """A vertical channel: positive up or positive down; left out, the file's header says it."""
+    """A vertical channel: positive up or positive down; left out, the file's header says it.
+
+    silent : as of `Horizontal`
+    """
 
     axis: Literal["z"]
     orientation: Literal["up", "down"] | None = None
+    silent: bool = False
 
 
 Component = Annotated[Horizontal | Vertical, Discriminator("axis")]

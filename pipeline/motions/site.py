@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.motions.errors import MotionError, refusal
+from pipeline.motions.errors import MotionError, judged, refusal
 from pipeline.motions.intensity import integrate, measures, strong_part
 from pipeline.motions.keeping import keep, key_of, recall
 from pipeline.motions.manifest import (
@@ -24,6 +24,7 @@ from pipeline.motions.manifest import (
 )
 from pipeline.motions.processing import Processed, process
 from pipeline.motions.pulses import PERIODS, shahi_baker_pulse
+from pipeline.motions.quality import cut_off
 from pipeline.motions.reading import read_record
 from pipeline.motions.record import Record
 from pipeline.motions.suites import beam_modes, floor_motion, scale_to_floor
@@ -280,12 +281,19 @@ def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_
     """Read and process one record of a manifest.
 
     file, key : the manifest and the record's place in it, for messages
-    raises    : MotionError
+    raises    : MotionError, also for a record that ends or begins during strong shaking
     """
     recording = read_record(file.parent, record)
     try:
-        return process(recording, record, target, x_azimuth)
+        done = process(recording, record, target, x_azimuth)
     except MotionError:
         raise
     except ValueError as error:
         raise refusal(file, key, str(error), "mend that key of the manifest") from error
+    cut = cut_off(done.motion.acceleration, done.motion.dt, ("x", "y", "z"))
+    if cut is None:
+        return done
+    steps: list[str] = []
+    remedy = "use the whole record, or widen window_s"
+    judged(record.accept, "cut_off", file, f"{key}, record {record.name!r}", cut, remedy, steps)
+    return replace(done, motion=done.motion.called(record.name, *steps))

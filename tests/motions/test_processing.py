@@ -17,7 +17,7 @@ def test_pad_is_boore_2005():
 def test_highpass_leaves_a_one_hertz_tone_alone():
     """Two passes of two poles: the gain at f is 1/(1 + (fc/f)^4), that is 1e-4 below one at 10 fc."""
     a = np.stack([tone(8000), np.zeros(8000), tone(8000, 0.3)])
-    out, step = highpass(a, DT, 0.1)
+    out, step, _ = highpass(a, DT, 0.1)
     assert np.abs(out - a).max() < 5e-4
     assert np.abs(out[1]).max() == 0.0
     assert "high-pass 0.1 Hz" in step
@@ -27,7 +27,7 @@ def test_highpass_leaves_a_one_hertz_tone_alone():
 def test_highpass_gain_at_the_corner_is_one_half():
     """-3 dB a pass: 1/2 after both; read off the middle of a long tone, where the ends have died away."""
     t = np.arange(40000) * DT
-    out, _ = highpass(np.sin(2 * np.pi * 0.1 * t)[None, :], DT, 0.1)
+    out, _, _ = highpass(np.sin(2 * np.pi * 0.1 * t)[None, :], DT, 0.1)
     middle = slice(15000, 25000)
     assert np.abs(out[0, middle]).max() == pytest.approx(0.5, rel=1e-3)
     # Zero phase: the tone still crosses zero where it did.
@@ -52,7 +52,7 @@ def test_baseline_and_highpass_remove_offset_and_drift():
     assert "m/s3" in step
     # A slow wave, which no straight line is, goes with the high-pass: (0.01/0.1)^4 is left, and the ends' transients.
     wave = 0.2 * np.sin(np.pi * t / t[-1]) ** 2 * np.cos(2 * np.pi * 0.01 * t)
-    out, _ = highpass((clean + wave)[None, :], DT, 0.1)
+    out, _, _ = highpass((clean + wave)[None, :], DT, 0.1)
     assert np.abs(out[0] - clean).max() < 0.005
 
 
