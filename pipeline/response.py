@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -70,7 +70,21 @@ def _typed(quantity: Quantity, values: Array) -> Any:
     return values.astype(np.int64) if quantity.unit == "count" else values
 
 
-def prepare(model: Model, parameters: Mapping[str, Any]) -> dict[str, Array]:
+class Parametric(Protocol):
+    """What has a name and takes parameters: a model or a support."""
+
+    @property
+    def name(self) -> str:
+        """As the registry calls it."""
+        ...
+
+    @property
+    def needs(self) -> tuple[Quantity, ...]:
+        """Its parameters."""
+        ...
+
+
+def prepare(model: Parametric, parameters: Mapping[str, Any]) -> dict[str, Array]:
     """Return the model's parameters as float arrays (n,) of one length; what was left out is NaN or its default.
 
     raises : ValueError for a parameter that is unknown, missing, not a number, outside its limits, or of another length
@@ -215,13 +229,13 @@ def transmit(support: str, motion: Motion, *, refine: int = 4, **parameters: Any
     from pipeline.supports import support_named
 
     row = support_named(support)
-    values = _single(row.model, parameters, "transmit passes a motion through one support")
+    values = _single(row, parameters, "transmit passes a motion through one support")
     if values.get("directions", 2.0) != 2.0:
         raise ValueError("transmit passes both horizontal directions on; leave directions out")
     return row.transmit(motion, values, refine)
 
 
-def _single(model: Model, parameters: Mapping[str, Any], why: str) -> dict[str, float]:
+def _single(model: Parametric, parameters: Mapping[str, Any], why: str) -> dict[str, float]:
     values = prepare(model, parameters)
     if any(column.size > 1 for column in values.values()):
         raise ValueError(f"{why}; give single numbers")

@@ -6,6 +6,7 @@ import click
 
 from pipeline import __version__
 from pipeline.cli import commands
+from pipeline.cli.options import Options
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -27,7 +28,7 @@ def kouros(context: click.Context, config: str, quiet: bool, verbose: bool, debu
 
     Example: kouros demo
     """
-    context.obj = commands.Options(config=config, quiet=quiet, verbose=verbose, debug=debug)
+    context.obj = Options(config=config, quiet=quiet, verbose=verbose, debug=debug)
 
 
 for command in commands.ALL:

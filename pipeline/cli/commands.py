@@ -2,39 +2,18 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from pipeline.cli.console import Console, summary_lines
+from pipeline.cli.console import summary_lines
+from pipeline.cli.motions import motions
+from pipeline.cli.options import Options, as_json
 
 if TYPE_CHECKING:
     from pipeline.jobs.nightly import Summary
-    from pipeline.settings import Settings
-
-as_json = click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-
-
-@dataclass(frozen=True)
-class Options:
-    """The options that all commands share."""
-
-    config: str
-    quiet: bool
-    verbose: bool
-    debug: bool
-
-    def console(self) -> Console:
-        """Return where progress goes."""
-        return Console(quiet=self.quiet, verbose=self.verbose)
-
-    def settings(self) -> "Settings":
-        """Read the settings file."""
-        from pipeline.settings import load_settings
-
-        return load_settings(self.config)
 
 
 def _print_summary(summary: "Summary", wanted: bool) -> None:
@@ -271,21 +250,39 @@ def models(as_json: bool) -> None:
 @click.argument("model")
 @click.argument("parameters", nargs=-1, metavar="NAME=VALUE[,VALUE...]...")
 @click.option("--site", default="demo", show_default=True, help="Site folder whose motions shake it, or 'demo'.")
+@click.option(
+    "--through",
+    multiple=True,
+    metavar="SUPPORT:NAME=VALUE,...",
+    help="A support that the motion passes first (floor, plinth, friction_isolator, horizontal_isolator, "
+    "rotational_isolator); repeat it for a chain, from the ground up.",
+)
 @click.option("--angle", default="0", show_default=True, help="Degrees from x towards y, or 'worst' (RotD100).")
 @click.option("--fidelity", default="history", type=click.Choice(["screen", "history", "reference"]), show_default=True)
 @click.option("--tail", type=click.FloatRange(min=0.0), help="Seconds after the record; default: until rest.")
 @as_json
 def respond(
-    model: str, parameters: tuple[str, ...], site: str, angle: str, fidelity: str, tail: float | None, as_json: bool
+    model: str,
+    parameters: tuple[str, ...],
+    site: str,
+    through: tuple[str, ...],
+    angle: str,
+    fidelity: str,
+    tail: float | None,
+    as_json: bool,
 ) -> None:
     """Run one model on a site's motions, ad hoc.  Parameters in SI; several values make several rows.
 
+    With a site made by `kouros motions synthesise` it is a virtual shake table.
+
+    \b
     Example: kouros respond sliding friction_static=0.05,0.1,0.2
+    Example: kouros respond rocking half_width=0.1 cg_height=0.5 --through plinth:frequency=8,damping=0.05
     """
     from pipeline.jobs.adhoc import respond_on_site
 
-    table = respond_on_site(model, parameters, site, angle=angle, fidelity=fidelity, tail=tail)
+    table = respond_on_site(model, parameters, site, through=through, angle=angle, fidelity=fidelity, tail=tail)
     click.echo(table.to_json(orient="records", indent=2) if as_json else table.to_string(index=False))
 
 
-ALL = (demo, init, import_, check, run, report, diff, models, respond)
+ALL = (demo, init, import_, check, run, report, diff, motions, models, respond)

@@ -11,11 +11,19 @@ if TYPE_CHECKING:
 
 
 def respond_on_site(
-    model: str, parameters: Sequence[str], site: str, *, angle: str, fidelity: str, tail: float | None
+    model: str,
+    parameters: Sequence[str],
+    site: str,
+    *,
+    through: Sequence[str] = (),
+    angle: str,
+    fidelity: str,
+    tail: float | None,
 ) -> "pd.DataFrame":
-    """Run one model under every motion of a site.
+    """Run one model under every motion of a site, as it comes through a chain of supports.
 
     parameters : "name=value" or "name=value,value,..." in SI
+    through    : the supports from the ground up, each "name:parameter=value,parameter=value"
     angle      : degrees, or "worst"
     returns    : the table of `respond` with the parameters and the motion in front
     raises     : UsageError for words that are not name=value, ValueError as `respond`
@@ -23,12 +31,16 @@ def respond_on_site(
     import pandas as pd
 
     from pipeline.motions.site import read_motion
-    from pipeline.response import respond
+    from pipeline.response import respond, transmit
 
     given: dict[str, Any] = dict(_parsed(word) for word in parameters)
     direction = None if angle == "worst" else _number("angle", angle)
     tables = []
-    for motion in read_motion(site_folder(Settings(), site)):
+    chain = [_support(word) for word in through]
+    for ground in read_motion(site_folder(Settings(), site)):
+        motion = ground
+        for support, values in chain:
+            motion = transmit(support, motion, **values)
         table = respond(model, motion, fidelity=fidelity, angle=direction, tail=tail, **given)
         rows = len(table)
         for at, (name, values) in enumerate(given.items()):
@@ -36,6 +48,15 @@ def respond_on_site(
         table.insert(0, "motion", motion.name)
         tables.append(table)
     return pd.concat(tables, ignore_index=True)
+
+
+def _support(word: str) -> tuple[str, dict[str, Any]]:
+    name, _, rest = word.partition(":")
+    values = {}
+    for part in filter(None, rest.split(",")):
+        parameter, numbers = _parsed(part)
+        values[parameter] = numbers[0]
+    return name, values
 
 
 def _parsed(word: str) -> tuple[str, list[float]]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import ceil
 from pathlib import Path
 
 import numpy as np
@@ -27,18 +26,11 @@ from pipeline.motions.pulses import PERIODS, shahi_baker_pulse
 from pipeline.motions.quality import cut_off
 from pipeline.motions.reading import read_record
 from pipeline.motions.record import Record
-from pipeline.motions.suites import beam_modes, floor_motion, scale_to_floor
 from pipeline.records import Motion, MotionSummary
-from pipeline.supports import resampled
+from pipeline.supports.floor import carried
 
 PICTURE_POINTS = 600
 PICTURE_MARGIN = 5.0
-
-MODE_POINTS = 20
-"""Corners of a floor's polygon in one period of its highest mode: a peak between two is missed by at most 1.2 %."""
-
-MOST_REFINED = 16
-"""Most samples of a computed floor's motion for one of the ground's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,20 +162,7 @@ def carry(motion: Motion, table: FloorTable) -> Motion:
     """
     if table.height_ratio is None:
         raise ValueError(f"floor {table.name!r} has records of its own")
-    if table.method != "modal" or table.period_s is None or table.damping is None:
-        return scale_to_floor(motion, table.height_ratio, table.period_s)
-    stiffness, modes = table.stiffness_ratio or 0.0, table.modes or 1
-    shortest = table.period_s * float(beam_modes(stiffness, modes).period_ratios[-1])
-    # The floor's motion is taken as a polygon: its highest mode gets at least this many corners in a period.
-    refine = min(MOST_REFINED, max(1, ceil(MODE_POINTS * motion.dt / shortest)))
-    return floor_motion(
-        resampled(motion, refine),
-        table.height_ratio,
-        table.period_s,
-        damping=table.damping,
-        alpha0=stiffness,
-        modes=modes,
-    )
+    return carried(motion, table.height_ratio, table.period_s, table.damping, table.stiffness_ratio, table.modes)
 
 
 def read_motion(path: str | Path) -> list[Motion]:

@@ -9,33 +9,22 @@ from pipeline.models.friction_isolator import FRICTION_ISOLATOR
 from pipeline.models.horizontal_isolator import HORIZONTAL_ISOLATOR
 from pipeline.models.oscillator import OSCILLATOR
 from pipeline.models.rotational_isolator import ROTATIONAL_ISOLATOR
-from pipeline.quantities import Array
+from pipeline.quantities import Array, Quantity
 from pipeline.records import Excitation, Model, Motion
+from pipeline.supports.floor import carried
+from pipeline.supports.polygon import resampled
+
+__all__ = ["SUPPORTS", "SupportModel", "resampled", "support_named"]
 
 
 @dataclass(frozen=True)
 class SupportModel:
-    """A support: the model of its own demand, and how it passes a motion on."""
+    """A support: its parameters, how it passes a motion on, and the model of its own demand (None: it has none)."""
 
     name: str
-    model: Model
+    needs: tuple[Quantity, ...]
     transmit: Callable[[Motion, Mapping[str, float], int], Motion]
-
-
-def resampled(motion: Motion, refine: int) -> Motion:
-    """Return the same polygon with ``refine`` samples for each of its own: the excitation does not change.
-
-    raises : ValueError for a refinement below 1
-    """
-    if refine < 1:
-        raise ValueError(f"refine must be at least 1, not {refine}")
-    if refine == 1 or motion.samples < 2:
-        return motion
-    n = (motion.samples - 1) * refine + 1
-    fine = np.arange(n) / refine
-    grid = np.arange(motion.samples)
-    rows: Array = np.vstack([np.interp(fine, grid, row) for row in motion.acceleration])
-    return Motion(motion.dt / refine, rows, motion.name, motion.steps, motion.source, motion.start, motion.v_max)
+    model: Model | None = None
 
 
 AFTER = 60.0
@@ -73,19 +62,40 @@ def _described(model: Model, parameters: Mapping[str, float]) -> str:
     return f"a {model.title.lower()} ({known})"
 
 
-def _in_plane(model: Model) -> Callable[[Motion, Mapping[str, float], int], Motion]:
-    return lambda motion, parameters, refine: _passed_on(motion, model, parameters, True, refine)
+def _in_plane(name: str, model: Model) -> SupportModel:
+    return SupportModel(
+        name, model.needs, lambda motion, values, refine: _passed_on(motion, model, values, True, refine), model
+    )
 
 
-def _each_way(model: Model) -> Callable[[Motion, Mapping[str, float], int], Motion]:
-    return lambda motion, parameters, refine: _passed_on(motion, model, parameters, False, refine)
+def _each_way(name: str, model: Model) -> SupportModel:
+    return SupportModel(
+        name, model.needs, lambda motion, values, refine: _passed_on(motion, model, values, False, refine), model
+    )
 
+
+def _floor(motion: Motion, values: Mapping[str, float], refine: int) -> Motion:  # noqa: ARG001
+    # It chooses its own step: a factor needs none, and modes know their own periods.
+    given = {name: value for name, value in values.items() if not np.isnan(value)}
+    modes = int(given.pop("modes")) if "modes" in given else None
+    return carried(motion, **given, modes=modes)
+
+
+FLOOR = (
+    Quantity("height_ratio", "-", "height of the floor over that of the building", 0.0, 1.0),
+    Quantity("period", "s", "of the building's first mode", 0.0, exclusive=True, optional=True),
+    Quantity("damping", "-", "of every mode, for a floor by its modes", 0.0, 1.0, exclusive=True, optional=True),
+    Quantity("stiffness_ratio", "-", "alpha0: 0 bends, above 20 shears", 0.0, 650.0, optional=True),
+    Quantity("modes", "count", "how many", 1.0, 30.0, optional=True),
+)
+"""Parameters of a floor; without the last three it is the factor of ASCE 7-22."""
 
 SUPPORTS: tuple[SupportModel, ...] = (
-    SupportModel("friction_isolator", FRICTION_ISOLATOR, _in_plane(FRICTION_ISOLATOR)),
-    SupportModel("horizontal_isolator", HORIZONTAL_ISOLATOR, _in_plane(HORIZONTAL_ISOLATOR)),
-    SupportModel("rotational_isolator", ROTATIONAL_ISOLATOR, _each_way(ROTATIONAL_ISOLATOR)),
-    SupportModel("plinth", OSCILLATOR, _each_way(OSCILLATOR)),
+    _in_plane("friction_isolator", FRICTION_ISOLATOR),
+    _in_plane("horizontal_isolator", HORIZONTAL_ISOLATOR),
+    _each_way("rotational_isolator", ROTATIONAL_ISOLATOR),
+    _each_way("plinth", OSCILLATOR),
+    SupportModel("floor", FLOOR, _floor),
 )
 
 

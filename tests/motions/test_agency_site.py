@@ -52,7 +52,12 @@ def test_the_agencys_peaks_from_its_own_velocity(tmp_path: Path, agency_file: ob
 def test_the_starting_velocity_is_scaled_and_cut_with_its_motion(tmp_path: Path, agency_file: object) -> None:
     whole = read_site(site(tmp_path, agency_file)).levels[0].motions[0].measures
     twice = read_site(site(tmp_path, agency_file, "scale = 2.0")).levels[0].motions[0].measures
-    late = read_site(site(tmp_path, agency_file, "window_s = [3.0, 40.0]\naccept.cut_off = 'a test'")).levels[0].motions[0].measures
+    late = (
+        read_site(site(tmp_path, agency_file, "window_s = [3.0, 40.0]\naccept.cut_off = 'a test'"))
+        .levels[0]
+        .motions[0]
+        .measures
+    )
     assert twice["pgv_x"] == pytest.approx(2.0 * whole["pgv_x"], rel=1e-12)
     # The printed velocities have a resolution of a few 0.01 cm/s, and the cut is at a sample.
     assert late["pgv_x"] == pytest.approx(whole["pgv_x"], rel=1e-2)

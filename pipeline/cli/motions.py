@@ -1,0 +1,250 @@
+"""The seismologist's verbs: kouros motions list, show, process, compare, synthesise."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from pipeline.cli.options import Options, as_json
+
+if TYPE_CHECKING:
+    from pipeline.jobs.records import MotionRow
+    from pipeline.jobs.swap import Pair, Swap
+    from pipeline.settings import Settings
+
+
+@click.group()
+def motions() -> None:
+    """Site motions: what there is, what was done to it, and what another would change.
+
+    SITE is a site's folder or its manifest.toml, or 'demo'; left out, the settings' own.
+
+    Example: kouros motions show demo
+    """
+
+
+def _settings(options: Options) -> "Settings | None":
+    """The settings where there are any: a seismologist may work without a museum."""
+    return options.settings() if Path(options.config).exists() else None
+
+
+def _folder(options: Options, site: str | None) -> Path:
+    from pipeline.jobs.records import desk
+
+    return desk(_settings(options), site)
+
+
+@motions.command("list")
+@click.argument("site", required=False)
+@as_json
+@click.pass_obj
+def list_(options: Options, site: str | None, as_json: bool) -> None:
+    """List the motions of a site with their peaks.
+
+    Example: kouros motions list demo
+    """
+    from pipeline.jobs.records import listed
+
+    rows = listed(_folder(options, site))
+    if as_json:
+        click.echo(json.dumps([asdict(row) for row in rows], indent=2))
+        return
+    click.echo("\n".join(_table(rows)))
+
+
+def _table(rows: "Sequence[MotionRow]") -> list[str]:
+    from pipeline.quantities import G
+
+    head = ["level", "floor", "motion", "s", "dt", "PGA g", "PGV cm/s", "PGD cm", "D5-95 s", "pulse s", "approved by"]
+    cells = [
+        [
+            row.level,
+            row.floor or "ground",
+            row.name,
+            f"{row.duration:.1f}",
+            f"{row.dt:g}",
+            f"{row.pga / G:.3f}",
+            f"{100 * row.pgv:.1f}",
+            f"{100 * row.pgd:.1f}",
+            f"{row.duration_5_95:.1f}",
+            "-" if row.pulse_period is None else f"{row.pulse_period:.2f}",
+            row.approved_by or "nobody",
+        ]
+        for row in rows
+    ]
+    widths = [max(len(line[i]) for line in (head, *cells)) for i in range(len(head))]
+    words = {0, 1, 2, len(head) - 1}
+    return [
+        "  ".join(
+            f"{cell:<{w}}" if i in words else f"{cell:>{w}}"
+            for i, (cell, w) in enumerate(zip(line, widths, strict=True))
+        ).rstrip()
+        for line in (head, *cells)
+    ]
+
+
+@motions.command()
+@click.argument("site", required=False)
+@click.option("--record", default="", help="Only the record of this name.")
+@click.option(
+    "--out",
+    default="kouros-motions.html",
+    show_default=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="The page to write.",
+)
+@as_json
+@click.pass_obj
+def show(options: Options, site: str | None, record: str, out: Path, as_json: bool) -> None:
+    """Summarise what was done to each record, and write a page: before and after, spectra, pulse.
+
+    Example: kouros motions show demo --out motions.html
+    """
+    from pipeline.jobs.records import described, show
+    from pipeline.report import Units
+    from pipeline.report.record_summary import summary_lines
+
+    settings = _settings(options)
+    units = Units(length=settings.report.length) if settings else Units()
+    found, page = show(_folder(options, site), record, out, units)
+    if as_json:
+        click.echo(json.dumps({"page": str(page), "records": [described(one) for one in found]}, indent=2))
+        return
+    for one in found:
+        click.echo("\n".join(summary_lines(one, units)))
+        click.echo()
+    click.echo(f"Page: {page}")
+
+
+@motions.command()
+@click.argument("site", required=False)
+@click.option("--record", default="", help="Only the record of this name.")
+@click.option("--out", type=click.Path(file_okay=False, path_type=Path), help="Folder to write the processed site to.")
+@click.option(
+    "--accept",
+    "reason",
+    metavar="REASON",
+    help="Overrule what was refused as a matter of judgement (clipping, a record cut off, an odd size, an orientation "
+    "against the station's) for --record; the manifest keeps the reason.  What is corrupt stays refused.",
+)
+@as_json
+@click.pass_obj
+def process(
+    options: Options, site: str | None, record: str, out: Path | None, reason: str | None, as_json: bool
+) -> None:
+    """Process a site's records, and with --out write them as CSV with a manifest of their own.
+
+    Example: kouros motions process demo --out processed
+    """
+    from pipeline.jobs.records import listed, overrule
+    from pipeline.jobs.records import process as job
+    from pipeline.jobs.workspace import UsageError
+
+    folder = _folder(options, site)
+    overruled: Sequence[str] = ()
+    if reason is not None:
+        if not record or not reason.strip():
+            raise UsageError("--accept needs a reason, and --record with the name of the one record that it is for")
+        overruled = overrule(folder, record, reason.strip())
+    rows = [row for row in listed(folder) if record in {"", row.name}]
+    file = None if out is None else job(folder, out, record)
+    if as_json:
+        answer = {"overruled": overruled, "manifest": file and str(file), "motions": [asdict(row) for row in rows]}
+        click.echo(json.dumps(answer, indent=2))
+        return
+    for text in overruled:
+        click.echo(f"overruled: {text}")
+    if reason is not None and not overruled:
+        click.echo("nothing was refused: the manifest stays as it was")
+    click.echo("\n".join(_table(rows)))
+    if file is not None:
+        click.echo(f"wrote {file}")
+
+
+@motions.command()
+@click.argument("old")
+@click.argument("new")
+@as_json
+@click.pass_obj
+def compare(options: Options, old: str, new: str, as_json: bool) -> None:
+    """Say which measures, and which verdicts of the last run, change when NEW takes the place of OLD.
+
+    Example: kouros motions compare site_motions/site site_motions/proposed
+    """
+    from pipeline.jobs.swap import compare_sites
+
+    settings = _settings(options)
+    with options.console() as console:
+        swap = compare_sites(_folder(options, old), _folder(options, new), settings, console)
+    if as_json:
+        click.echo(json.dumps(asdict(swap), indent=2))
+        return
+    click.echo("\n".join(_swap_lines(swap)))
+
+
+def _swap_lines(swap: "Swap", most: int = 20) -> list[str]:
+    lines = [f"from {swap.old}", f"to   {swap.new}"]
+    for pair in swap.pairs:
+        lines += ["", f"{pair.level}: {pair.before or 'nothing'} -> {pair.after or 'nothing'}"]
+        lines += ["  the same samples"] if pair.same else _measure_lines(pair)
+    lines += ["", f"Verdicts: {swap.basis}"]
+    lines += [f"  {number:>6,}  {words}" for words, number in swap.moved.items()]
+    lines += [
+        f"  {v.object_number} ({v.gallery}) {v.model}, {v.level}: {v.before or 'none'} -> {v.after or 'none'}"
+        for v in swap.verdicts[:most]
+    ]
+    if len(swap.verdicts) > most:
+        lines.append(f"  and {len(swap.verdicts) - most:,} more (--json lists all)")
+    if not swap.verdicts and swap.basis.startswith("the "):
+        lines.append("  none changes")
+    return lines
+
+
+def _measure_lines(pair: "Pair") -> list[str]:
+    from pipeline.report import Units
+
+    units = {"pga": "m/s2", "pgv": "m/s", "pgd": "m", "duration": "s", "pulse_period": "s", "pulse_pgv": "m/s"}
+    lines = []
+    for name, (before, after) in pair.measures.items():
+        unit = next((u for stem, u in units.items() if name.startswith(stem)), "")
+        told = [
+            ("-" if value is None else Units().text(value, unit) if unit else f"{value:.3g}")
+            for value in (before, after)
+        ]
+        change = f"{after / before - 1:+.1%}" if before and after is not None else ""
+        lines.append(f"  {name:<16}{told[0]:>14} -> {told[1]:<14}{change}".rstrip())
+    return lines
+
+
+@motions.command(context_settings={"ignore_unknown_options": True})
+@click.argument("kind", default="")
+@click.argument("parameters", nargs=-1, metavar="NAME=VALUE...")
+@click.option("--out", type=click.Path(file_okay=False, path_type=Path), help="Folder of the new site.")
+def synthesise(kind: str, parameters: tuple[str, ...], out: Path | None) -> None:
+    """Make a test signal for the virtual shake table and write it as a site; SI units.
+
+    KIND is sine, swept_sine, random, rectangular, half_sine, ricker, mavroeidis_papageorgiou, or spectrum: an
+    accelerogram that matches a response spectrum.  Without parameters it says which there are.  Shake any model by it
+    with `kouros respond --site FOLDER`, also through supports.
+
+    Example: kouros motions synthesise sine amplitude=2 frequency=1.5 cycles=10 --out shake
+    """
+    from pipeline.jobs.signals import SIGNALS, describe
+    from pipeline.jobs.signals import synthesise as job
+    from pipeline.jobs.workspace import UsageError
+
+    if kind and kind not in SIGNALS:
+        raise UsageError(f"there is no signal {kind!r}; the signals are {', '.join(SIGNALS)}")
+    if not parameters:
+        for name in [kind] if kind else SIGNALS:
+            click.echo(f"{name:<24}{describe(name)}")
+        return
+    if out is None:
+        raise UsageError("--out FOLDER: say where the new site shall lie")
+    file, motion = job(kind, parameters, out)
+    for step in motion.steps:
+        click.echo(step)
+    click.echo(f"wrote {file}; try: kouros respond sliding friction_static=0.1,0.2 --site {out}")

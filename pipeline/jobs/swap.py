@@ -1,0 +1,137 @@
+"""What would change if other motions took the place of a site's: measures, and the verdicts of the last run."""
+
+import tempfile
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pipeline.collection.database import open_database
+from pipeline.jobs.nightly import KEPT, assess_items
+from pipeline.jobs.workspace import open_workspace
+from pipeline.motions.manifest import GROUND_FLOOR
+from pipeline.motions.site import Level, Site, read_site
+from pipeline.records import Progress, RunRecord
+from pipeline.settings import Settings
+from pipeline.store import migrate
+from pipeline.store.reuse import whole_runs
+from pipeline.store.runs import compare_runs, load_run, save_run
+
+if TYPE_CHECKING:
+    from pipeline.store.changes import VerdictChange
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A motion and the one that would take its place; "" where one of the two sites has no counterpart.
+
+    measures : by name, those of both (SI); None where there is no counterpart
+    """
+
+    level: str
+    before: str
+    after: str
+    same: bool
+    measures: Mapping[str, tuple[float | None, float | None]]
+
+
+@dataclass(frozen=True)
+class Swap:
+    """What a swap of one site for another would change.
+
+    basis    : which verdicts are compared, in words; why there are none, where there are none
+    verdicts : that would change
+    moved    : how many of these go from one verdict to another
+    """
+
+    old: str
+    new: str
+    pairs: Sequence[Pair]
+    basis: str
+    verdicts: "Sequence[VerdictChange]"
+    moved: Mapping[str, int]
+
+
+def compare_sites(old: Path, new: Path, settings: Settings | None, progress: Progress) -> Swap:
+    """Compare two sites: the measures of their motions, and the verdicts of the last run under one and the other.
+
+    Levels are paired by name, and those left over by their place; the motions of a level by their place.
+    settings : of the museum whose last run is looked at; None compares measures only
+    raises   : MotionError
+    """
+    kept = None if settings is None else settings.path(KEPT)
+    before, after = read_site(old, kept=kept), read_site(new, kept=kept)
+    after = replace(after, levels=_renamed(before.levels, after.levels))
+    pairs = _pairs(before.levels, after.levels)
+    basis, verdicts = _verdicts(before, after, settings, progress)
+    words = Counter(f"{_word(v.before)} -> {_word(v.after)}" for v in verdicts)
+    return Swap(f"{before.name} ({old})", f"{after.name} ({new})", pairs, basis, verdicts, dict(words.most_common()))
+
+
+def _word(verdict: object) -> str:
+    return "none" if verdict is None else str(verdict)
+
+
+def _renamed(before: Sequence[Level], after: Sequence[Level]) -> tuple[Level, ...]:
+    """The new levels under the names of those whose place they take."""
+    free = [level.name for level in before if level.name not in {other.name for other in after}]
+    names = {level.name for level in before}
+    return tuple(level if level.name in names or not free else replace(level, name=free.pop(0)) for level in after)
+
+
+def _pairs(before: Sequence[Level], after: Sequence[Level]) -> list[Pair]:
+    pairs = []
+    news = {level.name: level for level in after}
+    for name in dict.fromkeys([*(level.name for level in before), *news]):
+        old = next((level.motions for level in before if level.name == name), ())
+        new = news[name].motions if name in news else ()
+        for at in range(max(len(old), len(new))):
+            a, b = (side[at] if at < len(side) else None for side in (old, new))
+            keys = list(dict.fromkeys([*(a.measures if a else ()), *(b.measures if b else ())]))
+            pairs.append(
+                Pair(
+                    level=name,
+                    before=a.motion.name if a else "",
+                    after=b.motion.name if b else "",
+                    same=bool(a and b and a.motion.hash == b.motion.hash),
+                    measures={
+                        key: (a.measures.get(key) if a else None, b.measures.get(key) if b else None) for key in keys
+                    },
+                )
+            )
+    return pairs
+
+
+def _verdicts(
+    before: Site, after: Site, settings: Settings | None, progress: Progress
+) -> "tuple[str, Sequence[VerdictChange]]":
+    if settings is None:
+        return "no kouros.toml here, so there is no run whose verdicts could change", ()
+    workspace = open_workspace(settings)
+    runs = whole_runs(workspace.engine)
+    if not runs:
+        return "there is no run yet whose verdicts could change; make one with `kouros run`", ()
+    last = load_run(workspace.engine, runs[0])
+    items = [assessment.scene.item for assessment in last.assessments]
+    started = datetime.now(UTC)
+    if _made_on(last, before):
+        basis = f"the verdicts of the last run, {last.run_id}"
+    else:
+        basis = f"the objects of the last run, {last.run_id}, which was made on other motions: both sites were run now"
+        last = assess_items(workspace, items, items, before, started, progress)
+    other = assess_items(workspace, items, items, after, started, progress)
+    with tempfile.TemporaryDirectory() as folder:
+        engine = open_database(str(Path(folder) / "swap.sqlite"))
+        migrate.upgrade(engine)
+        for name, record in (("before", last), ("after", other)):
+            save_run(engine, replace(record, run_id=name))
+        changes = compare_runs(engine, "before", "after")
+        engine.dispose()
+    return basis, changes.verdicts
+
+
+def _made_on(run: RunRecord, site: Site) -> bool:
+    ground = {(motion.level, motion.hash) for motion in run.motions if motion.floor in {"", GROUND_FLOOR}}
+    return ground == {(level.name, one.motion.hash) for level in site.levels for one in level.motions}

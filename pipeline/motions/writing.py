@@ -1,0 +1,119 @@
+"""Motions written as a site that everything can read, and words put into a manifest that a person wrote."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomlkit
+
+from pipeline.motions.errors import Judgement, refusal
+from pipeline.motions.intensity import measures
+from pipeline.motions.manifest import MANIFEST, SiteTable, load_manifest, manifest_file
+from pipeline.motions.processing import EAST
+from pipeline.records import Motion
+
+
+def write_site(folder: Path, motions: Sequence[tuple[str, Motion]], site: SiteTable, *, licence: str, why: str) -> Path:
+    """Write motions as CSV files with a manifest beside them, and return the manifest.
+
+    motions : each with the name of its level; a level's motions are combined by the largest demand
+    site    : where they belong; its x axis is theirs
+    licence : where a motion's source does not end in its own ("...; licence: ...")
+    why     : a comment at the top of the manifest, such as the command that wrote it
+    error   : every sample is written with 17 digits and read back bit for bit; the time step to its last digit.  A
+              velocity that a record starts with has no place in the files: its PGV is kept as `v_max_cm_s`
+    raises  : MotionError where the folder has a manifest already
+    """
+    if (folder / MANIFEST).exists():
+        remedy = "choose another folder, or remove it"
+        raise refusal(folder, MANIFEST, "is there already, and nothing is overwritten", remedy)
+    folder.mkdir(parents=True, exist_ok=True)
+    document = tomlkit.document()
+    document.add(tomlkit.comment(why))
+    document.add("site", tomlkit.item(site.model_dump(exclude_none=True)))
+    levels = tomlkit.aot()
+    for level in dict.fromkeys(level for level, _ in motions):
+        table = tomlkit.table()
+        table.update({"name": level, "combine": "max"})
+        records = tomlkit.aot()
+        for number, (of, motion) in enumerate(motions, start=1):
+            if of == level:
+                record = _record(folder, f"motion-{number}.csv", motion, site.x_azimuth, licence)
+                records.append(tomlkit.item(record))
+        table.add("record", records)
+        levels.append(table)
+    document.add("level", levels)
+    file = folder / MANIFEST
+    file.write_text(tomlkit.dumps(document), encoding="utf-8")
+    load_manifest(file)
+    return file
+
+
+def _record(folder: Path, file: str, motion: Motion, azimuth: float, licence: str) -> dict[str, Any]:
+    (folder / file).write_text(motion_csv(motion, azimuth), encoding="ascii")
+    source, _, own = motion.source.partition("; licence: ")
+    digest = hashlib.sha256((folder / file).read_bytes()).hexdigest()
+    components: dict[str, Any] = {
+        "HN1": {"axis": "x"},
+        "HN2": {"axis": "y"},
+        "HNZ": {"axis": "z"},
+    }
+    for row, component in zip(motion.acceleration, components.values(), strict=True):
+        if not row.any():
+            component["silent"] = True
+    # What was judged once, or is a test signal, is not judged again.
+    told = "; ".join(motion.steps)[:460] or "as it was given"
+    v_max = motion.v_max or (measures(motion)["pgv_resultant"] if any(motion.start) else None)
+    return {
+        "name": motion.name[:500],
+        "files": [file],
+        "components": components,
+        "processed": True,
+        "accept": {"clipping": f"written by Kouros: {told}", "cut_off": f"written by Kouros: {told}"},
+        "source": (source or "Kouros")[:500],
+        "licence": (own or licence)[:500],
+        "sha256": {file: digest},
+        **({} if v_max is None else {"v_max_cm_s": 100.0 * v_max}),
+    }
+
+
+def motion_csv(motion: Motion, x_azimuth: float = EAST) -> str:
+    """Return a motion as a table that `formats.table` reads: time in s, x, y and z in m/s2, 17 digits.
+
+    x_azimuth : degrees clockwise from north of the motion's x axis
+    """
+    second = (x_azimuth - 90.0) % 360.0
+    lines = ["# processed: yes", f"time (s), HN1 {x_azimuth:g} deg (m/s2), HN2 {second:g} deg (m/s2), HNZ up (m/s2)"]
+    t = motion.dt * np.arange(motion.samples)
+    lines += [f"{at:.17g}, {x:.17g}, {y:.17g}, {z:.17g}" for at, x, y, z in zip(t, *motion.acceleration, strict=True)]
+    return "\n".join(lines) + "\n"
+
+
+def accept(path: Path, name: str, judgements: Mapping[Judgement, str]) -> None:
+    """Write into a manifest that refusals of one record were judged and overruled; all else stays as it was.
+
+    judgements : the reason of each
+    raises     : MotionError where no record of the manifest has that name
+    """
+    file = manifest_file(path)
+    document = tomlkit.parse(file.read_text(encoding="utf-8"))
+    for record in _records(document):
+        if record.get("name") == name:
+            record.setdefault("accept", tomlkit.inline_table()).update(judgements)
+            aside = file.with_name(f".{file.name}.aside")
+            aside.write_text(tomlkit.dumps(document), encoding="utf-8")
+            aside.replace(file)
+            return
+    raise refusal(file, "record", f"there is no record {name!r}", "name one of the manifest")
+
+
+def _records(document: Any) -> list[Any]:
+    found = [record for level in document.get("level", ()) for record in level.get("record", ())]
+    for floor in document.get("floor", ()):
+        own = floor.get("record", ())
+        found += [own] if isinstance(own, dict) else list(own)
+    return found

@@ -1,0 +1,216 @@
+"""A floor of a building: how it carries a motion up, by a code's factor or by the modes of a beam."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+
+from pipeline.kernels.oscillator import oscillator_one
+from pipeline.quantities import Array
+from pipeline.records import Motion
+from pipeline.supports.polygon import resampled
+
+MODE_POINTS = 20
+"""Corners of a computed floor's polygon in one period of its highest mode: a peak between two is 1.2 % low at most."""
+
+MOST_REFINED = 16
+"""Most samples of a computed floor's motion for one of the ground's."""
+
+_SHEAR_LIMIT = 650.0
+_SETTLED = 0.01
+
+
+def carried(
+    motion: Motion,
+    height_ratio: float,
+    period: float | None = None,
+    damping: float | None = None,
+    stiffness_ratio: float | None = None,
+    modes: int | None = None,
+) -> Motion:
+    """Return a motion of the ground as a floor feels it: by modes where damping, stiffness and modes are given, else by
+    the factor of the code.
+
+    height_ratio, period, damping : as `floor_motion`; stiffness_ratio : alpha0 of `beam_modes`
+    raises : ValueError for a parameter outside its range, or where the method is only half described
+    """
+    given = [value is not None for value in (damping, stiffness_ratio, modes)]
+    if not any(given):
+        return scale_to_floor(motion, height_ratio, period)
+    if period is None or damping is None or stiffness_ratio is None or modes is None:
+        raise ValueError("a floor by its modes needs period, damping, stiffness_ratio and modes, all four")
+    shortest = period * float(beam_modes(stiffness_ratio, modes).period_ratios[-1])
+    refine = min(MOST_REFINED, max(1, ceil(MODE_POINTS * motion.dt / shortest)))
+    return floor_motion(
+        resampled(motion, refine), height_ratio, period, damping=damping, alpha0=stiffness_ratio, modes=modes
+    )
+
+
+def floor_factor(height_ratio: float, period: float | None = None) -> float:
+    """Return the amplification of the ground's horizontal acceleration at a height in a building [-].
+
+    height_ratio : z/h, 0 at the base to 1 at the roof
+    period       : s, the building's approximate fundamental period; None where it is unknown
+    raises       : ValueError for a ratio outside 0 to 1 or a period that is not above 0
+    source       : ASCE/SEI 7-22, 13.3.1.1: H_f = 1 + a1 (z/h) + a2 (z/h)^10 with a1 = min(1/T_a, 2.5) and
+                   a2 = max(0, 1 - (0.4/T_a)^2); 1 + 2.5 z/h where the period is unknown
+    """
+    if not 0.0 <= height_ratio <= 1.0:
+        raise ValueError(f"height_ratio must be from 0 (base) to 1 (roof), not {height_ratio!r}")
+    if period is None:
+        return 1.0 + 2.5 * height_ratio
+    _positive("period", period)
+    a1 = min(1.0 / period, 2.5)
+    a2 = max(0.0, 1.0 - (0.4 / period) ** 2)
+    return 1.0 + a1 * height_ratio + a2 * height_ratio**10
+
+
+def scale_to_floor(motion: Motion, height_ratio: float, period: float | None = None) -> Motion:
+    """Return the motion of a floor by the factor method: horizontals times `floor_factor`, the vertical as it is.
+
+    raises : ValueError, as `floor_factor`
+    """
+    factor = floor_factor(height_ratio, period)
+    known = "unknown" if period is None else f"{period:g} s"
+    step = (
+        f"floor at z/h {height_ratio:g}, building period {known}: horizontals times {factor:.4g} (ASCE 7-22, 13.3.1.1)"
+        f", vertical unchanged"
+    )
+    by = np.array([factor, factor, 1.0])
+    data = motion.acceleration * by[:, None]
+    v_max = None if motion.v_max is None else factor * motion.v_max
+    return Motion(motion.dt, data, motion.name, (*motion.steps, step), motion.source, by * motion.start, v_max)
+
+
+@dataclass(frozen=True, eq=False)
+class BeamModes:
+    """Modes of a uniform cantilever that bends and shears (Miranda and Taghavi 2005).
+
+    alpha0        : H sqrt(GA/EI), 0 pure bending, above 20 nearly pure shear
+    gamma         : (m,) eigenvalues
+    period_ratios : (m,), period of each mode over that of the first
+    participation : (m,), Gamma_i for the shapes of `shapes`
+    """
+
+    alpha0: float
+    gamma: Array
+    period_ratios: Array
+    participation: Array
+
+    def shapes(self, height_ratio: float | Array) -> Array:
+        """Return the mode shapes at z/h, (m, k), with the top at 1."""
+        return _shapes(self.alpha0, self.gamma, np.atleast_1d(np.asarray(height_ratio, dtype=np.float64)))
+
+
+def beam_modes(alpha0: float, modes: int) -> BeamModes:
+    """Return the first modes of a shear-flexural cantilever of uniform mass and stiffness.
+
+    alpha0 : 0 to 650, stiffness ratio: up to 1.5 a building bends (shear walls), 5 to 20 is braced or dual, above it
+             deflects in shear (moment-resisting frames); modes : 1 to 30
+    raises : ValueError outside these
+    error  : eigenvalues 1e-12; participation factors 1e-10 (Gauss-Legendre quadrature of smooth shapes)
+    source : Miranda, E. and Taghavi, S. (2005), Approximate floor acceleration demands in multistory buildings, I:
+             formulation, J. Struct. Eng. 131, 203-211.  phi'''' - alpha0^2 phi'' = lambda phi, fixed at the base, free
+             at the top: phi = sin(gx) - (g/b) sinh(bx) + eta (cosh(bx) - cos(gx)) with b^2 = g^2 + alpha0^2,
+             eta = (g^2 sin g + g b sinh b) / (g^2 cos g + b^2 cosh b), and
+             2 + (2 + alpha0^4/(g b)^2) cos g cosh b + (alpha0^2/(g b)) sin g sinh b = 0; T_i/T_1 = g_1 b_1/(g_i b_i)
+    """
+    from scipy.optimize import brentq
+
+    if not 0.0 <= alpha0 <= _SHEAR_LIMIT:
+        raise ValueError(f"alpha0 must be from 0 (bending) to {_SHEAR_LIMIT:g} (shear), not {alpha0!r}")
+    if isinstance(modes, bool) or not isinstance(modes, int) or not 1 <= modes <= 30:
+        raise ValueError(f"modes must be a whole number from 1 to 30, not {modes!r}")
+
+    def missing(g: float) -> float:
+        # Divided by cosh(b), which would overflow.
+        b = float(np.hypot(g, alpha0))
+        k = alpha0**2 / (g * b)
+        return float(
+            4.0 * np.exp(-b) / (1.0 + np.exp(-2.0 * b)) + (2.0 + k * k) * np.cos(g) + k * np.sin(g) * np.tanh(b)
+        )
+
+    # At whole multiples of pi the cosine term outweighs the rest, with alternating sign: one root lies between two.
+    gamma = np.array([brentq(missing, max(1e-3, i * np.pi), (i + 1) * np.pi, xtol=1e-14) for i in range(modes)])
+    beta = np.hypot(gamma, alpha0)
+    # The base of a stiff frame bends within 1 / alpha0 of the ground: panels grow from there.
+    edges = np.concatenate([[0.0], np.geomspace(1e-4, 1.0, 40)])
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    half = 0.5 * np.diff(edges)
+    x = (edges[:-1, None] + half[:, None] * (nodes + 1.0)).ravel()
+    phi = _shapes(alpha0, gamma, x)
+    dx = (half[:, None] * weights).ravel()
+    participation = (phi @ dx) / ((phi * phi) @ dx)
+    return BeamModes(alpha0, gamma, gamma[0] * beta[0] / (gamma * beta), participation)
+
+
+def floor_motion(
+    motion: Motion,
+    height_ratio: float,
+    period: float,
+    *,
+    damping: float,
+    alpha0: float,
+    modes: int,
+    tail: float | None = None,
+) -> Motion:
+    """Return the motion of a floor by modal analysis: ground + sum of Gamma_i phi_i(z/h) u_i''.
+
+    height_ratio : z/h, 0 to 1; period : s, of the first mode; damping : ratio, of every mode
+    alpha0, modes: as `beam_modes`
+    tail         : s that the building goes on swinging after the record; None: until its first mode has decayed to 1 %
+    error        : exact in time at the samples for the ground's polygon (which goes to zero in one step after the
+                   record where a tail is added); what is left out above the last mode moves with the ground.  Between
+                   the samples the floor is taken as a polygon: resolve the highest mode that matters, or resample
+                   the ground first (`resampled`).
+    raises       : ValueError for a parameter outside its range
+    source       : Miranda and Taghavi (2005), as `beam_modes`; both horizontals alike, the vertical as on the ground
+    """
+    if not 0.0 <= height_ratio <= 1.0:
+        raise ValueError(f"height_ratio must be from 0 (base) to 1 (roof), not {height_ratio!r}")
+    _positive("period", period)
+    if not 0.0 < damping < 1.0:
+        raise ValueError(f"damping must be above 0 and below 1, not {damping!r}")
+    after = float(-np.log(_SETTLED) * period / (2.0 * np.pi * damping)) if tail is None else tail
+    if not (np.isfinite(after) and after >= 0.0):
+        raise ValueError(f"tail must be at least 0 s, not {tail!r}")
+    beam = beam_modes(alpha0, modes)
+    effect = beam.participation * beam.shapes(height_ratio)[:, 0]
+    ground = motion.acceleration
+    if after > 0.0:
+        ground = np.pad(ground, ((0, 0), (0, int(np.ceil(after / motion.dt)))))
+    base = Motion(motion.dt, ground)
+    out = np.array(ground)
+    for ratio, share in zip(beam.period_ratios, effect, strict=True):
+        w = 2.0 * np.pi / (period * float(ratio))
+        for row in range(2):
+            history = np.zeros((base.samples, 2))
+            oscillator_one(np.ascontiguousarray(ground[row]), motion.dt, w, damping, 1.0, 0.0, 1, history)
+            out[row] += share * (history[:, 1] - ground[row])
+    step = (
+        f"floor at z/h {height_ratio:g} of a shear-flexural beam (Miranda and Taghavi 2005): alpha0 {alpha0:g}, period "
+        f"{period:g} s, damping {damping:.3g}, {modes} modes, {after:.3g} s of free vibration; vertical unchanged"
+    )
+    return Motion(motion.dt, out, motion.name, (*motion.steps, step), motion.source)
+
+
+def _shapes(alpha0: float, gamma: Array, x: Array) -> Array:
+    g = gamma[:, None]
+    b = np.hypot(g, alpha0)
+    # eta = g/b + rest; the rest multiplies cosh(bx) and is tiny where that is huge, so both are divided by cosh(b).
+    numerator = g * g * np.sin(g) - g**3 / b * np.cos(g) - g * b * np.exp(-b)
+    double = 1.0 + np.exp(-2.0 * b)
+    lifted = 2.0 * np.exp(-b) / double  # 1 / cosh(b)
+    scaled = numerator / (g * g * np.cos(g) * lifted + b * b)
+    cosh_ratio = (np.exp(b * (x - 1.0)) + np.exp(-b * (x + 1.0))) / double
+    eta = g / b + scaled * lifted
+    phi = np.sin(g * x) - eta * np.cos(g * x) + g / b * np.exp(-b * x) + scaled * cosh_ratio
+    top = np.sin(g) - eta * np.cos(g) + g / b * np.exp(-b) + scaled
+    return np.asarray(phi / top, dtype=np.float64)
+
+
+def _positive(name: str, value: float) -> None:
+    if not (np.isfinite(value) and value > 0.0):
+        raise ValueError(f"{name} must be a number above 0, not {value!r}")
