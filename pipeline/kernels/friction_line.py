@@ -12,7 +12,7 @@ import numpy as np
 
 from pipeline.kernels import kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
-from pipeline.kernels.linear import advance, peak_inside, transition
+from pipeline.kernels.linear import peak_inside, transition
 from pipeline.kernels.quiet import largest, next_above
 from pipeline.quantities import Array, G
 
@@ -21,6 +21,16 @@ CAP = 200.0
 
 FAINT = 1e-12
 """Share of the largest displacement that is no longer followed."""
+
+PHASE = 0.5
+"""Largest w (1 + zeta) times a stretch: the acceleration changes sign at most twice in it, and its series converges."""
+
+TERMS = 24
+"""Terms of a phase's Taylor series, at most: 1 / 24! is far below rounding."""
+
+# What _body holds; UU to U1: the new u by u, v, force and its rate after a whole step.
+W, ZETA, MU_S, MU_K, STEP, B, C, UU, UV, U0, U1, EASE = range(12)
+Body = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
 
 
 @kernel
@@ -37,73 +47,117 @@ def _first_beyond(q0: float, q1: float, l0: float, l1: float, span: float) -> fl
 
 
 @kernel
-def _velocity(u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: float) -> float:
-    g, h, h1, _ = transition(w, zeta, t)
-    return -u * w * w * h + v * (g - 2.0 * zeta * w * h) + f0 * h + f1 * h1
+def _body(w: float, zeta: float, mu_s: float, mu_k: float, step: float) -> Body:
+    # What a body is and what a whole step does to it: the constants of every phase.
+    b, c = w * w, 2.0 * zeta * w
+    uu, uv, u0, u1 = transition(w, zeta, step)
+    ease = 1.0 / (1.0 - 0.5 * c * step - 0.125 * b * step * step)
+    return w, zeta, mu_s, mu_k, step, b, c, uu, uv, u0, u1, ease
 
 
 @kernel
-def _acceleration(u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: float) -> float:
-    un, vn = advance(u, v, f0, f1, w, zeta, t)
-    return f0 + f1 * t - 2.0 * zeta * w * vn - w * w * un
-
-
-@kernel
-def _root(
-    u: float, v: float, f0: float, f1: float, w: float, zeta: float, order: int, low: float, high: float
-) -> float:
-    # The zero of the velocity (order 1) or acceleration (order 2) bracketed by low and high: Illinois.
-    if order == 1:
-        a, b = _velocity(u, v, f0, f1, w, zeta, low), _velocity(u, v, f0, f1, w, zeta, high)
-    else:
-        a, b = _acceleration(u, v, f0, f1, w, zeta, low), _acceleration(u, v, f0, f1, w, zeta, high)
-    side = 0
-    for _ in range(100):
-        if b == a:
+def _expand(u: float, v: float, f0: float, f1: float, b: float, c: float, span: float, series: Array) -> int:
+    # Taylor series of the velocity (row 0) and displacement (row 1) of a phase over a span that is short against the
+    # period, and the number of its terms.
+    second = f0 - c * v - b * u
+    third = f1 - c * second - b * v
+    series[0, 0], series[0, 1], series[0, 2] = v, second, 0.5 * third
+    series[1, 0], series[1, 1], series[1, 2] = v, 0.5 * second, third / 6.0
+    size = abs(v) + abs(second) * span + abs(third) * span * span
+    before, now, power, n = second, 0.5 * third, span * span, 3
+    while n < TERMS:
+        # Each further derivative of u is -c times the one before it less b times the one before that.
+        before, now = now, -(c * now + b * before / (n - 1.0)) / n
+        power *= span
+        series[0, n], series[1, n] = now, now / (n + 1.0)
+        n += 1
+        if (abs(now) + abs(before)) * power <= 1e-17 * size:
             break
-        t = (low * b - high * a) / (b - a)
-        if not low < t < high:
-            t = 0.5 * (low + high)
-        value = _velocity(u, v, f0, f1, w, zeta, t) if order == 1 else _acceleration(u, v, f0, f1, w, zeta, t)
-        if value == 0.0 or high - low <= 4e-16 * high:
-            return t
-        if (value > 0.0) == (b > 0.0):
-            high, b = t, value
-            if side == 1:
-                a *= 0.5
-            side = 1
-        else:
-            low, a = t, value
-            if side == -1:
-                b *= 0.5
-            side = -1
-    return 0.5 * (low + high)
+    return n
 
 
 @kernel
-def _first_stop(u: float, v: float, s: float, f0: float, f1: float, w: float, zeta: float, span: float) -> float:
-    # First time in (0, span] at which the velocity in direction s vanishes; -1 if it does not.  span is short against
-    # the period, so that the acceleration changes sign at most twice.
-    end = s * _velocity(u, v, f0, f1, w, zeta, span)
-    push = s * _acceleration(u, v, f0, f1, w, zeta, 0.0)
-    push_end = s * _acceleration(u, v, f0, f1, w, zeta, span)
-    if s * v > 0.0:
-        if end <= 0.0:
-            return _root(u, v, f0, f1, w, zeta, 1, 0.0, span)
-        if push < 0.0 < push_end:
-            dip = _root(u, v, f0, f1, w, zeta, 2, 0.0, span)
-            if s * _velocity(u, v, f0, f1, w, zeta, dip) <= 0.0:
-                return _root(u, v, f0, f1, w, zeta, 1, 0.0, dip)
-        return -1.0
-    # Starting from rest the velocity has a root at 0 that is not a stop: find a time at which it moves in direction s.
-    if end > 0.0:
-        return -1.0
-    low = 0.5 * span
-    for _ in range(60):
-        if s * _velocity(u, v, f0, f1, w, zeta, low) > 0.0:
-            return _root(u, v, f0, f1, w, zeta, 1, low, span)
-        low *= 0.5
-    return 0.0
+def _speed(series: Array, n: int, t: float) -> tuple[float, float, float]:
+    # Velocity, acceleration and its rate after t.
+    v, a, half = 0.0, 0.0, 0.0
+    for k in range(n - 1, -1, -1):
+        half = half * t + a
+        a = a * t + v
+        v = v * t + series[0, k]
+    return v, a, 2.0 * half
+
+
+@kernel
+def _moved(series: Array, n: int, t: float) -> float:
+    # Displacement during t.
+    u = 0.0
+    for k in range(n - 1, -1, -1):
+        u = u * t + series[1, k]
+    return u * t
+
+
+@kernel
+def _zero(series: Array, n: int, order: int, low: float, high: float, at_high: float) -> float:
+    # Where the velocity (order 1) or the acceleration (order 2) vanishes, its sign being that of at_high only at high:
+    # Newton inside the bracket.
+    near = 1e-9 * high
+    t = 0.5 * (low + high)
+    for _ in range(100):
+        v, a, jerk = _speed(series, n, t)
+        value, rate = (v, a) if order == 1 else (a, jerk)
+        if value == 0.0:
+            break
+        if (value > 0.0) == (at_high > 0.0):
+            high = t
+        else:
+            low = t
+        then = t - value / rate if rate != 0.0 else low
+        # The next error is the square of the last move, but for a root that is nearly double.
+        if low < then < high and abs(then - t) <= near:
+            return then
+        if high - low <= 4e-16 * high:
+            break
+        t = then if low < then < high else 0.5 * (low + high)
+    return t
+
+
+@kernel
+def _first_stop(
+    u: float,
+    v: float,
+    s: float,
+    f0: float,
+    f1: float,
+    b: float,
+    c: float,
+    span: float,
+    un: float,
+    vn: float,
+    series: Array,
+) -> tuple[float, float]:
+    # First time in (0, span] at which the velocity in direction s vanishes, and the displacement then; -1 if it does
+    # not.  span is short against the period, so that the acceleration changes sign at most twice.  un, vn: after span.
+    moving = s * v > 0.0
+    dips = s * (f0 - c * v - b * u) < 0.0 < s * (f0 + f1 * span - c * vn - b * un)
+    if s * vn > 0.0 and not (moving and dips):
+        return -1.0, 0.0
+    n = _expand(u, v, f0, f1, b, c, span, series)
+    low, high = 0.0, span
+    if not moving:
+        # Starting from rest the velocity has a root at 0 that is no stop: find a time at which it moves in direction s.
+        low = 0.5 * span
+        for _ in range(60):
+            if s * _speed(series, n, low)[0] > 0.0:
+                break
+            low *= 0.5
+        else:
+            return 0.0, u
+    elif s * vn > 0.0:
+        high = _zero(series, n, 2, 0.0, span, s)
+        if s * _speed(series, n, high)[0] > 0.0:
+            return -1.0, 0.0
+    t = _zero(series, n, 1, low, high, -s)
+    return t, u + _moved(series, n, t)
 
 
 @kernel
@@ -116,16 +170,14 @@ def _piece(
     n0: float,
     n1: float,
     span: float,
-    w: float,
-    zeta: float,
-    mu_s: float,
-    mu_k: float,
+    body: Body,
+    series: Array,
     out: Array,
 ) -> tuple[float, float, float]:
     # One stretch on which excitation a0 + a1 t and normal force n0 + n1 t >= 0 are linear.
     # s: 0 at rest, else the direction of slip.  out: [max |u|, path, max transmitted, flags].
     now = 0.0
-    b, c = w * w, 2.0 * zeta * w
+    b, c, mu_s, mu_k = body[B], body[C], body[MU_S], body[MU_K]
     for _ in range(1000):
         left = span - now
         if left <= 0.0:
@@ -152,19 +204,29 @@ def _piece(
                     return u, 0.0, s
             v = 0.0
         f0, f1 = -a - s * mu_k * n, -a1 - s * mu_k * n1
-        stop = _first_stop(u, v, s, f0, f1, w, zeta, left)
-        t = left if stop < 0.0 else stop
-        un, vn = advance(u, v, f0, f1, w, zeta, t)
+        if left == body[STEP]:
+            uu, uv, u0, u1 = body[UU], body[UV], body[U0], body[U1]
+            un = u * uu + v * uv + f0 * u0 + f1 * u1
+            vn = -u * b * uv + v * (uu - c * uv) + f0 * uv + f1 * u0
+        else:
+            terms = _expand(u, v, f0, f1, b, c, left, series)
+            un, vn = u + _moved(series, terms, left), _speed(series, terms, left)[0]
+        stop, there = _first_stop(u, v, s, f0, f1, b, c, left, un, vn, series)
+        t = left
+        if stop >= 0.0:
+            t, un, vn = stop, there, 0.0
         out[1] += abs(un - u)
         out[0] = max(out[0], abs(un))
         lift0, lift1 = s * mu_k * n, s * mu_k * n1
-        begin, end = abs(c * v + b * u + lift0), abs(c * vn + b * un + lift0 + lift1 * t)
         if t > 0.0:
-            out[2] = max(out[2], begin, end)
-        if w > 0.0:
-            rate = c * max(abs(f0 - c * v - b * u), abs(f0 + f1 * t - c * vn - b * un)) + b * max(abs(v), abs(vn))
-            if max(begin, end) + t * (rate + abs(lift1)) > out[2]:
-                out[2] = max(out[2], peak_inside(u, v, f0, f1, w, zeta, t, lift0, lift1, b, c))
+            near = max(abs(c * v + b * u + lift0), abs(c * vn + b * un + lift0 + lift1 * t))
+            out[2] = max(out[2], near)
+            # Between the ends it rises by at most its curvature times t^2 / 8: see the oscillator's bounds.
+            push, speed = max(abs(f0), abs(f0 + f1 * t)), max(abs(v), abs(vn))
+            second = (push + c * speed + b * max(abs(u), abs(un))) * body[EASE]
+            bend = c * (abs(f1) + c * second + b * (speed + 0.5 * t * second)) + b * second
+            if b > 0.0 and near + 0.125 * t * t * bend > out[2]:
+                out[2] = max(out[2], peak_inside(u, v, f0, f1, body[W], body[ZETA], t, lift0, lift1, b, c))
         u = un
         now += t
         if stop < 0.0:
@@ -188,10 +250,8 @@ def _split(
     z1: float,
     span: float,
     pieces: int,
-    w: float,
-    zeta: float,
-    mu_s: float,
-    mu_k: float,
+    body: Body,
+    series: Array,
     out: Array,
 ) -> tuple[float, float, float]:
     # A stretch on which excitation and vertical acceleration are linear: cut where contact ends or begins.
@@ -215,15 +275,11 @@ def _split(
                 max(0.0, n0 + n1 * t0),
                 n1 if n0 > 0.0 else 0.0,
                 cross - t0,
-                w,
-                zeta,
-                mu_s,
-                mu_k,
+                body,
+                series,
                 out,
             )
-            u, v, s = _piece(
-                u, v, s, a0 + a1 * cross, a1, 0.0, n1 if n0 < 0.0 else 0.0, t1 - cross, w, zeta, mu_s, mu_k, out
-            )
+            u, v, s = _piece(u, v, s, a0 + a1 * cross, a1, 0.0, n1 if n0 < 0.0 else 0.0, t1 - cross, body, series, out)
         else:
             held = max(n0 + n1 * t0, n0 + n1 * t1) > 0.0
             u, v, s = _piece(
@@ -235,13 +291,22 @@ def _split(
                 max(0.0, n0 + n1 * t0),
                 n1 if held else 0.0,
                 step,
-                w,
-                zeta,
-                mu_s,
-                mu_k,
+                body,
+                series,
                 out,
             )
     return u, v, s
+
+
+@kernel
+def _stays(x: Array, z: Array, spring: float, mu_s: float, begin: int, end: int, out: Array) -> int:
+    # The sample up to which a body at rest at begin stays so, at most end.  What holds it is convex between samples.
+    top, i = 0.0, begin
+    while i <= end and G + z[i] >= 0.0 and abs(x[i] + spring) <= mu_s * (G + z[i]):
+        top = max(top, abs(x[i]))
+        i += 1
+    out[2] = max(out[2], top)
+    return i - 1
 
 
 @kernel
@@ -270,7 +335,7 @@ def friction_line_one(
     mu_s: float,
     mu_k: float,
     tail: float,
-    refine: int,
+    refine: int,  # noqa: ARG001
     out: Array,
     history: Array,
 ) -> float:
@@ -278,6 +343,7 @@ def friction_line_one(
 
     x, z           : (n,) m/s2
     ratio, maxima  : from kernels.quiet, of this very motion; pushes: block maxima of |x|
+    refine         : without effect: the closed form is exact in any step
     out            : (4,) receives max |u| [m], path [m], max transmitted acceleration [m/s2], flags
     history        : (m, 2) receives u and the absolute acceleration at the samples, as long as it is; rows after the
                      record follow the body on without excitation
@@ -286,7 +352,8 @@ def friction_line_one(
     out[:] = 0.0
     if n < 2:
         return 0.0
-    pieces = max(1, math.ceil(w * dt * (1.0 + zeta) / 0.5)) * (refine if w > 0.0 else 1)
+    pieces = max(1, math.ceil(w * dt * (1.0 + zeta) / PHASE))
+    body, series = _body(w, zeta, mu_s, mu_k, dt / pieces), np.empty((2, TERMS))
     u, v, s = 0.0, 0.0, 0.0
     recording = history.shape[0] > 0
     i = 0
@@ -302,6 +369,11 @@ def friction_line_one(
         if i < history.shape[0]:
             history[i, 0] = u
             history[i, 1] = _felt(u, v, s, x[i], max(0.0, G + z[i]), w, zeta, mu_s, mu_k)
+        if s == 0.0:
+            still = _stays(x, z, w * w * u, mu_s, i, i + 1 if recording else n - 1, out)
+            if still > i:
+                i = still
+                continue
         u, v, s = _split(
             u,
             v,
@@ -312,10 +384,8 @@ def friction_line_one(
             (z[i + 1] - z[i]) / dt,
             dt,
             pieces,
-            w,
-            zeta,
-            mu_s,
-            mu_k,
+            body,
+            series,
             out,
         )
         i += 1
@@ -324,19 +394,18 @@ def friction_line_one(
         history[n - 1, 1] = _felt(u, v, s, x[n - 1], max(0.0, G + z[n - 1]), w, zeta, mu_s, mu_k)
     for k in range(n, history.shape[0]):
         for _ in range(pieces):
-            u, v, s = _piece(u, v, s, 0.0, 0.0, G, 0.0, dt / pieces, w, zeta, mu_s, mu_k, out)
+            u, v, s = _piece(u, v, s, 0.0, 0.0, G, 0.0, dt / pieces, body, series, out)
         history[k, 0] = u
         history[k, 1] = _felt(u, v, s, 0.0, G, w, zeta, mu_s, mu_k)
-    return abs(_coast(u, v, s, w, zeta, mu_s, mu_k, tail, out))
+    return abs(_coast(u, v, s, body, series, tail, out))
 
 
 @kernel
-def _coast(
-    u: float, v: float, s: float, w: float, zeta: float, mu_s: float, mu_k: float, tail: float, out: Array
-) -> float:
+def _coast(u: float, v: float, s: float, body: Body, series: Array, tail: float, out: Array) -> float:
     # After the record: no excitation, full weight, until the body rests for good, the tail ends, or the cap.
     if tail == 0.0:
         return u
+    w, zeta, mu_k, b, c = body[W], body[ZETA], body[MU_K], body[B], body[C]
     if tail < 0.0 and mu_k == 0.0 and (w == 0.0 or zeta == 0.0):
         # Nothing will ever stop it; a spring brings its largest excursion within the first period.
         if v != 0.0 or u != 0.0:
@@ -347,12 +416,11 @@ def _coast(
     stop = tail if tail > 0.0 else CAP
     t = 0.0
     while t < stop:
-        span = stop - t if w == 0.0 else min(stop - t, 0.5 / (w * (1.0 + zeta)))
-        u, v, s = _piece(u, v, s, 0.0, 0.0, G, 0.0, span, w, zeta, mu_s, mu_k, out)
+        span = stop - t if w == 0.0 else min(stop - t, PHASE / (w * (1.0 + zeta)))
+        u, v, s = _piece(u, v, s, 0.0, 0.0, G, 0.0, span, body, series, out)
         t += span
         if s == 0.0:
             return u
-        b, c = w * w, 2.0 * zeta * w
         if tail < 0.0 and abs(b * abs(u) - mu_k * G) <= 2.0 * c * abs(v) and c * abs(v) <= FAINT * b * out[0]:
             # Overdamped, it creeps towards the end of the friction's reach and never gets there.
             return u

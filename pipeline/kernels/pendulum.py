@@ -13,10 +13,9 @@ import numpy as np
 
 from pipeline.kernels import inlined, kernel
 from pipeline.kernels.flags import CUT
+from pipeline.kernels.lanes import LANES, lanes, same_steps
+from pipeline.kernels.roots import narrowed, trial
 from pipeline.quantities import Array, G
-
-LANES = 16
-"""Pendulums integrated side by side."""
 
 CAP = 200.0
 """Seconds after the record at which a pendulum that never turns back is cut off."""
@@ -26,6 +25,11 @@ FAINT = 1e-9
 
 STEP = 0.1
 """Largest step of the integration, in radians of the fastest pendulum motion."""
+
+
+# Rows of a block of pendulums: the state, the constants 1 / L and 2 zeta w, the state before the step, the largest
+# |theta| so far, and how far it may go within the step.
+THETA, SINE, COSINE, RATE, CURL, DRAG, OLD, OLD_SINE, OLD_COSINE, OLD_RATE, MOST, REACH = range(12)
 
 
 @inlined
@@ -84,13 +88,11 @@ def _turn(
     after: float,
 ) -> float:
     # The angle at which the pendulum turns back within the step (Illinois on the rate).
-    low, high, at_low, at_high = 0.0, h, rate, after
-    side = 0
-    angle = theta
+    # The angle is of second order in the time's error.
+    low, high, at_low, at_high, side = 0.0, h, rate, after, 0
+    tau, angle = low, theta
     for _ in range(40):
-        tau = (low * at_high - high * at_low) / (at_high - at_low)
-        if not low < tau < high:
-            tau = 0.5 * (low + high)
+        before, tau = tau, trial(low, high, at_low, at_high)
         angle, _s, _c, value = _step(
             theta,
             s,
@@ -106,78 +108,58 @@ def _turn(
             curl,
             drag,
         )
-        if value == 0.0 or high - low < 1e-10 * h:
-            break
-        if (value > 0.0) == (at_high > 0.0):
-            high, at_high = tau, value
-            if side == 1:
-                at_low *= 0.5
-            side = 1
-        else:
-            low, at_low = tau, value
-            if side == -1:
-                at_high *= 0.5
-            side = -1
-        if at_high == at_low:
+        low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, tau, value)
+        if value == 0.0 or abs(tau - before) < 1e-8 * h or at_high == at_low:
             break
     return angle
 
 
 @kernel
-def _shake(x: Array, z: Array, dt: float, pieces: int, block: Array, most: Array, history: Array) -> None:
-    # Integrate a block of LANES pendulums through the record.
-    # block: rows theta, s, c, rate, 1/L, drag, then theta, s, c, rate after the step; history: theta of the first lane.
+def _shake(x: Array, z: Array, dt: float, pieces: int, block: Array, history: Array) -> None:
+    # Integrate a block of LANES pendulums through the record.  history: theta of the first lane.
     n = x.shape[0]
-    step = dt / pieces
+    h = dt / pieces
     for i in range(n - 1):
         if i < history.shape[0]:
-            history[i, 0] = block[0, 0]
+            history[i, 0] = block[THETA, 0]
         slope, rise = (x[i + 1] - x[i]) / dt, (z[i + 1] - z[i]) / dt
         for j in range(pieces):
-            a0, n0 = x[i] + slope * (j * step), G + z[i] + rise * (j * step)
-            am, nm = a0 + 0.5 * slope * step, n0 + 0.5 * rise * step
-            a1, n1 = a0 + slope * step, n0 + rise * step
+            a0, n0 = x[i] + slope * (j * h), G + z[i] + rise * (j * h)
+            am, nm = a0 + 0.5 * slope * h, n0 + 0.5 * rise * h
+            a1, n1 = a0 + slope * h, n0 + rise * h
+            turning = 0
             for k in range(LANES):
-                block[6, k], block[7, k], block[8, k], block[9, k] = _step(
-                    block[0, k],
-                    block[1, k],
-                    block[2, k],
-                    block[3, k],
-                    a0,
-                    am,
-                    a1,
-                    n0,
-                    nm,
-                    n1,
-                    step,
-                    block[4, k],
-                    block[5, k],
+                theta, s, c, rate = block[THETA, k], block[SINE, k], block[COSINE, k], block[RATE, k]
+                ahead, sn, cn, after = _step(
+                    theta, s, c, rate, a0, am, a1, n0, nm, n1, h, block[CURL, k], block[DRAG, k]
                 )
-            for k in range(LANES):
-                before, after = block[3, k], block[9, k]
-                reach = max(abs(block[0, k]), abs(block[6, k]))
-                if reach > most[k] or before * after < 0.0:
-                    if before * after < 0.0 and reach + step * max(abs(before), abs(after)) > most[k]:
+                most = max(block[MOST, k], abs(ahead))
+                reach = max(abs(theta), abs(ahead)) + h * max(abs(rate), abs(after))
+                reach = reach if rate * after < 0.0 else 0.0
+                block[OLD, k], block[OLD_SINE, k], block[OLD_COSINE, k], block[OLD_RATE, k] = theta, s, c, rate
+                block[THETA, k], block[SINE, k], block[COSINE, k], block[RATE, k] = ahead, sn, cn, after
+                block[MOST, k], block[REACH, k] = most, reach
+                turning += 1 if reach > most else 0
+            if turning > 0:
+                for k in range(LANES):
+                    if block[REACH, k] > block[MOST, k]:
                         top = _turn(
-                            block[0, k],
-                            block[1, k],
-                            block[2, k],
-                            before,
+                            block[OLD, k],
+                            block[OLD_SINE, k],
+                            block[OLD_COSINE, k],
+                            block[OLD_RATE, k],
                             a0,
                             slope,
                             n0,
                             rise,
-                            step,
-                            block[4, k],
-                            block[5, k],
-                            after,
+                            h,
+                            block[CURL, k],
+                            block[DRAG, k],
+                            block[RATE, k],
                         )
-                        reach = max(reach, abs(top))
-                    most[k] = max(most[k], reach)
-            for k in range(LANES):
-                block[0, k], block[1, k], block[2, k], block[3, k] = block[6, k], block[7, k], block[8, k], block[9, k]
+                        block[MOST, k] = max(block[MOST, k], abs(top))
     if n - 1 < history.shape[0]:
-        history[n - 1, 0] = block[0, 0]
+        history[n - 1, 0] = block[THETA, 0]
 
 
 @kernel
@@ -235,7 +217,7 @@ def pendulum_batch(
     x, z    : (n,) m/s2;  peak: the largest acceleration of the pivot
     history : (k, 1) receives theta of a single pendulum at the samples, as long as it is
 
-    Pendulums of the same number of steps share a block, so that a result never depends on its neighbours.
+    Lanes do not mix: a result is the same to the last bit in any company.
     """
     m = length.shape[0]
     results[:, :] = 0.0
@@ -245,22 +227,20 @@ def pendulum_batch(
     for k in range(m):
         pieces[k] = substeps(length[k], zeta[k], peak, dt) * refine
     order = np.argsort(pieces, kind="mergesort")
-    block, most = np.zeros((10, LANES)), np.zeros(LANES)
+    block = lanes(12)
     begin = 0
     while begin < m:
-        end = begin + 1
-        while end < m and end - begin < LANES and pieces[order[end]] == pieces[order[begin]]:
-            end += 1
+        end = same_steps(pieces, order, begin)
+        block[:] = 0.0
         for k in range(LANES):
             one = order[min(begin + k, end - 1)]
-            block[0, k], block[1, k], block[2, k], block[3, k] = 0.0, 0.0, 1.0, 0.0
-            block[4, k] = 1.0 / length[one]
-            block[5, k] = 2.0 * zeta[one] * math.sqrt(G / length[one])
-            most[k] = 0.0
-        _shake(x, z, dt, pieces[order[begin]], block, most, history)
+            block[COSINE, k] = 1.0
+            block[CURL, k] = 1.0 / length[one]
+            block[DRAG, k] = 2.0 * zeta[one] * math.sqrt(G / length[one])
+        _shake(x, z, dt, pieces[order[begin]], block, history)
         for k in range(end - begin):
             one = order[begin + k]
             results[one, 0], results[one, 1] = _coast(
-                block[0, k], block[3, k], most[k], length[one], zeta[one], tail, refine
+                block[THETA, k], block[RATE, k], block[MOST, k], length[one], zeta[one], tail, refine
             )
         begin = end

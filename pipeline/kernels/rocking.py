@@ -12,6 +12,7 @@ import numpy as np
 from pipeline.kernels import inlined, kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
 from pipeline.kernels.quiet import next_above
+from pipeline.kernels.roots import narrowed, trial
 from pipeline.quantities import Array, G
 
 OVERTURNED = 0.5 * math.pi
@@ -99,28 +100,16 @@ def _locate(
     at_low = (p if what == 0 else r) - level
     p, r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, high, s, c)
     at_high = (p if what == 0 else r) - level
-    side = 0
-    tau = high
+    side, tau = 0, high
     for _ in range(60):
         if at_high == at_low:
             break
-        tau = (low * at_high - high * at_low) / (at_high - at_low)
-        if not low < tau < high:
-            tau = 0.5 * (low + high)
+        before, tau = tau, trial(low, high, at_low, at_high)
         p, r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, tau, s, c)
         value = (p if what == 0 else r) - level
-        if value == 0.0 or high - low <= 1e-15 * high:
-            return tau
-        if (value > 0.0) == (at_high > 0.0):
-            high, at_high = tau, value
-            if side == 1:
-                at_low *= 0.5
-            side = 1
-        else:
-            low, at_low = tau, value
-            if side == -1:
-                at_high *= 0.5
-            side = -1
+        low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, tau, value)
+        if value == 0.0 or abs(tau - before) <= 1e-15 * tau:
+            break
     return tau
 
 

@@ -8,8 +8,10 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import kernel
+from pipeline.kernels import inlined, kernel
 from pipeline.kernels.flags import CUT
+from pipeline.kernels.lanes import LANES, lanes, same_steps
+from pipeline.kernels.roots import narrowed, trial
 from pipeline.quantities import Array, G
 
 STEP = 0.1
@@ -18,164 +20,187 @@ STEP = 0.1
 CAP = 200.0
 """Seconds after the record at which a pendulum that never turns back is cut off."""
 
+State = tuple[float, float, float, float, float, float]
+Load = State
 
-@kernel
-def _bend(q: Array, r: Array, fx: float, fy: float, fz: float, c: float, out: Array) -> None:
-    along = fx * q[0] + fy * q[1] + fz * q[2] + r[0] * r[0] + r[1] * r[1] + r[2] * r[2]
-    out[0] = fx - along * q[0] - c * r[0]
-    out[1] = fy - along * q[1] - c * r[1]
-    out[2] = fz - along * q[2] - c * r[2]
-
-
-@kernel
-def _step(s: Array, load: Array, t: float, h: float, length: float, c: float, k: Array, after: Array) -> None:
-    # One classical Runge-Kutta step of (q, q'); load: x0, x1, y0, y1, n0, n1 with n = g + a_z.
-    half = 0.5 * h
-    for stage in range(4):
-        at = t if stage == 0 else (t + h if stage == 3 else t + half)
-        reach = 0.0 if stage == 0 else (h if stage == 3 else half)
-        for i in range(3):
-            if stage == 0:
-                k[9, i], k[8, i] = s[i], s[3 + i]
-            else:
-                k[9, i] = s[i] + reach * k[4 + stage - 1, i]
-                k[8, i] = s[3 + i] + reach * k[stage - 1, i]
-            k[4 + stage, i] = k[8, i]
-        fx = -(load[0] + load[1] * at) / length
-        fy = -(load[2] + load[3] * at) / length
-        fz = -(load[4] + load[5] * at) / length
-        _bend(k[9], k[8], fx, fy, fz, c, k[stage])
-    for i in range(3):
-        after[i] = s[i] + h / 6.0 * (k[4, i] + 2.0 * (k[5, i] + k[6, i]) + k[7, i])
-        after[3 + i] = s[3 + i] + h / 6.0 * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])
+# Rows of a block: q, q', 1 / L, 2 zeta w, then q, q' after the step, the largest square of the radius so far, and a
+# bound of it within the step.
+CURL, DRAG, MOST, REACH = 6, 7, 14, 15
 
 
-@kernel
-def _normalise(s: Array) -> None:
-    # Back onto the sphere: the horizontal part is the result, so the vertical part takes the correction.
-    size = math.sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
-    for i in range(3):
-        s[i] /= size
-    along = s[0] * s[3] + s[1] * s[4] + s[2] * s[5]
-    for i in range(3):
-        s[3 + i] -= along * s[i]
+@inlined
+def _bend(
+    q1: float, q2: float, q3: float, r1: float, r2: float, r3: float, f1: float, f2: float, f3: float, drag: float
+) -> tuple[float, float, float]:
+    along = (f1 * q1 + f2 * q2 + f3 * q3) + (r1 * r1 + r2 * r2 + r3 * r3)
+    return f1 - along * q1 - drag * r1, f2 - along * q2 - drag * r2, f3 - along * q3 - drag * r3
 
 
-@kernel
-def _turn(
-    s: Array,
-    load: Array,
-    t: float,
+@inlined
+def _step(
+    q1: float,
+    q2: float,
+    q3: float,
+    r1: float,
+    r2: float,
+    r3: float,
+    x0: float,
+    y0: float,
+    n0: float,
+    xm: float,
+    ym: float,
+    nm: float,
+    x1: float,
+    y1: float,
+    n1: float,
     h: float,
-    length: float,
-    c: float,
-    k: Array,
-    trial: Array,
-    begin: float,
-    end: float,
-) -> float:
-    # The radius [-] at its stationary point within the step.
-    low, high, at_low, at_high = 0.0, h, begin, end
-    side = 0
-    for _ in range(40):
-        tau = (low * at_high - high * at_low) / (at_high - at_low)
-        if not low < tau < high:
-            tau = 0.5 * (low + high)
-        _step(s, load, t, tau, length, c, k, trial)
-        value = trial[0] * trial[3] + trial[1] * trial[4]
-        if value == 0.0 or high - low < 1e-10 * h:
-            break
-        if (value > 0.0) == (at_high > 0.0):
-            high, at_high = tau, value
-            if side == 1:
-                at_low *= 0.5
-            side = 1
-        else:
-            low, at_low = tau, value
-            if side == -1:
-                at_high *= 0.5
-            side = -1
-        if at_high == at_low:
-            break
-    return math.hypot(trial[0], trial[1])
+    curl: float,
+    drag: float,
+) -> State:
+    # One classical Runge-Kutta step of (q, q'), then back onto the sphere.
+    # x, y, n: pivot acceleration and g + a_z at its beginning, middle and end.  curl = 1 / L, drag = 2 zeta w.
+    half, sixth = 0.5 * h, h / 6.0
+    a1, a2, a3 = _bend(q1, q2, q3, r1, r2, r3, -x0 * curl, -y0 * curl, -n0 * curl, drag)
+    s1, s2, s3 = r1 + half * a1, r2 + half * a2, r3 + half * a3
+    f1, f2, f3 = -xm * curl, -ym * curl, -nm * curl
+    b1, b2, b3 = _bend(q1 + half * r1, q2 + half * r2, q3 + half * r3, s1, s2, s3, f1, f2, f3, drag)
+    t1, t2, t3 = r1 + half * b1, r2 + half * b2, r3 + half * b3
+    c1, c2, c3 = _bend(q1 + half * s1, q2 + half * s2, q3 + half * s3, t1, t2, t3, f1, f2, f3, drag)
+    u1, u2, u3 = r1 + h * c1, r2 + h * c2, r3 + h * c3
+    d1, d2, d3 = _bend(q1 + h * t1, q2 + h * t2, q3 + h * t3, u1, u2, u3, -x1 * curl, -y1 * curl, -n1 * curl, drag)
+    p1 = q1 + sixth * (r1 + 2.0 * (s1 + t1) + u1)
+    p2 = q2 + sixth * (r2 + 2.0 * (s2 + t2) + u2)
+    p3 = q3 + sixth * (r3 + 2.0 * (s3 + t3) + u3)
+    v1 = r1 + sixth * (a1 + 2.0 * (b1 + c1) + d1)
+    v2 = r2 + sixth * (a2 + 2.0 * (b2 + c2) + d2)
+    v3 = r3 + sixth * (a3 + 2.0 * (b3 + c3) + d3)
+    back = 1.5 - 0.5 * (p1 * p1 + p2 * p2 + p3 * p3)
+    p1, p2, p3 = p1 * back, p2 * back, p3 * back
+    out = p1 * v1 + p2 * v2 + p3 * v3
+    return p1, p2, p3, v1 - out * p1, v2 - out * p2, v3 - out * p3
 
 
 @kernel
-def spherical_one(
-    x: Array,
-    y: Array,
-    z: Array,
-    dt: float,
-    peak: float,
-    length: float,
-    zeta: float,
-    tail: float,
-    refine: int,
-    history: Array,
-) -> tuple[float, float]:
-    """Integrate one pendulum and return (max horizontal displacement / L [-], flags).
+def _advance(s: State, load: Load, h: float, curl: float, drag: float) -> State:
+    # load: x, y, n at the beginning and their rates.
+    x0, y0, n0, x1, y1, n1 = load
+    half = 0.5 * h
+    return _step(
+        s[0],
+        s[1],
+        s[2],
+        s[3],
+        s[4],
+        s[5],
+        x0,
+        y0,
+        n0,
+        x0 + x1 * half,
+        y0 + y1 * half,
+        n0 + n1 * half,
+        x0 + x1 * h,
+        y0 + y1 * h,
+        n0 + n1 * h,
+        h,
+        curl,
+        drag,
+    )
 
-    x, y, z : (n,) m/s2;  peak: the largest acceleration of the pivot
-    history : (m, 2) receives the horizontal displacement / L at the samples, as long as it is
-    """
+
+@kernel
+def _turn(s: State, load: Load, h: float, curl: float, drag: float, after: State) -> float:
+    # The square of the radius [-] where it is stationary within the step; it is of second order in the time's error.
+    low, high = 0.0, h
+    at_low, at_high = s[0] * s[3] + s[1] * s[4], after[0] * after[3] + after[1] * after[4]
+    side, t, best = 0, low, 0.0
+    for _ in range(40):
+        before, t = t, trial(low, high, at_low, at_high)
+        q = _advance(s, load, t, curl, drag)
+        best = q[0] * q[0] + q[1] * q[1]
+        value = q[0] * q[3] + q[1] * q[4]
+        low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, t, value)
+        if value == 0.0 or abs(t - before) < 1e-8 * h or at_high == at_low:
+            break
+    return best
+
+
+@kernel
+def _shake(x: Array, y: Array, z: Array, dt: float, pieces: int, block: Array, history: Array) -> None:
+    # Integrate a block of LANES pendulums through the record.  history: q of the first lane.
     n = x.shape[0]
-    if n < 2:
-        return 0.0, 0.0
-    w = math.sqrt(G / length)
-    c = 2.0 * zeta * w
-    fastest = math.sqrt((G + peak) / length) * (1.0 + 2.0 * zeta)
-    pieces = max(1, math.ceil(fastest * dt / STEP)) * refine
-    step = dt / pieces
-    s, after, trial, load, k = np.zeros(6), np.zeros(6), np.zeros(6), np.zeros(6), np.zeros((10, 3))
-    s[2] = -1.0
-    most = 0.0
+    h = dt / pieces
+    half = 0.5 * h
     for i in range(n - 1):
         if i < history.shape[0]:
-            history[i, 0], history[i, 1] = s[0], s[1]
-        load[0], load[1] = x[i], (x[i + 1] - x[i]) / dt
-        load[2], load[3] = y[i], (y[i + 1] - y[i]) / dt
-        load[4], load[5] = G + z[i], (z[i + 1] - z[i]) / dt
+            history[i, 0], history[i, 1] = block[0, 0], block[1, 0]
+        dx, dy, dn = (x[i + 1] - x[i]) / dt, (y[i + 1] - y[i]) / dt, (z[i + 1] - z[i]) / dt
         for j in range(pieces):
-            t = j * step
-            _step(s, load, t, step, length, c, k, after)
-            begin, end = s[0] * s[3] + s[1] * s[4], after[0] * after[3] + after[1] * after[4]
-            radius = math.hypot(after[0], after[1])
-            if begin > 0.0 > end and max(radius, math.hypot(s[0], s[1])) + step * math.hypot(s[3], s[4]) > most:
-                most = max(most, _turn(s, load, t, step, length, c, k, trial, begin, end))
-            most = max(most, radius)
-            s[:] = after
-            _normalise(s)
+            x0, y0, n0 = x[i] + dx * (j * h), y[i] + dy * (j * h), G + z[i] + dn * (j * h)
+            xm, ym, nm = x0 + dx * half, y0 + dy * half, n0 + dn * half
+            x1, y1, n1 = x0 + dx * h, y0 + dy * h, n0 + dn * h
+            turning = 0
+            for k in range(LANES):
+                q1, q2, q3 = block[0, k], block[1, k], block[2, k]
+                r1, r2, r3 = block[3, k], block[4, k], block[5, k]
+                p1, p2, p3, v1, v2, v3 = _step(
+                    q1, q2, q3, r1, r2, r3, x0, y0, n0, xm, ym, nm, x1, y1, n1, h, block[CURL, k], block[DRAG, k]
+                )
+                block[8, k], block[9, k], block[10, k] = p1, p2, p3
+                block[11, k], block[12, k], block[13, k] = v1, v2, v3
+                begin, end = q1 * r1 + q2 * r2, p1 * v1 + p2 * v2
+                before, after = q1 * q1 + q2 * q2, p1 * p1 + p2 * p2
+                most = max(block[MOST, k], after)
+                # The square of the radius rises at twice these rates; twice that again for a rate that grows first.
+                reach = max(before, after) + 4.0 * h * max(begin, -end)
+                reach = reach if begin > 0.0 else 0.0
+                reach = reach if end < 0.0 else 0.0
+                block[MOST, k], block[REACH, k] = most, reach
+                turning += 1 if reach > most else 0
+            if turning > 0:
+                for k in range(LANES):
+                    if block[REACH, k] > block[MOST, k]:
+                        s = (block[0, k], block[1, k], block[2, k], block[3, k], block[4, k], block[5, k])
+                        ahead = (block[8, k], block[9, k], block[10, k], block[11, k], block[12, k], block[13, k])
+                        load = (x0, y0, n0, dx, dy, dn)
+                        top = _turn(s, load, h, block[CURL, k], block[DRAG, k], ahead)
+                        block[MOST, k] = max(block[MOST, k], top)
+            for row in range(6):
+                for k in range(LANES):
+                    block[row, k] = block[row + 8, k]
     if n - 1 < history.shape[0]:
-        history[n - 1, 0], history[n - 1, 1] = s[0], s[1]
-    stop = tail if tail >= 0.0 else CAP
-    h = 0.8 * STEP / (w * (1.0 + 2.0 * zeta)) / refine
-    load[:] = 0.0
-    load[4] = G
-    t, turns = 0.0, 0
-    while t < stop:
-        speed2 = s[3] * s[3] + s[4] * s[4] + s[5] * s[5]
-        if tail < 0.0:
-            # Energy as a height above the lowest point, in lengths.  In free swing it cannot grow, so a peak higher
-            # than it is final; in an undamped ellipse the largest radius comes within two turns.
-            left = 0.5 * speed2 / (w * w) + _height(s)
-            lift = most * most / (1.0 + math.sqrt(max(0.0, 1.0 - most * most)))
-            if left <= lift * (1.0 - 1e-9) or left == 0.0 or turns >= 3:
-                return min(most, 1.0), 0.0
-        now = min(h, stop - t)
-        _step(s, load, 0.0, now, length, c, k, after)
-        begin, end = s[0] * s[3] + s[1] * s[4], after[0] * after[3] + after[1] * after[4]
-        if begin > 0.0 > end:
-            most = max(most, _turn(s, load, 0.0, now, length, c, k, trial, begin, end))
-            turns += 1
-        most = max(most, math.hypot(after[0], after[1]))
-        s[:] = after
-        _normalise(s)
-        t += now
-    return min(most, 1.0), float(CUT) if tail < 0.0 else 0.0
+        history[n - 1, 0], history[n - 1, 1] = block[0, 0], block[1, 0]
 
 
 @kernel
-def _height(s: Array) -> float:
+def _coast(s: State, most: float, length: float, zeta: float, tail: float, refine: int) -> tuple[float, float]:
+    # After the record the energy cannot grow; most and the result are squares of the radius.
+    w = math.sqrt(G / length)
+    curl, drag = 1.0 / length, 2.0 * zeta * w
+    load = (0.0, 0.0, G, 0.0, 0.0, 0.0)
+    stop = tail if tail >= 0.0 else CAP
+    h = 0.8 * STEP / (w * (1.0 + 2.0 * zeta)) / refine
+    t, turns = 0.0, 0
+    while t < stop:
+        if tail < 0.0:
+            # Energy as a height above the lowest point, in lengths.  A peak higher than it is final; in an undamped
+            # ellipse the largest radius comes within two turns.
+            left = 0.5 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]) / (w * w) + _height(s)
+            lift = most / (1.0 + math.sqrt(max(0.0, 1.0 - most)))
+            if left <= lift * (1.0 - 1e-9) or left == 0.0 or turns >= 3:
+                return most, 0.0
+        now = min(h, stop - t)
+        after = _advance(s, load, now, curl, drag)
+        if s[0] * s[3] + s[1] * s[4] > 0.0 > after[0] * after[3] + after[1] * after[4]:
+            most = max(most, _turn(s, load, now, curl, drag, after))
+            turns += 1
+        most = max(most, after[0] * after[0] + after[1] * after[1])
+        s = after
+        t += now
+    return most, float(CUT) if tail < 0.0 else 0.0
+
+
+@kernel
+def _height(s: State) -> float:
     # 1 + q_z without cancellation near the lowest point.
     r2 = s[0] * s[0] + s[1] * s[1]
     return r2 / (1.0 - s[2]) if s[2] < 0.0 else 1.0 + s[2]
@@ -193,8 +218,38 @@ def spherical_batch(
     tail: float,
     refine: int,
     results: Array,
+    history: Array,
 ) -> None:
-    """Fill results (m, 2): max horizontal displacement / L [-], flags."""
-    nothing = np.empty((0, 2))
-    for k in range(length.shape[0]):
-        results[k, 0], results[k, 1] = spherical_one(x, y, z, dt, peak, length[k], zeta[k], tail, refine, nothing)
+    """Fill results (m, 2): max horizontal displacement / L [-], flags.
+
+    x, y, z : (n,) m/s2;  peak: the largest acceleration of the pivot
+    history : (k, 2) receives the horizontal displacement / L of a single pendulum at the samples, as long as it is
+
+    Lanes do not mix: a result is the same to the last bit in any company.
+    """
+    m = length.shape[0]
+    results[:, :] = 0.0
+    if x.shape[0] < 2:
+        return
+    pieces = np.empty(m, dtype=np.int64)
+    for k in range(m):
+        fastest = math.sqrt((G + peak) / length[k]) * (1.0 + 2.0 * zeta[k])
+        pieces[k] = max(1, math.ceil(fastest * dt / STEP)) * refine
+    order = np.argsort(pieces, kind="mergesort")
+    block = lanes(16)
+    begin = 0
+    while begin < m:
+        end = same_steps(pieces, order, begin)
+        block[:] = 0.0
+        for k in range(LANES):
+            one = order[min(begin + k, end - 1)]
+            block[2, k] = -1.0
+            block[CURL, k] = 1.0 / length[one]
+            block[DRAG, k] = 2.0 * zeta[one] * math.sqrt(G / length[one])
+        _shake(x, y, z, dt, pieces[order[begin]], block, history)
+        for k in range(end - begin):
+            one = order[begin + k]
+            s = (block[0, k], block[1, k], block[2, k], block[3, k], block[4, k], block[5, k])
+            most, flags = _coast(s, block[MOST, k], length[one], zeta[one], tail, refine)
+            results[one, 0], results[one, 1] = min(math.sqrt(most), 1.0), flags
+        begin = end

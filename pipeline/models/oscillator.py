@@ -4,30 +4,30 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.kernels.oscillator import oscillator_batch, oscillator_one
+from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
 from pipeline.models.common import ROUNDING, after_record
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Columns, Excitation, Model, Scene
 
 
-def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array, refine: int) -> tuple[Array, Array]:
+def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[Array, Array]:
     """Return the largest |u| [m] and |a + share u''| [m/s2] of n oscillators, (n,) each."""
     max_u, max_y = np.empty(w.size), np.empty(w.size)
     tail = -1.0 if motion.tail is None else float(motion.tail)
     arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta, share)]
-    oscillator_batch(np.ascontiguousarray(motion.x), motion.dt, *arrays, tail, refine, max_u, max_y)
+    oscillator_batch(np.ascontiguousarray(motion.x), motion.dt, *arrays, tail, max_u, max_y)
     return max_u, max_y
 
 
 def _run(
     motion: Excitation,
     parameters: Mapping[str, Array],
-    refine: int,
+    refine: int,  # noqa: ARG001
     estimate: bool,  # noqa: ARG001
 ) -> Columns:
     w = 2.0 * np.pi * parameters["frequency"]
-    displacement, absolute = oscillate(motion, w, parameters["damping"], np.ones_like(w), refine)
+    displacement, absolute = oscillate(motion, w, parameters["damping"], np.ones_like(w))
     return {
         "displacement": displacement,
         "pseudo_acceleration": w**2 * displacement,
@@ -40,7 +40,7 @@ def _run(
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     history = np.zeros((motion.x.size + after_record(motion), 2))
     w = 2.0 * np.pi * parameters["frequency"]
-    oscillator_one(np.ascontiguousarray(motion.x), motion.dt, w, parameters["damping"], 1.0, 0.0, 1, history)
+    oscillator_history(np.ascontiguousarray(motion.x), motion.dt, w, parameters["damping"], 1.0, history)
     # history holds a + u'' with the sign of the base's acceleration.
     return {"u_x": history[:, 0], "a_x": history[:, 1]}
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.kernels.oscillator import oscillator_one
+from pipeline.kernels.oscillator import oscillator_history
 from pipeline.models.common import ROUNDING, after_record, needs
 from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.models.oscillator import oscillate
@@ -15,14 +15,14 @@ from pipeline.records import Columns, Excitation, Model, Scene, Support
 def _run(
     motion: Excitation,
     parameters: Mapping[str, Array],
-    refine: int,
+    refine: int,  # noqa: ARG001
     estimate: bool,  # noqa: ARG001
 ) -> Columns:
     # With r = I / (m h^2), theta = u / (r h) where u is the displacement of the plain oscillator, and the centre of
     # gravity feels a + h theta'' = a + u'' / r.
     w = 2.0 * np.pi * parameters["frequency"]
     share = 1.0 / parameters["inertia_ratio"]
-    displacement, acceleration = oscillate(motion, w, parameters["damping"], share, refine)
+    displacement, acceleration = oscillate(motion, w, parameters["damping"], share)
     rotation = displacement * share / parameters["cg_height"]
     return {"rotation": rotation, "acceleration": acceleration, "error": ROUNDING * rotation, "note": np.zeros_like(w)}
 
@@ -31,7 +31,7 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     history = np.zeros((motion.x.size + after_record(motion), 2))
     w = 2.0 * np.pi * parameters["frequency"]
     share = 1.0 / parameters["inertia_ratio"]
-    oscillator_one(np.ascontiguousarray(motion.x), motion.dt, w, parameters["damping"], share, 0.0, 1, history)
+    oscillator_history(np.ascontiguousarray(motion.x), motion.dt, w, parameters["damping"], share, history)
     return {"rotation": history[:, 0] * share / parameters["cg_height"], "a_x": history[:, 1]}
 
 

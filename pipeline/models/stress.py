@@ -65,11 +65,11 @@ def _run(
 def _run_flexible(
     motion: Excitation,
     parameters: Mapping[str, Array],
-    refine: int,
+    refine: int,  # noqa: ARG001
     estimate: bool,  # noqa: ARG001
 ) -> Columns:
     w = 2.0 * np.pi * parameters["frequency"]
-    displacement, _ = oscillate(motion, w, parameters["damping"], np.ones_like(w), refine)
+    displacement, _ = oscillate(motion, w, parameters["damping"], np.ones_like(w))
     push = w**2 * displacement
     out = section_stresses(push, parameters)
     error, note = out.pop("error"), out.pop("note")

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from pipeline.kernels.pendulum import pendulum_batch
-from pipeline.kernels.spherical import spherical_batch, spherical_one
+from pipeline.kernels.spherical import spherical_batch
 from pipeline.models.common import NO_HISTORY, broadcast, needs, shaken
 from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.quantities import Array, Quantity
@@ -47,7 +47,7 @@ def _run_3d(motion: Excitation, parameters: Mapping[str, Array], refine: int, es
     coarse, fine = np.full((length.size, 2), np.nan), np.empty((length.size, 2))
     runs = ((refine, coarse), (2 * refine, fine)) if estimate else ((refine, fine),)
     for steps, results in runs:
-        spherical_batch(x, y, z, motion.dt, shaken(motion), length, zeta, tail, steps, results)
+        spherical_batch(x, y, z, motion.dt, shaken(motion), length, zeta, tail, steps, results, np.empty((0, 2)))
     displacement = length * fine[:, 0]
     return {
         "displacement": displacement,
@@ -84,19 +84,10 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
 
 def _trace_3d(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     history = np.zeros((motion.x.size, 2))
-    y = np.zeros_like(motion.x) if motion.y is None else motion.y
-    spherical_one(
-        np.ascontiguousarray(motion.x),
-        np.ascontiguousarray(y),
-        np.ascontiguousarray(motion.z),
-        motion.dt,
-        shaken(motion),
-        parameters["length"],
-        parameters["damping"],
-        0.0,
-        4,
-        history,
-    )
+    length, zeta = np.array([parameters["length"]]), np.array([parameters["damping"]])
+    x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
+    y = np.zeros_like(x) if motion.y is None else np.ascontiguousarray(motion.y)
+    spherical_batch(x, y, z, motion.dt, shaken(motion), length, zeta, 0.0, 4, np.empty((1, 2)), history)
     return {"u_x": parameters["length"] * history[:, 0], "u_y": parameters["length"] * history[:, 1]}
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline.kernels.linear import advance, transition
-from pipeline.kernels.oscillator import oscillator_batch, oscillator_one
+from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
 from pipeline.quantities import Array
 from pipeline.records import Motion
 from pipeline.supports import resampled
@@ -128,7 +128,7 @@ def response_history(motion: Motion, row: int, period: float, damping: float) ->
     """
     history = np.zeros((motion.samples, 2))
     base = np.ascontiguousarray(motion.acceleration[row])
-    oscillator_one(base, motion.dt, 2.0 * np.pi / period, damping, 1.0, 0.0, 1, history)
+    oscillator_history(base, motion.dt, 2.0 * np.pi / period, damping, 1.0, history)
     return history[:, 0].copy(), history[:, 1].copy()
 
 
@@ -148,7 +148,7 @@ def _one_direction(motion: Motion, row: int, periods: Array, damping: Array) -> 
     zeta = np.repeat(damping, periods.size)
     u, a = np.empty(w.size), np.empty(w.size)
     base = np.ascontiguousarray(motion.acceleration[row])
-    oscillator_batch(base, motion.dt, w, zeta, np.ones_like(w), -1.0, 1, u, a)
+    oscillator_batch(base, motion.dt, w, zeta, np.ones_like(w), -1.0, u, a)
     shape = (damping.size, periods.size)
     return u.reshape(shape), a.reshape(shape)
 
