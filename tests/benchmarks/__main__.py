@@ -1,11 +1,11 @@
-"""Kouros beside its peers, beside C, and by itself: `python -m tests.benchmarks [peers] [models] [night]`, else all.
+"""Kouros beside its peers, beside C, and by itself: `python -m tests.benchmarks [peers] [native] [models] [night]`.
 
 Machines are noisy: read the ratios of one run, not the times.
 """
 
 import sys
 
-from tests.benchmarks import general, models, multibody, night, opensees, spectra
+from tests.benchmarks import general, models, multibody, native, night, opensees, spectra
 from tests.benchmarks.common import HEADING, OBJECTS
 
 
@@ -27,7 +27,7 @@ def peers() -> None:
             print(row.line(), flush=True)
 
 
-PARTS = {"peers": peers, "models": models.costs, "night": night.night}
+PARTS = {"peers": peers, "native": native.native, "models": models.costs, "night": night.night}
 
 
 def main(wanted: list[str]) -> None:
