@@ -10,7 +10,7 @@
 
 static inline double larger(double a, double b) { return a > b ? a : b; }
 
-/* One-directional sliding in closed form: u'' = -a - s mu N between samples, linear a and N. ------------------------ */
+/* One-directional sliding in closed form: u'' = -a - s mu N between samples, linear a and N. ---------------------- */
 
 /* First time in (0, span] at which p + q t + r t^2 comes down to 0, p >= 0; -1 if it does not. */
 static double first_stop(double p, double q, double r, double span)
@@ -132,7 +132,7 @@ void sliding(const double *x, const double *z, const double *ratio, const double
     }
 }
 
-/* Oscillators in lanes: exact recursion, and a search of the steps that can hold a peak. ----------------------------- */
+/* Oscillators in lanes: exact recursion, and a search of the steps that can hold a peak. -------------------------- */
 
 /* Responses after t to a unit displacement, velocity, step and ramp; zeta < 1. */
 static void transition(double w, double zeta, double t, double *r)
@@ -205,7 +205,7 @@ static double turning(double u, double v, double f0, double f1, double w, double
     return top;
 }
 
-/* max_u, max_y (m): largest |u| and |a + u''| within the record; w (1 + zeta) dt < 0.9, zeta < 1, m a multiple of LANES */
+/* max_u, max_y (m): largest |u| and |a + u''| within the record; w (1 + zeta) dt < 0.9, zeta < 1, m / LANES whole */
 void oscillators(const double *base, long n, double dt, const double *w, const double *zeta, long m, double *max_u,
                  double *max_y)
 {
