@@ -2,6 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.kouros-installed
+PEERS := .venv/.kouros-peers
 
 .PHONY: demo test lint bench check-browser clean
 
@@ -9,6 +10,15 @@ $(STAMP): pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv || { echo "python3 has no venv module: apt-get install python3-venv"; exit 1; }
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
 	@touch $(STAMP)
+
+# One by one: a peer that has no wheel for this machine is left out, and the benchmark says so.
+$(PEERS): $(STAMP)
+	@$(BIN)/python -c "import tomllib; from pathlib import Path; \
+	print(*tomllib.loads(Path('pyproject.toml').read_text())['project']['optional-dependencies']['peers'], sep='\n')" | \
+	while read -r peer; do \
+	  $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt "$$peer" || \
+	  echo "$$peer cannot be installed here"; done
+	@touch $(PEERS)
 
 demo: $(STAMP)  ## the whole job on the bundled collection and record; ends with the path of the report
 	$(BIN)/kouros demo
@@ -22,7 +32,7 @@ lint: $(STAMP)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: $(STAMP)  ## ns per object and sample of each model, and the stages of a night
+bench: $(PEERS)  ## costs beside peers and beside C, ns per object and sample of each model, the stages of a night
 	$(BIN)/python -m tests.benchmarks
 
 # The browser tests need Chromium and its driver; where they are missing they come from Debian's packages.

@@ -1,0 +1,68 @@
+"""Cost of each model per object and sample, at 0.7 g, in one thread, with the share of intervals skipped at rest."""
+
+import numpy as np
+
+from pipeline.models import model_named
+from pipeline.quantities import Array, G
+from pipeline.records import Excitation, Model
+from pipeline.response import REFINE, prepare
+from tests.benchmarks.common import OBJECTS, SEED, least, shaking
+
+
+def parameters() -> dict[str, tuple[float, dict[str, Array | float]]]:
+    """Return, for each model, the ns per object and sample aimed at (NaN: none) and plausible objects (fixed seed)."""
+    rng = np.random.default_rng(SEED)
+    slope, height = rng.uniform(0.1, 1.5, OBJECTS), rng.uniform(0.1, 2.0, OBJECTS)
+    friction, length = rng.uniform(0.1, 0.6, OBJECTS), rng.uniform(0.2, 3.0, OBJECTS)
+    pad = {"frequency": rng.uniform(0.3, 3.0, OBJECTS), "damping": 0.02, "friction": rng.uniform(0.05, 0.2, OBJECTS)}
+    return {
+        "sliding, one direction": (10.0, {"friction_static": friction, "directions": 1.0}),
+        "sliding, two directions": (np.nan, {"friction_static": friction, "directions": 2.0}),
+        "rocking": (3.0, {"half_width": 0.5 * slope * height, "cg_height": 0.5 * height}),
+        "swing": (8.0, {"length": length, "damping": 0.02}),
+        "swing_3d": (80.0, {"length": length, "damping": 0.02}),
+        "oscillator": (0.6, {"frequency": rng.uniform(0.5, 20.0, OBJECTS), "damping": 0.05}),
+        "horizontal_isolator, one direction": (10.0, {**pad, "directions": 1.0}),
+        "horizontal_isolator, two directions": (np.nan, {**pad, "directions": 2.0}),
+        "rotational_isolator": (
+            np.nan,
+            {
+                "frequency": rng.uniform(1.0, 8.0, OBJECTS),
+                "damping": 0.2,
+                "cg_height": height / 2,
+                "inertia_ratio": 1.4,
+            },
+        ),
+    }
+
+
+def at_rest(model: Model, excitation: Excitation, values: dict[str, Array]) -> float:
+    """Return the share of sample intervals in which nothing moves, of every 32nd object."""
+    assert model.trace is not None
+    shares = []
+    for k in range(0, OBJECTS, 32):
+        history = model.trace(excitation, {name: float(v[k]) for name, v in values.items()})
+        place = history["rotation"] if "rotation" in history else history["u_x"]
+        shares.append(np.mean(np.diff(place[: excitation.x.size]) == 0.0))
+    return float(np.mean(shares))
+
+
+def costs() -> None:
+    """Print the cost of a single pass of each model, along the record's strongest direction where it needs one."""
+    motion = shaking()
+    x, y, z = motion.acceleration
+    along = max((x, y), key=lambda a: float(np.abs(a).max()))
+    print(f"{motion.samples} samples, {OBJECTS} objects, one thread, peak {np.abs(along).max() / G:.1f} g")
+    print(f"{'model':<38}{'ns per object and sample':>26}{'aim':>8}{'at rest':>9}")
+    for title, (aim, given) in parameters().items():
+        model = model_named(title.split(",")[0])
+        values = prepare(model, given)
+        two = model.directions == 2 or (model.directions == 0 and values["directions"][0] == 2.0)
+        excitation = Excitation(motion.dt, x if two else along, y if two else None, z, None)
+
+        def once(model: Model = model, excitation: Excitation = excitation, values: dict[str, Array] = values) -> None:
+            model.run(excitation, values, REFINE["history"], False)
+
+        cost = least(once) / OBJECTS / motion.samples * 1e9
+        wanted = "" if np.isnan(aim) else f"{aim:g}"
+        print(f"{title:<38}{cost:>26.2f}{wanted:>8}{at_rest(model, excitation, values):>9.0%}")
