@@ -97,12 +97,11 @@ def summary_lines(one: Inspection, units: Units, *, x_azimuth: float) -> list[st
     """
     source, licence = origin(one)
     now, was = one.measures, one.measures_before
-    arrow = " (recorded -> used)" if one.filtered else ""
     lines = [
         f"{clean(one.motion.name)}, level {clean(one.level)}, {one.place} of {clean(one.site)}",
         f"  source    {source}; licence {licence}",
         f"  sampling  {sampling(one)}",
-        f"  done      {processing(one)}",
+        f"  done      {processing(one)}" + (" Below: as recorded -> as used." if one.filtered else ""),
     ]
     reason = corner_reason(one)
     lines += [f"  corner    {reason}"] if reason else []
@@ -112,14 +111,14 @@ def summary_lines(one: Inspection, units: Units, *, x_azimuth: float) -> list[st
             key = f"{stem}_{axis}"
             before = f"{measured(was[key], unit, units)} -> " if one.filtered else ""
             parts.append(f"{axis} {before}{measured(now[key], unit, units)}")
-        lines.append(f"  {title.ljust(10)}{'; '.join(parts)} {units.symbol(unit)}{arrow}")
+        lines.append(f"  {title.ljust(10)}{'; '.join(parts)} {units.symbol(unit)}")
     arias = [
         f"{axis} " + (f"{number(was[f'arias_{axis}'])} -> " if one.filtered else "") + number(now[f"arias_{axis}"])
         for axis in "xyz"
     ]
-    lines.append(f"  Arias     {'; '.join(arias)} m/s{arrow}")
+    lines.append(f"  Arias     {'; '.join(arias)} m/s")
     span = f"{number(was['duration_5_95'])} -> " if one.filtered else ""
-    lines.append(f"  D5-95     {span}{number(now['duration_5_95'])} s{arrow}")
+    lines.append(f"  D5-95     {span}{number(now['duration_5_95'])} s")
     told = verdict(one.pulse, units)
     if one.pulse is not None:
         told += f" Azimuth {azimuth(one.pulse, x_azimuth):.0f} degrees from north."
