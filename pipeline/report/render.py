@@ -62,14 +62,14 @@ def _pages(record: RunRecord, units: Units) -> list[tuple[str, str]]:
     }
     shaken = _drawn([key for motion in museum.motions for key in motion.charts], drawings)
     pages = [
-        ("index.html", _fill(env, "index.html", shared | {"here": "index"})),
-        ("method.html", _fill(env, "method.html", shared | {"here": "method"})),
-        ("motion.html", _fill(env, "motion.html", shared | shaken | {"here": "motion", "traces": traces})),
+        ("index.html", fill(env, "index.html", shared | {"here": "index"})),
+        ("method.html", fill(env, "method.html", shared | {"here": "method"})),
+        ("motion.html", fill(env, "motion.html", shared | shaken | {"here": "motion", "traces": traces})),
     ]
     for gallery in museum.galleries:
         context = shared | _drawn(gallery.charts, drawings)
         context |= {"here": "gallery", "gallery": gallery, "notes": page_notes(gallery.objects)}
-        pages.append((gallery.page, _fill(env, "gallery.html", context)))
+        pages.append((gallery.page, fill(env, "gallery.html", context)))
     return pages
 
 
@@ -101,7 +101,8 @@ def _present(value: object) -> object:
     return value
 
 
-def _fill(env: Environment, template: str, context: Mapping[str, Any]) -> str:
+def fill(env: Environment, template: str, context: Mapping[str, Any]) -> str:
+    """Return a page: a template filled in, with nothing in it that no page may carry."""
     # Once more over the whole page, because a template may print a text that no view has cleaned.
     return clean(env.get_template(template).render(context))
 

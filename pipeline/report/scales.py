@@ -6,6 +6,7 @@ from math import ceil, floor, isfinite, isnan, log10
 
 import numpy as np
 
+from pipeline.quantities import Array
 from pipeline.report.errors import ReportError
 
 
@@ -28,6 +29,16 @@ class Scale:
             else (held - self.low) / (self.high - self.low)
         )
         return self.start + share * (self.end - self.start)
+
+    def pixels(self, values: Array) -> Array:
+        """Return the pixels of many values (n,); what lies outside the limits lies outside the frame, to be clipped."""
+        if self.log:
+            share = np.log10(np.maximum(values, 1e-9 * self.low) / self.low) / log10(self.high / self.low)
+        else:
+            share = (values - self.low) / (self.high - self.low)
+        # Numbers of a thousand frames are of no use to a browser.
+        pixels: Array = self.start + np.clip(share, -9.0, 10.0) * (self.end - self.start)
+        return pixels
 
     def side(self, value: float) -> int:
         """Return -1 below the limits, 0 inside, 1 above; a hair of rounding counts as inside."""
@@ -56,6 +67,12 @@ def log_ticks(low: float, high: float) -> list[float]:
     powers = range(floor(log10(low)), ceil(log10(high)) + 1)
     values = [head * 10.0**power for power in powers if power % every == 0 for head in heads]
     return [v for v in values if low * (1 - 1e-9) <= v <= high * (1 + 1e-9)]
+
+
+def log_between(low: float, high: float) -> list[float]:
+    """Return 2 to 9 times each power of ten inside the limits: the lines of log paper that carry no number."""
+    powers = range(floor(log10(low)), ceil(log10(high)) + 1)
+    return [v for p in powers for head in range(2, 10) if low <= (v := head * 10.0**p) <= high]
 
 
 def nice_step(rough: float) -> float:

@@ -105,7 +105,7 @@ class Drawing:
                 f"chart {self.chart.key!r}, zone {zone.label!r}: tone {zone.tone!r} is not known; "
                 f"use one of {', '.join(_TONES)}"
             )
-        return f'<path class="{_TONES[zone.tone]}" d="{_path(thin(self._points(zone)))}Z"/>'
+        return f'<path class="{_TONES[zone.tone]}" d="{path(thin(self._points(zone)))}Z"/>'
 
     def _room(self, zone: Zone) -> list[tuple[float, float]]:
         points = thin(self._points(zone))
@@ -126,21 +126,9 @@ class Drawing:
         return "".join(parts)
 
     def _grid(self) -> list[str]:
-        x0, x1, y0, y1 = self.x.start, self.x.end, self.y.start, self.y.end
-        lines, words = [], []
-        for value in self.x.ticks():
-            at = self.x.at(value)
-            lines.append(f"M{at:.1f} {y0}V{y1}")
-            words.append(f'<text class="tx" x="{at:.1f}" y="{y0 + 17}">{tick(value)}</text>')
-        for value in self.y.ticks():
-            at = self.y.at(value)
-            lines.append(f"M{x0} {at:.1f}H{x1:.1f}")
-            words.append(f'<text class="ty" x="{x0 - 8}" y="{at + 4:.1f}">{tick(value)}</text>')
-        middle_x, middle_y = (x0 + x1) / 2, (y0 + y1) / 2
+        middle_x, middle_y = (self.x.start + self.x.end) / 2, (self.y.start + self.y.end) / 2
         return [
-            f'<path class="gr" d="{"".join(lines)}"/>',
-            *words,
-            f'<path class="ax" d="M{x0} {y1}V{y0}H{x1:.1f}"/>',
+            *frame(self.x, self.y, self.x.ticks(), self.y.ticks()),
             f'<text class="al" x="{middle_x:.0f}" y="{HEIGHT - 8}">{escape(self.axis_label("x"))}</text>',
             f'<text class="al" transform="translate(15 {middle_y:.0f})rotate(-90)">'
             f"{escape(self.axis_label('y'))}</text>",
@@ -160,7 +148,7 @@ class Drawing:
                 runs[-1].append((self.x.at(x * self._fx), self.y.at(y * self._fy)))
             elif runs[-1]:
                 runs.append([])
-        d = "".join(_path(thin(run)) for run in runs if len(run) > 1)
+        d = "".join(path(thin(run)) for run in runs if len(run) > 1)
         dash = _DASHES[index % len(_DASHES)]
         style = f' stroke-dasharray="{dash}"' if dash else ""
         return f'<path class="cu"{style} d="{d}"/>' if d else ""
@@ -263,7 +251,26 @@ def tick(value: float) -> str:
     return f"{value:.6g}".replace("-", "−")
 
 
-def _path(points: Sequence[tuple[float, float]]) -> str:
+def frame(x: Scale, y: Scale, x_ticks: Sequence[float], y_ticks: Sequence[float], numbers: str = "xy") -> list[str]:
+    """Return the grid of a panel, the values at its ticks and the lines of its two axes.
+
+    numbers : the axes that carry their values; a panel above another one leaves them to that one
+    """
+    x0, x1, y0, y1 = x.start, x.end, y.start, y.end
+    lines, words = [], []
+    for value in x_ticks:
+        at = x.at(value)
+        lines.append(f"M{at:.1f} {y0}V{y1}")
+        words += [f'<text class="tx" x="{at:.1f}" y="{y0 + 17}">{tick(value)}</text>'] if "x" in numbers else []
+    for value in y_ticks:
+        at = y.at(value)
+        lines.append(f"M{x0} {at:.1f}H{x1:.1f}")
+        words += [f'<text class="ty" x="{x0 - 8}" y="{at + 4:.1f}">{tick(value)}</text>'] if "y" in numbers else []
+    return [f'<path class="gr" d="{"".join(lines)}"/>', *words, f'<path class="ax" d="M{x0} {y1}V{y0}H{x1:.1f}"/>']
+
+
+def path(points: Sequence[tuple[float, float]]) -> str:
+    """Return the data of a path through the points (pixels)."""
     return "M" + "L".join(f"{_few(x)} {_few(y)}" for x, y in points)
 
 

@@ -3,12 +3,13 @@
 from dataclasses import replace
 from math import inf, log10, nan
 
+import numpy as np
 import pytest
 from lxml import etree
 
 from pipeline.records import Axis, Chart, Curve, Zone
 from pipeline.report import ReportError, Units
-from pipeline.report.scales import Scale, inside, linear_ticks, log_ticks, roomy, thin
+from pipeline.report.scales import Scale, inside, linear_ticks, log_between, log_ticks, roomy, thin
 from pipeline.report.svg import Drawing, Spot
 from pipeline.report.traces import trace
 
@@ -28,6 +29,18 @@ SQUARE = Chart(
 def test_log_scale_halves_at_the_geometric_mean() -> None:
     assert Scale(1.0, 100.0, 0.0, 200.0, log=True).at(10.0) == pytest.approx(100.0, abs=1e-12)
     assert Scale(2.0, 6.0, 10.0, 0.0).at(3.0) == pytest.approx(7.5, abs=1e-12)
+
+
+def test_many_values_lie_where_each_would_and_leave_the_frame_where_one_is_held() -> None:
+    scale = Scale(1.0, 100.0, 0.0, 200.0, log=True)
+    pixels = scale.pixels(np.array([10.0, 1000.0, 0.1]))
+    assert pixels == pytest.approx([100.0, 300.0, -100.0], abs=1e-12)
+    assert np.isfinite(scale.pixels(np.array([0.0, 1e300]))).all()
+    assert Scale(2.0, 6.0, 10.0, 0.0).pixels(np.array([3.0, 8.0])) == pytest.approx([7.5, -5.0], abs=1e-12)
+
+
+def test_log_paper_has_two_to_nine_between_its_powers() -> None:
+    assert log_between(0.5, 30.0) == pytest.approx([0.5, 0.6, 0.7, 0.8, 0.9, 2, 3, 4, 5, 6, 7, 8, 9, 20, 30], rel=1e-12)
 
 
 @pytest.mark.parametrize("value", [-inf, -1.0, 0.0, nan])
