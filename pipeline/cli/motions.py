@@ -105,7 +105,7 @@ def show(options: Options, site: str | None, record: str, out: Path, as_json: bo
     """
     from pipeline.jobs.records import described, show
     from pipeline.report import Units
-    from pipeline.report.record_summary import summary_lines
+    from pipeline.report.record_words import summary_lines
 
     settings = _settings(options)
     units = Units(length=settings.report.length) if settings else Units()

@@ -72,10 +72,10 @@ def show(folder: Path, name: str, page: Path, units: Units) -> "tuple[list[Inspe
     raises : MotionError
     """
     from pipeline.motions.inspection import inspect
-    from pipeline.report.record_page import render_records
+    from pipeline.report.record_page import render_record
 
     found = inspect(folder, name)
-    return found, render_records(found, page, units)
+    return found, render_record(found, page, units)
 
 
 def described(one: "Inspection") -> dict[str, Any]:

@@ -28,6 +28,7 @@ HALF_CYCLES = 5
 class Inspection:
     """A record of a manifest with all that a seismologist asks of it.
 
+    x_azimuth       : of the site's x axis, degrees clockwise from north
     place           : the record's key path in the manifest; level: the level of shaking, or "floor NAME"
     before, motion  : as recorded (mean removed, turned and scaled alike), and processed; the same span where the
                       record is not resampled
@@ -41,6 +42,7 @@ class Inspection:
     """
 
     site: str
+    x_azimuth: float
     level: str
     place: str
     before: Motion
@@ -94,6 +96,7 @@ def _inspected(
     v, _ = integrate(motion)
     return Inspection(
         site=site,
+        x_azimuth=x_azimuth,
         level=level,
         place=key,
         before=before,

@@ -34,7 +34,8 @@ class Processed:
     """A record made ready, beside what it was before.
 
     motion  : what objects are shaken by
-    before  : the same span as recorded: only its mean removed (it would hide everything else), turned and scaled alike
+    before  : the same span as recorded, turned and scaled alike; of a raw record the mean is removed, which would hide
+              everything else
     filtered: whether its baseline was corrected and it was filtered here, or by its source long ago
     corners : of high-pass and low-pass [Hz], None where there was none
     """
@@ -60,7 +61,10 @@ def process(
     source = f"{record.source}; licence: {record.licence}"
     start = (0.0, 0.0, 0.0) if recording.velocity is None else recording.velocity[:, 0]
     motion = Motion(recording.dt, recording.data, record.name, recording.steps, source, start)
-    before = motion.changed(motion.acceleration - motion.acceleration.mean(axis=1, keepdims=True), "mean removed")
+    before = motion
+    if not recording.processed:
+        level = motion.acceleration.mean(axis=1, keepdims=True)
+        before = motion.changed(motion.acceleration - level, "mean removed")
     corners: tuple[float | None, float | None] = (None, None)
     if recording.processed:
         if record.raw_only:

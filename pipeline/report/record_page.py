@@ -89,17 +89,16 @@ class RecordView:
     steps: tuple[str, ...]
 
 
-def render_record(inspections: Sequence[Inspection], file: Path, units: Units, *, x_azimuth: float) -> Path:
+def render_record(inspections: Sequence[Inspection], file: Path, units: Units) -> Path:
     """Write the page of some records of one site: one HTML file that needs nothing but a browser.
 
     inspections : of `pipeline.motions.inspection.inspect`, in the order of their sections
     file        : written anew; what is there is replaced
-    x_azimuth   : of the site's x axis, degrees clockwise from north (`site.x_azimuth` of its manifest)
     returns     : the file
     raises      : OSError where it cannot be written
     """
     file = Path(file)
-    views = [record_view(one, units, x_azimuth, f"r{i}") for i, one in enumerate(inspections)]
+    views = [record_view(one, units, f"r{i}") for i, one in enumerate(inspections)]
     site = clean(inspections[0].site) if inspections else ""
     text = fill(environment(), "record.html", {"site": site, "records": views, "bandwidth": f"{KONNO_OHMACHI:g}"})
     unfinished = file.with_name(f".{file.name}.{os.getpid()}.partial")
@@ -108,9 +107,9 @@ def render_record(inspections: Sequence[Inspection], file: Path, units: Units, *
     return file
 
 
-def record_view(one: Inspection, units: Units, x_azimuth: float, ident: str) -> RecordView:
+def record_view(one: Inspection, units: Units, ident: str) -> RecordView:
     """Return one record's section; ident: prefix of the ids of its drawings within the page."""
-    names = axis_names(x_azimuth)
+    names = axis_names(one.x_azimuth)
     source, licence = origin(one)
     smooth = amplitudes(one)
     pictures, drifts = histories(one, names, units, f"{ident}h")
@@ -142,7 +141,7 @@ def record_view(one: Inspection, units: Units, x_azimuth: float, ident: str) -> 
         compared=_compared(one),
         verdict=verdict(one.pulse, units),
         pulse=_drawn(pulse(one, units, f"{ident}p")),
-        pulse_facts=tuple(_pulse_facts(one, units, x_azimuth)),
+        pulse_facts=tuple(_pulse_facts(one, units)),
         cycle_columns=("Start (s)", "Duration (s)", f"Peak ({units.symbol('m/s')})", f"Area ({units.symbol('m')})"),
         cycles=tuple(_cycles(one, names, units)),
         steps=tuple(clean(step) for step in one.motion.steps),
@@ -231,11 +230,11 @@ def _compared(one: Inspection) -> str:
     return f"The target is compared with {target_name(one.target)} from {low:g} to {high:g} s.{source}"
 
 
-def _pulse_facts(one: Inspection, units: Units, x_azimuth: float) -> list[tuple[str, str]]:
+def _pulse_facts(one: Inspection, units: Units) -> list[tuple[str, str]]:
     found = one.pulse
     if found is None:
         return []
-    north = azimuth(found, x_azimuth)
+    north = azimuth(found, one.x_azimuth)
     return [
         ("Indicator", f"{number(found.indicator)} (pulse-like above 0)"),
         ("Period Tp", f"{number(found.period)} s"),

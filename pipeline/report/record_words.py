@@ -90,11 +90,8 @@ def measured(value: float, unit: str, units: Units) -> str:
     return number(value * units.factor(unit))
 
 
-def summary_lines(one: Inspection, units: Units, *, x_azimuth: float) -> list[str]:
-    """Return the record in eight to fourteen lines of plain text, for a terminal.
-
-    x_azimuth : of the site's x axis, degrees clockwise from north
-    """
+def summary_lines(one: Inspection, units: Units) -> list[str]:
+    """Return the record in eight to fourteen lines of plain text, for a terminal."""
     source, licence = origin(one)
     now, was = one.measures, one.measures_before
     lines = [
@@ -121,7 +118,7 @@ def summary_lines(one: Inspection, units: Units, *, x_azimuth: float) -> list[st
     lines.append(f"  D5-95     {span}{number(now['duration_5_95'])} s")
     told = verdict(one.pulse, units)
     if one.pulse is not None:
-        told += f" Azimuth {azimuth(one.pulse, x_azimuth):.0f} degrees from north."
+        told += f" Azimuth {azimuth(one.pulse, one.x_azimuth):.0f} degrees from north."
     lines.append(f"  pulse     {told}")
     overruled = accepted(one)
     lines += (

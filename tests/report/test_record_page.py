@@ -88,7 +88,7 @@ def records(tmp_path_factory: pytest.TempPathFactory) -> list[Inspection]:
 
 @pytest.fixture(scope="module")
 def file(records: list[Inspection], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return render_record(records, tmp_path_factory.mktemp("page") / "records.html", Units(), x_azimuth=X_AZIMUTH)
+    return render_record(records, tmp_path_factory.mktemp("page") / "records.html", Units())
 
 
 @pytest.fixture(scope="module")
@@ -150,7 +150,7 @@ def test_a_record_processed_by_its_source_has_no_before(
 
 
 def test_lengths_follow_the_readers_unit(records: list[Inspection], tmp_path: Path) -> None:
-    page = etree.parse(str(render_record(records[:1], tmp_path / "r.html", Units("in"), x_azimuth=X_AZIMUTH)))
+    page = etree.parse(str(render_record(records[:1], tmp_path / "r.html", Units("in"))))
     row = _rows(page.getroot(), "How strong")["PGD (in)"]
     assert _number(row[1]) == pytest.approx(records[0].measures["pgd_x"] / 0.0254, rel=ROUNDED)
     assert "Velocity (in/s)" in _text(page.getroot())
@@ -206,10 +206,10 @@ def test_corners_say_who_chose_them(records: list[Inspection], sections: list[et
     assert "Given in the site’s manifest" in _text(sections[0])
     steps = ("high-pass corner 0.08 Hz chosen by noise: 3 times", "clipped <b>; accepted: I looked at it")
     chosen = replace(records[0], motion=_with_steps(records[0], steps))
-    text = _text(etree.parse(str(render_record([chosen], tmp_path / "r.html", Units(), x_azimuth=90.0))).getroot())
+    text = _text(etree.parse(str(render_record([chosen], tmp_path / "r.html", Units()))).getroot())
     assert "Chosen from the record by noise: 3 times" in text
     assert "Accepted by a person: clipped <b>; accepted: I looked at it" in text
-    assert any("accepted: I looked at it" in line for line in summary_lines(chosen, Units(), x_azimuth=90.0))
+    assert any("accepted: I looked at it" in line for line in summary_lines(chosen, Units()))
 
 
 def _with_steps(one: Inspection, steps: tuple[str, ...]) -> Motion:
@@ -218,9 +218,9 @@ def _with_steps(one: Inspection, steps: tuple[str, ...]) -> Motion:
 
 def test_a_record_without_horizontal_shaking_says_so(records: list[Inspection], tmp_path: Path) -> None:
     still = replace(records[0], pulse=None, half_cycles={"x": (), "y": ()})
-    text = _text(etree.parse(str(render_record([still], tmp_path / "r.html", Units(), x_azimuth=90.0))).getroot())
+    text = _text(etree.parse(str(render_record([still], tmp_path / "r.html", Units()))).getroot())
     assert "No pulse was looked for" in text
-    assert any("No pulse was looked for" in line for line in summary_lines(still, Units(), x_azimuth=90.0))
+    assert any("No pulse was looked for" in line for line in summary_lines(still, Units()))
 
 
 # -- drawings ---------------------------------------------------------------------------------------------------------
@@ -359,14 +359,14 @@ def test_what_files_say_stays_text(file: Path, records: list[Inspection]) -> Non
 def test_a_control_character_reaches_neither_page_nor_terminal(records: list[Inspection], tmp_path: Path) -> None:
     motion = records[0].motion.called("bell\x07\x1b[2J", "step \x1b[31m; accepted: \x07")
     one = replace(records[0], motion=motion, level="\x1b]0;t")
-    text = render_record([one], tmp_path / "r.html", Units(), x_azimuth=90.0).read_text(encoding="utf-8")
-    for said in (text, *summary_lines(one, Units(), x_azimuth=90.0)):
+    text = render_record([one], tmp_path / "r.html", Units()).read_text(encoding="utf-8")
+    for said in (text, *summary_lines(one, Units())):
         assert "\x1b" not in said
         assert "\x07" not in said
 
 
 def test_the_same_records_give_the_same_bytes(file: Path, records: list[Inspection], tmp_path: Path) -> None:
-    again = render_record(records, tmp_path / "r.html", Units(), x_azimuth=X_AZIMUTH)
+    again = render_record(records, tmp_path / "r.html", Units())
     assert again.read_bytes() == file.read_bytes()
     assert list(tmp_path.iterdir()) == [again]
 
@@ -381,14 +381,14 @@ def test_a_page_weighs_little(file: Path) -> None:
 
 def test_the_summary_is_short_and_says_the_numbers(records: list[Inspection]) -> None:
     for one in records:
-        lines = summary_lines(one, Units(), x_azimuth=X_AZIMUTH)
+        lines = summary_lines(one, Units())
         assert 8 <= len(lines) <= 14
         pga = next(line for line in lines if line.startswith("  PGA"))
         found = [float(v) for v in re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", pga)]
         values = (one.measures_before, one.measures) if one.filtered else (one.measures,)
         keys = [f"pga_{axis}" for axis in ("x", "y", "z", "resultant")]
         assert found == pytest.approx([v[key] / G for key in keys for v in values], rel=ROUNDED)
-    lines = "\n".join(summary_lines(records[0], Units(), x_azimuth=X_AZIMUTH))
+    lines = "\n".join(summary_lines(records[0], Units()))
     assert "high-pass at 0.08 Hz, low-pass at 20 Hz" in lines
     assert "Azimuth 60 degrees" in lines
 
@@ -399,7 +399,7 @@ def test_the_summary_is_short_and_says_the_numbers(records: list[Inspection]) ->
 @pytest.fixture(scope="module")
 def demo_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("demo")
-    return render_record(inspect(resource("site_motions", "demo")), folder / "records.html", Units(), x_azimuth=90.0)
+    return render_record(inspect(resource("site_motions", "demo")), folder / "records.html", Units())
 
 
 def test_the_demonstration_site_is_raw_and_its_axes_are_north_and_east(demo_page: Path) -> None:
