@@ -52,31 +52,34 @@ def _acceleration(u: float, v: float, f0: float, f1: float, w: float, zeta: floa
 def _root(
     u: float, v: float, f0: float, f1: float, w: float, zeta: float, order: int, low: float, high: float
 ) -> float:
-    # The zero of the velocity (order 1) or acceleration (order 2) bracketed by low and high: Illinois.
+    # The zero of the velocity (order 1) or acceleration (order 2) bracketed by low and high: Newton's method, which
+    # halves the bracket where it would leave it or where rounding keeps its steps from shrinking.
+    b, c = w * w, 2.0 * zeta * w
     if order == 1:
-        a, b = _velocity(u, v, f0, f1, w, zeta, low), _velocity(u, v, f0, f1, w, zeta, high)
+        first, last = _velocity(u, v, f0, f1, w, zeta, low), _velocity(u, v, f0, f1, w, zeta, high)
     else:
-        a, b = _acceleration(u, v, f0, f1, w, zeta, low), _acceleration(u, v, f0, f1, w, zeta, high)
-    side = 0
+        first, last = _acceleration(u, v, f0, f1, w, zeta, low), _acceleration(u, v, f0, f1, w, zeta, high)
+    t = (low * last - high * first) / (last - first) if last != first else low
+    before = math.inf
     for _ in range(100):
-        if b == a:
-            break
-        t = (low * b - high * a) / (b - a)
         if not low < t < high:
             t = 0.5 * (low + high)
-        value = _velocity(u, v, f0, f1, w, zeta, t) if order == 1 else _acceleration(u, v, f0, f1, w, zeta, t)
+        un, vn = advance(u, v, f0, f1, w, zeta, t)
+        rate = f0 + f1 * t - c * vn - b * un
+        value, slope = (vn, rate) if order == 1 else (rate, f1 - c * rate - b * vn)
+        if (value > 0.0) == (last > 0.0):
+            high = t
+        else:
+            low = t
+        step = value / slope if slope != 0.0 else math.inf
         if value == 0.0 or high - low <= 4e-16 * high:
             return t
-        if (value > 0.0) == (b > 0.0):
-            high, b = t, value
-            if side == 1:
-                a *= 0.5
-            side = 1
-        else:
-            low, a = t, value
-            if side == -1:
-                b *= 0.5
-            side = -1
+        shrinks = abs(step) <= 0.5 * before
+        before = abs(step)
+        t = t - step if shrinks else 0.5 * (low + high)
+        # What is left is the square of the step, over the length in which the slope changes.
+        if shrinks and before <= 1e-9 * high and low <= t <= high:
+            return t
     return 0.5 * (low + high)
 
 
@@ -245,6 +248,49 @@ def _split(
 
 
 @kernel
+def _glide(
+    u: float,
+    v: float,
+    s: float,
+    a0: float,
+    a1: float,
+    n0: float,
+    n1: float,
+    span: float,
+    w: float,
+    zeta: float,
+    mu_k: float,
+    of_span: tuple[float, float, float, float],
+    out: Array,
+) -> tuple[bool, float, float]:
+    # A whole sample interval in direction s, of_span being its transition: whether nothing stops the body in it, and
+    # where it ends.  Nothing is done when it may stop.  span is short against the period, and the weight holds.
+    g, h, h1, h2 = of_span
+    b, c = w * w, 2.0 * zeta * w
+    lift0, lift1 = s * mu_k * n0, s * mu_k * n1
+    f0, f1 = -a0 - lift0, -a1 - lift1
+    un = u * g + v * h + f0 * h1 + f1 * h2
+    vn = -u * b * h + v * (g - c * h) + f0 * h + f1 * h1
+    push, push_end = f0 - c * v - b * u, f0 + f1 * span - c * vn - b * un
+    slowest = min(s * v, s * vn)
+    if slowest <= 0.0:
+        return False, u, v
+    if s * push < 0.0 < s * push_end and slowest <= span * (abs(push) + abs(push_end)):
+        # The velocity has a least value inside.
+        return False, u, v
+    most = max(abs(c * v + b * u + lift0), abs(c * vn + b * un + lift0 + lift1 * span))
+    if w > 0.0:
+        # By its second derivative, what the body feels exceeds its values at the ends by at most this.
+        bend = abs(c * (f1 - c * push - b * v) + b * push) + abs(c * (f1 - c * push_end - b * vn) + b * push_end)
+        if most + 0.125 * span * span * bend > out[2]:
+            most = max(most, peak_inside(u, v, f0, f1, w, zeta, span, lift0, lift1, b, c))
+    out[0] = max(out[0], abs(un))
+    out[1] += abs(un - u)
+    out[2] = max(out[2], most)
+    return True, un, vn
+
+
+@kernel
 def _felt(
     u: float, v: float, s: float, a: float, weight: float, w: float, zeta: float, mu_s: float, mu_k: float
 ) -> float:
@@ -286,7 +332,9 @@ def friction_line_one(
     out[:] = 0.0
     if n < 2:
         return 0.0
-    pieces = max(1, math.ceil(w * dt * (1.0 + zeta) / 0.5)) * (refine if w > 0.0 else 1)
+    cuts = max(1, math.ceil(w * dt * (1.0 + zeta) / 0.5))
+    pieces = cuts * (max(1, refine // 2) if w > 0.0 else 1)
+    of_span = transition(w, zeta, dt)
     u, v, s = 0.0, 0.0, 0.0
     recording = history.shape[0] > 0
     i = 0
@@ -302,14 +350,25 @@ def friction_line_one(
         if i < history.shape[0]:
             history[i, 0] = u
             history[i, 1] = _felt(u, v, s, x[i], max(0.0, G + z[i]), w, zeta, mu_s, mu_k)
+        a1, n0, n1 = (x[i + 1] - x[i]) / dt, G + z[i], (z[i + 1] - z[i]) / dt
+        if cuts == 1 and n0 > 0.0 and G + z[i + 1] > 0.0:
+            if s != 0.0:
+                glides, u, v = _glide(u, v, s, x[i], a1, n0, n1, dt, w, zeta, mu_k, of_span, out)
+                if glides:
+                    i += 1
+                    continue
+            elif max(abs(x[i] + w * w * u) - mu_s * n0, abs(x[i + 1] + w * w * u) - mu_s * (G + z[i + 1])) <= 0.0:
+                out[2] = max(out[2], abs(x[i]), abs(x[i + 1]))
+                i += 1
+                continue
         u, v, s = _split(
             u,
             v,
             s,
             x[i],
-            (x[i + 1] - x[i]) / dt,
+            a1,
             z[i],
-            (z[i + 1] - z[i]) / dt,
+            n1,
             dt,
             pieces,
             w,
