@@ -335,7 +335,6 @@ def friction_line_one(
     mu_s: float,
     mu_k: float,
     tail: float,
-    refine: int,  # noqa: ARG001
     out: Array,
     history: Array,
 ) -> float:
@@ -343,7 +342,6 @@ def friction_line_one(
 
     x, z           : (n,) m/s2
     ratio, maxima  : from kernels.quiet, of this very motion; pushes: block maxima of |x|
-    refine         : without effect: the closed form is exact in any step
     out            : (4,) receives max |u| [m], path [m], max transmitted acceleration [m/s2], flags
     history        : (m, 2) receives u and the absolute acceleration at the samples, as long as it is; rows after the
                      record follow the body on without excitation
@@ -444,7 +442,6 @@ def friction_line_batch(
     mu_s: Array,
     mu_k: Array,
     tail: float,
-    refine: int,
     results: Array,
 ) -> None:
     """Fill results (m, 5): max |u|, residual, path [m], max transmitted acceleration [m/s2], flags."""
@@ -452,7 +449,7 @@ def friction_line_batch(
     out = np.empty(4)
     for k in range(w.shape[0]):
         residual = friction_line_one(
-            x, z, ratio, maxima, pushes, dt, w[k], zeta[k], mu_s[k], mu_k[k], tail, refine, out, nothing
+            x, z, ratio, maxima, pushes, dt, w[k], zeta[k], mu_s[k], mu_k[k], tail, out, nothing
         )
         results[k, 0], results[k, 1], results[k, 2], results[k, 3], results[k, 4] = (
             out[0],

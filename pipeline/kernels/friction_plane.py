@@ -2,9 +2,9 @@
 
 u'' + 2 zeta w u' + w^2 u + mu_k N u'/|u'| = -a, N = max(0, g + a_z); at rest while |a + w^2 u| <= mu_s N.
 
-The direction of friction turns infinitely fast where the speed vanishes.  Onset and stop are therefore stepped over
-with their own expansions; in between, an embedded Runge-Kutta pair (Dormand and Prince 1980) follows the path, one
-sample interval at a time because the excitation has a kink at every sample.
+Slip is followed by an implicit Runge-Kutta method whose stages have closed forms (kernels.plane_step), one sample
+interval at a time because the excitation has a kink at every sample, in more steps where its error asks for them and
+where the body is about to turn or to stop; the stop itself is taken in closed form (kernels.plane_stop).
 """
 
 import math
@@ -14,18 +14,28 @@ import numpy as np
 from pipeline.kernels import kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
 from pipeline.kernels.friction_line import CAP, FAINT
-from pipeline.kernels.plane_step import felt, plane_rates, plane_step, raise_peaks, slowest
+from pipeline.kernels.plane_peaks import felt, inner_felt, inner_radius
+from pipeline.kernels.plane_step import plane_step
+from pipeline.kernels.plane_stop import come_to_rest
 from pipeline.kernels.quiet import largest, next_above
 from pipeline.quantities import Array, G
 
-START = 1e-5
-"""Speed, as a share of the scale of speeds, up to which the expansion at slip onset is used."""
-CREEP = 200.0
-"""Relaxations of the direction of friction in a stretch from which on a body of next to no speed is taken to creep."""
-FAINT_SPEED = 1e-6
-"""Speed, as a share of the scale of speeds, below which a body may creep."""
-STOP = 1e-5
-"""Speed, as a share of the scale of speeds, below which a decelerating body is brought to rest in closed form."""
+Control = tuple[float, float, float, float, float]
+"""Tolerance of a step's error, share of its speed that a step may take off or turn away, share of push and grip that
+may change during a stop, and the shortest and the longest step as shares of a sample interval."""
+
+STEPS = 200000
+"""Steps in a sample interval after which it is given up."""
+TRIALS = 60
+"""Shorter and shorter steps that are tried before the body is taken to rest."""
+CRAWL = 1e-9
+"""Speed, as a share of the scale of speeds, at which a body that will stop is taken to stop."""
+
+
+SHARE = 1.5
+"""Share of its speed that a step may take off or turn away, over the eighth root of the tolerance."""
+SLOW = 1e-2
+"""Scale of speeds before any motion, as a share of the largest push over a sample interval."""
 
 
 @kernel
@@ -45,53 +55,8 @@ def _onset(qx: float, qy: float, q1x: float, q1y: float, l0: float, l1: float, s
 
 
 @kernel
-def _start(state: Array, load: Array, t: float, left: float, qx: float, qy: float, scale: float, c: float) -> float:
-    # Slip from rest along the expansion v = (e t + j t^2 / 2) d, d = d0 + d1 t, up to START times the scale of speeds.
-    # Returns the time used.
-    size = math.hypot(qx, qy)
-    if size > 0.0:
-        dx, dy = -qx / size, -qy / size
-    else:
-        # Without any hold (no friction, no contact) the push may be zero now: its rate says where to.
-        rate = math.hypot(load[1], load[3])
-        dx, dy = (-load[1] / rate, -load[3] / rate) if rate > 0.0 else (0.0, 0.0)
-    grip = load[4] + load[5] * t
-    excess = max(0.0, size - grip)
-    jerk = -(load[1] * dx + load[3] * dy) - load[5] - c * excess
-    target = START * scale
-    if jerk > 0.0:
-        used = 2.0 * target / (excess + math.sqrt(excess * excess + 2.0 * jerk * target))
-    elif excess > 0.0:
-        used = target / excess
-    else:
-        return left
-    used = min(used, left)
-    if excess + jerk * used < 0.0:
-        used = min(used, -0.5 * excess / jerk)
-    px = -(load[1] - (load[1] * dx + load[3] * dy) * dx)
-    py = -(load[3] - (load[1] * dx + load[3] * dy) * dy)
-    turn = 2.0 * excess + grip
-    lag = used / turn if turn > 0.0 else 0.0
-    ex, ey = dx + px * lag, dy + py * lag
-    norm = math.hypot(ex, ey)
-    if norm == 0.0:
-        return left
-    ex, ey = ex / norm, ey / norm
-    speed = used * (excess + 0.5 * jerk * used)
-    gone = used * used * (0.5 * excess + jerk * used / 6.0)
-    state[0] += gone * ex
-    state[1] += gone * ey
-    state[2] = speed * ex
-    state[3] = speed * ey
-    state[4] += gone
-    return used
-
-
-@kernel
 def _piece(
     state: Array,
-    after: Array,
-    trial: Array,
     load: Array,
     span: float,
     slipping: bool,
@@ -99,116 +64,137 @@ def _piece(
     b: float,
     c: float,
     scale: float,
-    rtol: float,
+    control: Control,
     out: Array,
 ) -> tuple[bool, float]:
-    # One stretch on which excitation, grip and hold are linear.  load[4:6] is the kinetic grip mu_k N, load[6:8] the
-    # hold mu_s N; state as in plane_step.
+    # One stretch on which excitation, grip and hold are linear: load holds ax, its rate, ay, its rate, the kinetic grip
+    # mu_k N, its rate, the hold mu_s N, its rate; state is ux, uy, vx, vy, path,
+    # the direction of v and its size.
     # Returns whether the body slips at the end, and the step size to begin the next stretch with.
+    ux, uy, vx, vy, path = state[0], state[1], state[2], state[3], state[4]
+    ex, ey, speed = state[5], state[6], state[7]
+    rtol, share, change, faint = control[0], control[1], control[2], control[3] * span
+    longest = control[4] * span
+    most, top, felt_most = out[0] * out[0], out[0] * out[0], out[2]
     t = 0.0
-    for _ in range(200000):
+    done = False
+    for _ in range(STEPS):
         left = span - t
         if left <= 1e-14 * span:
-            return slipping, guess
+            done = True
+            break
         ax, ay = load[0] + load[1] * t, load[2] + load[3] * t
-        grip = load[4] + load[5] * t
         if not slipping:
-            state[2], state[3] = 0.0, 0.0
-            qx, qy = ax + b * state[0], ay + b * state[1]
-            hold, hold1 = load[6] + load[7] * t, load[7]
-            if math.hypot(qx, qy) <= hold:
-                wait = _onset(qx, qy, load[1], load[3], hold, hold1, left)
-                out[2] = max(out[2], math.hypot(ax, ay))
+            vx, vy, speed = 0.0, 0.0, 0.0
+            qx, qy = ax + b * ux, ay + b * uy
+            hold = load[6] + load[7] * t
+            if qx * qx + qy * qy <= hold * hold:
+                wait = _onset(qx, qy, load[1], load[3], hold, load[7], left)
+                felt_most = max(felt_most, math.sqrt(ax * ax + ay * ay))
                 if wait < 0.0:
-                    out[2] = max(out[2], math.hypot(load[0] + load[1] * span, load[2] + load[3] * span))
-                    return False, guess
+                    ax, ay = load[0] + load[1] * span, load[2] + load[3] * span
+                    felt_most = max(felt_most, math.sqrt(ax * ax + ay * ay))
+                    done = True
+                    break
                 t += wait
                 ax, ay = load[0] + load[1] * t, load[2] + load[3] * t
-                out[2] = max(out[2], math.hypot(ax, ay))
-                qx, qy = ax + b * state[0], ay + b * state[1]
+                felt_most = max(felt_most, math.sqrt(ax * ax + ay * ay))
                 left = span - t
             slipping = True
+            guess = longest
             if left <= 1e-14 * span:
-                return True, guess
-            t += _start(state, load, t, left, qx, qy, scale, c)
-            out[0] = max(out[0], math.hypot(state[0], state[1]))
-            out[2] = max(out[2], felt(state, load[4] + load[5] * t, b, c))
-            guess = min(guess, left)
-            continue
-        vx, vy = state[2], state[3]
-        speed = math.hypot(vx, vy)
-        rx, ry, _s = plane_rates(state[0], state[1], vx, vy, ax, ay, grip, b, c)
-        if speed == 0.0:
+                done = True
+                break
+        qx, qy = -ax - b * ux - c * vx, -ay - b * uy - c * vy
+        grip = load[4] + load[5] * t
+        h = left
+        if speed > 0.0:
+            rx, ry = qx - grip * ex, qy - grip * ey
+            turn = abs(rx * ey - ry * ex) + max(0.0, -rx * ex - ry * ey)
+            # Without any hold it neither stops nor turns at once.
+            if h * turn > share * speed and max(load[6], load[7]) > 0.0:
+                q1x, q1y = -load[1] - 0.5 * b * vx - c * rx, -load[3] - 0.5 * b * vy - c * ry
+                wait, dx, dy, way = come_to_rest(
+                    speed, vx, vy, ex, ey, qx, qy, q1x, q1y, load, t, left, change, b + c * c, speed <= CRAWL * scale
+                )
+                if wait >= 0.0:
+                    ux, uy, path = ux + dx, uy + dy, path + way
+                    felt_most = max(felt_most, felt(ux, uy, 0.0, 0.0, ex, ey, grip + load[5] * wait, b, c))
+                    top = max(top, ux * ux + uy * uy)
+                    t += wait
+                    slipping = False
+                    continue
+                h = min(h, max(share * speed / turn, faint))
+        else:
+            # From rest it follows the push; without a hold the push may be zero now: its rate says where to.
+            ex, ey = qx, qy
+            if ex == 0.0 and ey == 0.0:
+                ex, ey = -load[1], -load[3]
+            size = math.sqrt(ex * ex + ey * ey)
+            if size > 0.0:
+                ex, ey = ex / size, ey / size
+        h = min(h, guess, longest)
+        allowed = rtol * max(scale, speed)
+        for _ in range(TRIALS):
+            wx, wy, sx, sy, dx, dy, pace, way, error, least = plane_step(
+                ux, uy, vx, vy, ex, ey, speed, ax, ay, load[1], load[3], grip, load[5], b, c, h
+            )
+            if least >= 0.0 and (error <= allowed or h <= faint):
+                break
+            h *= 0.5 if least < 0.0 else max(0.2, 0.9 * math.sqrt(math.sqrt(allowed / error)))
+        if least < 0.0:
+            # Friction holds it however short the step: it rests.
             slipping = False
+            t += h
             continue
-        if speed <= STOP * scale:
-            slowing = -(rx * vx + ry * vy) / speed
-            size = math.hypot(rx, ry)
-            astray = abs(rx * vy - ry * vx) / size if size > 0.0 else 0.0
-            qx, qy = ax + b * state[0], ay + b * state[1]
-            push = math.hypot(qx, qy)
-            stays = push <= load[6] + load[7] * t
-            wait = speed / slowing if slowing > 0.0 else math.inf
-            if wait <= left and (stays or astray <= 1e-4 * speed):
-                gone = 0.5 * speed * wait
-                state[0] += gone * vx / speed
-                state[1] += gone * vy / speed
-                state[4] += gone
-                out[0] = max(out[0], math.hypot(state[0], state[1]))
-                t += wait
-                slipping = False
-                continue
-            if speed <= FAINT_SPEED * scale and grip * left > CREEP * speed and push > 0.0:
-                # It creeps: friction keeps it on the line of the push, and its speed follows push and drag alone.
-                gain, rise = push - grip, (qx * load[1] + qy * load[3]) / push - load[5]
-                h = 0.25 * left
-                h = min(h, FAINT_SPEED * scale / max(abs(gain), 1e-300))
-                h = min(h, math.sqrt(FAINT_SPEED * scale / max(abs(rise), 1e-300)))
-                later = max(0.0, (speed + h * (gain + 0.5 * rise * h)) / (1.0 + c * h))
-                gone = 0.5 * h * (speed + later)
-                state[0] -= gone * qx / push
-                state[1] -= gone * qy / push
-                state[2], state[3] = -later * qx / push, -later * qy / push
-                state[4] += gone
-                out[0] = max(out[0], math.hypot(state[0], state[1]))
-                t += h
-                continue
-        # The direction of friction relaxes at the rate grip / speed; a larger step would only be rejected.
-        h = min(guess, left)
-        if grip > 0.0:
-            h = min(h, 2.5 * speed / grip + 1e-12 * span)
-        error = plane_step(state, load, t, h, b, c, after)
-        allowed = rtol * max(scale, speed) * max(h / span, 0.02)
-        if error > allowed and h > 1e-13 * span:
-            guess = h * max(0.2, 0.9 * (allowed / error) ** 0.2)
-            continue
-        begin, end = rx * vx + ry * vy, 0.0
-        if begin < 0.0:
-            fx, fy, _s = plane_rates(
-                after[0],
-                after[1],
-                after[2],
-                after[3],
-                load[0] + load[1] * (t + h),
-                load[2] + load[3] * (t + h),
-                load[4] + load[5] * (t + h),
+        top = max(top, wx * wx + wy * wy)
+        begin, end = ux * vx + uy * vy, wx * sx + wy * sy
+        if begin > 0.0 > end:
+            inner = inner_radius(
+                ux, uy, vx, vy, ex, ey, speed, ax, ay, load[1], load[3], grip, load[5], b, c, h, begin, end, top
+            )
+            top = max(top, inner)
+        first = felt(ux, uy, vx, vy, ex, ey, grip, b, c)
+        last = felt(wx, wy, sx, sy, dx, dy, grip + load[5] * h, b, c)
+        felt_most = max(felt_most, first, last)
+        if b > 0.0 and 1.1 * max(first, last) > felt_most:
+            inner = inner_felt(
+                ux,
+                uy,
+                vx,
+                vy,
+                ex,
+                ey,
+                speed,
+                ax,
+                ay,
+                load[1],
+                load[3],
+                grip,
+                load[5],
                 b,
                 c,
+                h,
+                wx,
+                wy,
+                sx,
+                sy,
+                dx,
+                dy,
+                pace,
             )
-            end = fx * after[2] + fy * after[3]
-        if begin < 0.0 < end and speed > STOP * scale and load[6] + load[7] * t > 0.0:
-            # The speed has a least value inside: nothing, for a body that reverses on a line, and there it may stick.
-            # Go most of the way, until the closed form above takes over.
-            tau = slowest(state, trial, load, t, h, b, c, begin, end)
-            if math.hypot(trial[2], trial[3]) <= 1e-3 * speed:
-                guess = 0.9 * tau
-                continue
-        raise_peaks(state, after, trial, load, t, h, b, c, out)
-        state[:] = after
+            felt_most = max(felt_most, inner)
+        ux, uy, vx, vy, ex, ey, speed, path = wx, wy, sx, sy, dx, dy, pace, path + way
         t += h
-        grow = 5.0 if error == 0.0 else min(5.0, max(0.3, 0.9 * (allowed / error) ** 0.2))
-        guess = min(h * grow, 4.0 * span)
-    out[3] = float(int(out[3]) | EVENT_CAP)
+        # The root is worth its time only where the next step may have to be shorter than the interval.
+        guess = 4.0 * h if 400.0 * error <= allowed else 0.9 * h * math.sqrt(math.sqrt(allowed / error))
+    if not done:
+        out[3] = float(int(out[3]) | EVENT_CAP)
+    state[0], state[1], state[2], state[3], state[4] = ux, uy, vx, vy, path
+    state[5], state[6], state[7] = ex, ey, speed
+    if top > most:
+        out[0] = math.sqrt(top)
+    out[2] = felt_most
     return slipping, guess
 
 
@@ -220,8 +206,6 @@ def _weigh(load: Array, mu_s: float, mu_k: float, n0: float, n1: float) -> None:
 @kernel
 def _stretch(
     state: Array,
-    after: Array,
-    trial: Array,
     load: Array,
     x0: float,
     x1: float,
@@ -237,7 +221,7 @@ def _stretch(
     mu_s: float,
     mu_k: float,
     scale: float,
-    rtol: float,
+    control: Control,
     out: Array,
 ) -> tuple[bool, float]:
     # A sample interval, cut where contact ends or begins.
@@ -251,12 +235,12 @@ def _stretch(
     load[0], load[1], load[2], load[3] = x0, x1, y0, y1
     if cut < 0.0:
         _weigh(load, mu_s, mu_k, max(0.0, n0), n1 if max(n0, end) > 0.0 else 0.0)
-        return _piece(state, after, trial, load, span, slipping, guess, b, c, scale, rtol, out)
+        return _piece(state, load, span, slipping, guess, b, c, scale, control, out)
     _weigh(load, mu_s, mu_k, max(0.0, n0), n1 if n0 > 0.0 else 0.0)
-    slipping, guess = _piece(state, after, trial, load, cut, slipping, guess, b, c, scale, rtol, out)
+    slipping, guess = _piece(state, load, cut, slipping, guess, b, c, scale, control, out)
     load[0], load[2] = x0 + x1 * cut, y0 + y1 * cut
     _weigh(load, mu_s, mu_k, 0.0, n1 if n0 < 0.0 else 0.0)
-    return _piece(state, after, trial, load, span - cut, slipping, guess, b, c, scale, rtol, out)
+    return _piece(state, load, span - cut, slipping, guess, b, c, scale, control, out)
 
 
 @kernel
@@ -276,6 +260,7 @@ def friction_plane_one(
     mu_k: float,
     tail: float,
     rtol: float,
+    longest: float,
     out: Array,
     history: Array,
 ) -> float:
@@ -283,7 +268,8 @@ def friction_plane_one(
 
     x, y, z        : (n,) m/s2;  peak: the largest of push = |a_h|;  pushes: block maxima of push
     ratio, maxima  : from kernels.quiet, of this very motion
-    rtol           : tolerance of the velocity in each sample interval, relative to the scale of speeds
+    rtol           : tolerance of the velocity in each step, relative to the scale of speeds
+    longest        : longest step as a share of a sample interval
     out            : (4,) receives max |u| [m], path [m], max transmitted acceleration [m/s2], flags
     history        : (m, 4) receives ux, uy and the absolute accelerations at the samples, as long as it is; rows after
                      the record follow the body on without excitation
@@ -296,8 +282,9 @@ def friction_plane_one(
     # Nothing to slip over a denormal friction: it divides grips by it.
     if mu_k < 1e-300:
         mu_k = 0.0
-    state, after, trial, load = np.zeros(5), np.zeros(5), np.zeros(5), np.zeros(8)
-    scale = peak * dt
+    state, load = np.zeros(8), np.zeros(8)
+    scale = SLOW * peak * dt
+    control = (rtol, SHARE * rtol**0.125, 2.0 * rtol**0.25, 1e-2 * math.sqrt(rtol), longest)
     slipping, guess = False, dt
     recording = history.shape[0] > 0
     i = 0
@@ -314,8 +301,6 @@ def friction_plane_one(
             _note(history, i, state, x[i], y[i], mu_s, mu_k, max(0.0, G + z[i]), b, c, slipping)
         slipping, guess = _stretch(
             state,
-            after,
-            trial,
             load,
             x[i],
             (x[i + 1] - x[i]) / dt,
@@ -331,10 +316,10 @@ def friction_plane_one(
             mu_s,
             mu_k,
             scale,
-            rtol,
+            control,
             out,
         )
-        scale = max(scale, math.hypot(state[2], state[3]))
+        scale = max(scale, state[7])
         i += 1
     if n - 1 < history.shape[0]:
         _note(history, n - 1, state, x[n - 1], y[n - 1], mu_s, mu_k, max(0.0, G + z[n - 1]), b, c, slipping)
@@ -342,9 +327,9 @@ def friction_plane_one(
         load[:] = 0.0
         _weigh(load, mu_s, mu_k, G, 0.0)
         for k in range(n, history.shape[0]):
-            slipping, guess = _piece(state, after, trial, load, dt, slipping, guess, b, c, scale, rtol, out)
+            slipping, guess = _piece(state, load, dt, slipping, guess, b, c, scale, control, out)
             _note(history, k, state, 0.0, 0.0, mu_s, mu_k, G, b, c, slipping)
-    _coast(state, after, trial, load, slipping, guess, w, zeta, mu_s, mu_k, tail, scale, rtol, dt, out)
+    _coast(state, load, slipping, guess, w, zeta, mu_s, mu_k, tail, scale, control, dt, out)
     out[1] = state[4]
     return math.hypot(state[0], state[1])
 
@@ -381,8 +366,6 @@ def _note(
 @kernel
 def _coast(
     state: Array,
-    after: Array,
-    trial: Array,
     load: Array,
     slipping: bool,
     guess: float,
@@ -392,7 +375,7 @@ def _coast(
     mu_k: float,
     tail: float,
     scale: float,
-    rtol: float,
+    control: Control,
     dt: float,
     out: Array,
 ) -> None:
@@ -414,7 +397,7 @@ def _coast(
     _weigh(load, mu_s, mu_k, G, 0.0)
     while t < stop:
         now = min(span, stop - t)
-        slipping, guess = _piece(state, after, trial, load, now, slipping, guess, b, c, scale, rtol, out)
+        slipping, guess = _piece(state, load, now, slipping, guess, b, c, scale, control, out)
         t += now
         if not slipping:
             return
@@ -449,6 +432,7 @@ def friction_plane_batch(
     mu_k: Array,
     tail: float,
     rtol: float,
+    longest: float,
     results: Array,
 ) -> None:
     """Fill results (m, 5): max |u|, residual, path [m], max transmitted acceleration [m/s2], flags."""
@@ -456,7 +440,24 @@ def friction_plane_batch(
     out = np.empty(4)
     for k in range(w.shape[0]):
         residual = friction_plane_one(
-            x, y, z, ratio, maxima, push, pushes, dt, peak, w[k], zeta[k], mu_s[k], mu_k[k], tail, rtol, out, nothing
+            x,
+            y,
+            z,
+            ratio,
+            maxima,
+            push,
+            pushes,
+            dt,
+            peak,
+            w[k],
+            zeta[k],
+            mu_s[k],
+            mu_k[k],
+            tail,
+            rtol,
+            longest,
+            out,
+            nothing,
         )
         results[k, 0], results[k, 1], results[k, 2], results[k, 3], results[k, 4] = (
             out[0],

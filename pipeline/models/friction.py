@@ -10,8 +10,14 @@ from pipeline.models.common import ROUNDING, Quiet, after_record
 from pipeline.quantities import Array
 from pipeline.records import Columns, Excitation
 
-PLANE_TOLERANCE = 1e-6
-"""Velocity tolerance of the two-directional kernel at `history`; the result is taken at a tenth of it."""
+FREE, SPRUNG = 1e-3, 3e-10
+"""Tolerance of a step of the two-directional kernel at `history`, without and with a spring.
+
+A free body forgets: friction takes the error of its velocity away, so that the displacement is right to 1e-4.  A spring
+remembers, and a stroke is wanted to 1e-8.
+"""
+TIGHTEST = 1e-12
+"""Tolerance below which rounding would decide."""
 
 
 def stick_slip(
@@ -27,14 +33,14 @@ def stick_slip(
     results = np.empty((arrays[0].size, 5))
     if motion.y is None:
         friction_line_batch(
-            quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.pushes, quiet.dt, *arrays, quiet.tail, refine, results
+            quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.pushes, quiet.dt, *arrays, quiet.tail, results
         )
         error = ROUNDING * np.maximum(results[:, 0], results[:, 2])
     else:
         coarse = np.full_like(results, np.nan)
-        tolerance = PLANE_TOLERANCE / (refine / 2.0) ** 4
-        runs = ((tolerance, coarse), (0.1 * tolerance, results)) if estimate else ((tolerance, results),)
-        for rtol, out in runs:
+        tolerance, longest = _steps(w, refine)
+        passes = ((10.0 * tolerance, 2.0 * longest, coarse), (tolerance, longest, results))
+        for rtol, most, out in passes if estimate else passes[1:]:
             friction_plane_batch(
                 quiet.x,
                 quiet.y,
@@ -48,10 +54,12 @@ def stick_slip(
                 *arrays,
                 quiet.tail,
                 rtol,
+                most,
                 out,
             )
-        # The pair's own error does not shrink exactly with its tolerance: ten times the difference covers it.
-        error = 10.0 * (np.abs(results[:, 0] - coarse[:, 0]) + ROUNDING * results[:, 2])
+        # The difference of two peaks may vanish by chance; where the body ends, and hardly that of both at once.
+        apart = np.abs(results - coarse)
+        error = 2.0 * (apart[:, 0] + apart[:, 1]) + ROUNDING * results[:, 2]
     return {
         "displacement": results[:, 0],
         "residual": results[:, 1],
@@ -62,6 +70,12 @@ def stick_slip(
     }
 
 
+def _steps(w: Array, refine: int) -> tuple[float, float]:
+    # Tolerance and longest step (as a share of a sample interval) of the two-directional kernel.
+    base = SPRUNG if np.max(w) > 0.0 else FREE
+    return max(TIGHTEST, base * (2.0 / refine) ** 6), 1.0 / refine
+
+
 def stick_slip_trace(motion: Excitation, w: float, zeta: float, mu_s: float, mu_k: float) -> Columns:
     """Return u_x, u_y [m] and the absolute accelerations a_x, a_y [m/s2] of one body at the samples, (n,) each."""
     quiet = Quiet(motion)
@@ -69,7 +83,7 @@ def stick_slip_trace(motion: Excitation, w: float, zeta: float, mu_s: float, mu_
     if motion.y is None:
         line = np.zeros((quiet.x.size + after_record(motion), 2))
         friction_line_one(
-            quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.pushes, quiet.dt, w, zeta, mu_s, mu_k, 0.0, 1, out, line
+            quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.pushes, quiet.dt, w, zeta, mu_s, mu_k, 0.0, out, line
         )
         still = np.zeros(line.shape[0])
         return {"u_x": line[:, 0], "u_y": still, "a_x": line[:, 1], "a_y": still}
@@ -89,7 +103,7 @@ def stick_slip_trace(motion: Excitation, w: float, zeta: float, mu_s: float, mu_
         mu_s,
         mu_k,
         0.0,
-        0.1 * PLANE_TOLERANCE,
+        *_steps(np.array([w]), 2),
         out,
         plane,
     )

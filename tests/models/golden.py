@@ -26,7 +26,7 @@ HISTORY = {
     "sdof": 1e-9,
     "rotational": 1e-9,
     "isolator_1d": 1e-8,
-    "isolator_2d": 5e-4,
+    "isolator_2d": 1e-8,
 }
 """Relative error granted at `history`, per model, for a case of condition 1."""
 

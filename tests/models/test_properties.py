@@ -88,7 +88,7 @@ def test_two_directional_models_know_no_axes(
 def test_two_directional_sliding_on_a_line_is_one_directional(
     seed: int, mu: float, share: float, degrees: float
 ) -> None:
-    """The plane's integration, stepped at 1e-7 of the velocity, against the line's closed form: 5e-4 is promised."""
+    """The plane's stepped integration against the line's closed form: 5e-4 is promised."""
     plain = random_motion(seed, n=300)
     motion = Motion(plain.dt, np.vstack([plain.acceleration[0], 0.0 * plain.acceleration[1], plain.acceleration[2]]))
     parameters = {"friction_static": mu, "friction_kinetic": share * mu}

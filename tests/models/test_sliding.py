@@ -22,8 +22,8 @@ from pipeline.quantities import Array, G
 def test_rectangular_pulse_newmark_1965(mu: float, peak: float, duration: float, samples: int, directions: int) -> None:
     """d = V^2 / (2 mu g) (1 - mu g / A), V = A T: exact for a rectangular pulse, however it is sampled.
 
-    One direction has a closed form (only rounding is granted); two directions are stepped at 1e-7 of the velocity,
-    which the long coast at low friction turns into at most 1e-5 of the distance.
+    One direction has a closed form (only rounding is granted); two directions stop in closed form too, after steps
+    that are right to 1e-5 of the distance.
     """
     a = peak * G
     motion = along_x(np.full(samples, -a), duration / (samples - 1))

@@ -1,0 +1,158 @@
+"""The largest radius and the largest acceleration passed on inside a step of a body slipping in two directions."""
+
+import math
+
+from pipeline.kernels import kernel
+from pipeline.kernels.plane_step import plane_step
+
+TRIALS = 12
+"""Shorter steps taken to find a stationary point: at one, the value itself is second order in the time's error."""
+
+
+@kernel
+def felt(ux: float, uy: float, vx: float, vy: float, ex: float, ey: float, grip: float, b: float, c: float) -> float:
+    """Return the absolute acceleration of a slipping body [m/s2]: what spring, dashpot and friction push it with."""
+    if b == 0.0:
+        return grip
+    fx, fy = b * ux + c * vx + grip * ex, b * uy + c * vy + grip * ey
+    return math.sqrt(fx * fx + fy * fy)
+
+
+@kernel
+def _felt_rate(
+    ux: float,
+    uy: float,
+    vx: float,
+    vy: float,
+    ex: float,
+    ey: float,
+    speed: float,
+    ax: float,
+    ay: float,
+    grip: float,
+    grip1: float,
+    b: float,
+    c: float,
+) -> float:
+    # Half the rate of the squared absolute acceleration [m2/s5].
+    speed = math.sqrt(vx * vx + vy * vy)
+    if speed == 0.0:
+        return 0.0
+    fx, fy = b * ux + c * vx + grip * ex, b * uy + c * vy + grip * ey
+    rx, ry = -ax - fx, -ay - fy
+    along = ex * rx + ey * ry
+    gx = c * rx + b * vx + grip1 * ex + grip * (rx - ex * along) / speed
+    gy = c * ry + b * vy + grip1 * ey + grip * (ry - ey * along) / speed
+    return fx * gx + fy * gy
+
+
+@kernel
+def inner_radius(
+    ux: float,
+    uy: float,
+    vx: float,
+    vy: float,
+    ex: float,
+    ey: float,
+    speed: float,
+    ax: float,
+    ay: float,
+    a1x: float,
+    a1y: float,
+    grip: float,
+    grip1: float,
+    b: float,
+    c: float,
+    h: float,
+    begin: float,
+    end: float,
+    most: float,
+) -> float:
+    """Return the largest |u|^2 [m2] inside a step of h from u, v, or 0 where it cannot exceed ``most``.
+
+    begin > 0 > end: u.v at the ends of the step; the other arguments as in plane_step
+    """
+    reach = math.sqrt(ux * ux + uy * uy) + h * speed
+    if reach * reach <= most:
+        return 0.0
+    low, high, best, side = 0.0, h, 0.0, 0
+    for _ in range(TRIALS):
+        tau = (low * end - high * begin) / (end - begin)
+        if not low < tau < high:
+            tau = 0.5 * (low + high)
+        wx, wy, sx, sy, _dx, _dy, _pace, _path, _error, _least = plane_step(
+            ux, uy, vx, vy, ex, ey, speed, ax, ay, a1x, a1y, grip, grip1, b, c, tau
+        )
+        best = max(best, wx * wx + wy * wy)
+        value = wx * sx + wy * sy
+        # Illinois: an end that stays is halved.
+        if value > 0.0:
+            low, begin = tau, value
+            end *= 0.5 if side == 1 else 1.0
+            side = 1
+        else:
+            high, end = tau, value
+            begin *= 0.5 if side == -1 else 1.0
+            side = -1
+        if value == 0.0 or high - low <= 1e-7 * h:
+            break
+    return best
+
+
+@kernel
+def inner_felt(
+    ux: float,
+    uy: float,
+    vx: float,
+    vy: float,
+    ex: float,
+    ey: float,
+    speed: float,
+    ax: float,
+    ay: float,
+    a1x: float,
+    a1y: float,
+    grip: float,
+    grip1: float,
+    b: float,
+    c: float,
+    h: float,
+    wx: float,
+    wy: float,
+    sx: float,
+    sy: float,
+    dx: float,
+    dy: float,
+    pace: float,
+) -> float:
+    """Return the largest absolute acceleration [m/s2] at a stationary point inside a step of h, or 0.
+
+    u, v, e, speed: at its beginning; w, s, d, pace: at its end; the other arguments as in plane_step
+    """
+    begin = _felt_rate(ux, uy, vx, vy, ex, ey, speed, ax, ay, grip, grip1, b, c)
+    end = _felt_rate(wx, wy, sx, sy, dx, dy, pace, ax + a1x * h, ay + a1y * h, grip + grip1 * h, grip1, b, c)
+    if not begin > 0.0 > end:
+        return 0.0
+    low, high, best, side = 0.0, h, 0.0, 0
+    for _ in range(TRIALS):
+        tau = (low * end - high * begin) / (end - begin)
+        if not low < tau < high:
+            tau = 0.5 * (low + high)
+        wx, wy, sx, sy, dx, dy, pace, _path, _error, _least = plane_step(
+            ux, uy, vx, vy, ex, ey, speed, ax, ay, a1x, a1y, grip, grip1, b, c, tau
+        )
+        best = max(best, felt(wx, wy, sx, sy, dx, dy, grip + grip1 * tau, b, c))
+        value = _felt_rate(
+            wx, wy, sx, sy, dx, dy, pace, ax + a1x * tau, ay + a1y * tau, grip + grip1 * tau, grip1, b, c
+        )
+        if value > 0.0:
+            low, begin = tau, value
+            end *= 0.5 if side == 1 else 1.0
+            side = 1
+        else:
+            high, end = tau, value
+            begin *= 0.5 if side == -1 else 1.0
+            side = -1
+        if value == 0.0 or high - low <= 1e-7 * h:
+            break
+    return best
