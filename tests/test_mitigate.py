@@ -122,7 +122,7 @@ def test_isolated_objects_stand_or_hold(record: RunRecord, motion: Motion) -> No
 def solve(item: Item, motion: Motion) -> Recommendation:
     scene = classify(item)
     _, findings = assess([scene], [LevelMotions("design", "max", (motion,))], Threads(1), Silent())
-    (advice,) = advise([scene], findings, {"design": (motion,)}, Threads(1), Silent())
+    (advice,) = advise([scene], findings, [LevelMotions("design", "max", (motion,))], Threads(1), Silent())
     (only,) = advice
     return only
 
