@@ -13,7 +13,7 @@ from pipeline.motions.intensity import integrate, measures
 from pipeline.motions.manifest import TargetTable, load_manifest, manifest_file
 from pipeline.motions.pulses import HalfCycle, WaveletPulse, shahi_baker_pulse, velocity_half_cycles
 from pipeline.motions.record import Record
-from pipeline.motions.site import prepare
+from pipeline.motions.site import measured, prepare
 from pipeline.motions.spectra import COMPONENTS, Spectrum, response_spectra, standard_periods
 from pipeline.records import Motion
 
@@ -34,7 +34,7 @@ class Inspection:
                       record is not resampled
     filtered        : whether anything was filtered or corrected here; a record processed by its source is not
     corners         : of high-pass and low-pass [Hz]; None where there was none
-    measures_before, measures : `intensity.measures` of both
+    measures_before, measures : `intensity.measures` of what was recorded, `site.measured` of what is used
     spectra_before  : of x, y and z at 5 % damping; spectra : of all components at 5 %, of RotD100 at all the dampings
                       asked for
     target          : the level's spectrum, where it has one
@@ -94,7 +94,7 @@ def _inspected(
     done = prepare(file, key, record, target, x_azimuth)
     motion, before = done.motion, done.before
     periods = standard_periods(SPECTRUM_POINTS)
-    v, _ = integrate(motion)
+    v = integrate(motion)[0] if done.velocity is None else done.velocity
     return Inspection(
         site=site,
         x_azimuth=x_azimuth,
@@ -105,7 +105,7 @@ def _inspected(
         filtered=done.filtered,
         corners=done.corners,
         measures_before=measures(before),
-        measures=measures(motion),
+        measures=measured(motion, done.velocity),
         spectra_before=response_spectra(before, periods, 0.05, "xyz"),
         spectra=response_spectra(motion, periods, 0.05, COMPONENTS)
         | response_spectra(motion, periods, damping, ["rotd100"]),

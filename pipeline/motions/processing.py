@@ -38,12 +38,15 @@ class Processed:
               everything else
     filtered: whether its baseline was corrected and it was filtered here, or by its source long ago
     corners : of high-pass and low-pass [Hz], None where there was none
+    velocity: (3, n) m/s of the motion as its agency computed it, where the files hold it: its peak is the PGV; None
+              for a record that is filtered here, resampled, or comes without
     """
 
     motion: Motion
     before: Motion
     filtered: bool
     corners: tuple[float | None, float | None]
+    velocity: Array | None = None
 
 
 def process(
@@ -79,9 +82,16 @@ def process(
                 f"resample_s: a step above the record's {motion.dt:g} s would filter it again; use a shorter one"
             )
         motion = resample(motion, record.resample_s)
+    velocity = recording.velocity if record.resample_s is None else None
     if record.window_s is not None:
         motion, before = (_windowed(one, recording, *record.window_s) for one in (motion, before))
+        if velocity is not None:
+            velocity, _ = cut(velocity, recording.dt, *record.window_s)
+    unscaled = float(np.abs(motion.acceleration).max())
     motion, before = _scaled_to_pga(motion, before, record, recording)
+    if velocity is not None:
+        factor = float(np.abs(motion.acceleration).max()) / unscaled
+        velocity, _ = rotate(factor * velocity, *recording.azimuths, x_azimuth)
     motion, before = (_turned(one, recording.azimuths, x_azimuth) for one in (motion, before))
     if record.scale_to_target:
         if target is None:
@@ -96,8 +106,9 @@ def process(
             component=target.component,
             measure=target.measure,
         )
-        size = float(np.abs(motion.acceleration).max())
-        before = before.scaled(float(np.abs(fitted.acceleration).max()) / size, "as the processed motion")
+        factor = float(np.abs(fitted.acceleration).max()) / float(np.abs(motion.acceleration).max())
+        before = before.scaled(factor, "as the processed motion")
+        velocity = None if velocity is None else factor * velocity
         motion = fitted
     if record.v_max_cm_s is not None:
         motion = Motion(
@@ -106,7 +117,7 @@ def process(
     peak = float(np.abs(motion.acceleration).max())
     if peak > PGA_MOST:
         raise ValueError(f"scale: the scaled motion peaks at {peak / G:.3g} g, above 20 g; lower the scale")
-    return Processed(motion, before, not recording.processed, corners)
+    return Processed(motion, before, not recording.processed, corners, velocity)
 
 
 def _flattened(motion: Motion, record: Record) -> Motion:

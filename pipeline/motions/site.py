@@ -26,6 +26,7 @@ from pipeline.motions.pulses import PERIODS, shahi_baker_pulse
 from pipeline.motions.quality import cut_off
 from pipeline.motions.reading import read_record
 from pipeline.motions.record import Record
+from pipeline.quantities import Array
 from pipeline.records import Motion, MotionSummary
 from pipeline.supports.floor import carried
 
@@ -173,13 +174,18 @@ def read_motion(path: str | Path) -> list[Motion]:
     return [one.motion for level in read_site(path).levels for one in level.motions]
 
 
-def measured(motion: Motion) -> dict[str, float]:
+def measured(motion: Motion, velocity: Array | None = None) -> dict[str, float]:
     """Return the measures of a motion (`intensity.measures`), and those of its near-fault pulse where it has one.
 
+    velocity : (3, n) m/s as the motion's agency computed it, where it did: its peaks are the PGV
     pulse_period [s], pulse_pgv [m/s], pulse_angle [degrees from x towards y], by Shahi and Baker (2014)
     """
     out = measures(motion)
-    v, _ = integrate(motion)
+    v = integrate(motion)[0] if velocity is None else velocity
+    if velocity is not None:
+        peaks = np.abs(velocity).max(axis=1)
+        out |= {f"pgv_{axis}": float(peak) for axis, peak in zip("xyz", peaks, strict=True)}
+        out |= {"pgv": float(peaks[:2].max()), "pgv_resultant": float(np.hypot(*velocity[:2]).max())}
     if motion.samples > 1 and v[:2].any() and motion.duration > PERIODS[0]:
         pulse = shahi_baker_pulse(v, motion.dt)
         if pulse.is_pulse:
@@ -249,8 +255,8 @@ def _site_motion(site: Site, key: str, record: Record, target: TargetTable | Non
     )
     known = None if site.kept is None else recall(site.kept, identity)
     if known is None:
-        motion = prepare(site.file, key, record, target, site.manifest.site.x_azimuth).motion
-        known = motion, measured(motion)
+        done = prepare(site.file, key, record, target, site.manifest.site.x_azimuth)
+        known = done.motion, measured(done.motion, done.velocity)
         if site.kept is not None:
             keep(site.kept, identity, known)
     return SiteMotion(*known, record.licence, record.source)
