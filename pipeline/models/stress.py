@@ -6,7 +6,7 @@ import numpy as np
 
 from pipeline.models.common import NO_TILT, ROUNDING, largest_push, needs, smallest_push
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
-from pipeline.models.oscillator import oscillate
+from pipeline.models.oscillator import oscillate, oscillate_bounds
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support
 
@@ -89,6 +89,15 @@ def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
     return Bounds({q.name: (least[q.name], most[q.name]) for q in _STRESSES}, most["note"])
 
 
+def _bound_flexible(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
+    w = 2.0 * np.pi * parameters["frequency"]
+    displacement, _ = oscillate_bounds(motion, w, parameters["damping"], np.ones_like(w))
+    pushes = w**2 * displacement[0], w**2 * displacement[1]
+    least, most = (section_stresses(push, parameters) for push in pushes)
+    bounds = {q.name: (least[q.name], most[q.name]) for q in _STRESSES}
+    return Bounds({**bounds, "pseudo_acceleration": pushes}, most["note"])
+
+
 def _say(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
     if np.isnan(row["tilt"]):
         return "Tilt test: the peak acceleration is 1 g or more; no tilt reproduces it."
@@ -157,6 +166,7 @@ FLEXIBLE_STRESS = Model(
     ),
     directions=1,
     run=_run_flexible,
+    bound=_bound_flexible,
     say_screen=_say,
     mark=lambda parameters, demand: ("spectrum", parameters["frequency"], _push(parameters, demand)),
     demand="tension",

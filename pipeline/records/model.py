@@ -41,8 +41,8 @@ class Model:
     screen     : (excitation, parameters) -> columns by the paper's closed-form criterion; reported, never deciding
     say_screen : (one row of the screen, one set of parameters) -> the criterion in words
     trace      : (excitation, one set of parameters) -> time histories at the samples, (n,) each
-    bound      : (excitation, parameters) -> guaranteed bounds, without integration; of a model in one direction that
-                 is given two, they hold for a body shaken along any.  None: it has none that is worth having
+    bound      : (excitation, parameters) -> guaranteed bounds, much cheaper than `run`; those of a one-direction
+                 model that is given two hold for a body shaken along any.  None: it has none that is worth having
     certificate: (excitation in two directions, parameters) -> the demand itself or an upper bound of it for any
                  direction, without integration; what it shows to be below the capacity is never integrated
     exact      : the certificate is the demand itself, not only a bound

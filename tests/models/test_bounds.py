@@ -32,13 +32,17 @@ def drawn(name: str, rng: np.random.Generator, n: int) -> dict[str, Any]:
         if rng.random() < 0.2:
             body["initial_rotation"] = rng.uniform(-0.3, 0.3, n)
         return body
+    section = {"mass": rng.uniform(1.0, 50.0, n), "lever": rng.uniform(0.05, 1.0, n)}
+    section |= {"area": np.full(n, 1e-3), "section_modulus": np.full(n, 1e-5)}
     if name == "stress":
-        return {
-            "mass": rng.uniform(1.0, 50.0, n),
-            "lever": rng.uniform(0.05, 1.0, n),
-            "area": 1e-3,
-            "section_modulus": 1e-5,
-        }
+        return section
+    linear = {"frequency": np.exp(rng.uniform(-2.0, 4.0, n)), "damping": rng.uniform(0.0, 1.2, n)}
+    if name == "flexible_stress":
+        return section | linear
+    if name == "rotational_isolator":
+        return linear | {"cg_height": rng.uniform(0.1, 1.0, n), "inertia_ratio": rng.uniform(1.0, 2.0, n)}
+    if name == "oscillator":
+        return linear
     mu = rng.uniform(0.0, 0.8, n)
     return {"friction_static": mu, "friction_kinetic": mu * rng.choice([rng.uniform(0.3, 1.0), 1.0], n)}
 
@@ -114,7 +118,8 @@ def at_level(level: float) -> Motion:
     return Motion(motion.dt, motion.acceleration[:, begin : begin + 2000] * (level * G / push.max()))
 
 
-GOLDEN = [case for case in golden.CASES if golden.asked(case)[0] in BOUNDED]
+# Gravity that overcomes the pad has no frequency and is refused: test_golden sees to it.
+GOLDEN = [c for c in golden.CASES if golden.asked(c)[0] in BOUNDED and c["name"] != "ri_K_negative"]
 
 
 @pytest.mark.parametrize("case", GOLDEN, ids=lambda case: str(case["name"]))
@@ -225,6 +230,21 @@ def test_the_stress_of_every_direction() -> None:
     assert max(sweep) <= row["high"] <= 1.0001 * max(sweep)
 
 
+@pytest.mark.parametrize("name", ["oscillator", "flexible_stress", "rotational_isolator"])
+def test_a_linear_model_is_bounded_in_every_direction(name: str) -> None:
+    """Along one angle the bounds are the response to 1e-9; over all, at most sqrt(2) times the worst."""
+    motion = random_motion(8)
+    along = respond(name, motion, fidelity="bound", angle=50.0, **VALID[name]).iloc[0]
+    first = model_named(name).gives[0].name
+    exact = respond(name, motion, angle=50.0, **VALID[name])[first][0]
+    assert along["low"] <= exact <= along["high"]
+    assert along["high"] - along["low"] <= 3e-9 * exact
+    weight = 10.0 * G / 1e-3 if name == "flexible_stress" else 0.0
+    high = respond(name, motion, fidelity="bound", angle=None, **VALID[name])["high"][0]
+    worst = max(respond(name, motion, angle=float(k), **VALID[name])[first][0] for k in range(0, 180, 5))
+    assert worst <= high <= np.sqrt(2.0) * (worst + weight)
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_more_friction_never_raises_the_upper_bound(seed: int) -> None:
     """Exactly so for the static and the kinetic friction, each on its own: every step of the sum is monotone in both.
@@ -290,6 +310,7 @@ def test_the_table_of_a_bound(name: str) -> None:
     assert list(table.columns) == [*outputs, "error", "fidelity", "note", "angle", "low", "high"]
     assert (table[outputs[0]] == table["high"]).all()
     assert (table["error"] == table["high"] - table["low"]).all()
+    assert (table["low"] <= table["high"]).all()
     assert set(table["fidelity"]) == {"bound"}
     assert table["note"].str.contains("a guaranteed upper bound, not a response").all()
 
@@ -299,16 +320,16 @@ def test_a_motion_of_nothing_is_bounded_by_nothing(name: str) -> None:
     for n in (1, 2, 50):
         row = respond(name, along_x(np.zeros(n), 0.01), fidelity="bound", angle=None, **VALID[name]).iloc[0]
         assert row["low"] == row["high"]
-        if name != "stress":
-            assert row["high"] == 0.0
+        # Without a push its own weight still presses.
+        assert row["high"] == (-10.0 * G / 1e-3 if "stress" in name else 0.0)
 
 
 @pytest.mark.parametrize("name", BOUNDED)
 def test_lost_contact_is_told(name: str) -> None:
-    """Flight and landing are not modelled, so the bound is of the model alone, and says so.  Stress has no flight."""
+    """Flight and landing are not modelled, so the bound says so; what is held does not fly."""
     falling = Motion(0.01, np.vstack([np.ones(20), np.zeros(20), np.full(20, -1.5 * G)]))
     row = respond(name, falling, fidelity="bound", **VALID[name]).iloc[0]
-    assert ("contact lost" in row["note"]) == (name != "stress")
+    assert ("contact lost" in row["note"]) == (name in ("sliding", "friction_isolator", "rocking"))
     assert row["low"] <= row["high"]
 
 
