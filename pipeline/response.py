@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from pipeline.models import model_named
-from pipeline.models.common import words
+from pipeline.models import MODELS, model_named
+from pipeline.models.common import BOUND, words
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Columns, Model, Motion
+from pipeline.records import Columns, Excitation, Model, Motion
 
 if TYPE_CHECKING:
     import pandas as pd
 
-FIDELITIES = ("screen", "history", "reference")
-"""What ``respond`` can be asked for, from the paper's closed form to the tight-tolerance integration."""
+FIDELITIES = ("screen", "bound", "history", "reference")
+"""What ``respond`` can be asked for: the paper's closed form, guaranteed bounds, time histories, tight tolerances."""
 
 REFINE = {"history": 2, "reference": 16}
 """How much finer than the coarsest step, which only ever looks for the worst direction, each fidelity integrates."""
@@ -46,6 +46,9 @@ def respond(
     parameters   : the model's own, in SI; numbers or arrays, broadcast against each other
     returns      : table, one row a parameter set: the model's outputs, ``error`` (estimated, in the unit of the first
                    output), ``fidelity``, ``note``, and ``angle`` (the direction of the row; empty for two directions)
+    bound        : at this fidelity ``low`` and ``high`` follow, between which the first output lies for certain (in any
+                   direction where the angle is None).  Each output holds its upper bound, or is empty where it has
+                   none; a yes, or a count, is only what is certain.  ``error`` is high - low
     raises       : ValueError for an unknown model, parameter or fidelity, and for a value outside its limits
     """
     import pandas as pd
@@ -55,12 +58,14 @@ def respond(
         raise ValueError(f"there is no fidelity {fidelity!r}; choose from {', '.join(FIDELITIES)}")
     values = prepare(row, parameters)
     columns, angles = run_model(row, motion, values, fidelity, angle, tail, azimuth_step)
-    note = columns.pop("note")
+    note = columns["note"]
     table = pd.DataFrame({q.name: _typed(q, columns[q.name]) for q in row.gives})
     table["error"] = columns["error"]
     table["fidelity"] = fidelity
     table["note"] = [words(bits) for bits in note]
     table["angle"] = angles
+    if fidelity == "bound":
+        table["low"], table["high"] = columns["low"], columns["high"]
     return table
 
 
@@ -145,12 +150,10 @@ def run_model(
         if asked.size > 1 or asked[0] not in (1.0, 2.0):
             raise ValueError(f"directions must be 1 or 2 for all rows, not {asked.tolist()}")
         directions = int(asked[0])
-    if fidelity == "screen":
-        if model.screen is None:
-            raise ValueError(f"the paper gives no closed-form criterion for {model.name}; ask for history")
+    if fidelity in ("screen", "bound"):
         way = None if directions == 2 else angle
-        columns = model.screen(motion.excitation(way, tail), values)
-        return columns, np.full(size, np.nan if way is None else way)
+        closed = _screened if fidelity == "screen" else _bounded
+        return closed(model, motion.excitation(way, tail), values), np.full(size, np.nan if way is None else way)
     refine = REFINE[fidelity]
     if directions == 2:
         return model.run(motion.excitation(None, tail), values, refine, True), np.full(size, np.nan)
@@ -159,6 +162,26 @@ def run_model(
     if not 0.0 < azimuth_step <= 90.0:
         raise ValueError(f"azimuth_step must be above 0 and at most 90 degrees, not {azimuth_step!r}")
     return _worst_direction(model, motion, values, refine, tail, azimuth_step)
+
+
+def _screened(model: Model, motion: Excitation, values: Mapping[str, Array]) -> Columns:
+    if model.screen is None:
+        raise ValueError(f"the paper gives no closed-form criterion for {model.name}; ask for history")
+    return model.screen(motion, values)
+
+
+def _bounded(model: Model, motion: Excitation, values: Mapping[str, Array]) -> Columns:
+    if model.bound is None:
+        others = ", ".join(m.name for m in MODELS if m.bound is not None)
+        raise ValueError(f"{model.name} has no guaranteed bounds; ask for history (bounds have: {others})")
+    bounds = model.bound(motion, values)
+    low, high = bounds.outputs[model.gives[0].name]
+    columns: Columns = {}
+    for quantity in model.gives:
+        certain, most = bounds.outputs.get(quantity.name, (np.zeros_like(low), np.full_like(low, np.nan)))
+        columns[quantity.name] = certain if quantity.unit in ("bool", "count") else most
+    error = np.subtract(high, low, out=np.zeros_like(low), where=high > low)
+    return columns | {"low": low, "high": high, "error": error, "note": bounds.note + BOUND}
 
 
 def _finite_angle(angle: object) -> None:

@@ -138,3 +138,5 @@ def test_models_and_respond_for_programs(tmp_path: Path) -> None:
     assert slides[0] > slides[1] > 0.0
     assert len(lines(kouros("respond", "rocking", "half_width=0.1", "cg_height=0.5", "--angle", "worst",
                             folder=tmp_path).stdout)) == 2  # fmt: skip
+    bound = kouros("respond", "sliding", "friction_static=0.05,5", "--fidelity", "bound", "--json", folder=tmp_path)
+    assert [row["high"] == 0.0 for row in json.loads(bound.stdout)] == [False, True]

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from pipeline.jobs.nightly import Summary
 
 
+FIDELITIES = ("screen", "bound", "history", "reference")
+"""What `respond` offers; named here too, so that --help does not wait for the models to load."""
+
+
 def _print_summary(summary: "Summary", wanted: bool) -> None:
     if not wanted:
         click.echo("\n".join(summary_lines(summary)))
@@ -258,7 +262,7 @@ def models(as_json: bool) -> None:
     "rotational_isolator); repeat it for a chain, from the ground up.",
 )
 @click.option("--angle", default="0", show_default=True, help="Degrees from x towards y, or 'worst' (RotD100).")
-@click.option("--fidelity", default="history", type=click.Choice(["screen", "history", "reference"]), show_default=True)
+@click.option("--fidelity", default="history", type=click.Choice(FIDELITIES), show_default=True)
 @click.option("--tail", type=click.FloatRange(min=0.0), help="Seconds after the record; default: until rest.")
 @as_json
 def respond(

@@ -12,6 +12,7 @@ from pipeline.records import Excitation, Scene, Support
 SENSITIVE = 8
 NO_TILT = 16
 NO_HISTORY = 32
+BOUND = 64
 
 NOTES = {
     flags.CONTACT_LOST: "contact lost (vertical acceleration below -g); flight and landing are not modelled",
@@ -20,6 +21,7 @@ NOTES = {
     SENSITIVE: "sensitive: the outcome changes with the step of integration",
     NO_TILT: "no tilt reproduces an acceleration of 1 g or more",
     NO_HISTORY: "a closed-form screen, not a response",
+    BOUND: "a guaranteed upper bound, not a response",
 }
 """What each bit of a result's note means."""
 
@@ -56,9 +58,26 @@ def shaken(motion: Excitation) -> float:
     return float(np.sqrt(square.max()))
 
 
+def contact_lost(motion: Excitation, size: int) -> Array:
+    """Return the flag of lost contact (size,) where the vertical acceleration goes below -g, else 0."""
+    return np.full(size, float(flags.CONTACT_LOST) if np.min(motion.z) < -G else 0.0)
+
+
 def largest_push(motion: Excitation) -> float:
     """Return A_max [m/s2]: the peak along the direction, or the peak resultant of two."""
     return float(np.max(np.abs(motion.x) if motion.y is None else np.hypot(motion.x, motion.y)))
+
+
+def smallest_push(motion: Excitation) -> float:
+    """Return a lower bound of A_max [m/s2] along any direction; along the one of the excitation it is A_max itself."""
+    if motion.y is None:
+        return largest_push(motion)
+    half = np.radians(0.25)
+    turns = np.arange(0.0, np.pi, 2.0 * half)
+    peaks = np.array([np.max(np.abs(np.cos(t) * motion.x + np.sin(t) * motion.y)) for t in turns])
+    # Half a step away the sample with the peak along t still pushes by its cosine, less what it pushes across t.
+    across = np.sqrt(np.maximum(0.0, largest_push(motion) ** 2 - peaks**2))
+    return max(0.0, float(np.min(np.cos(half) * peaks - np.sin(half) * across)))
 
 
 def largest_speed(motion: Excitation) -> float:

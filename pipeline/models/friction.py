@@ -4,11 +4,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from pipeline.kernels.bounds import slip_bounds_batch
 from pipeline.kernels.friction_line import friction_line_batch, friction_line_one
 from pipeline.kernels.friction_plane import friction_plane_batch, friction_plane_one
-from pipeline.models.common import ROUNDING, Quiet, after_record
+from pipeline.models.common import ROUNDING, Quiet, after_record, contact_lost
 from pipeline.quantities import Array
-from pipeline.records import Columns, Excitation
+from pipeline.records import Bounds, Columns, Excitation
 
 FREE, SPRUNG = 1e-3, 3e-10
 """Tolerance of a step of the two-directional kernel at `history`, without and with a spring.
@@ -18,6 +19,8 @@ remembers, and a stroke is wanted to 1e-8.
 """
 TIGHTEST = 1e-12
 """Tolerance below which rounding would decide."""
+PROMISED = 5e-6
+"""Relative error of the two-directional `reference`, by which a bound is looser: it holds for what is computed too."""
 
 
 def stick_slip(
@@ -74,6 +77,40 @@ def _steps(w: Array, refine: int) -> tuple[float, float]:
     # Tolerance and longest step (as a share of a sample interval) of the two-directional kernel.
     base = SPRUNG if np.max(w) > 0.0 else FREE
     return max(TIGHTEST, base * (2.0 / refine) ** 6), 1.0 / refine
+
+
+def slip_bounds(motion: Excitation, mu_s: Array, mu_k: Array, *outputs: str) -> Bounds:
+    """Return guaranteed bounds of what n bodies without a spring do on dry friction (the proof is in kernels.bounds).
+
+    mu_s, mu_k [-] : (n,), mu_k <= mu_s
+    outputs : those wanted of displacement, residual, path_length [m], exactly 0 where nothing slips and infinite above
+              where nothing stops it, and acceleration [m/s2]
+    """
+    quiet = Quiet(motion)
+    results = np.empty((mu_s.size, 4))
+    slip_bounds_batch(
+        quiet.x,
+        quiet.y,
+        quiet.z,
+        quiet.push,
+        quiet.ratio,
+        quiet.maxima,
+        quiet.pushes,
+        quiet.dt,
+        np.ascontiguousarray(mu_s, dtype=np.float64),
+        np.ascontiguousarray(mu_k, dtype=np.float64),
+        quiet.tail,
+        results,
+    )
+    margin = ROUNDING if motion.y is None else PROMISED
+    low, high = results[:, 0] * (1.0 - margin), results[:, 1] * (1.0 + margin)
+    bounds = {
+        "displacement": (low, high),
+        "residual": (np.zeros_like(low), high),
+        "path_length": (low, high),
+        "acceleration": (results[:, 2] * (1.0 - ROUNDING), results[:, 3] * (1.0 + ROUNDING)),
+    }
+    return Bounds({name: bounds[name] for name in outputs}, contact_lost(motion, mu_s.size))
 
 
 def stick_slip_trace(motion: Excitation, w: float, zeta: float, mu_s: float, mu_k: float) -> Columns:

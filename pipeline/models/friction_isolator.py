@@ -5,10 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from pipeline.models.common import needs
-from pipeline.models.friction import kinetic, stick_slip, stick_slip_trace
+from pipeline.models.friction import kinetic, slip_bounds, stick_slip, stick_slip_trace
 from pipeline.models.sliding import FRICTION_KINETIC, FRICTION_STATIC
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Columns, Excitation, Model, Scene, Support
+from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
@@ -24,6 +24,11 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     mu_k = kinetic({name: np.array([value]) for name, value in parameters.items()})
     return stick_slip_trace(motion, 0.0, 0.0, parameters["friction_static"], float(mu_k[0]))
+
+
+def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
+    mu_s, mu_k = parameters["friction_static"], kinetic(parameters)
+    return slip_bounds(motion, mu_s, mu_k, "acceleration", "displacement", "residual")
 
 
 def _applies(scene: Scene) -> str:
@@ -47,6 +52,7 @@ FRICTION_ISOLATOR = Model(
     directions=2,
     run=_run,
     trace=_trace,
+    bound=_bound,
     demand="displacement",
     capacity="clearance",
     applies=_applies,

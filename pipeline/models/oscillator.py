@@ -8,7 +8,10 @@ from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
 from pipeline.models.common import ROUNDING, after_record
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Columns, Excitation, Model, Scene
+from pipeline.records import Bounds, Columns, Excitation, Model, Scene
+
+PROMISED = 1e-9
+"""Relative error that the recursion promises; a bound is looser by it."""
 
 
 def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[Array, Array]:
@@ -18,6 +21,36 @@ def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[
     arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta, share)]
     oscillator_batch(np.ascontiguousarray(motion.x), motion.dt, *arrays, tail, max_u, max_y)
     return max_u, max_y
+
+
+Between = tuple[Array, Array]
+
+
+def oscillate_bounds(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[Between, Between]:
+    """Return what the largest |u| [m] and |a + share u''| [m/s2] of n oscillators lie between, (low, high) each.
+
+    The oscillator is linear: shaken along any direction it answers with the components of its answers to x and to y, so
+    that their peaks' resultant bounds every direction, for the cost of two.  Along one direction both bounds are the
+    answer itself.
+    """
+    peaks = oscillate(motion, w, zeta, share)
+    if motion.y is None:
+        low, high = peaks, peaks
+    else:
+        across = Excitation(motion.dt, motion.y, None, motion.z, motion.tail)
+        others = oscillate(across, w, zeta, share)
+        low = (np.zeros_like(w), np.zeros_like(w))
+        high = (np.hypot(peaks[0], others[0]), np.hypot(peaks[1], others[1]))
+    down, up = 1.0 - PROMISED, 1.0 + PROMISED
+    return (down * low[0], up * high[0]), (down * low[1], up * high[1])
+
+
+def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
+    w = 2.0 * np.pi * parameters["frequency"]
+    displacement, absolute = oscillate_bounds(motion, w, parameters["damping"], np.ones_like(w))
+    pseudo = (w**2 * displacement[0], w**2 * displacement[1])
+    bounds = {"displacement": displacement, "pseudo_acceleration": pseudo, "absolute_acceleration": absolute}
+    return Bounds(bounds, np.zeros_like(w))
 
 
 def _run(
@@ -64,6 +97,7 @@ OSCILLATOR = Model(
     directions=1,
     run=_run,
     trace=_trace,
+    bound=_bound,
     demand="displacement",
     capacity="clearance",
     applies=_applies,

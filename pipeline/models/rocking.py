@@ -5,12 +5,13 @@ from collections.abc import Mapping
 import numpy as np
 
 from pipeline.kernels import flags
-from pipeline.kernels.rocking import rocking_batch, rocking_one
+from pipeline.kernels.rocking import OVERTURNED, rocking_batch, rocking_one
 from pipeline.models.common import (
     NO_HISTORY,
     SENSITIVE,
     Quiet,
     broadcast,
+    contact_lost,
     largest_push,
     largest_speed,
     lift_ratios,
@@ -18,7 +19,7 @@ from pipeline.models.common import (
     unless_free,
 )
 from pipeline.quantities import Array, G, Quantity
-from pipeline.records import Columns, Excitation, Model, Scene
+from pipeline.records import Bounds, Columns, Excitation, Model, Scene
 
 VELOCITY_SCREEN = 1.0
 """V_max > 10 B / sqrt(H') in cm and s is V_max > 1.0 B / sqrt(H') in m and s (Ishiyama 1982, in the paper's form)."""
@@ -43,6 +44,15 @@ def bodies(parameters: Mapping[str, Array]) -> Array:
     return np.ascontiguousarray(np.column_stack(columns))
 
 
+def uplift_ratios(motion: Excitation, body: Array) -> Array:
+    """Return the largest |a_h| / (N b/h) over time (n,): exact along a direction, the most of any for two directions.
+
+    body : (n, 6) as from `bodies`
+    """
+    to_positive, to_negative = lift_ratios(motion)
+    return np.maximum(to_positive / np.tan(body[:, 0]), to_negative / np.tan(body[:, 1]))
+
+
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     quiet = Quiet(motion)
     body = bodies(parameters)
@@ -53,8 +63,7 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
         rocking_batch(
             quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.dt, quiet.peak, body, initial, quiet.tail, steps, results
         )
-    to_positive, to_negative = lift_ratios(motion)
-    uplift = np.maximum(to_positive / np.tan(body[:, 0]), to_negative / np.tan(body[:, 1]))
+    uplift = uplift_ratios(motion, body)
     note = fine[:, 5].astype(np.int64) | np.where(estimate & (coarse[:, 1] != fine[:, 1]), SENSITIVE, 0)
     note |= np.where(np.isinf(uplift), flags.CONTACT_LOST, 0)
     return {
@@ -121,11 +130,25 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
 
 
 def _certificate(motion: Excitation, parameters: Mapping[str, Array]) -> Array:
-    to_positive, to_negative = lift_ratios(motion)
-    other = parameters["half_width_other"]
-    b1, h = parameters["half_width"], parameters["cg_height"]
-    b2 = np.where(np.isnan(other), b1, other)
-    return np.maximum(to_positive * h / b1, to_negative * h / b2)
+    return uplift_ratios(motion, bodies(parameters))
+
+
+def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
+    body = bodies(parameters)
+    uplift = uplift_ratios(motion, body)
+    tilted = np.abs(parameters["initial_rotation"])
+    begin = tilted / np.where(parameters["initial_rotation"] > 0.0, body[:, 0], body[:, 1])
+    rests = (uplift <= 1.0) & (tilted == 0.0)
+    fallen = tilted >= OVERTURNED
+    # Once it lifts an edge it may do anything up to falling over, after which it is not followed.
+    most = np.where(rests | fallen, begin, OVERTURNED / np.minimum(body[:, 0], body[:, 1]))
+    bounds = {
+        "rotation_ratio": (begin, most),
+        "overturned": (fallen.astype(np.float64), np.where(rests, 0.0, 1.0)),
+        "impacts": (np.zeros_like(uplift), np.where(rests | fallen, 0.0, np.inf)),
+        "uplift_ratio": (uplift if motion.y is None else np.zeros_like(uplift), uplift),
+    }
+    return Bounds(bounds, contact_lost(motion, uplift.size))
 
 
 def _outcome(row: Mapping[str, float], _parameters: Mapping[str, float]) -> tuple[str, str]:
@@ -189,6 +212,7 @@ ROCKING = Model(
     screen=_screen,
     say_screen=_say,
     trace=_trace,
+    bound=_bound,
     certificate=_certificate,
     exact=True,
     rests=1.0,

@@ -7,9 +7,9 @@ import numpy as np
 from pipeline.kernels.oscillator import oscillator_history
 from pipeline.models.common import ROUNDING, after_record, needs
 from pipeline.models.horizontal_isolator import DAMPING
-from pipeline.models.oscillator import oscillate
+from pipeline.models.oscillator import oscillate, oscillate_bounds
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Columns, Excitation, Model, Scene, Support
+from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support
 
 
 def _run(
@@ -25,6 +25,14 @@ def _run(
     displacement, acceleration = oscillate(motion, w, parameters["damping"], share)
     rotation = displacement * share / parameters["cg_height"]
     return {"rotation": rotation, "acceleration": acceleration, "error": ROUNDING * rotation, "note": np.zeros_like(w)}
+
+
+def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
+    w = 2.0 * np.pi * parameters["frequency"]
+    share = 1.0 / parameters["inertia_ratio"]
+    (low, high), acceleration = oscillate_bounds(motion, w, parameters["damping"], share)
+    turn = share / parameters["cg_height"]
+    return Bounds({"rotation": (low * turn, high * turn), "acceleration": acceleration}, np.zeros_like(w))
 
 
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
@@ -61,6 +69,7 @@ ROTATIONAL_ISOLATOR = Model(
     directions=1,
     run=_run,
     trace=_trace,
+    bound=_bound,
     demand="rotation",
     capacity="rotation_limit",
     applies=_applies,

@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from pipeline.models.common import lift_ratios, needs, unless_free
-from pipeline.models.friction import kinetic, stick_slip, stick_slip_trace
+from pipeline.models.friction import kinetic, slip_bounds, stick_slip, stick_slip_trace
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Columns, Excitation, Model, Scene
+from pipeline.records import Bounds, Columns, Excitation, Model, Scene
 
 FRICTION_STATIC = Quantity("friction_static", "-", "coefficient at rest", 0.0)
 FRICTION_KINETIC = Quantity(
@@ -27,6 +27,16 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     mu_k = kinetic({name: np.array([value]) for name, value in parameters.items()})
     return stick_slip_trace(motion, 0.0, 0.0, parameters["friction_static"], float(mu_k[0]))
+
+
+def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
+    mu_s, mu_k = parameters["friction_static"], kinetic(parameters)
+    bounds = slip_bounds(motion, mu_s, mu_k, "displacement", "residual", "path_length")
+    if motion.y is None:
+        return bounds
+    # Of one direction among all that it may be shaken along, the least is not known.
+    two = parameters["directions"] == 2.0
+    return Bounds({name: (np.where(two, low, 0.0), high) for name, (low, high) in bounds.outputs.items()}, bounds.note)
 
 
 def _certificate(motion: Excitation, parameters: Mapping[str, Array]) -> Array:
@@ -54,6 +64,7 @@ SLIDING = Model(
     directions=0,
     run=_run,
     trace=_trace,
+    bound=_bound,
     certificate=_certificate,
     rests=0.0,
     mark=lambda parameters, demand: ("sliding", parameters["friction_static"], demand),

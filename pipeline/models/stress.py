@@ -4,11 +4,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.models.common import NO_TILT, ROUNDING, largest_push, needs
+from pipeline.models.common import NO_TILT, ROUNDING, largest_push, needs, smallest_push
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
-from pipeline.models.oscillator import oscillate
+from pipeline.models.oscillator import oscillate, oscillate_bounds
 from pipeline.quantities import Array, G, Quantity
-from pipeline.records import Columns, Excitation, Model, Scene, Support
+from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support
 
 RIGID_PERIOD = 0.06
 """Period [s] up to which ASCE 7 calls a component rigid."""
@@ -80,6 +80,24 @@ def _screen(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
     return _run(motion, parameters, 1, False)
 
 
+def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
+    # Along one direction both pushes are the same and the bound is the stress itself.
+    least, most = (
+        section_stresses(parameters["amplification"] * push(motion), parameters)
+        for push in (smallest_push, largest_push)
+    )
+    return Bounds({q.name: (least[q.name], most[q.name]) for q in _STRESSES}, most["note"])
+
+
+def _bound_flexible(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
+    w = 2.0 * np.pi * parameters["frequency"]
+    displacement, _ = oscillate_bounds(motion, w, parameters["damping"], np.ones_like(w))
+    pushes = w**2 * displacement[0], w**2 * displacement[1]
+    least, most = (section_stresses(push, parameters) for push in pushes)
+    bounds = {q.name: (least[q.name], most[q.name]) for q in _STRESSES}
+    return Bounds({**bounds, "pseudo_acceleration": pushes}, most["note"])
+
+
 def _say(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
     if np.isnan(row["tilt"]):
         return "Tilt test: the peak acceleration is 1 g or more; no tilt reproduces it."
@@ -124,6 +142,7 @@ STRESS = Model(
     run=_run,
     screen=_screen,
     say_screen=_say,
+    bound=_bound,
     certificate=lambda motion, parameters: _run(motion, parameters, 1, False)["tension"],
     exact=True,
     mark=lambda parameters, demand: ("spectrum", RIGID_FREQUENCY, _push(parameters, demand)),
@@ -147,6 +166,7 @@ FLEXIBLE_STRESS = Model(
     ),
     directions=1,
     run=_run_flexible,
+    bound=_bound_flexible,
     say_screen=_say,
     mark=lambda parameters, demand: ("spectrum", parameters["frequency"], _push(parameters, demand)),
     demand="tension",

@@ -14,6 +14,18 @@ Columns = dict[str, Array]
 
 
 @dataclass(frozen=True)
+class Bounds:
+    """What the outputs of a model lie between, for certain.
+
+    outputs : output name -> (low, high), (n,) each, of the first output always; a yes or no is bounded by 0 and 1
+    note    : (n,) bit flags, see models.NOTES
+    """
+
+    outputs: Mapping[str, tuple[Array, Array]]
+    note: Array
+
+
+@dataclass(frozen=True)
 class Model:
     """A generic model or isolator: one row of the registry (see pipeline.models.MODELS).
 
@@ -29,6 +41,8 @@ class Model:
     screen     : (excitation, parameters) -> columns by the paper's closed-form criterion; reported, never deciding
     say_screen : (one row of the screen, one set of parameters) -> the criterion in words
     trace      : (excitation, one set of parameters) -> time histories at the samples, (n,) each
+    bound      : (excitation, parameters) -> guaranteed bounds, much cheaper than `run`; those of a one-direction
+                 model that is given two hold for a body shaken along any.  None: it has none that is worth having
     certificate: (excitation in two directions, parameters) -> the demand itself or an upper bound of it for any
                  direction, without integration; what it shows to be below the capacity is never integrated
     exact      : the certificate is the demand itself, not only a bound
@@ -57,6 +71,7 @@ class Model:
     screen: Callable[[Excitation, Mapping[str, Array]], Columns] | None = None
     say_screen: Callable[[Mapping[str, float], Mapping[str, float]], str] = lambda _row, _parameters: ""
     trace: Callable[[Excitation, Mapping[str, float]], Columns] | None = None
+    bound: Callable[[Excitation, Mapping[str, Array]], Bounds] | None = None
     certificate: Callable[[Excitation, Mapping[str, Array]], Array] | None = None
     exact: bool = False
     rests: float | None = None
