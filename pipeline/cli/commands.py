@@ -258,7 +258,9 @@ def models(as_json: bool) -> None:
     "rotational_isolator); repeat it for a chain, from the ground up.",
 )
 @click.option("--angle", default="0", show_default=True, help="Degrees from x towards y, or 'worst' (RotD100).")
-@click.option("--fidelity", default="history", type=click.Choice(["screen", "history", "reference"]), show_default=True)
+@click.option(
+    "--fidelity", default="history", type=click.Choice(["screen", "chart", "history", "reference"]), show_default=True
+)
 @click.option("--tail", type=click.FloatRange(min=0.0), help="Seconds after the record; default: until rest.")
 @as_json
 def respond(

@@ -10,6 +10,9 @@ from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Columns, Excitation, Model, Scene
 
+OSCILLATES = "its recursion is exact and fast, its spectrum so jagged that a chart takes thousands of analyses"
+"""Why what follows a response spectrum is not tabulated."""
+
 
 def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[Array, Array]:
     """Return the largest |u| [m] and |a + share u''| [m/s2] of n oscillators, (n,) each."""
@@ -64,6 +67,7 @@ OSCILLATOR = Model(
     directions=1,
     run=_run,
     trace=_trace,
+    uncharted=OSCILLATES,
     demand="displacement",
     capacity="clearance",
     applies=_applies,

@@ -7,7 +7,7 @@ import numpy as np
 from pipeline.kernels.oscillator import oscillator_history
 from pipeline.models.common import ROUNDING, after_record, needs
 from pipeline.models.horizontal_isolator import DAMPING
-from pipeline.models.oscillator import oscillate
+from pipeline.models.oscillator import OSCILLATES, oscillate
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Columns, Excitation, Model, Scene, Support
 
@@ -61,6 +61,7 @@ ROTATIONAL_ISOLATOR = Model(
     directions=1,
     run=_run,
     trace=_trace,
+    uncharted=OSCILLATES,
     demand="rotation",
     capacity="rotation_limit",
     applies=_applies,

@@ -1,6 +1,6 @@
 """The nouns that every floor shares: motions, items, scenes, models, findings, recommendations, charts."""
 
-from pipeline.records.model import Columns, Model
+from pipeline.records.model import ChartAxis, Columns, Model
 from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress
@@ -12,6 +12,7 @@ __all__ = [
     "Assessment",
     "Axis",
     "Chart",
+    "ChartAxis",
     "Check",
     "Columns",
     "Curve",
