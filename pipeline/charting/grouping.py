@@ -77,13 +77,19 @@ def tabulate(
 
 def _groups(fixed: Mapping[str, Array], rows: NDArray[np.intp]) -> list[NDArray[np.intp]]:
     """Return the rows that share their fixed parameters, the largest groups first, at most MOST_CHARTS."""
-    if not fixed or rows.size == 0:
-        return [rows] if rows.size else []
-    # What was left out is left out alike.
-    table = np.column_stack([np.where(np.isnan(v[rows]), np.inf, v[rows]) for v in fixed.values()])
-    _, which, counts = np.unique(table, axis=0, return_inverse=True, return_counts=True)
-    largest = np.argsort(-counts, kind="stable")[:MOST_CHARTS]
-    return [rows[which.ravel() == group] for group in largest]
+    if rows.size == 0:
+        return []
+    which = np.zeros(rows.size, dtype=np.int64)
+    for column in fixed.values():
+        # What was left out is left out alike.
+        given = np.where(np.isnan(column), np.inf, column)[rows]
+        if (given != given[0]).any():
+            _, codes = np.unique(given, return_inverse=True)
+            _, which = np.unique(which * (codes.max() + 1) + codes, return_inverse=True)
+    if not which.any():
+        return [rows]
+    largest = np.argsort(-np.bincount(which), kind="stable")[:MOST_CHARTS]
+    return [rows[which == group] for group in largest]
 
 
 def _chart(
