@@ -4,7 +4,7 @@ BIN := .venv/bin
 STAMP := .venv/.kouros-installed
 PEERS := .venv/.kouros-peers
 
-.PHONY: demo test lint bench check-browser clean
+.PHONY: demo test lint bench soak check-browser clean
 
 $(STAMP): pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv || { echo "python3 has no venv module: apt-get install python3-venv"; exit 1; }
@@ -34,6 +34,9 @@ lint: $(STAMP)
 
 bench: $(PEERS)  ## costs beside peers and beside C, ns per object and sample of each model, the stages of a night
 	$(BIN)/python -m tests.benchmarks
+
+soak: $(STAMP)  ## what is too long for every day: each reader of records fed damaged files for two minutes
+	KOUROS_FUZZ_SECONDS=120 $(BIN)/python -m pytest --numprocesses 2 tests/motions/formats/test_fuzz.py -k damage
 
 # The browser tests need Chromium and its driver; where they are missing they come from Debian's packages.
 check-browser:

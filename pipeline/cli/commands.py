@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pipeline.cli.console import summary_lines
+from pipeline.cli.console import summary_lines, tradeoff_lines
 from pipeline.cli.motions import motions
 from pipeline.cli.options import Options, as_json
 
@@ -287,4 +287,33 @@ def respond(
     click.echo(table.to_json(orient="records", indent=2) if as_json else table.to_string(index=False))
 
 
-ALL = (demo, init, import_, check, run, report, diff, motions, models, respond)
+@click.command()
+@click.option("--site", help="Site folder whose motions are used, or 'demo'; else the settings'.")
+@click.option("--model", "models", multiple=True, help="Only this model; may be repeated.")
+@click.option("--objects", default=128, show_default=True, type=click.IntRange(1, 100_000), help="Objects a model.")
+@click.option("--error", "wanted", default=1e-3, show_default=True, type=click.FloatRange(0.0), help="Error to keep.")
+@as_json
+@click.pass_obj
+def tradeoff(
+    options: Options, site: str | None, models: tuple[str, ...], objects: int, wanted: float, as_json: bool
+) -> None:
+    """Measure error against cost for each model, on your motions and on objects of your collection.
+
+    It takes a minute or more.  The next report of `kouros run` shows the result as a picture.
+
+    Example: kouros tradeoff --site demo --model sliding --error 1e-4
+    """
+    from pipeline.jobs.tradeoff import tradeoff_on
+
+    settings = options.settings() if Path(options.config).exists() else None
+    with options.console() as console:
+        found = tradeoff_on(settings, site, console, models=models, objects=objects)
+    cheapest = found.cheapest(wanted)
+    if as_json:
+        best = {name: None if setting is None else asdict(setting) for name, setting in cheapest.items()}
+        click.echo(json.dumps({**asdict(found), "wanted": wanted, "cheapest": best}, indent=2))
+        return
+    click.echo("\n".join(tradeoff_lines(found, wanted)))
+
+
+ALL = (demo, init, import_, check, run, report, diff, motions, models, respond, tradeoff)

@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress as Bars
 
     from pipeline.jobs.nightly import Summary
+    from pipeline.jobs.tradeoff import Tradeoff
 
 
 class Console:
@@ -99,3 +100,23 @@ def summary_lines(summary: "Summary") -> list[str]:
 
 def _short(text: str, most: int = 84) -> str:
     return text if len(text) <= most else f"{text[: most - 1]}…"
+
+
+def tradeoff_lines(found: "Tradeoff", wanted: float) -> list[str]:
+    """Return the table of a measurement, and the cheapest setting of each model that keeps the wanted error."""
+    lines = [
+        f"Relative error of the first output against ns per object and sample, under {', '.join(found.motions)}",
+        f"{'':<34}{'ns':>10}{'median':>10}{'95 %':>10}{'worst':>10}{'wrong outcomes':>16}",
+    ]
+    for sample in found.samples:
+        lines.append(f"{sample.model}: {sample.objects} objects from {sample.source}, {sample.moved} responses counted")
+        lines += [
+            f"    {s.setting:<30}{s.cost:>10.2f}{s.median:>10.1e}{s.p95:>10.1e}{s.worst:>10.1e}{s.wrong or '':>16}"
+            for s in found.settings
+            if s.model == sample.model
+        ]
+    lines += ["", f"Cheapest step that keeps {wanted:g} for every object, with every outcome right:"]
+    for name, setting in found.cheapest(wanted).items():
+        told = "none of these" if setting is None else f"{setting.setting}, {setting.cost:.2f} ns"
+        lines.append(f"    {name:<30}{told}")
+    return lines

@@ -6,8 +6,8 @@ from pipeline.jobs.workspace import UsageError, open_workspace
 from pipeline.settings import load_settings, template
 
 MANIFEST = """\
-# The motions of your site.  Put the records beside this file, name them here, then try `kouros check`.
-# The bundled example is a complete manifest to copy from: its path is printed by `kouros check`.
+# The motions of your site.  Put the records beside this file, name them here, then try `kouros motions show` and
+# `kouros check`.  README.md lists what a record may say; an error names the key, and the hash that a file needs.
 
 [site]
 name = "Our site"
@@ -25,7 +25,7 @@ longitude = 0.0
 # response = "station.xml"   # for raw counts; leave it out for processed records
 # processed = false
 # scale_to_pga_g = 0.5
-# highpass_hz = 0.1
+# highpass_hz = 0.1          # left out: a corner is chosen, and the steps say why
 # source = ""
 # licence = ""
 # [level.record.components]
@@ -34,6 +34,11 @@ longitude = 0.0
 # HNZ = { axis = "z", orientation = "up" }
 # [level.record.sha256]
 # "record.mseed" = ""
+#
+# [[floor]]                  # kouros.toml says which galleries stand on it
+# name = "2"
+# height_ratio = 0.5         # height of the floor over that of the building
+# period_s = 0.4             # of the building, where it is known
 """
 
 

@@ -15,9 +15,10 @@ from pipeline.charts import chart_keys, charts
 from pipeline.classify import classify
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.execute import Threads
+from pipeline.jobs import tradeoff
 from pipeline.jobs.importing import import_collection
 from pipeline.jobs.levels import notes, storeys
-from pipeline.jobs.workspace import UsageError, Workspace, locked, open_workspace, site_folder
+from pipeline.jobs.workspace import KEPT, UsageError, Workspace, locked, open_workspace, site_folder
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import advise
 from pipeline.motions.site import Level, Site, read_site
@@ -29,10 +30,6 @@ from pipeline.store.runs import compare_runs, save_run
 
 if TYPE_CHECKING:
     from pipeline.store.changes import RunChanges
-
-
-KEPT = ".kouros-kept"
-"""Folder beside the settings in which processed motions are kept between nights."""
 
 
 @dataclass(frozen=True)
@@ -190,6 +187,10 @@ def assess_items(
     # Motions that two floors share (one record for several) are drawn once.
     motions = {one.motion.hash: one.motion for f in floors for level in f.levels for one in level.motions}
     drawn = _charts(workspace, list(motions.values()), executor, progress)
+    measured = tradeoff.kept(settings.path(KEPT))
+    if measured is not None:
+        picture = tradeoff.picture(measured)
+        drawn[picture.key] = picture
     info = latest_import(workspace.engine)
     levels_said = [_level_note(level) for level in site.levels]
     return RunRecord(

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pipeline.collection.database import open_database
-from pipeline.jobs.nightly import KEPT, assess_items
-from pipeline.jobs.workspace import open_workspace
+from pipeline.jobs.nightly import assess_items
+from pipeline.jobs.workspace import KEPT, open_workspace
 from pipeline.motions.manifest import GROUND_FLOOR
 from pipeline.motions.site import Level, Site, read_site
 from pipeline.records import Progress, RunRecord

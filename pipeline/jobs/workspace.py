@@ -10,6 +10,9 @@ from pipeline.resources import resource
 from pipeline.settings import Settings
 from pipeline.store import migrate
 
+KEPT = ".kouros-kept"
+"""Folder beside the settings in which processed motions and measurements are kept between nights."""
+
 
 class LockedError(RuntimeError):
     """Another run is at work."""

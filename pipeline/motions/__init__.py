@@ -8,10 +8,21 @@
     read_site("site_motions/malibu")      # the same with levels, measures and who answers for them
 """
 
-from pipeline.motions.errors import MotionError
-from pipeline.motions.intensity import measures
-from pipeline.motions.manifest import Manifest, load_manifest, manifest_schema
-from pipeline.motions.site import Level, Site, SiteMotion, read_motion, read_site, summaries
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pipeline.motions.errors import MotionError
+    from pipeline.motions.intensity import measures
+    from pipeline.motions.manifest import Manifest, load_manifest, manifest_schema
+    from pipeline.motions.site import Level, Site, SiteMotion, read_motion, read_site, summaries
+
+_HOMES = {
+    "MotionError": "errors",
+    "measures": "intensity",
+    **dict.fromkeys(("Manifest", "load_manifest", "manifest_schema"), "manifest"),
+    **dict.fromkeys(("Level", "Site", "SiteMotion", "read_motion", "read_site", "summaries"), "site"),
+}
 
 __all__ = [
     "Level",
@@ -26,3 +37,10 @@ __all__ = [
     "read_site",
     "summaries",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    # On demand: a program that only reads a file through obspy loads a reader of `formats`, and none of this.
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

@@ -35,7 +35,8 @@ class Inspection:
     filtered        : whether anything was filtered or corrected here; a record processed by its source is not
     corners         : of high-pass and low-pass [Hz]; None where there was none
     measures_before, measures : `intensity.measures` of both
-    spectra_before  : of x, y and z at 5 % damping; spectra : of all components, at the dampings asked for
+    spectra_before  : of x, y and z at 5 % damping; spectra : of all components at 5 %, of RotD100 at all the dampings
+                      asked for
     target          : the level's spectrum, where it has one
     pulse           : the strongest candidate of Shahi and Baker (2014), pulse-like or not; None without shaking
     half_cycles     : for "x" and "y", the largest half-cycles of the velocity
@@ -63,7 +64,7 @@ def inspect(folder: str | Path, name: str = "", damping: tuple[float, ...] = (0.
 
     folder  : the site's folder, or its manifest.toml
     name    : only the record of that name; "" for all, those of the floors included
-    damping : ratios of the response spectra
+    damping : ratios of the RotD100 spectra
     raises  : MotionError, as `site.read_site`, and where no record has that name
     """
     file = manifest_file(folder)
@@ -106,7 +107,8 @@ def _inspected(
         measures_before=measures(before),
         measures=measures(motion),
         spectra_before=response_spectra(before, periods, 0.05, "xyz"),
-        spectra=response_spectra(motion, periods, damping, COMPONENTS),
+        spectra=response_spectra(motion, periods, 0.05, COMPONENTS)
+        | response_spectra(motion, periods, damping, ["rotd100"]),
         target=target,
         pulse=shahi_baker_pulse(v, motion.dt) if v[:2].any() else None,
         half_cycles={axis: _largest(motion, row) for row, axis in enumerate("xy")},

@@ -9,6 +9,7 @@ import numpy as np
 
 from pipeline.kernels.linear import advance, transition
 from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
+from pipeline.kernels.rotated import first_guess, rotated_peaks
 from pipeline.quantities import Array
 from pipeline.records import Motion
 from pipeline.supports import resampled
@@ -181,8 +182,8 @@ def _rotd(motion: Motion, period: float, zeta: float) -> tuple[float, float]:
         bend[row] = absolute - a
         ends[row] = u[row, -1], _last_velocity(u[row, -2], u[row, -1], a[-2], a[-1], w, zeta, h)
     steps, tail, tail_bend = _free_decay(ends, w, zeta)
-    peaks, resultant = _support(u, bend, np.full(motion.samples - 1, h), (w * (1.0 + zeta) * h) ** 2)
-    after, far = _support(tail, tail_bend, steps, NODE_PHASE**2)
+    peaks, resultant = _support(u, bend, np.full(motion.samples - 1, h))
+    after, far = _support(tail, tail_bend, steps)
     return float(np.median(np.maximum(peaks, after))), max(resultant, far)
 
 
@@ -213,37 +214,9 @@ def _free_decay(ends: Array, w: float, zeta: float) -> tuple[Array, Array, Array
     return np.diff(times), u, bend
 
 
-def _support(u: Array, bend: Array, steps: Array, phase_squared: float) -> tuple[Array, float]:
-    """Peak |u . n| over time in each of 180 directions (180,), and the peak |u|.
-
-    u, bend : (2, n) displacement and its second derivative at the nodes; steps : (n - 1,) s between them
-    Between two nodes the cubic with the right second derivatives at both ends is used: off by 5/384 (w h)^4, 2e-5.
-    """
-    radius = np.hypot(u[0], u[1])
-    if not radius.any():
-        # An interval that starts and ends at rest cannot hold a peak between its ends that matters.
-        return np.zeros(180), 0.0
-    # A first guess from the farthest node of each sector: never above the truth.
-    sector = np.floor(np.degrees(np.arctan2(u[1], u[0])) % 180.0).astype(int) % 180
-    order = np.lexsort((radius, sector))
-    last = np.flatnonzero(np.diff(sector[order], append=180))
-    guess = np.abs(_NORMALS.T @ u[:, order[last]]).max(axis=1)
-    # A peak inside an interval exceeds its nodes by at most (w h)^2 / 8 and a little; four times that is safe.
-    slack = 1.0 - min(0.5, 0.5 * phase_squared)
-    near = np.flatnonzero(radius >= slack * guess.min())
-    chosen = np.zeros(radius.size, dtype=bool)
-    for part in np.array_split(near, max(1, near.size // 20_000)):
-        chosen[part] = (np.abs(_NORMALS.T @ u[:, part]) >= slack * guess[:, None]).any(axis=0)
-    starts = np.flatnonzero(chosen[:-1] | chosen[1:])
-    s = np.arange(NODE_PARTS + 1)[:, None] / NODE_PARTS
-    curve = np.empty((2, s.size * starts.size))
-    for row in range(2):
-        left, right = u[row, starts], u[row, starts + 1]
-        b0, b1 = bend[row, starts], bend[row, starts + 1]
-        scale = steps[starts] ** 2 / 6.0
-        cubic = (1.0 - s) * left + s * right + scale * (((1.0 - s) ** 3 - (1.0 - s)) * b0 + (s**3 - s) * b1)
-        curve[row] = cubic.ravel()
-    peaks = guess
-    for piece in np.array_split(curve, max(1, curve.shape[1] // 20_000), axis=1):
-        peaks = np.maximum(peaks, np.abs(_NORMALS.T @ piece).max(axis=1))
-    return peaks, float(max(radius.max(), np.hypot(curve[0], curve[1]).max()))
+def _support(u: Array, bend: Array, steps: Array) -> tuple[Array, float]:
+    """Peak |u . n| over time in each of 180 directions (180,), and the peak |u|; arguments as `rotated_peaks`."""
+    peaks = np.empty(_NORMALS.shape[1])
+    first_guess(u, _NORMALS, peaks)
+    largest = rotated_peaks(u, bend, steps, _NORMALS, NODE_PARTS, peaks)
+    return peaks, float(largest)

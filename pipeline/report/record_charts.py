@@ -318,7 +318,7 @@ def response(one: Inspection, names: Mapping[str, str], ident: str) -> list[str]
     spectra, both = one.spectra, one.spectra["rotd100"]
     at = row_at(both.damping, AT)
     kept = f"{100.0 * float(both.damping[at]):g} %"
-    main = {name: s.pseudo_acceleration[at] / G for name, s in spectra.items()}
+    main = {name: s.pseudo_acceleration[row_at(s.damping, AT)] / G for name, s in spectra.items()}
     labels = (("x", "cx", "x"), ("y", "cy", "y"), ("rotd50", "rd50", "RotD50"), ("rotd100", "rd100", "RotD100"))
     horizontal: list[_Curve] = [(kind, f"{label} {kept}", both.periods, main[name]) for name, kind, label in labels]
     others = [k for k in range(both.damping.size) if k != at]

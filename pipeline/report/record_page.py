@@ -203,8 +203,8 @@ def _spectrum(one: Inspection) -> list[Row]:
     """PSA in g at the computed periods nearest to round ones."""
     spectra = one.spectra
     both = spectra["rotd100"]
-    at = row_at(both.damping, AT)
-    curves = [spectra[name].pseudo_acceleration[at] / G for name in ("x", "y", "z", "rotd50")]
+    single = (spectra[name] for name in ("x", "y", "z", "rotd50"))
+    curves = [s.pseudo_acceleration[row_at(s.damping, AT)] / G for s in single]
     curves += list(both.pseudo_acceleration / G)
     rows = []
     for k in dict.fromkeys(int(np.argmin(np.abs(np.log(both.periods / period)))) for period in PERIODS):

@@ -61,9 +61,13 @@ def _pages(record: RunRecord, units: Units) -> list[tuple[str, str]]:
         for view, motion in zip(museum.motions, record.motions, strict=True)
     }
     shaken = _drawn([key for motion in museum.motions for key in motion.charts], drawings)
+    # Charts of no motion: what accuracy costs, where somebody measured it.
+    loose = [key for key in record.charts if not any(motion.hash[:16] in key for motion in record.motions)]
+    drawings |= {key: Drawing(record.charts[key], units, f"m{i}") for i, key in enumerate(loose)}
+    measured = _drawn(loose, drawings)
     pages = [
         ("index.html", fill(env, "index.html", shared | {"here": "index"})),
-        ("method.html", fill(env, "method.html", shared | {"here": "method"})),
+        ("method.html", fill(env, "method.html", shared | measured | {"here": "method"})),
         ("motion.html", fill(env, "motion.html", shared | shaken | {"here": "motion", "traces": traces})),
     ]
     for gallery in museum.galleries:

@@ -17,6 +17,9 @@ _TOP, _BOTTOM, _LEFT, _RIGHT = 14, 48, 62, 18
 _LETTER = 6.3
 """Mean width in pixels of a letter at the 12 pixel size of chart text; only used to keep labels apart."""
 
+_LEAD = 24.0
+"""Pixels between the end of a curve and its name in the margin from which a line leads there."""
+
 _TONES = {"safe": "zs", "warn": "zw", "danger": "zd"}
 _DASHES = ("", "7 4", "2 3", "9 3 2 3", "12 5")
 
@@ -156,13 +159,21 @@ class Drawing:
     def _curve_labels(self) -> list[str]:
         if self.chart.equal:
             return [self._end_label(c) for c in self.chart.curves if c.label and c.x]
-        wanted = sorted((self._points(c)[-1][1], short(c.label, 26)) for c in self._margin)
-        placed = _spread([y for y, _ in wanted], 14.0, self.y.end + 4, self.y.start - 2)
+        ends = [(self._points(c)[-1], short(c.label, 26)) for c in self._margin]
+        wanted = sorted((y, x, label) for (x, y), label in ends)
+        placed = _spread([y for y, _, _ in wanted], 14.0, self.y.end + 4, self.y.start - 2)
         x = self.x.end + 6
-        return [
+        texts = [
             f'<text class="cl" x="{x:.0f}" y="{y + 4:.0f}">{escape(label)}</text>'
-            for y, (_, label) in zip(placed, wanted, strict=True)
+            for y, (_, _, label) in zip(placed, wanted, strict=True)
         ]
+        # A curve that ends far from its name is led to it.
+        leads = [
+            f'<path class="gr" stroke-dasharray="1 3" d="M{at:.0f} {end:.0f}L{self.x.end:.0f} {y:.0f}"/>'
+            for y, (end, at, _) in zip(placed, wanted, strict=True)
+            if at < self.x.end - _LEAD
+        ]
+        return leads + texts
 
     def _end_label(self, curve: Curve) -> str:
         x, y = self._points(curve)[-1]

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from pipeline.motions import MotionError, read_motion, read_site
-from pipeline.motions.inspection import inspect
+from pipeline.motions import MotionError, load_manifest, read_motion, read_site
 from pipeline.motions.intensity import integrate, measures
+from pipeline.motions.site import prepare
 from pipeline.motions.spectra import psa
 from pipeline.quantities import G
 
@@ -17,6 +17,12 @@ DRIFT = 0.02 + 1e-4 * np.arange(N) * DT
 
 def raw(write_manifest, **changes):
     return write_manifest(processed=False, **changes)
+
+
+def processed(folder):
+    """The manifest's one record, processed, beside what it was before."""
+    (level,) = load_manifest(folder).level
+    return prepare(folder / "manifest.toml", "level[0].record[0]", level.record[0], level.target, 90.0)
 
 
 def shaken(amplitude=1.0):
@@ -39,8 +45,8 @@ def test_every_baseline_flattens_what_it_is_made_for(three, write_manifest, base
     """A drift of the instrument leaves tens of m/s of velocity; corrected, the velocity ends near zero."""
     offset = 0.02 * (np.arange(N) * DT > 30.0) if baseline["method"] == "two-segment" else DRIFT
     three(*(shaken(a) + offset for a in (1.0, 2.0, 0.5)))
-    dirty = inspect(raw(write_manifest, baseline={"method": "none"}, highpass_hz="none"))[0]
-    (clean,) = inspect(raw(write_manifest, baseline=baseline, highpass_hz="none"))
+    dirty = processed(raw(write_manifest, baseline={"method": "none"}, highpass_hz="none"))
+    clean = processed(raw(write_manifest, baseline=baseline, highpass_hz="none"))
     assert np.abs(integrate(dirty.motion)[0][:, -1]).min() > 1.0
     assert np.abs(integrate(clean.motion)[0][:, -1]).max() < 0.03
     assert said in " | ".join(clean.motion.steps)
@@ -60,21 +66,21 @@ def test_the_mean_before_the_event(three, write_manifest):
 
 def test_a_silent_manifest_has_its_corner_chosen_and_can_forbid_it(three, write_manifest):
     three(*(shaken(a) for a in (1.0, 2.0, 0.5)))
-    (chosen,) = inspect(raw(write_manifest))
+    chosen = processed(raw(write_manifest))
     corner, _ = chosen.corners
     # Three periods in 120 s ask for 0.025 Hz; nothing in this record asks for more than the shaking's own 1 Hz.
     assert 0.025 <= corner < 0.5
     assert f"high-pass corner {corner:.4g} Hz chosen by" in " | ".join(chosen.motion.steps)
-    (given,) = inspect(raw(write_manifest, highpass_hz=corner))
+    given = processed(raw(write_manifest, highpass_hz=corner))
     assert np.array_equal(given.motion.acceleration, chosen.motion.acceleration)
-    assert inspect(raw(write_manifest, highpass_hz="none"))[0].corners == (None, None)
+    assert processed(raw(write_manifest, highpass_hz="none")).corners == (None, None)
 
 
 def test_before_and_after_lie_over_each_other(three, write_manifest):
     """Scaled and turned alike: a tone far above the corner is the same in both."""
     three(*(shaken(a) for a in (1.0, 2.0, 0.5)))
-    (one,) = inspect(raw(write_manifest, highpass_hz=0.05, scale_to_pga_g=0.4))
-    assert one.measures["pga"] == pytest.approx(0.4 * G, rel=1e-12)
+    one = processed(raw(write_manifest, highpass_hz=0.05, scale_to_pga_g=0.4))
+    assert measures(one.motion)["pga"] == pytest.approx(0.4 * G, rel=1e-12)
     assert one.before.samples == one.motion.samples
     # (0.05 / 1)^4 of the tone is taken by the filter.
     np.testing.assert_allclose(one.before.acceleration, one.motion.acceleration, atol=1e-3 * G)
