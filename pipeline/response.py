@@ -5,7 +5,9 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pipeline.charting import SHELF, Settings, Shelf, tabulate
 from pipeline.models import MODELS, model_named
 from pipeline.models.common import BOUND, words
 from pipeline.quantities import Array, Quantity
@@ -14,8 +16,11 @@ from pipeline.records import Columns, Excitation, Model, Motion
 if TYPE_CHECKING:
     import pandas as pd
 
-FIDELITIES = ("screen", "bound", "history", "reference")
-"""What ``respond`` can be asked for: the paper's closed form, guaranteed bounds, time histories, tight tolerances."""
+FIDELITIES = ("screen", "bound", "chart", "history", "reference")
+"""What ``respond`` can be asked for: closed-form screens, guaranteed bounds, charts, histories, tight tolerances."""
+
+TOLERANCE = 1e-3
+"""Relative error that a chart's interpolation is granted."""
 
 REFINE = {"history": 2, "reference": 16}
 """How much finer than the coarsest step, which only ever looks for the worst direction, each fidelity integrates."""
@@ -35,6 +40,8 @@ def respond(
     angle: float | None = 0.0,
     tail: float | None = None,
     azimuth_step: float = AZIMUTH_STEP,
+    tolerance: float = TOLERANCE,
+    charts: Shelf = SHELF,
     **parameters: Any,
 ) -> "pd.DataFrame":
     """Run one generic model under one motion for many objects at once.
@@ -43,9 +50,13 @@ def respond(
     angle        : degrees from x towards y along which a one-direction model is shaken; None means RotD100: the row of
                    the direction with the largest first output, every ``azimuth_step`` degrees
     tail         : s of rest after the record; None means until rest or past the peak, with the cap of the model
+    tolerance    : of a chart's interpolation, relative to max(value, 1 % of the largest value on the chart)
+    charts       : where charts are found and kept; of this process where none is given
     parameters   : the model's own, in SI; numbers or arrays, broadcast against each other
     returns      : table, one row a parameter set: the model's outputs, ``error`` (estimated, in the unit of the first
-                   output), ``fidelity``, ``note``, and ``angle`` (the direction of the row; empty for two directions)
+                   output), ``fidelity``, ``note``, and ``angle`` (the direction of the row; empty for two directions,
+                   and for a worst direction from a chart).  Where a chart was asked for, ``fidelity`` says of each row
+                   whether it came from one: what lies outside of it, or where it is not good enough, is integrated
     bound        : at this fidelity ``low`` and ``high`` follow, between which the first output lies for certain (in any
                    direction where the angle is None).  Each output holds its upper bound, or is empty where it has
                    none; a yes, or a count, is only what is certain.  ``error`` is high - low
@@ -57,11 +68,16 @@ def respond(
     if fidelity not in FIDELITIES:
         raise ValueError(f"there is no fidelity {fidelity!r}; choose from {', '.join(FIDELITIES)}")
     values = prepare(row, parameters)
-    columns, angles = run_model(row, motion, values, fidelity, angle, tail, azimuth_step)
+    came: Any = fidelity
+    if fidelity == "chart":
+        columns, angles, looked = run_chart(row, motion, values, angle, tail, azimuth_step, tolerance, charts)
+        came = np.where(looked, "chart", "history")
+    else:
+        columns, angles = run_model(row, motion, values, fidelity, angle, tail, azimuth_step)
     note = columns["note"]
     table = pd.DataFrame({q.name: _typed(q, columns[q.name]) for q in row.gives})
     table["error"] = columns["error"]
-    table["fidelity"] = fidelity
+    table["fidelity"] = came
     table["note"] = [words(bits) for bits in note]
     table["angle"] = angles
     if fidelity == "bound":
@@ -139,17 +155,9 @@ def run_model(
 
     raises : ValueError for a bad tail or azimuth step, mixed `directions`, or a model without the fidelity asked
     """
-    if tail is not None and not (isinstance(tail, (int, float)) and np.isfinite(tail) and tail >= 0.0):
-        raise ValueError(f"tail must be at least 0 s, or None for until rest, not {tail!r}")
+    _check(angle, tail, azimuth_step)
     size = next(iter(values.values())).size
-    if angle is not None:
-        _finite_angle(angle)
-    directions = model.directions
-    if directions == 0:
-        asked = np.unique(values["directions"])
-        if asked.size > 1 or asked[0] not in (1.0, 2.0):
-            raise ValueError(f"directions must be 1 or 2 for all rows, not {asked.tolist()}")
-        directions = int(asked[0])
+    directions = _directions(model, values)
     if fidelity in ("screen", "bound"):
         way = None if directions == 2 else angle
         closed = _screened if fidelity == "screen" else _bounded
@@ -159,9 +167,58 @@ def run_model(
         return model.run(motion.excitation(None, tail), values, refine, True), np.full(size, np.nan)
     if angle is not None:
         return model.run(motion.excitation(angle, tail), values, refine, True), np.full(size, angle)
+    return _worst_direction(model, motion, values, refine, tail, azimuth_step)
+
+
+def run_chart(
+    model: Model,
+    motion: Motion,
+    values: Mapping[str, Array],
+    angle: float | None,
+    tail: float | None,
+    azimuth_step: float = AZIMUTH_STEP,
+    tolerance: float = TOLERANCE,
+    charts: Shelf = SHELF,
+) -> tuple[Columns, Array, NDArray[np.bool_]]:
+    """Look prepared parameters up in charts, as ``run_model``; what is on none of them is integrated at `history`.
+
+    returns : columns, angles, and which rows (n,) came from a chart
+    raises  : ValueError as ``run_model``, for a bad tolerance, and for a model that is never tabulated
+    """
+    _check(angle, tail, azimuth_step)
+    both = _directions(model, values) == 2
+    settings = Settings(None if both else angle, both, tail, azimuth_step, REFINE["history"], tolerance)
+
+    def run(some: Mapping[str, Array]) -> Columns:
+        return run_model(model, motion, some, "history", angle, tail, azimuth_step)[0]
+
+    columns, looked = tabulate(model, motion, values, run, settings, charts)
+    angles = np.full(looked.size, np.nan if both or angle is None else angle)
+    rest = ~looked
+    if rest.any():
+        others = {name: column[rest] for name, column in values.items()}
+        integrated, angles[rest] = run_model(model, motion, others, "history", angle, tail, azimuth_step)
+        for name, column in integrated.items():
+            columns[name][rest] = column
+    return columns, angles, looked
+
+
+def _check(angle: object, tail: object, azimuth_step: float) -> None:
+    if tail is not None and not (isinstance(tail, (int, float)) and np.isfinite(tail) and tail >= 0.0):
+        raise ValueError(f"tail must be at least 0 s, or None for until rest, not {tail!r}")
+    if angle is not None:
+        _finite_angle(angle)
     if not 0.0 < azimuth_step <= 90.0:
         raise ValueError(f"azimuth_step must be above 0 and at most 90 degrees, not {azimuth_step!r}")
-    return _worst_direction(model, motion, values, refine, tail, azimuth_step)
+
+
+def _directions(model: Model, values: Mapping[str, Array]) -> int:
+    if model.directions != 0:
+        return model.directions
+    asked = np.unique(values["directions"])
+    if asked.size > 1 or asked[0] not in (1.0, 2.0):
+        raise ValueError(f"directions must be 1 or 2 for all rows, not {asked.tolist()}")
+    return int(asked[0])
 
 
 def _screened(model: Model, motion: Excitation, values: Mapping[str, Array]) -> Columns:

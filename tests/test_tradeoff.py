@@ -84,6 +84,16 @@ def test_the_error_is_that_of_the_table_itself(motion: Motion) -> None:
     assert history.worst == pytest.approx(16.0 * np.max(np.abs(fast / true - 1.0)), rel=0.3)
 
 
+def test_charts_and_bounds_are_measured_where_there_are_any(found: tradeoff.Tradeoff) -> None:
+    """A chart keeps its tolerance of max(value, 1 % of the largest): an error of a tenth of the largest is ten times."""
+    for model in MODELS:
+        assert bool(of(found, model.name, "chart")) is (model.chart is not None)
+        assert bool(of(found, model.name, "bound")) is (model.bound is not None)
+    for chart in of(found, "sliding", "chart"):
+        assert chart.worst <= 10.0 * float(chart.setting.split()[-1])
+        assert chart.cost < min(s.cost for s in of(found, "sliding"))
+
+
 def test_the_cheapest_keeps_what_is_wanted(found: tradeoff.Tradeoff) -> None:
     for wanted in (1e-2, 1e-6):
         for name, setting in found.cheapest(wanted).items():

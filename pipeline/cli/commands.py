@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pipeline.jobs.nightly import Summary
 
 
-FIDELITIES = ("screen", "bound", "history", "reference")
+FIDELITIES = ("screen", "bound", "chart", "history", "reference")
 """What `respond` offers; named here too, so that --help does not wait for the models to load."""
 
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from pipeline.charting import Shelf
 from pipeline.classify import classify
 from pipeline.collection.inventory import read_inventory
 from pipeline.jobs.records import desk
@@ -22,7 +23,7 @@ from pipeline.motions.site import read_motion
 from pipeline.plan import plan
 from pipeline.quantities import Array
 from pipeline.records import Axis, Chart, Columns, Curve, Item, Model, Motion, Progress, Scene
-from pipeline.response import AZIMUTH_STEP, REFINE, prepare, run_model
+from pipeline.response import AZIMUTH_STEP, REFINE, prepare, run_chart, run_model
 from pipeline.settings import Settings
 
 STEPS = (1, 2, 4, 8, 16)
@@ -30,6 +31,9 @@ STEPS = (1, 2, 4, 8, 16)
 
 TRUTH = 64
 """The same of what they are held against."""
+
+TOLERANCES = (1e-2, 1e-3)
+"""Tolerances of the charts that are measured."""
 
 AZIMUTHS = (45.0, 30.0, 20.0, 10.0, 5.0)
 """Degrees between the directions of which the worst counts."""
@@ -72,7 +76,8 @@ PLAUSIBLE: Mapping[str, Mapping[str, tuple[float, float]]] = {
 class Setting:
     """One setting of one model: what it costs and how wrong it is.
 
-    kind     : "step" (a fixed direction), or "azimuth" (the worst of several, integrated at `history`)
+    kind     : "bound" (the upper bound, as if it were the response), "chart" (looked up; the building is not in the
+               cost), "step" (all three in a fixed direction), or "azimuth" (the worst of several, at `history`)
     setting  : in words; `fidelity` where the setting is one, else ""
     cost     : ns per object and sample, in one thread, without the error estimate
     median, p95, worst : relative error of the first output over the objects that move
@@ -186,6 +191,14 @@ def _of_model(model: Model, motions: Sequence[Motion], values: Mapping[str, Arra
     truth = [_stepped(model, motion, values, angle, TRUTH) for motion in motions]
     names = {refine: fidelity for fidelity, refine in REFINE.items()}
     rows = []
+    if model.bound is not None:
+        runs = [_timed(partial(_bounded, model, motion, values, angle)) for motion in motions]
+        rows.append(_setting(model, "bound", "upper bound", "bound", motions, runs, truth))
+    if model.chart is not None:
+        for tolerance in TOLERANCES:
+            looked = partial(_looked_up, model, angle=angle, tolerance=tolerance, shelf=Shelf())
+            runs = [_timed(partial(looked, motion, values)) for motion in motions]
+            rows.append(_setting(model, "chart", f"chart to {tolerance:g}", "chart", motions, runs, truth))
     for refine in STEPS:
         name = names.get(refine, "")
         told = f"{name} (step 1/{refine})" if name else f"step 1/{refine}"
@@ -202,6 +215,22 @@ def _of_model(model: Model, motions: Sequence[Motion], values: Mapping[str, Arra
 
 def _stepped(model: Model, motion: Motion, values: Mapping[str, Array], angle: float | None, refine: int) -> Columns:
     return model.run(motion.excitation(angle), values, refine, False)
+
+
+def _bounded(model: Model, motion: Motion, values: Mapping[str, Array], angle: float | None) -> Columns:
+    return run_model(model, motion, values, "bound", angle, None)[0]
+
+
+def _looked_up(
+    model: Model,
+    motion: Motion,
+    values: Mapping[str, Array],
+    *,
+    angle: float | None,
+    tolerance: float,
+    shelf: Shelf,
+) -> Columns:
+    return run_chart(model, motion, values, angle, None, tolerance=tolerance, charts=shelf)[0]
 
 
 def _turned(model: Model, motion: Motion, values: Mapping[str, Array], step: float) -> Columns:
@@ -236,7 +265,7 @@ def _setting(
     errors, wrong, cost = [], 0, []
     for motion, (columns, seconds), true in zip(motions, runs, truth, strict=True):
         counted = _counted(model, true)
-        if "overturned" in columns:
+        if "overturned" in columns and kind != "bound":
             differ = columns["overturned"] != true["overturned"]
             wrong += int(differ.sum())
             counted = counted & ~differ

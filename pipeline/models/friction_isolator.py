@@ -6,7 +6,7 @@ import numpy as np
 
 from pipeline.models.common import needs
 from pipeline.models.friction import kinetic, slip_bounds, stick_slip, stick_slip_trace
-from pipeline.models.sliding import FRICTION_KINETIC, FRICTION_STATIC
+from pipeline.models.sliding import FRICTION_AXIS, FRICTION_KINETIC, FRICTION_STATIC
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support
 
@@ -53,6 +53,7 @@ FRICTION_ISOLATOR = Model(
     run=_run,
     trace=_trace,
     bound=_bound,
+    chart=FRICTION_AXIS,
     demand="displacement",
     capacity="clearance",
     applies=_applies,

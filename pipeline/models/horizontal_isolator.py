@@ -8,7 +8,7 @@ from pipeline.models.common import needs
 from pipeline.models.friction import stick_slip, stick_slip_trace
 from pipeline.models.sliding import DIRECTIONS
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Columns, Excitation, Model, Scene, Support
+from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Support
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
@@ -50,6 +50,7 @@ HORIZONTAL_ISOLATOR = Model(
     directions=0,
     run=_run,
     trace=_trace,
+    chart=ChartAxis("frequency", 0.1, 10.0),
     demand="displacement",
     capacity="stroke",
     applies=_applies,

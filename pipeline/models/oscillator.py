@@ -13,6 +13,9 @@ from pipeline.records import Bounds, Columns, Excitation, Model, Scene
 PROMISED = 1e-9
 """Relative error that the recursion promises; a bound is looser by it."""
 
+OSCILLATES = "its recursion is exact and fast, its spectrum so jagged that a chart takes thousands of analyses"
+"""Why what follows a response spectrum is not tabulated."""
+
 
 def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[Array, Array]:
     """Return the largest |u| [m] and |a + share u''| [m/s2] of n oscillators, (n,) each."""
@@ -98,6 +101,7 @@ OSCILLATOR = Model(
     run=_run,
     trace=_trace,
     bound=_bound,
+    uncharted=OSCILLATES,
     demand="displacement",
     capacity="clearance",
     applies=_applies,

@@ -223,6 +223,7 @@ ROCKING = Model(
     capacity=1.0,
     applies=_applies,
     symmetric=_symmetric,
+    uncharted="its outcomes flip back and forth, so that it is never tabulated",
     sentence=(
         "The largest horizontal push is {demand} times what lifts an edge of this object (the range of its uncertain "
         "measures gives {low} to {high}); from 1 on it rocks."

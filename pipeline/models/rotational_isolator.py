@@ -7,7 +7,7 @@ import numpy as np
 from pipeline.kernels.oscillator import oscillator_history
 from pipeline.models.common import ROUNDING, after_record, needs
 from pipeline.models.horizontal_isolator import DAMPING
-from pipeline.models.oscillator import oscillate, oscillate_bounds
+from pipeline.models.oscillator import OSCILLATES, oscillate, oscillate_bounds
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support
 
@@ -70,6 +70,7 @@ ROTATIONAL_ISOLATOR = Model(
     run=_run,
     trace=_trace,
     bound=_bound,
+    uncharted=OSCILLATES,
     demand="rotation",
     capacity="rotation_limit",
     applies=_applies,

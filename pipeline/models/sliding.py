@@ -7,13 +7,22 @@ import numpy as np
 from pipeline.models.common import lift_ratios, needs, unless_free
 from pipeline.models.friction import kinetic, slip_bounds, stick_slip, stick_slip_trace
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Bounds, Columns, Excitation, Model, Scene
+from pipeline.records import Bounds, ChartAxis, Columns, Excitation, Model, Scene
 
 FRICTION_STATIC = Quantity("friction_static", "-", "coefficient at rest", 0.0)
 FRICTION_KINETIC = Quantity(
     "friction_kinetic", "-", "coefficient while slipping; else the static one", 0.0, optional=True
 )
 DIRECTIONS = Quantity("directions", "-", "2, or 1 along the angle", 1.0, 2.0, optional=True, default=2.0)
+
+FRICTION_AXIS = ChartAxis(
+    "friction_static",
+    low=0.01,
+    high=1.5,
+    absent=("friction_kinetic",),
+    # From here on it rests: it moves only where |a_h| exceeds mu (g + a_z).
+    settled=lambda motion: max(lift_ratios(motion)),
+)
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
@@ -67,6 +76,7 @@ SLIDING = Model(
     bound=_bound,
     certificate=_certificate,
     rests=0.0,
+    chart=FRICTION_AXIS,
     mark=lambda parameters, demand: ("sliding", parameters["friction_static"], demand),
     demand="displacement",
     capacity="clearance",

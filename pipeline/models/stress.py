@@ -6,7 +6,7 @@ import numpy as np
 
 from pipeline.models.common import NO_TILT, ROUNDING, largest_push, needs, smallest_push
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
-from pipeline.models.oscillator import oscillate, oscillate_bounds
+from pipeline.models.oscillator import OSCILLATES, oscillate, oscillate_bounds
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support
 
@@ -145,6 +145,7 @@ STRESS = Model(
     bound=_bound,
     certificate=lambda motion, parameters: _run(motion, parameters, 1, False)["tension"],
     exact=True,
+    uncharted="its closed form costs less than a lookup",
     mark=lambda parameters, demand: ("spectrum", RIGID_FREQUENCY, _push(parameters, demand)),
     demand="tension",
     capacity="allowable_stress",
@@ -169,6 +170,7 @@ FLEXIBLE_STRESS = Model(
     bound=_bound_flexible,
     say_screen=_say,
     mark=lambda parameters, demand: ("spectrum", parameters["frequency"], _push(parameters, demand)),
+    uncharted=OSCILLATES,
     demand="tension",
     capacity="allowable_stress",
     applies=lambda scene: _holds(scene, flexible=True),

@@ -9,12 +9,13 @@ from pipeline.kernels.spherical import spherical_batch
 from pipeline.models.common import NO_HISTORY, broadcast, needs, shaken
 from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Columns, Excitation, Model, Scene, Support
+from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Support
 
 CHANDELIER = 1.4
 """The paper's factor on the undamped two-dimensional result for an object that swings in all directions."""
 
 LENGTH = Quantity("length", "m", "from the point of suspension to the centre of gravity", 0.0, exclusive=True)
+LENGTH_AXIS = ChartAxis("length", low=0.1, high=20.0)
 
 
 def _swept(angle: Array) -> Array:
@@ -114,6 +115,7 @@ SWING = Model(
     directions=1,
     run=_run,
     trace=_trace,
+    chart=LENGTH_AXIS,
     mark=lambda parameters, demand: ("swing", parameters["length"], demand),
     demand="displacement",
     capacity="clearance",
@@ -135,6 +137,7 @@ SWING_3D = Model(
     screen=_screen_3d,
     say_screen=_say_3d,
     trace=_trace_3d,
+    chart=LENGTH_AXIS,
     mark=lambda parameters, demand: ("swing", parameters["length"], demand),
     demand="displacement",
     capacity="clearance",

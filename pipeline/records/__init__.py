@@ -1,6 +1,6 @@
 """The nouns that every floor shares: motions, items, scenes, models, findings, recommendations, charts."""
 
-from pipeline.records.model import Bounds, Columns, Model
+from pipeline.records.model import Bounds, ChartAxis, Columns, Model
 from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress
@@ -13,6 +13,7 @@ __all__ = [
     "Axis",
     "Bounds",
     "Chart",
+    "ChartAxis",
     "Check",
     "Columns",
     "Curve",

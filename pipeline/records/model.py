@@ -26,6 +26,25 @@ class Bounds:
 
 
 @dataclass(frozen=True)
+class ChartAxis:
+    """The parameter along which a model's response is tabulated: smooth but for kinks, and never below zero.
+
+    All other parameters are fixed for a chart: where they differ there is another one.
+
+    low, high : where charts are made, above zero, nodes evenly in the logarithm at first; what lies outside is
+                integrated
+    absent    : optional parameters; a set that has one of them is not on the chart
+    settled   : (excitation) -> value from which on the response no longer changes; None: it always does
+    """
+
+    name: str
+    low: float
+    high: float
+    absent: tuple[str, ...] = ()
+    settled: Callable[[Excitation], float] | None = None
+
+
+@dataclass(frozen=True)
 class Model:
     """A generic model or isolator: one row of the registry (see pipeline.models.MODELS).
 
@@ -49,6 +68,8 @@ class Model:
     rests      : certificate up to which nothing moves, so that there is nothing to integrate; None: always integrate
     outcome    : (one row, one set of parameters) -> what the object does, in a word and in a sentence
     otherwise  : scene -> (output, capacity, sentence) that take the place of its own for this scene, or None
+    chart      : how its response is tabulated; None: never, it is always integrated
+    uncharted  : why there is no chart
     mark       : (one set of parameters, demand) -> (kind of chart, x, y), or None
     fails      : what an object does whose demand exceeds the capacity, such as "slides"
     """
@@ -77,6 +98,8 @@ class Model:
     rests: float | None = None
     outcome: Callable[[Mapping[str, float], Mapping[str, float]], tuple[str, str]] = lambda _row, _parameters: ("", "")
     otherwise: Callable[[Scene], tuple[str, float, str] | None] = lambda _scene: None
+    chart: ChartAxis | None = None
+    uncharted: str = ""
     mark: Callable[[Mapping[str, float], float], tuple[str, float, float] | None] = lambda _parameters, _demand: None
 
     def output(self, name: str) -> Quantity:

@@ -1,11 +1,12 @@
-"""Kouros beside its peers, beside C, and by itself: `python -m tests.benchmarks [peers] [native] [models] [night]`.
+"""Kouros beside its peers, beside C, and by itself: `python -m tests.benchmarks [peers] [native] [models] [charts]
+[night]`.
 
 Machines are noisy: read the ratios of one run, not the times.
 """
 
 import sys
 
-from tests.benchmarks import general, models, multibody, native, night, opensees, spectra
+from tests.benchmarks import charts, general, models, multibody, native, night, opensees, spectra
 from tests.benchmarks.common import HEADING, OBJECTS
 
 
@@ -27,7 +28,13 @@ def peers() -> None:
             print(row.line(), flush=True)
 
 
-PARTS = {"peers": peers, "native": native.native, "models": models.costs, "night": night.night}
+PARTS = {
+    "peers": peers,
+    "native": native.native,
+    "models": models.costs,
+    "charts": charts.lookups,
+    "night": night.night,
+}
 
 
 def main(wanted: list[str]) -> None:

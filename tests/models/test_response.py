@@ -124,7 +124,7 @@ def test_bad_parameters_are_refused_in_words(name: str, parameters: dict[str, An
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"fidelity": "exact"}, "there is no fidelity 'exact'; choose from screen, bound, history, reference"),
+        ({"fidelity": "exact"}, "there is no fidelity 'exact'; choose from screen, bound, chart, history, reference"),
         ({"tail": -1.0}, "tail must be at least 0 s, or None for until rest, not -1.0"),
         ({"tail": np.nan}, "tail must be at least 0 s"),
         ({"tail": np.inf}, "tail must be at least 0 s"),

@@ -1,0 +1,111 @@
+"""Which rows of a call are looked up in which charts."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.charting.response_chart import ResponseChart, Run, axis_of
+from pipeline.charting.shelf import Shelf, chart_identity
+from pipeline.quantities import Array
+from pipeline.records import Columns, Model, Motion
+
+MOST_CHARTS = 16
+"""Charts built for one call: where the fixed parameters take more combinations, the rarer ones are integrated.
+
+Two axes at once do not pay: for swinging, length by damping, cells of two dimensions take 26,000 analyses for 1 % in
+one direction and more than 40,000 for 0.1 %, because kinks run slantwise through them; one chart takes 1,500.
+"""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a chart depends on besides its model, its motion and the parameters.
+
+    angle        : degrees, None for the worst direction or for a model that is shaken in two
+    both         : whether the model is shaken in both directions
+    tail         : s after the record; None: until rest
+    azimuth_step : degrees between the directions of which the worst counts
+    refine       : how finely the nodes are integrated
+    """
+
+    angle: float | None
+    both: bool
+    tail: float | None
+    azimuth_step: float
+    refine: int
+    tolerance: float
+
+
+def tabulate(
+    model: Model, motion: Motion, values: Mapping[str, Array], run: Run, settings: Settings, shelf: Shelf
+) -> tuple[Columns, NDArray[np.bool_]]:
+    """Look rows up in the charts of a model under a motion, building those that the shelf does not have.
+
+    values  : the model's parameters, (n,) each
+    run     : the model under the motion, with the settings, for parameters of its own
+    returns : the columns (n,) with "error" (of the first output) and "note"; and which rows (n,) were looked up.  The
+              others are NaN and are to be integrated: they lie outside of the chart, have a parameter that no chart
+              has, or lie where the chart did not reach the tolerance
+    raises  : ValueError for a model that is never tabulated, and for a tolerance that makes no sense
+    """
+    axis = axis_of(model)
+    if not (np.isfinite(settings.tolerance) and 1e-6 <= settings.tolerance <= 1.0):
+        raise ValueError(f"tolerance must be from 1e-6 to 1 of the value, not {settings.tolerance!r}")
+    along = values[axis.name]
+    columns: Columns = {name: np.full(along.size, np.nan) for name in (*(q.name for q in model.gives), "error", "note")}
+    found = np.zeros(along.size, dtype=bool)
+    possible = np.ones(along.size, dtype=bool)
+    for name in axis.absent:
+        possible &= np.isnan(values[name])
+    fixed = {q.name: values[q.name] for q in model.needs if q.name != axis.name}
+    for rows in _groups(fixed, np.flatnonzero(possible)):
+        chart = _chart(model, motion, {n: float(v[rows[0]]) for n, v in fixed.items()}, run, settings, shelf)
+        inside = rows[chart.covers(along[rows])]
+        looked = chart.look(along[inside])
+        good = looked.resolved
+        at = inside[good]
+        found[at] = True
+        for name in chart.outputs:
+            columns[name][at] = looked.columns[name][good]
+        columns["error"][at] = (looked.bounds[chart.outputs[0]] + looked.own)[good]
+        columns["note"][at] = looked.note[good]
+    return columns, found
+
+
+def _groups(fixed: Mapping[str, Array], rows: NDArray[np.intp]) -> list[NDArray[np.intp]]:
+    """Return the rows that share their fixed parameters, the largest groups first, at most MOST_CHARTS."""
+    if rows.size == 0:
+        return []
+    which = np.zeros(rows.size, dtype=np.int64)
+    for column in fixed.values():
+        # What was left out is left out alike.
+        given = np.where(np.isnan(column), np.inf, column)[rows]
+        if (given != given[0]).any():
+            _, codes = np.unique(given, return_inverse=True)
+            _, which = np.unique(which * (codes.max() + 1) + codes, return_inverse=True)
+    if not which.any():
+        return [rows]
+    largest = np.argsort(-np.bincount(which), kind="stable")[:MOST_CHARTS]
+    return [rows[which == group] for group in largest]
+
+
+def _chart(
+    model: Model, motion: Motion, fixed: Mapping[str, float], run: Run, settings: Settings, shelf: Shelf
+) -> ResponseChart:
+    axis = axis_of(model)
+    worst = settings.angle is None and not settings.both
+    key = chart_identity(
+        model=model.name,
+        motion=motion.hash,
+        angle="both" if settings.both else settings.angle,
+        azimuth_step=settings.azimuth_step if worst else None,
+        tail=settings.tail,
+        refine=settings.refine,
+        tolerance=settings.tolerance,
+        fixed=dict(fixed),
+    )
+    excitation = motion.excitation(None if settings.both else settings.angle, settings.tail)
+    return shelf.get(key, axis, partial(ResponseChart.build, model, excitation, fixed, run, settings.tolerance))
