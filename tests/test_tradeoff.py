@@ -85,7 +85,7 @@ def test_the_error_is_that_of_the_table_itself(motion: Motion) -> None:
 
 
 def test_charts_and_bounds_are_measured_where_there_are_any(found: tradeoff.Tradeoff) -> None:
-    """A chart keeps its tolerance of max(value, 1 % of the largest): an error of a tenth of the largest is ten times."""
+    """A chart keeps its tolerance of max(value, 1 % of the largest); what is less than a tenth of it counts too."""
     for model in MODELS:
         assert bool(of(found, model.name, "chart")) is (model.chart is not None)
         assert bool(of(found, model.name, "bound")) is (model.bound is not None)
