@@ -118,7 +118,7 @@ def test_what_is_not_sensitive_is_right(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", [60, 61, 62])
 def test_what_a_little_more_throws_over_says_so(seed: int) -> None:
-    """Of the outcomes that the `reference` of 1 % more or less does not confirm nine in ten are flagged; few others are.
+    """Of the outcomes that the `reference` of 1 % more or less does not confirm 90 % are flagged; few others are.
 
     Not all: they are looked for with the coarsest step, which a chaotic body may answer otherwise.  "Few": those of a
     condition above 1,000, and those that flip at an amplitude in between.
