@@ -111,7 +111,8 @@ def _steps(zeta: float) -> float:
 def _static(name: str, **extra: float) -> float:
     # w -> infinity: u = -a / w^2.  What the kinks of the polygon add is at most 2 / (w dt) of the peak: 1 / w dt here.
     motion, w = shaking(vertical=0.0), 2.0 * np.pi * 500.0
-    moved = respond(name, motion, frequency=500.0, damping=1.0, tail=0.0, **extra)["displacement"]
+    asked: dict[str, Any] = {"frequency": 500.0, "damping": 1.0, "tail": 0.0, **extra}
+    moved = respond(name, motion, **asked)["displacement"]
     return _worst(moved, np.abs(motion.acceleration[0]).max() / w**2)
 
 
@@ -167,13 +168,12 @@ def _scaled(k: float) -> float:
     # k times the motion is k times what is linear, and k times the slip where the friction is k times as well.
     motion = shaking(vertical=0.0)
     larger = Motion(motion.dt, k * motion.acceleration)
-    linear, slid = (
-        [respond(name, m, **parameters)["displacement"] for m, parameters in ((motion, one), (larger, many))]
-        for name, one, many in (
-            ("oscillator", {"frequency": 2.0, "damping": 0.02}, {"frequency": 2.0, "damping": 0.02}),
-            ("sliding", {"friction_static": 0.1, "directions": 1}, {"friction_static": 0.1 * k, "directions": 1}),
-        )
-    )
+    stiff: dict[str, Any] = {"frequency": 2.0, "damping": 0.02}
+    linear = [respond("oscillator", m, **stiff)["displacement"] for m in (motion, larger)]
+    slid = [
+        respond("sliding", m, friction_static=0.1 * times, directions=1)["displacement"]
+        for m, times in ((motion, 1.0), (larger, k))
+    ]
     return _largest(_worst(large, k * small) for small, large in (linear, slid))
 
 
@@ -189,9 +189,12 @@ def _small_swings() -> float:
 
 def _sampled(name: str, dt: float) -> float:
     motion = shaking(samples=400, dt=dt)
-    parameters = next(p for model, p, _ in PROMISED if model == name)
-    history, reference = (respond(name, motion, fidelity=f, **parameters).iloc[0, 0] for f in ("history", "reference"))
-    return abs(float(history) - float(reference)) / max(abs(float(reference)), 1e-12)
+    parameters: dict[str, Any] = next(p for model, p, _ in PROMISED if model == name)
+    history, reference = (
+        float(respond(name, motion, fidelity=fidelity, **parameters).iloc[:, 0].to_numpy()[0])
+        for fidelity in ("history", "reference")
+    )
+    return abs(history - reference) / max(abs(reference), 1e-12)
 
 
 def _long() -> float:
@@ -226,8 +229,10 @@ def _moved(motion: str) -> float:
 
 
 def _answers(name: str, directions: int | None, motion: str) -> Any:
-    extra = {} if directions is None else {"directions": directions}
-    return respond(name, motions()[motion], tail=1.0, **objects(name), **extra)
+    asked: dict[str, Any] = {**objects(name), "tail": 1.0}
+    if directions is not None:
+        asked["directions"] = directions
+    return respond(name, motions()[motion], **asked)
 
 
 def _unexplained(name: str, directions: int | None) -> float:
