@@ -2,7 +2,8 @@
 
 With s = +1 on the edge towards +axis and -1 on the other, and phi = s theta >= 0:
 phi'' = c_s (-N sin(alpha_s - phi) - s a cos(alpha_s - phi)),  c_s = R_s / (rho^2 + R_s^2),  N = max(0, g + a_z).
-At phi = 0 the body lands on the other edge and its rate is multiplied by the restitution.
+At phi = 0 the body lands on the other edge and its rate is multiplied by the restitution.  Classical Runge-Kutta steps
+of fourth order, which end at every sample, lift-off and landing, so that the order holds through the impacts.
 """
 
 import math
