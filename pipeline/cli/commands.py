@@ -1,6 +1,7 @@
 """The verbs.  Each parses its options, calls one job, prints its answer."""
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -116,13 +117,19 @@ def _list(title: str, lines: Sequence[str], most: int = 10) -> None:
 
 
 @click.command()
+@click.option("--numerics", is_flag=True, help="Run the models at their extremes instead, against exact limits.")
 @as_json
 @click.pass_obj
-def check(options: Options, as_json: bool) -> None:
+def check(options: Options, numerics: bool, as_json: bool) -> None:
     """Look at settings, database, mapping, motions, clock and disk, and say what to mend.
+
+    With --numerics: whether this machine's compiled code is right at the extremes; exit code 1 if not.
 
     Example: kouros check
     """
+    if numerics:
+        _check_numerics(as_json)
+        return
     from pipeline.jobs.doctor import diagnose
 
     found = diagnose(Path(options.config))
@@ -133,6 +140,26 @@ def check(options: Options, as_json: bool) -> None:
             click.echo(f"{d.state:<8} {d.what:<11} {d.message}")
     if any(d.state == "wrong" for d in found):
         raise click.exceptions.Exit(2)
+
+
+def _check_numerics(as_json: bool) -> None:
+    from pipeline.jobs.numerics import outcomes
+
+    done = []
+    for o in outcomes():
+        done.append(o)
+        if not as_json:
+            says = f"{o.result:.1e}, limit {o.limit:.0e}" + (f": {o.problem}" if o.problem else "")
+            click.echo(f"{'ok' if o.ok else 'failed':<8} {o.what}; {o.truth}: {says}")
+    wrong = sum(not o.ok for o in done)
+    if as_json:
+        # JSON has no NaN.
+        rows = [{**asdict(o), "result": o.result if math.isfinite(o.result) else None} for o in done]
+        click.echo(json.dumps(rows, indent=2))
+    else:
+        click.echo(f"{len(done)} cases, {wrong} failed, {sum(o.seconds for o in done):.0f} s")
+    if wrong:
+        raise click.exceptions.Exit(1)
 
 
 @click.command()

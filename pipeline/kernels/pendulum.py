@@ -3,8 +3,9 @@
 theta'' + 2 zeta w theta' + ((g + a_z) / L) sin theta = -(a / L) cos theta,  w = sqrt(g / L)
 (Agbabian et al. 1991, sec. 2.4: viscous damping and in-plane vertical excitation included).
 
-Sine and cosine of theta are integrated along with it (s' = c theta', c' = -s theta'), so that a step has no
-transcendental function in it and several pendulums share the vector registers.
+Classical Runge-Kutta steps of fourth order that end at every sample, where the excitation has its kinks.  Sine and
+cosine of theta are integrated along with it (s' = c theta', c' = -s theta'), so that a step has no transcendental
+function in it and several pendulums share the vector registers.
 """
 
 import math

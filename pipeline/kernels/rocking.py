@@ -2,7 +2,8 @@
 
 With s = +1 on the edge towards +axis and -1 on the other, and phi = s theta >= 0:
 phi'' = c_s (-N sin(alpha_s - phi) - s a cos(alpha_s - phi)),  c_s = R_s / (rho^2 + R_s^2),  N = max(0, g + a_z).
-At phi = 0 the body lands on the other edge and its rate is multiplied by the restitution.
+At phi = 0 the body lands on the other edge and its rate is multiplied by the restitution.  Classical Runge-Kutta steps
+of fourth order, which end at every sample, lift-off and landing, so that the order holds through the impacts.
 """
 
 import math
@@ -143,13 +144,15 @@ def _stretch(
     n1: float,
     span: float,
     clock: float,
+    parts: int,
     body: Array,
     out: Array,
 ) -> None:
-    # One stretch on which the excitation and the normal force are linear.
+    # One stretch on which the excitation and the normal force are linear, in one step; what is left of it after a
+    # lift-off or a landing in so many parts, as a hop within one step would be the same at every refinement.
     # state: s, phi, rate, and sine and cosine of alpha - phi.  body: alpha1, alpha2, c1, c2, e12, e21.
     s, phi, rate, sn, cs = state[0], state[1], state[2], state[3], state[4]
-    t = 0.0
+    t, longest = 0.0, span
     landings = 0
     while landings <= IMPACTS_CAP:
         if s == 0.0:
@@ -163,9 +166,12 @@ def _stretch(
                 out[3] = clock + t
             if t >= span:
                 break
+            longest = (span - t) / parts
         h = span - t
         if h <= 1e-14 * span:
             break
+        if h > 1.5 * longest:
+            h = longest
         alpha, c = (body[0], body[2]) if s > 0.0 else (body[1], body[3])
         p1, r1, s1, c1 = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c)
         landed = -1.0
@@ -197,7 +203,8 @@ def _stretch(
                 _peak(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, alpha, c, out)
             out[0] = max(out[0], p1 / alpha)
             phi, rate, sn, cs = p1, r1, s1, c1
-            break
+            t += h
+            continue
         _p, r1, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, landed, s, c)
         if rate > 0.0 > r1:
             _peak(phi, rate, sn, cs, a0, a1, n0, n1, t, landed, s, alpha, c, out)
@@ -210,6 +217,7 @@ def _stretch(
         s = -s
         phi = 0.0
         sn, cs = (math.sin(body[0]), math.cos(body[0])) if s > 0.0 else (math.sin(body[1]), math.cos(body[1]))
+        longest = (span - t) / parts
         landings += 1
         if landings > IMPACTS_CAP:
             out[5] = float(int(out[5]) | EVENT_CAP)
@@ -282,6 +290,7 @@ def rocking_one(
     fastest = math.sqrt(max(body[2], body[3]) * (G + peak))
     pieces = max(1, math.ceil(fastest * dt / STEP)) * refine
     step = dt / pieces
+    parts = max(1, refine // 2)
     weakest = math.tan(min(body[0], body[1]))
     recording = history.shape[0] > 0
     i = 0
@@ -305,12 +314,12 @@ def rocking_one(
             clock = i * dt + t0
             if t0 < cut < t1:
                 held, after = (n1, 0.0) if n0 > 0.0 else (0.0, n1)
-                _stretch(state, x[i] + a1 * t0, a1, max(0.0, n0 + n1 * t0), held, cut - t0, clock, body, out)
+                _stretch(state, x[i] + a1 * t0, a1, max(0.0, n0 + n1 * t0), held, cut - t0, clock, parts, body, out)
                 if out[1] == 0.0:
-                    _stretch(state, x[i] + a1 * cut, a1, 0.0, after, t1 - cut, i * dt + cut, body, out)
+                    _stretch(state, x[i] + a1 * cut, a1, 0.0, after, t1 - cut, i * dt + cut, parts, body, out)
             else:
                 held = n1 if max(n0 + n1 * t0, n0 + n1 * t1) > 0.0 else 0.0
-                _stretch(state, x[i] + a1 * t0, a1, max(0.0, n0 + n1 * t0), held, step, clock, body, out)
+                _stretch(state, x[i] + a1 * t0, a1, max(0.0, n0 + n1 * t0), held, step, clock, parts, body, out)
             if out[1] > 0.0:
                 if i + 1 < history.shape[0]:
                     history[i + 1 :, 0] = state[0] * OVERTURNED
@@ -324,7 +333,7 @@ def rocking_one(
     t = 0.0
     while state[0] != 0.0 and t < stop:
         now = min(h, stop - t)
-        _stretch(state, 0.0, 0.0, G, 0.0, now, (n - 1) * dt + t, body, out)
+        _stretch(state, 0.0, 0.0, G, 0.0, now, (n - 1) * dt + t, parts, body, out)
         if out[1] > 0.0:
             return
         t += now

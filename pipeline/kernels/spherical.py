@@ -1,7 +1,7 @@
 """A rigid pendulum free to swing in all directions, such as a chandelier, without a singularity at rest.
 
 q is the unit vector from the pivot to the mass: q'' = -|q'|^2 q + (I - q q^T) f - 2 zeta w q',
-f = -(a_x, a_y, g + a_z) / L,  w = sqrt(g / L).
+f = -(a_x, a_y, g + a_z) / L,  w = sqrt(g / L).  Classical Runge-Kutta steps of fourth order that end at every sample.
 """
 
 import math

@@ -18,7 +18,7 @@ NOTES = {
     flags.CONTACT_LOST: "contact lost (vertical acceleration below -g); flight and landing are not modelled",
     flags.CUT: "still moving when the tail was cut",
     flags.EVENT_CAP: "more impacts than are followed in one sample interval",
-    SENSITIVE: "sensitive: the outcome changes with the step of integration",
+    SENSITIVE: "sensitive: 1 % of the motion's amplitude changes the outcome, or any change is magnified 1,000 times",
     NO_TILT: "no tilt reproduces an acceleration of 1 g or more",
     NO_HISTORY: "a closed-form screen, not a response",
     BOUND: "a guaranteed upper bound, not a response",
@@ -27,6 +27,12 @@ NOTES = {
 
 ROUNDING = 1e-12
 """Relative error granted to a closed form integrated over a long record."""
+
+ILL = 1e3
+"""Condition (relative change of the output for a relative change of amplitude) from which a result is sensitive."""
+
+NUDGE = 1e-6
+"""Relative change of amplitude by which a condition is measured."""
 
 
 def words(bits: float) -> str:

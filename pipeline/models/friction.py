@@ -1,13 +1,14 @@
 """What the three models on dry friction share: sliding, the friction isolator, the horizontal isolator."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from pipeline.kernels.bounds import slip_bounds_batch
 from pipeline.kernels.friction_line import friction_line_batch, friction_line_one
 from pipeline.kernels.friction_plane import friction_plane_batch, friction_plane_one
-from pipeline.models.common import ROUNDING, Quiet, after_record, contact_lost
+from pipeline.models.common import ROUNDING, SENSITIVE, Quiet, after_record, contact_lost, lift_ratios
 from pipeline.quantities import Array
 from pipeline.records import Bounds, Columns, Excitation
 
@@ -63,14 +64,23 @@ def stick_slip(
         # The difference of two peaks may vanish by chance; where the body ends, and hardly that of both at once.
         apart = np.abs(results - coarse)
         error = 2.0 * (apart[:, 0] + apart[:, 1]) + ROUNDING * results[:, 2]
+    note = results[:, 4]
+    if estimate:
+        # Whether it moves at all: just above its friction, a thousandth of a displacement is a millionth of the motion.
+        note = np.where(_moves(motion, 0.99, mu_s) != _moves(motion, 1.01, mu_s), note + SENSITIVE, note)
     return {
         "displacement": results[:, 0],
         "residual": results[:, 1],
         "path_length": results[:, 2],
         "acceleration": results[:, 3],
         "error": error,
-        "note": results[:, 4],
+        "note": note,
     }
+
+
+def _moves(motion: Excitation, times: float, mu_s: Array) -> Array:
+    scaled = replace(motion, x=times * motion.x, y=None if motion.y is None else times * motion.y, z=times * motion.z)
+    return np.asarray(max(lift_ratios(scaled)) > mu_s)
 
 
 def _steps(w: Array, refine: int) -> tuple[float, float]:

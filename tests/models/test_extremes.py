@@ -6,6 +6,7 @@ interrupts a compiled loop.
 
 from __future__ import annotations
 
+import json
 import multiprocessing as mp
 import queue
 from multiprocessing.queues import Queue
@@ -13,56 +14,20 @@ from typing import Any
 
 import numpy as np
 import pytest
-from shaking import along_x, random_motion, times
+from click.testing import CliRunner
+from shaking import along_x
 
 from pipeline import Motion, respond
+from pipeline.cli import kouros
+from pipeline.jobs import numerics
+from pipeline.jobs.extremes import MODELS, PROMISED, complaint, motions, objects
+from pipeline.models import MODELS as REGISTRY
 from pipeline.quantities import G
 
 LIMIT = 20.0
 """Seconds that one case may take, the first one's compilation excepted."""
 START = 60.0
 """Seconds that a process may take to start and compile."""
-
-
-def motions() -> dict[str, Motion]:
-    """Return the motions that a response must survive, by name."""
-    base = random_motion(71, n=300, dt=0.02)
-    a = base.acceleration
-    return {
-        "plain": base,
-        "times 1e-6": times(base, 1e-6, 1e-6),
-        "times 1000": times(base, 1000.0, 1000.0),
-        "vertical below -g": times(base, 1.0, 6.0),
-        "dt 0.5 ms": Motion(0.0005, a),
-        "dt 40 ms": Motion(0.04, a),
-        "one sample": Motion(0.02, a[:, 50:51]),
-        "two samples": Motion(0.02, a[:, 50:52]),
-        "denormals": Motion(0.02, 1e-310 * a),
-        "zeros": Motion(0.02, 0.0 * a),
-        "weightless": Motion(0.02, np.vstack([a[0], a[1], np.full(300, -G)])),
-        "huge offset": Motion(0.02, a + 1e4),
-    }
-
-
-def objects(name: str) -> dict[str, list[float]]:
-    """Return the extreme parameter sets of a model, as columns."""
-    frictions = [0.0, 1e-6, 0.1, 5.0]
-    if name == "rocking":
-        alphas, e = np.array([0.02, 0.2, 1.2] * 3), np.repeat([0.0, 0.6, 1.0], 3)
-        return {"half_width": list(0.3 * np.tan(alphas)), "cg_height": [0.3] * 9, "restitution": list(e)}
-    if name in ("sliding", "friction_isolator"):
-        return {"friction_static": frictions}
-    if name == "horizontal_isolator":
-        f, zeta, mu = np.meshgrid([0.02, 1.0, 500.0], [0.0, 1.0, 2.0], [0.0, 1e-6, 5.0])
-        return {"frequency": list(f.ravel()), "damping": list(zeta.ravel()), "friction": list(mu.ravel())}
-    if name.startswith("swing"):
-        length, zeta = np.meshgrid([0.001, 0.01, 1.0, 100.0], [0.0, 1.0, 2.0])
-        return {"length": list(length.ravel()), "damping": list(zeta.ravel())}
-    f, zeta = np.meshgrid([0.02, 1.0, 20.0, 500.0], [0.0, 1.0, 2.0])
-    out = {"frequency": list(f.ravel()), "damping": list(zeta.ravel())}
-    if name == "rotational_isolator":
-        out |= {"cg_height": [0.5] * f.size, "inertia_ratio": [1.3] * f.size}
-    return out
 
 
 def work(name: str, directions: int | None, answers: Queue[Any]) -> None:
@@ -92,33 +57,7 @@ def work(name: str, directions: int | None, answers: Queue[Any]) -> None:
     answers.put(("done", ""))
 
 
-def complaint(row: Any) -> str:
-    """Return what is wrong with a result: a NaN or an infinity that no note explains, a negative size."""
-    for column, value in row.items():
-        if column in ("overturning_time", "uplift_time", "angle", "fidelity", "note"):
-            continue
-        if not np.isfinite(float(value)) and not row["note"]:
-            return f"{column} is {value} without a note"
-        if float(value) < 0.0:
-            return f"{column} is {value}"
-    return ""
-
-
-@pytest.mark.parametrize(
-    ("name", "directions"),
-    [
-        ("rocking", None),
-        ("sliding", 1),
-        ("sliding", 2),
-        ("friction_isolator", None),
-        ("horizontal_isolator", 1),
-        ("horizontal_isolator", 2),
-        ("rotational_isolator", None),
-        ("oscillator", None),
-        ("swing", None),
-        ("swing_3d", None),
-    ],
-)
+@pytest.mark.parametrize(("name", "directions"), MODELS)
 def test_nothing_hangs_or_is_nan_in_silence(name: str, directions: int | None) -> None:
     context = mp.get_context("spawn")
     answers: Queue[Any] = context.Queue()
@@ -140,36 +79,59 @@ def test_nothing_hangs_or_is_nan_in_silence(name: str, directions: int | None) -
     assert not wrong, f"{len(wrong)} cases, such as {wrong[:3]}"
 
 
-def test_tiny_motions_scale() -> None:
-    """A millionth of a motion is a millionth of the linear response: 1e-9 for what is linear, theta^2 for the swing."""
-    motion = random_motion(72, vertical=0.0)
-    small = times(motion, 1e-6, 1e-6)
-    for name, parameters in (("oscillator", {"frequency": 2.0, "damping": 0.02}),):
-        one, tiny = (respond(name, m, **parameters)["displacement"][0] for m in (motion, small))
-        assert tiny == pytest.approx(1e-6 * one, rel=1e-9)
-    for name in ("swing", "swing_3d"):
-        one, tiny = (
-            respond(name, m, length=1.0, damping=0.05)["displacement"][0] for m in (times(motion, 1e-3, 0.0), small)
-        )
-        assert tiny == pytest.approx(1e-3 * one, rel=1e-5)
+@pytest.mark.parametrize("case", numerics.CASES, ids=lambda case: f"{case.what}; {case.truth}")
+def test_the_self_test_of_the_numerics(case: numerics.Case) -> None:
+    """The very cases that `kouros check --numerics` runs: each names its truth and its limit."""
+    assert case.measure() <= case.limit
 
 
-@pytest.mark.parametrize(("dt", "n"), [(0.0005, 400), (0.04, 200)])
-def test_any_sampling_against_the_reference(dt: float, n: int) -> None:
-    """0.5 ms to 40 ms: history against the reference, within each model's promise."""
-    motion = random_motion(73, n=n, dt=dt)
-    cases: list[tuple[str, dict[str, float], float]] = [
-        ("sliding", {"friction_static": 0.1}, 5e-4),
-        ("swing", {"length": 0.01, "damping": 0.1}, 1e-6),
-        ("swing_3d", {"length": 0.01, "damping": 0.1}, 1e-4),
-        ("oscillator", {"frequency": 100.0, "damping": 0.02}, 1e-9),
-        ("horizontal_isolator", {"frequency": 10.0, "damping": 0.1, "friction": 0.05}, 5e-4),
-        ("rocking", {"half_width": 0.2, "cg_height": 0.5}, 1e-4),
-    ]
-    for name, parameters, rel in cases:
-        history = respond(name, motion, **parameters).iloc[0]
-        reference = respond(name, motion, fidelity="reference", **parameters).iloc[0]
-        assert history.iloc[0] == pytest.approx(reference.iloc[0], rel=rel, abs=1e-9), name
+def test_every_model_in_time_is_pushed_to_its_extremes() -> None:
+    """Stress has no history: it is a closed form of the peak; the flexible one is that of the oscillator."""
+    assert {name for name, _ in MODELS} == {model.name for model in REGISTRY} - {"stress", "flexible_stress"}
+    assert {name for name, _, _ in PROMISED} <= {name for name, _ in MODELS}
+
+
+@pytest.mark.parametrize("broken", [float("nan"), 2.0, ValueError("no kernel")])
+def test_the_self_test_can_fail(broken: float | ValueError, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A NaN, a number above its limit and an exception are failures, and the cases after them still run."""
+
+    def measure() -> float:
+        if isinstance(broken, ValueError):
+            raise broken
+        return broken
+
+    cases = (numerics.Case("broken", "one", 1.0, measure), numerics.Case("sound", "zero", 0.0, lambda: 0.0))
+    monkeypatch.setattr(numerics, "CASES", cases)
+    first, second = numerics.outcomes()
+    assert not first.ok
+    assert first.problem == ("ValueError: no kernel" if isinstance(broken, ValueError) else "")
+    assert second.ok
+    said = CliRunner().invoke(kouros, ["check", "--numerics"], standalone_mode=False)
+    assert said.return_value == 1
+    assert said.stdout.startswith("failed   broken; one: ")
+    assert "2 cases, 1 failed" in said.stdout
+    plain = CliRunner().invoke(kouros, ["check", "--numerics", "--json"], standalone_mode=False)
+    assert [row["ok"] for row in json.loads(plain.stdout)] == [False, True]
+    monkeypatch.setattr(numerics, "CASES", cases[1:])
+    assert not CliRunner().invoke(kouros, ["check", "--numerics"], standalone_mode=False).return_value
+
+
+def test_a_nan_among_the_answers_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Answers that are NaN fail every case that asks for one."""
+    real = numerics.respond
+
+    def ruined(*words: Any, **parameters: Any) -> Any:
+        table = real(*words, **parameters)
+        table.iloc[:, 0] = np.nan
+        table["note"] = ""
+        return table
+
+    monkeypatch.setattr(numerics, "respond", ruined)
+    asked = ("acceleration times", "swing", "a motion of zeros", "friction 5", "oscillator at", "sliding, 1 direction:")
+    cases = tuple(case for case in numerics.CASES if case.what.startswith(asked))
+    monkeypatch.setattr(numerics, "CASES", cases)
+    assert len(cases) > 10
+    assert not any(outcome.ok for outcome in numerics.outcomes())
 
 
 def test_rocking_under_strong_vertical_motion_keeps_its_accuracy() -> None:

@@ -1,0 +1,113 @@
+"""The motions and objects at which a model may break: data of the numerical self-test and of the tests."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from pipeline.quantities import Array, G
+from pipeline.records import Motion
+
+STRONG = 5.0
+"""Peak of each horizontal component of the shaking [m/s2]."""
+
+UNKNOWN = ("overturning_time", "uplift_time", "angle", "fidelity", "note")
+"""Columns that may be empty, or are not numbers."""
+
+
+def shaking(samples: int = 300, dt: float = 0.02, vertical: float = 0.5) -> Motion:
+    """Return band-limited random shaking (0.4 to 12 Hz) that rises and decays, the same at each call."""
+    rng = np.random.default_rng(71)
+    t = np.arange(samples) * dt
+    envelope = np.sin(np.pi * (t + 0.5 * dt) / (t[-1] + dt)) ** 0.7
+    a = np.zeros((3, samples))
+    for row, share in enumerate((1.0, 1.0, vertical)):
+        tones, phases = np.exp(rng.uniform(np.log(0.4), np.log(12.0), (14, 1))), rng.uniform(0.0, 2.0 * np.pi, (14, 1))
+        a[row] = envelope * np.sin(2.0 * np.pi * tones * t + phases).sum(axis=0)
+        a[row] *= share * STRONG / np.abs(a[row]).max()
+    return Motion(dt, a, "shaking")
+
+
+def along_x(values: Array, dt: float, vertical: float = 0.0) -> Motion:
+    """Return a motion with these samples along x, and a constant vertical acceleration."""
+    return Motion(dt, np.vstack([values, np.zeros_like(values), np.full_like(values, vertical)]))
+
+
+def motions() -> dict[str, Motion]:
+    """Return the motions that a response must survive, by name."""
+    base = shaking()
+    a = base.acceleration
+    return {
+        "plain": base,
+        "times 1e-6": Motion(base.dt, 1e-6 * a),
+        "times 1000": Motion(base.dt, 1000.0 * a),
+        "vertical below -g": Motion(base.dt, a * np.array([[1.0], [1.0], [6.0]])),
+        "dt 0.5 ms": Motion(0.0005, a),
+        "dt 40 ms": Motion(0.04, a),
+        "one sample": Motion(0.02, a[:, 50:51]),
+        "two samples": Motion(0.02, a[:, 50:52]),
+        "denormals": Motion(0.02, 1e-310 * a),
+        "zeros": Motion(0.02, 0.0 * a),
+        "weightless": Motion(0.02, np.vstack([a[0], a[1], np.full(300, -G)])),
+        "huge offset": Motion(0.02, a + 1e4),
+    }
+
+
+def objects(name: str) -> dict[str, list[float]]:
+    """Return the extreme parameter sets of a model, as columns."""
+    if name == "rocking":
+        alphas, e = np.array([0.02, 0.2, 1.2] * 3), np.repeat([0.0, 0.6, 1.0], 3)
+        return {"half_width": list(0.3 * np.tan(alphas)), "cg_height": [0.3] * 9, "restitution": list(e)}
+    if name in ("sliding", "friction_isolator"):
+        return {"friction_static": [0.0, 1e-6, 0.1, 5.0]}
+    if name == "horizontal_isolator":
+        return _grid(frequency=[0.02, 1.0, 500.0], damping=[0.0, 1.0, 2.0], friction=[0.0, 1e-6, 5.0])
+    if name.startswith("swing"):
+        return _grid(length=[0.001, 0.01, 1.0, 100.0], damping=[0.0, 1.0, 2.0])
+    out = _grid(frequency=[0.02, 1.0, 20.0, 500.0], damping=[0.0, 1.0, 2.0])
+    if name == "rotational_isolator":
+        size = len(out["frequency"])
+        out |= {"cg_height": [0.5] * size, "inertia_ratio": [1.3] * size}
+    return out
+
+
+def _grid(**values: list[float]) -> dict[str, list[float]]:
+    columns = np.meshgrid(*values.values())
+    return {name: list(column.ravel()) for name, column in zip(values, columns, strict=True)}
+
+
+MODELS: tuple[tuple[str, int | None], ...] = (
+    ("rocking", None),
+    ("sliding", 1),
+    ("sliding", 2),
+    ("friction_isolator", None),
+    ("horizontal_isolator", 1),
+    ("horizontal_isolator", 2),
+    ("rotational_isolator", None),
+    ("oscillator", None),
+    ("swing", None),
+    ("swing_3d", None),
+)
+"""Each model that is integrated in time, and in how many directions where it can be told."""
+
+PROMISED: tuple[tuple[str, dict[str, float], float], ...] = (
+    ("sliding", {"friction_static": 0.1}, 5e-4),
+    ("swing", {"length": 0.01, "damping": 0.1}, 1e-6),
+    ("swing_3d", {"length": 0.01, "damping": 0.1}, 1e-4),
+    ("oscillator", {"frequency": 100.0, "damping": 0.02}, 1e-9),
+    ("horizontal_isolator", {"frequency": 10.0, "damping": 0.1, "friction": 0.05}, 5e-4),
+    ("rocking", {"half_width": 0.2, "cg_height": 0.5}, 1e-4),
+)
+"""An object for each model that time steps of 0.5 to 40 ms must not trouble, and the relative error of `history`."""
+
+
+def complaint(row: Mapping[str, Any]) -> str:
+    """Return what is wrong with a result: a NaN or an infinity that no note explains, a negative size."""
+    for column, value in row.items():
+        if column in UNKNOWN:
+            continue
+        if not np.isfinite(float(value)) and not row["note"]:
+            return f"{column} is {value} without a note"
+        if float(value) < 0.0:
+            return f"{column} is {value}"
+    return ""
