@@ -109,7 +109,9 @@ def tradeoff_lines(found: "Tradeoff", wanted: float) -> list[str]:
         f"{'':<34}{'ns':>10}{'median':>10}{'95 %':>10}{'worst':>10}{'wrong outcomes':>16}",
     ]
     for sample in found.samples:
-        lines.append(f"{sample.model}: {sample.objects} objects from {sample.source}, {sample.moved} responses counted")
+        told = f"{sample.model}: {sample.objects} objects from {sample.source}, {sample.moved} responses counted"
+        doubt = f", {sample.sensitive} left out: 1 % of the amplitude would change their outcome"
+        lines.append(told + (doubt if sample.sensitive else ""))
         lines += [
             f"    {s.setting:<30}{s.cost:>10.2f}{s.median:>10.1e}{s.p95:>10.1e}{s.worst:>10.1e}{s.wrong or '':>16}"
             for s in found.settings
