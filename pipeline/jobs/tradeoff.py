@@ -213,7 +213,7 @@ def _of_model(
         ]  # no model with a chart is sensitive
         looked = partial(_looked_up, model, angle=angle, shelf=Shelf())
         runs = [_timed(partial(looked, motion, along)) for motion in motions]
-        rows.append(_setting(model, "chart", f"chart to {CHARTED:g}", "chart", motions, runs, true))
+        rows.append(_setting(model, "chart", f"chart to {CHARTED:g}", "chart", motions, runs, charted))
     for refine in STEPS:
         name = names.get(refine, "")
         told = f"{name} (step 1/{refine})" if name else f"step 1/{refine}"
