@@ -12,19 +12,25 @@ from pipeline.models.rotational_isolator import ROTATIONAL_ISOLATOR
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Excitation, Model, Motion
 from pipeline.supports.floor import carried
-from pipeline.supports.polygon import resampled
+from pipeline.supports.polygon import conserving, resampled
+from pipeline.supports.refining import refined
 
-__all__ = ["SUPPORTS", "SupportModel", "resampled", "support_named"]
+__all__ = ["SUPPORTS", "SupportModel", "refined", "resampled", "support_named"]
 
 
 @dataclass(frozen=True)
 class SupportModel:
-    """A support: its parameters, how it passes a motion on, and the model of its own demand (None: it has none)."""
+    """A support: its parameters, how it passes a motion on, and the model of its own demand (None: it has none).
+
+    transmit : motion, parameters, and the samples of the output for each of the input
+    refines  : whether it heeds the third; one that does not chooses its own step
+    """
 
     name: str
     needs: tuple[Quantity, ...]
     transmit: Callable[[Motion, Mapping[str, float], int], Motion]
     model: Model | None = None
+    refines: bool = True
 
 
 AFTER = 60.0
@@ -36,25 +42,29 @@ QUIET = 1e-6
 
 def _passed_on(motion: Motion, model: Model, parameters: Mapping[str, float], two: bool, refine: int) -> Motion:
     record = resampled(motion, refine)
-    x, y = _felt(model, record, parameters, two)
-    size = np.hypot(x, y)
+    ways = _histories(model, record, parameters, two)
+    size = np.hypot(*(felt for _, felt in ways))
     loud = np.flatnonzero(size[record.samples :] > QUIET * float(size.max()))
-    end = record.samples + (int(loud[-1]) + 2 if loud.size else 0)
-    z = np.concatenate([record.acceleration[2], np.zeros(x.size - record.samples)])
-    step = f"passed on by {_described(model, parameters)}"
-    rows = np.vstack([x, y, z])[:, :end]
+    end = min(record.samples + (int(loud[-1]) + 2 if loud.size else 0), size.size - 1)
+    rows = np.zeros((3, end))
+    for row, (moved, felt) in enumerate(ways):
+        rows[row] = conserving(record.acceleration[row], felt[:end], moved[: end + 1], record.dt)
+    rows[2, : record.samples] = record.acceleration[2]
+    each = "one sample" if refine == 1 else f"{refine} samples"
+    step = f"passed on by {_described(model, parameters)}, {each} for each of its input"
     return Motion(record.dt, rows, motion.name, (*motion.steps, step), motion.source)
 
 
-def _felt(model: Model, motion: Motion, parameters: Mapping[str, float], two: bool) -> tuple[Array, Array]:
+def _histories(model: Model, motion: Motion, parameters: Mapping[str, float], two: bool) -> list[tuple[Array, Array]]:
+    # Relative displacement and absolute acceleration along x and along y.
     if model.trace is None:
         raise ValueError(f"{model.name} passes no motion on")
     x, y, z = motion.acceleration
     if two:
         columns = model.trace(Excitation(motion.dt, x, y, z, AFTER), parameters)
-        return columns["a_x"], columns["a_y"]
-    ways = [model.trace(Excitation(motion.dt, way, None, z, AFTER), parameters)["a_x"] for way in (x, y)]
-    return ways[0], ways[1]
+        return [(columns["u_x"], columns["a_x"]), (columns["u_y"], columns["a_y"])]
+    each = [model.trace(Excitation(motion.dt, way, None, z, AFTER), parameters) for way in (x, y)]
+    return [(columns["u_x"], columns["a_x"]) for columns in each]
 
 
 def _described(model: Model, parameters: Mapping[str, float]) -> str:
@@ -95,7 +105,7 @@ SUPPORTS: tuple[SupportModel, ...] = (
     _in_plane("horizontal_isolator", HORIZONTAL_ISOLATOR),
     _each_way("rotational_isolator", ROTATIONAL_ISOLATOR),
     _each_way("plinth", OSCILLATOR),
-    SupportModel("floor", FLOOR, _floor),
+    SupportModel("floor", FLOOR, _floor, refines=False),
 )
 
 
