@@ -31,19 +31,21 @@ def refined(passed: Callable[[int], Motion], error: float) -> Motion:
     """
     refine = 1
     coarse = passed(refine)
+    one = _responses(coarse)
     while True:
         fine = passed(2 * refine)
-        apart = difference(coarse, fine)
+        other = _responses(fine)
+        apart = _apart(one, other, 2)
         if 2.0 * apart <= error:
             return _told(coarse, 2.0 * apart, error)
         refine *= 2
         if apart <= error or 2 * refine > MOST_REFINED or 2 * fine.samples > MOST_SAMPLES:
             return _told(fine, apart, error)
-        coarse = fine
+        coarse, one = fine, other
 
 
 def _told(motion: Motion, off: float, error: float) -> Motion:
-    reached = f"within {off:.1g}" if off <= error else f"off by up to {off:.1g}, more than the {error:g} asked"
+    reached = f"within {off:.2g}" if off <= error else f"off by up to {off:.2g}, more than the {error:g} asked"
     said = f"{motion.steps[-1]}; an oscillator of {BANK[0]:g} to {BANK[-1]:g} Hz on it is {reached}"
     return Motion(motion.dt, motion.acceleration, motion.name, (*motion.steps[:-1], said), motion.source)
 
@@ -53,22 +55,24 @@ def difference(coarse: Motion, fine: Motion) -> float:
 
     The step of the coarse motion is a whole multiple of that of the fine one; both horizontal directions count.
     """
-    every = round(coarse.dt / fine.dt)
-    most = 0.0
-    for frequency in BANK:
-        apart, size = 0.0, 0.0
-        for row in range(2):
-            one, other = _response(coarse, row, frequency), _response(fine, row, frequency)[::every]
-            n = min(one.size, other.size)
-            apart = max(apart, float(np.abs(one[:n] - other[:n]).max()))
-            size = max(size, float(np.abs(other).max()))
-        if apart > 0.0:
-            most = max(most, apart / size if size > 0.0 else np.inf)
-    return most
+    return _apart(_responses(coarse), _responses(fine), round(coarse.dt / fine.dt))
 
 
-def _response(motion: Motion, row: int, frequency: float) -> Array:
-    history = np.zeros((motion.samples, 2))
-    base = np.ascontiguousarray(motion.acceleration[row])
-    oscillator_history(base, motion.dt, 2.0 * np.pi * frequency, BANK_DAMPING, 1.0, history)
-    return history[:, 0]
+def _apart(coarse: Array, fine: Array, every: int) -> float:
+    thinned = fine[:, :, ::every]
+    n = min(coarse.shape[2], thinned.shape[2])
+    apart = np.abs(coarse[:, :, :n] - thinned[:, :, :n]).max(axis=(1, 2))
+    size = np.abs(fine).max(axis=(1, 2))
+    return float(np.divide(apart, size, out=np.where(apart > 0.0, np.inf, 0.0), where=size > 0.0).max())
+
+
+def _responses(motion: Motion) -> Array:
+    # Displacements of the oscillators, (frequencies, x and y, samples).
+    out = np.empty((len(BANK), 2, motion.samples))
+    history = np.empty((motion.samples, 2))
+    for row in range(2):
+        base = np.ascontiguousarray(motion.acceleration[row])
+        for k, frequency in enumerate(BANK):
+            oscillator_history(base, motion.dt, 2.0 * np.pi * frequency, BANK_DAMPING, 1.0, history)
+            out[k, row] = history[:, 0]
+    return out
