@@ -46,7 +46,8 @@ def _passed_on(motion: Motion, model: Model, parameters: Mapping[str, float], tw
         felt, moved = _histories(model, record, parameters, two, after)
         size = np.hypot(*felt)
         loud = np.flatnonzero(size[record.samples :] > QUIET * float(size.max()))
-        end = record.samples + (int(loud[-1]) + 2 if loud.size else 0)
+        # It comes to rest within the step after the last loud sample; what is passed on ends one sample of rest later.
+        end = record.samples + (int(loud[-1]) + 3 if loud.size else 0)
         if end < size.size:
             break
     end = min(end, size.size - 1)
