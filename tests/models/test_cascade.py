@@ -97,15 +97,15 @@ def test_no_corner_is_beyond_the_friction(refine: int) -> None:
 
 
 def test_what_lifts_an_object_on_an_isolator_is_not_exaggerated() -> None:
-    """|a| / N, against which slopes are held, with vertical motion: at most mu_s where friction alone acts.
+    """|a| / N, against which slopes are held, with vertical motion: mu_s at most where friction alone acts.
 
-    The weight changes between samples: at 5 ms and 12 Hz by 2.5 m/s2 * 2 pi 12 Hz h / 3 of some 7 m/s2, 4 %; it is the
-    mean of it that counts, so that a quarter of this is left.
+    A corner is held to the shares of its neighbours, the means among them, and a mean of mu N over two steps of 5 ms
+    differs from its middle by h^2 / 12 N'' / N, 0.4 % for the 12 Hz that shake it up and down with 2.5 m/s2.
     """
     motion = random_motion(110, vertical=0.5)
     out = transmit("friction_isolator", motion, refine=2, friction_static=0.1)
     x, y, z = out.acceleration
-    assert (np.hypot(x, y) / (G + z)).max() <= 0.1 * 1.01
+    assert (np.hypot(x, y) / (G + z)).max() <= 0.1 * 1.005
 
 
 def test_what_is_passed_on_knows_no_axes() -> None:
