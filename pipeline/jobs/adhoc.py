@@ -31,16 +31,14 @@ def respond_on_site(
     import pandas as pd
 
     from pipeline.motions.site import read_motion
-    from pipeline.response import respond, transmit
+    from pipeline.response import cascade, respond
 
     given: dict[str, Any] = dict(_parsed(word) for word in parameters)
     direction = None if angle == "worst" else _number("angle", angle)
     tables = []
     chain = [_support(word) for word in through]
     for ground in read_motion(site_folder(Settings(), site)):
-        motion = ground
-        for support, values in chain:
-            motion = transmit(support, motion, **values)
+        motion = cascade(chain, ground)
         table = respond(model, motion, fidelity=fidelity, angle=direction, tail=tail, **given)
         rows = len(table)
         for at, (name, values) in enumerate(given.items()):

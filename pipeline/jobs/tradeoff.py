@@ -167,8 +167,8 @@ def measure(
         full = {name: np.resize(column, max(size, objects)) for name, column in values.items()}
         rows, moved, sensitive = _of_model(model, motions, full)
         settings += rows
-        counts = (int(one[:, :size].sum()) for one in (moved, sensitive))
-        samples.append(Sample(model.name, size, *counts, source))
+        counted, doubtful = (int(one[:, :size].sum()) for one in (moved, sensitive))
+        samples.append(Sample(model.name, size, counted, doubtful, source))
     progress.step("models", len(chosen), len(chosen))
     now = datetime.now(UTC).isoformat(timespec="seconds")
     return Tradeoff(now, KERNEL_VERSION, [m.name for m in motions], samples, settings)
@@ -208,9 +208,7 @@ def _of_model(
     if model.chart is not None:
         # One chart serves the objects that differ along its axis only: the others are those of the first.
         along = {n: v if n == model.chart.name else np.full_like(v, v[0]) for n, v in values.items()}
-        true = [
-            _stepped(model, motion, along, angle, TRUTH) for motion in motions
-        ]  # no model with a chart is sensitive
+        charted = [_stepped(model, motion, along, angle, TRUTH) for motion in motions]
         looked = partial(_looked_up, model, angle=angle, shelf=Shelf())
         runs = [_timed(partial(looked, motion, along)) for motion in motions]
         rows.append(_setting(model, "chart", f"chart to {CHARTED:g}", "chart", motions, runs, charted))

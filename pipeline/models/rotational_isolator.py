@@ -40,7 +40,9 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     w = 2.0 * np.pi * parameters["frequency"]
     share = 1.0 / parameters["inertia_ratio"]
     oscillator_history(np.ascontiguousarray(motion.x), motion.dt, w, parameters["damping"], share, history)
-    return {"rotation": history[:, 0] * share / parameters["cg_height"], "a_x": history[:, 1]}
+    # u_x: of the centre of gravity, whose absolute acceleration a_x is.
+    u = history[:, 0] * share
+    return {"rotation": u / parameters["cg_height"], "u_x": u, "a_x": history[:, 1]}
 
 
 def _applies(scene: Scene) -> str:

@@ -9,26 +9,32 @@ from pipeline.models.friction_isolator import FRICTION_ISOLATOR
 from pipeline.models.horizontal_isolator import HORIZONTAL_ISOLATOR
 from pipeline.models.oscillator import OSCILLATOR
 from pipeline.models.rotational_isolator import ROTATIONAL_ISOLATOR
-from pipeline.quantities import Array, Quantity
+from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Excitation, Model, Motion
 from pipeline.supports.floor import carried
-from pipeline.supports.polygon import resampled
+from pipeline.supports.polygon import conserving, resampled
+from pipeline.supports.refining import refined
 
-__all__ = ["SUPPORTS", "SupportModel", "resampled", "support_named"]
+__all__ = ["SUPPORTS", "SupportModel", "refined", "resampled", "support_named"]
 
 
 @dataclass(frozen=True)
 class SupportModel:
-    """A support: its parameters, how it passes a motion on, and the model of its own demand (None: it has none)."""
+    """A support: its parameters, how it passes a motion on, and the model of its own demand (None: it has none).
+
+    transmit : motion, parameters, and the samples of the output for each of the input
+    refines  : whether it heeds the third; one that does not chooses its own step
+    """
 
     name: str
     needs: tuple[Quantity, ...]
     transmit: Callable[[Motion, Mapping[str, float], int], Motion]
     model: Model | None = None
+    refines: bool = True
 
 
-AFTER = 60.0
-"""Seconds after the record for which the free motion of a support is passed on, at most."""
+AFTER = (4.0, 16.0, 60.0)
+"""Seconds after the record for which the free motion of a support is passed on: the first by which it is quiet."""
 
 QUIET = 1e-6
 """Share of the largest acceleration passed on below which the free motion is left out."""
@@ -36,30 +42,41 @@ QUIET = 1e-6
 
 def _passed_on(motion: Motion, model: Model, parameters: Mapping[str, float], two: bool, refine: int) -> Motion:
     record = resampled(motion, refine)
-    x, y = _felt(model, record, parameters, two)
-    size = np.hypot(x, y)
-    loud = np.flatnonzero(size[record.samples :] > QUIET * float(size.max()))
-    end = record.samples + (int(loud[-1]) + 2 if loud.size else 0)
-    z = np.concatenate([record.acceleration[2], np.zeros(x.size - record.samples)])
-    step = f"passed on by {_described(model, parameters)}"
-    rows = np.vstack([x, y, z])[:, :end]
-    return Motion(record.dt, rows, motion.name, (*motion.steps, step), motion.source)
+    for after in AFTER:
+        felt, moved = _histories(model, record, parameters, two, after)
+        size = np.hypot(*felt)
+        loud = np.flatnonzero(size[record.samples :] > QUIET * float(size.max()))
+        # It comes to rest within the step after the last loud sample; what is passed on ends one sample of rest later.
+        end = record.samples + (int(loud[-1]) + 3 if loud.size else 0)
+        if end < size.size:
+            break
+    end = min(end, size.size - 1)
+    z = np.zeros(end)
+    z[: record.samples] = record.acceleration[2]
+    rows = conserving(record.acceleration[:2], felt[:, :end], moved[:, : end + 1], G + z, record.dt)
+    each = "one sample" if refine == 1 else f"{refine} samples"
+    step = f"passed on by {_described(model, parameters)}, {each} for each of its input"
+    return Motion(record.dt, np.vstack([rows, z]), motion.name, (*motion.steps, step), motion.source)
 
 
-def _felt(model: Model, motion: Motion, parameters: Mapping[str, float], two: bool) -> tuple[Array, Array]:
+def _histories(
+    model: Model, motion: Motion, parameters: Mapping[str, float], two: bool, after: float
+) -> tuple[Array, Array]:
+    # Absolute acceleration and relative displacement along x and y, (2, m) each.
     if model.trace is None:
         raise ValueError(f"{model.name} passes no motion on")
     x, y, z = motion.acceleration
     if two:
-        columns = model.trace(Excitation(motion.dt, x, y, z, AFTER), parameters)
-        return columns["a_x"], columns["a_y"]
-    ways = [model.trace(Excitation(motion.dt, way, None, z, AFTER), parameters)["a_x"] for way in (x, y)]
-    return ways[0], ways[1]
+        columns = model.trace(Excitation(motion.dt, x, y, z, after), parameters)
+        return np.vstack([columns["a_x"], columns["a_y"]]), np.vstack([columns["u_x"], columns["u_y"]])
+    each = [model.trace(Excitation(motion.dt, way, None, z, after), parameters) for way in (x, y)]
+    return np.vstack([columns["a_x"] for columns in each]), np.vstack([columns["u_x"] for columns in each])
 
 
 def _described(model: Model, parameters: Mapping[str, float]) -> str:
     known = ", ".join(f"{k} {v:.4g}" for k, v in parameters.items() if not np.isnan(v))
-    return f"a {model.title.lower()} ({known})"
+    title = model.title.lower()
+    return f"{'an' if title[0] in 'aeiou' else 'a'} {title} ({known})"
 
 
 def _in_plane(name: str, model: Model) -> SupportModel:
@@ -95,7 +112,7 @@ SUPPORTS: tuple[SupportModel, ...] = (
     _in_plane("horizontal_isolator", HORIZONTAL_ISOLATOR),
     _each_way("rotational_isolator", ROTATIONAL_ISOLATOR),
     _each_way("plinth", OSCILLATOR),
-    SupportModel("floor", FLOOR, _floor),
+    SupportModel("floor", FLOOR, _floor, refines=False),
 )
 
 
