@@ -5,13 +5,13 @@ u'' + 2 zeta w u' + w^2 u = f0 + f1 t  (Nigam and Jennings 1969 for the piecewis
 
 import math
 
-from pipeline.kernels import kernel
+from pipeline.kernels import bare
 from pipeline.kernels.roots import trial
 
 NEGLIGIBLE = 1e-17
 
 
-@kernel
+@bare
 def transition(w: float, zeta: float, t: float) -> tuple[float, float, float, float]:
     """Return the responses after t to a unit displacement, velocity, step and ramp: (g, h, h1, h2).
 
@@ -52,14 +52,14 @@ def transition(w: float, zeta: float, t: float) -> tuple[float, float, float, fl
     return g, h, h1, h2
 
 
-@kernel
+@bare
 def advance(u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: float) -> tuple[float, float]:
     """Return displacement and velocity after t."""
     g, h, h1, h2 = transition(w, zeta, t)
     return u * g + v * h + f0 * h1 + f1 * h2, -u * w * w * h + v * (g - 2.0 * zeta * w * h) + f0 * h + f1 * h1
 
 
-@kernel
+@bare
 def slope(
     u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: float, c1: float, cu: float, cv: float
 ) -> float:
@@ -68,7 +68,7 @@ def slope(
     return c1 + cu * vn + cv * (f0 + f1 * t - 2.0 * zeta * w * vn - w * w * un)
 
 
-@kernel
+@bare
 def _stationary(
     u: float,
     v: float,
@@ -110,7 +110,7 @@ def _stationary(
     return abs(top)
 
 
-@kernel
+@bare
 def peak_inside(
     u: float,
     v: float,

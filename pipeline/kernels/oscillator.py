@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import inlined, kernel
+from pipeline.kernels import bare, inlined, kernel
 from pipeline.kernels.lanes import LANES, lanes, same_steps
 from pipeline.kernels.linear import peak_inside, transition
 from pipeline.quantities import Array
@@ -51,7 +51,7 @@ def _next(
     return uu * u + uv * v + (u0 * a0 + u1 * a1), vu * u + vv * v + (v0 * a0 + v1 * a1)
 
 
-@kernel
+@bare
 def _coefficients(w: float, zeta: float, share: float, step: float, k: int, factor: Array) -> None:
     g, h, h1, h2 = transition(w, zeta, step)
     b, c = w * w, 2.0 * zeta * w
@@ -73,7 +73,7 @@ def _between(
     return second, third, c * third + b * second
 
 
-@kernel
+@bare
 def _lay_out(base: Array, dt: float, pieces: int, start: int, count: int, a: Array) -> None:
     # The excitation at count + 1 steps from start on.
     step = dt / pieces
@@ -85,7 +85,7 @@ def _lay_out(base: Array, dt: float, pieces: int, start: int, count: int, a: Arr
             i, j = i + 1, 0
 
 
-@kernel
+@bare
 def _walk(a: Array, s: int, end: int, state: Array, factor: Array) -> None:
     # From step s to step end, four at a time, so that a state stays in its register.
     while s < end:
@@ -170,7 +170,7 @@ def _shake(
             state[MAX_Y, k] = max(state[MAX_Y, k], top_y)
 
 
-@kernel
+@bare
 def _cubic_top(p0: float, d0: float, p1: float, d1: float, h: float) -> float:
     # The largest |p| on the cubic with these ends and rates there.
     first, last = h * d0 / 3.0, h * d1 / 3.0
@@ -188,7 +188,7 @@ def _cubic_top(p0: float, d0: float, p1: float, d1: float, h: float) -> float:
     return top
 
 
-@kernel
+@bare
 def _search(
     base: Array,
     dt: float,
@@ -237,7 +237,7 @@ def _search(
     return max_u, max_y
 
 
-@kernel
+@bare
 def _coast(
     u: float, v: float, w: float, zeta: float, share: float, tail: float, max_u: float, max_y: float
 ) -> tuple[float, float]:
@@ -331,7 +331,7 @@ def oscillator_batch(
         begin = end
 
 
-@kernel
+@bare
 def oscillator_history(base: Array, dt: float, w: float, zeta: float, share: float, history: Array) -> None:
     """Fill history (m, 2) with u [m] and y = a + share u'' [m/s2] of one oscillator at the samples.
 

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import inlined, kernel
+from pipeline.kernels import bare, inlined, kernel
 from pipeline.kernels.flags import CUT
 from pipeline.kernels.lanes import LANES, lanes, same_steps
 from pipeline.kernels.roots import narrowed, trial
@@ -72,7 +72,7 @@ def _step(
     )
 
 
-@kernel
+@bare
 def _turn(
     theta: float,
     s: float,
@@ -114,7 +114,7 @@ def _turn(
     return angle
 
 
-@kernel
+@bare
 def _shake(x: Array, z: Array, dt: float, pieces: int, block: Array, history: Array) -> None:
     # Integrate a block of LANES pendulums through the record.  history: theta of the first lane.
     n = x.shape[0]
@@ -162,7 +162,7 @@ def _shake(x: Array, z: Array, dt: float, pieces: int, block: Array, history: Ar
         history[n - 1, 0] = block[THETA, 0]
 
 
-@kernel
+@bare
 def _coast(
     theta: float, rate: float, most: float, length: float, zeta: float, tail: float, refine: int
 ) -> tuple[float, float]:
@@ -192,7 +192,7 @@ def _coast(
     return most, float(CUT) if tail < 0.0 else 0.0
 
 
-@kernel
+@bare
 def substeps(length: float, zeta: float, peak: float, dt: float) -> int:
     """Return how many steps a sample interval takes; peak: the largest acceleration of the pivot [m/s2]."""
     fastest = math.sqrt((G + peak) / length) * (1.0 + 2.0 * zeta)

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import inlined, kernel
+from pipeline.kernels import bare, inlined, kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
 from pipeline.kernels.quiet import next_above
 from pipeline.kernels.roots import narrowed, trial
@@ -76,7 +76,7 @@ def _step(
     )
 
 
-@kernel
+@bare
 def _locate(
     phi: float,
     rate: float,
@@ -113,7 +113,7 @@ def _locate(
     return tau
 
 
-@kernel
+@bare
 def _lift_off(
     a0: float, a1: float, n0: float, n1: float, now: float, span: float, tan1: float, tan2: float
 ) -> tuple[float, float]:
@@ -134,7 +134,7 @@ def _lift_off(
     return time, edge
 
 
-@kernel
+@bare
 def _stretch(
     state: Array,
     a0: float,
@@ -218,7 +218,7 @@ def _stretch(
     state[0], state[1], state[2], state[3], state[4] = s, phi, rate, sn, cs
 
 
-@kernel
+@bare
 def _peak(
     phi: float,
     rate: float,
@@ -241,8 +241,8 @@ def _peak(
         out[0] = max(out[0], top / alpha)
 
 
-@kernel
-def rocking_one(
+@bare
+def _follow(
     x: Array,
     z: Array,
     ratio: Array,
@@ -253,24 +253,12 @@ def rocking_one(
     initial: float,
     tail: float,
     refine: int,
+    state: Array,
     out: Array,
     history: Array,
 ) -> None:
-    """Integrate one body.
-
-    x, z           : (n,) m/s2;  peak: the largest |x|
-    ratio, maxima  : from kernels.quiet, of this very motion
-    body           : alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]; 1 is the edge towards +axis
-    initial        : rad, released from rest
-    out            : (6,) receives max ratio, overturned (0, 1), time of overturning, time of uplift [s] (-1: never),
-                     impacts, flags
-    history        : (m, 1) receives theta at the samples, as long as it is
-    """
+    # The body through the record and until it rests or lies.  state: as in _stretch.
     n = x.shape[0]
-    out[:] = 0.0
-    out[2] = -1.0
-    out[3] = -1.0
-    state = np.zeros(5)
     if initial != 0.0:
         state[0], state[1] = (1.0, initial) if initial > 0.0 else (-1.0, -initial)
         lean = (body[0] if initial > 0.0 else body[1]) - state[1]
@@ -330,6 +318,37 @@ def rocking_one(
         t += now
     if state[0] != 0.0 and tail < 0.0:
         out[5] = float(int(out[5]) | CUT)
+
+
+@kernel
+def rocking_one(
+    x: Array,
+    z: Array,
+    ratio: Array,
+    maxima: Array,
+    dt: float,
+    peak: float,
+    body: Array,
+    initial: float,
+    tail: float,
+    refine: int,
+    out: Array,
+    history: Array,
+) -> None:
+    """Integrate one body.
+
+    x, z           : (n,) m/s2;  peak: the largest |x|
+    ratio, maxima  : from kernels.quiet, of this very motion
+    body           : alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]; 1 is the edge towards +axis
+    initial        : rad, released from rest
+    out            : (6,) receives max ratio, overturned (0, 1), time of overturning, time of uplift [s] (-1: never),
+                     impacts, flags
+    history        : (m, 1) receives theta at the samples, as long as it is
+    """
+    out[:] = 0.0
+    out[2] = -1.0
+    out[3] = -1.0
+    _follow(x, z, ratio, maxima, dt, peak, body, initial, tail, refine, np.zeros(5), out, history)
 
 
 @kernel
