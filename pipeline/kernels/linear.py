@@ -5,10 +5,15 @@ u'' + 2 zeta w u' + w^2 u = f0 + f1 t  (Nigam and Jennings 1969 for the piecewis
 
 import math
 
+import numpy as np
+
 from pipeline.kernels import bare
 from pipeline.kernels.roots import trial
 
 NEGLIGIBLE = 1e-17
+
+RECIPROCALS = np.array([0.0, *(1.0 / k for k in range(1, 46))])
+"""1 / k: a division costs as much as half a term."""
 
 
 @bare
@@ -26,12 +31,13 @@ def transition(w: float, zeta: float, t: float) -> tuple[float, float, float, fl
         h, h1, h2 = term, term * t / 2.0, term * t * t / 6.0
         k = 0
         while True:
-            following = -(a * (k + 1) * term + b * previous) / ((k + 2.0) * (k + 1.0))
+            following = -(a * term + b * previous * RECIPROCALS[k + 1]) * RECIPROCALS[k + 2]
             previous, term = term, following
             k += 1
             h += term
-            h1 += term * t / (k + 2.0)
-            h2 += term * t * t / ((k + 2.0) * (k + 3.0))
+            integral = term * t * RECIPROCALS[k + 2]
+            h1 += integral
+            h2 += integral * t * RECIPROCALS[k + 3]
             if k > 40 or abs(term) + abs(previous) < NEGLIGIBLE * t:
                 break
         return 1.0 - w * w * h1, h, h1, h2

@@ -15,8 +15,11 @@ from pipeline.kernels.lanes import LANES, lanes, same_steps
 from pipeline.kernels.linear import peak_inside, transition
 from pipeline.quantities import Array
 
-PHASE = 0.9
-"""Largest w (1 + zeta) times the step: the bound of what lies between two steps needs it below 1."""
+PHASE = 1.5
+"""Largest w (1 + 2 zeta) times the step.
+
+The bound of what lies between two steps divides by 1 - zeta w step - (w step)^2 / 8, which is then at least 1/4.
+"""
 
 CHUNK = 128
 """Steps of which the excitation is laid out at a time; the fewest steps in a stretch."""
@@ -287,7 +290,7 @@ def oscillator_batch(
         return
     pieces = np.empty(m, dtype=np.int64)
     for k in range(m):
-        pieces[k] = max(1, math.ceil(w[k] * dt * (1.0 + zeta[k]) / PHASE))
+        pieces[k] = max(1, math.ceil(w[k] * dt * (1.0 + 2.0 * zeta[k]) / PHASE))
     most, steepest = abs(base[0]), 0.0
     for i in range(base.shape[0] - 1):
         most, steepest = max(most, abs(base[i + 1])), max(steepest, abs(base[i + 1] - base[i]) / dt)
