@@ -13,6 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import numba
+import numpy as np
+
+FIRST = np.int64(0)
+"""An index to begin with: for a literal number or truth value as an argument numba compiles the callee once more."""
 
 
 def kernel_version() -> str:
@@ -66,6 +70,9 @@ kernel: Callable[..., Any] = _compiled()
 # numba's own libraries that took up to half of a kernel's time.
 bare: Callable[..., Any] = _compiled(_nrt=False)
 """Decorator of a compiled function that makes no array: it counts no references to those that it is given."""
+
+inner: Callable[..., Any] = _compiled(_nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""Decorator of such a function that only kernels call: the entries for others took a quarter of the compilation."""
 
 inlined: Callable[..., Any] = _compiled(inline="always")
 """Decorator of a function that must melt into the loop around it for the loop to be vectorised."""

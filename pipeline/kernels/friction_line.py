@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import bare, kernel
+from pipeline.kernels import FIRST, inner, kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
 from pipeline.kernels.line_phase import (
     MU_K,
@@ -44,7 +44,7 @@ FAINT = 1e-12
 """Share of the largest displacement that is no longer followed."""
 
 
-@bare
+@inner
 def _first_beyond(q0: float, q1: float, l0: float, l1: float, span: float) -> float:
     # First time in [0, span] at which |q0 + q1 t| > l0 + l1 t, given that it is not so at 0; -1 if never.
     best = -1.0
@@ -57,7 +57,7 @@ def _first_beyond(q0: float, q1: float, l0: float, l1: float, span: float) -> fl
     return best
 
 
-@bare
+@inner
 def _piece(
     u: float,
     v: float,
@@ -124,7 +124,7 @@ def _piece(
     return u, v, s
 
 
-@bare
+@inner
 def _split(
     u: float,
     v: float,
@@ -183,7 +183,7 @@ def _split(
     return u, v, s
 
 
-@bare
+@inner
 def _stays(x: Array, z: Array, spring: float, mu_s: float, begin: int, end: int, out: Array) -> int:
     # The sample up to which a body at rest at begin stays so, at most end.  What holds it is convex between samples.
     top, i = 0.0, begin
@@ -194,7 +194,7 @@ def _stays(x: Array, z: Array, spring: float, mu_s: float, begin: int, end: int,
     return i - 1
 
 
-@bare
+@inner
 def _glides(
     x: Array,
     z: Array,
@@ -237,7 +237,7 @@ def _glides(
     return i, u, v
 
 
-@bare
+@inner
 def _felt(
     u: float, v: float, s: float, a: float, weight: float, w: float, zeta: float, mu_s: float, mu_k: float
 ) -> float:
@@ -250,7 +250,7 @@ def _felt(
     return -(2.0 * zeta * w * v + w * w * u + s * mu_k * weight)
 
 
-@bare
+@inner
 def _follow(
     x: Array,
     z: Array,
@@ -273,7 +273,7 @@ def _follow(
     body = make_body(w, zeta, mu_s, mu_k, dt / pieces)
     u, v, s = 0.0, 0.0, 0.0
     recording = history.shape[0] > 0
-    i = 0
+    i = FIRST
     while i < n - 1:
         if s == 0.0 and w == 0.0 and not recording:
             ahead = next_above(ratio, maxima, i, mu_s)
@@ -367,7 +367,7 @@ def friction_line_one(
     )
 
 
-@bare
+@inner
 def _coast(u: float, v: float, s: float, body: Body, series: Array, tail: float, out: Array) -> float:
     # After the record: no excitation, full weight, until the body rests for good, the tail ends, or the cap.
     if tail == 0.0:

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import bare, kernel
+from pipeline.kernels import FIRST, inner, kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
 from pipeline.kernels.friction_line import CAP, FAINT
 from pipeline.kernels.plane_peaks import felt, inner_felt, inner_radius, note
@@ -38,7 +38,7 @@ SLOW = 1e-2
 """Scale of speeds before any motion, as a share of the largest push over a sample interval."""
 
 
-@bare
+@inner
 def _onset(qx: float, qy: float, q1x: float, q1y: float, l0: float, l1: float, span: float) -> float:
     # First time in [0, span] at which |q| > l, given |q| <= l at 0: |q| - l is convex, so there is at most one.
     end = math.hypot(qx + q1x * span, qy + q1y * span) - (l0 + l1 * span)
@@ -54,7 +54,7 @@ def _onset(qx: float, qy: float, q1x: float, q1y: float, l0: float, l1: float, s
     return min(span, max(0.0, (root - half) / a)) if a > 0.0 else 0.0
 
 
-@bare
+@inner
 def _piece(
     state: Array,
     load: Array,
@@ -198,12 +198,12 @@ def _piece(
     return slipping, guess
 
 
-@bare
+@inner
 def _weigh(load: Array, mu_s: float, mu_k: float, n0: float, n1: float) -> None:
     load[4], load[5], load[6], load[7] = mu_k * n0, mu_k * n1, mu_s * n0, mu_s * n1
 
 
-@bare
+@inner
 def _stretch(
     state: Array,
     load: Array,
@@ -243,7 +243,7 @@ def _stretch(
     return _piece(state, load, span - cut, slipping, guess, b, c, scale, control, out)
 
 
-@bare
+@inner
 def _follow(
     x: Array,
     y: Array,
@@ -271,9 +271,9 @@ def _follow(
     b, c = w * w, 2.0 * zeta * w
     scale = SLOW * peak * dt
     control = (rtol, SHARE * rtol**0.125, 2.0 * rtol**0.25, 1e-2 * math.sqrt(rtol), longest)
-    slipping, guess = False, dt
+    slipping, guess = state[7] > 0.0, dt
     recording = history.shape[0] > 0
-    i = 0
+    i = FIRST
     while i < n - 1:
         if not slipping and w == 0.0 and not recording:
             ahead = next_above(ratio, maxima, i, mu_s)
@@ -379,7 +379,7 @@ def friction_plane_one(
     )
 
 
-@bare
+@inner
 def _coast(
     state: Array,
     load: Array,

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import bare
+from pipeline.kernels import inlined, inner
 from pipeline.kernels.linear import peak_inside, transition
 from pipeline.quantities import Array
 
@@ -20,12 +20,15 @@ TERMS = 24
 FACTORIALS = np.array([1.0 / math.factorial(k) for k in range(TERMS + 1)])
 """Reciprocals: a division costs as much as three terms."""
 
+# What _zero looks for.
+VELOCITY, ACCELERATION = np.int64(1), np.int64(2)
+
 # What a body holds; UU to U1: the new u by u, v, force and its rate after a whole step; SIZE: terms of a series.
 W, ZETA, MU_S, MU_K, STEP, B, C, UU, UV, U0, U1, EASE, SIZE = range(13)
 Body = tuple[float, float, float, float, float, float, float, float, float, float, float, float, float]
 
 
-@bare
+@inner
 def make_body(w: float, zeta: float, mu_s: float, mu_k: float, step: float) -> Body:
     """Return what a body is and what a whole step [s], its longest phase, does to it: the rows named above."""
     b, c = w * w, 2.0 * zeta * w
@@ -40,7 +43,7 @@ def make_body(w: float, zeta: float, mu_s: float, mu_k: float, step: float) -> B
     return w, zeta, mu_s, mu_k, step, b, c, uu, uv, u0, u1, ease, float(size)
 
 
-@bare
+@inlined
 def expand(u: float, v: float, f0: float, f1: float, body: Body, series: Array) -> None:
     """Fill series (2, TERMS) with the Taylor series of velocity (row 0) and displacement (row 1) of a phase.
 
@@ -57,7 +60,7 @@ def expand(u: float, v: float, f0: float, f1: float, body: Body, series: Array) 
         before, now = now, -c * now - b * before
 
 
-@bare
+@inlined
 def after(series: Array, size: float, t: float) -> tuple[float, float]:
     """Return the velocity [m/s] after t seconds of a phase, and the displacement [m] during them."""
     v, moved = 0.0, 0.0
@@ -67,7 +70,7 @@ def after(series: Array, size: float, t: float) -> tuple[float, float]:
     return v, moved * t
 
 
-@bare
+@inner
 def _zero(
     u: float,
     f0: float,
@@ -80,7 +83,7 @@ def _zero(
     at_high: float,
     guess: float,
 ) -> tuple[float, float]:
-    # Where the velocity (order 1) or the acceleration (order 2) vanishes, its sign being that of at_high only at high,
+    # Where the velocity or the acceleration, as the order says, vanishes, its sign being that of at_high only at high,
     # and the displacement or the velocity there: Halley inside the bracket.
     b, c = body[B], body[C]
     near = 1e-5 * high
@@ -90,7 +93,7 @@ def _zero(
         v, moved = after(series, body[SIZE], t)
         a = f0 + f1 * t - c * v - b * (u + moved)
         jerk = f1 - c * a - b * v
-        if order == 1:
+        if order == VELOCITY:
             value, rate, bend, what = v, a, jerk, u + moved
         else:
             value, rate, bend, what = a, jerk, -c * jerk - b * a, v
@@ -111,7 +114,7 @@ def _zero(
     return t, what
 
 
-@bare
+@inner
 def first_stop(
     u: float, v: float, s: float, f0: float, f1: float, body: Body, series: Array, span: float, un: float, vn: float
 ) -> tuple[float, float]:
@@ -136,16 +139,16 @@ def first_stop(
         else:
             return 0.0, u
     elif s * vn > 0.0:
-        high, speed = _zero(u, f0, f1, body, series, 2, 0.0, span, s, -0.5 * first / half)
+        high, speed = _zero(u, f0, f1, body, series, ACCELERATION, 0.0, span, s, -0.5 * first / half)
         if s * speed > 0.0:
             return -1.0, 0.0
     # Where it would stop if its acceleration changed linearly, as a free body's does.
     inner = math.sqrt(max(0.0, first * first - 4.0 * s * v * half))
     guess = 2.0 * s * v / (inner - first) if first < 0.0 else -0.5 * (first + inner) / half
-    return _zero(u, f0, f1, body, series, 1, low, high, -s, guess)
+    return _zero(u, f0, f1, body, series, VELOCITY, low, high, -s, guess)
 
 
-@bare
+@inlined
 def passed_on(
     u: float,
     v: float,

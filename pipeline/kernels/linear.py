@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import bare
+from pipeline.kernels import bare, inner
 from pipeline.kernels.roots import trial
 
 NEGLIGIBLE = 1e-17
@@ -65,7 +65,7 @@ def advance(u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: 
     return u * g + v * h + f0 * h1 + f1 * h2, -u * w * w * h + v * (g - 2.0 * zeta * w * h) + f0 * h + f1 * h1
 
 
-@bare
+@inner
 def slope(
     u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: float, c1: float, cu: float, cv: float
 ) -> float:
@@ -74,7 +74,7 @@ def slope(
     return c1 + cu * vn + cv * (f0 + f1 * t - 2.0 * zeta * w * vn - w * w * un)
 
 
-@bare
+@inner
 def _stationary(
     u: float,
     v: float,

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import bare, inlined, kernel
+from pipeline.kernels import FIRST, bare, inlined, inner, kernel
 from pipeline.kernels.lanes import LANES, lanes, same_steps
 from pipeline.kernels.linear import peak_inside, transition
 from pipeline.quantities import Array
@@ -54,7 +54,7 @@ def _next(
     return uu * u + uv * v + (u0 * a0 + u1 * a1), vu * u + vv * v + (v0 * a0 + v1 * a1)
 
 
-@bare
+@inner
 def _coefficients(w: float, zeta: float, share: float, step: float, k: int, factor: Array) -> None:
     g, h, h1, h2 = transition(w, zeta, step)
     b, c = w * w, 2.0 * zeta * w
@@ -76,7 +76,7 @@ def _between(
     return second, third, c * third + b * second
 
 
-@bare
+@inner
 def _lay_out(base: Array, dt: float, pieces: int, start: int, count: int, a: Array) -> None:
     # The excitation at count + 1 steps from start on.
     step = dt / pieces
@@ -88,7 +88,7 @@ def _lay_out(base: Array, dt: float, pieces: int, start: int, count: int, a: Arr
             i, j = i + 1, 0
 
 
-@bare
+@inner
 def _walk(a: Array, s: int, end: int, state: Array, factor: Array) -> None:
     # From step s to step end, four at a time, so that a state stays in its register.
     while s < end:
@@ -148,7 +148,7 @@ def _shake(
     a = np.empty(CHUNK + 1)
     for part in range(stretch.shape[0]):
         s, end = part * length, min(total, (part + 1) * length)
-        _lay_out(base, dt, pieces, s, 0, a)
+        _lay_out(base, dt, pieces, s, FIRST, a)
         here = a[0]
         for k in range(LANES):
             u, v = state[U, k], state[V, k]
@@ -161,7 +161,7 @@ def _shake(
             for first in range(s, end, CHUNK):
                 count = min(CHUNK, end - first)
                 _lay_out(base, dt, pieces, first, count, a)
-                _walk(a, 0, count, state, factor)
+                _walk(a, FIRST, count, state, factor)
         for k in range(LANES):
             top_u, top_y = state[TOP_U, k], state[TOP_Y, k]
             b, c, ease = factor[B, k], factor[C, k], factor[EASE, k]
@@ -173,7 +173,7 @@ def _shake(
             state[MAX_Y, k] = max(state[MAX_Y, k], top_y)
 
 
-@bare
+@inner
 def _cubic_top(p0: float, d0: float, p1: float, d1: float, h: float) -> float:
     # The largest |p| on the cubic with these ends and rates there.
     first, last = h * d0 / 3.0, h * d1 / 3.0
@@ -191,7 +191,7 @@ def _cubic_top(p0: float, d0: float, p1: float, d1: float, h: float) -> float:
     return top
 
 
-@bare
+@inner
 def _search(
     base: Array,
     dt: float,
@@ -240,7 +240,7 @@ def _search(
     return max_u, max_y
 
 
-@bare
+@inner
 def _coast(
     u: float, v: float, w: float, zeta: float, share: float, tail: float, max_u: float, max_y: float
 ) -> tuple[float, float]:
@@ -296,7 +296,7 @@ def oscillator_batch(
         most, steepest = max(most, abs(base[i + 1])), max(steepest, abs(base[i + 1] - base[i]) / dt)
     order = np.argsort(pieces, kind="mergesort")
     factor, state = lanes(14), lanes(7)
-    begin = 0
+    begin = FIRST
     while begin < m:
         end = same_steps(pieces, order, begin)
         parts = pieces[order[begin]]

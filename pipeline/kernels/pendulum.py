@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import bare, inlined, kernel
+from pipeline.kernels import FIRST, bare, inlined, inner, kernel
 from pipeline.kernels.flags import CUT
 from pipeline.kernels.lanes import LANES, lanes, same_steps
 from pipeline.kernels.roots import narrowed, trial
@@ -72,7 +72,7 @@ def _step(
     )
 
 
-@bare
+@inner
 def _turn(
     theta: float,
     s: float,
@@ -114,7 +114,7 @@ def _turn(
     return angle
 
 
-@bare
+@inner
 def _shake(x: Array, z: Array, dt: float, pieces: int, block: Array, history: Array) -> None:
     # Integrate a block of LANES pendulums through the record.  history: theta of the first lane.
     n = x.shape[0]
@@ -162,7 +162,7 @@ def _shake(x: Array, z: Array, dt: float, pieces: int, block: Array, history: Ar
         history[n - 1, 0] = block[THETA, 0]
 
 
-@bare
+@inner
 def _coast(
     theta: float, rate: float, most: float, length: float, zeta: float, tail: float, refine: int
 ) -> tuple[float, float]:
@@ -228,7 +228,7 @@ def pendulum_batch(
         pieces[k] = substeps(length[k], zeta[k], peak, dt) * refine
     order = np.argsort(pieces, kind="mergesort")
     block = lanes(12)
-    begin = 0
+    begin = FIRST
     while begin < m:
         end = same_steps(pieces, order, begin)
         block[:] = 0.0

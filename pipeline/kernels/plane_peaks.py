@@ -2,7 +2,7 @@
 
 import math
 
-from pipeline.kernels import bare
+from pipeline.kernels import inner
 from pipeline.kernels.plane_step import plane_step
 from pipeline.quantities import Array
 
@@ -10,7 +10,7 @@ TRIALS = 12
 """Shorter steps taken to find a stationary point: at one, the value itself is second order in the time's error."""
 
 
-@bare
+@inner
 def felt(ux: float, uy: float, vx: float, vy: float, ex: float, ey: float, grip: float, b: float, c: float) -> float:
     """Return the absolute acceleration of a slipping body [m/s2]: what spring, dashpot and friction push it with."""
     if b == 0.0:
@@ -19,7 +19,7 @@ def felt(ux: float, uy: float, vx: float, vy: float, ex: float, ey: float, grip:
     return math.sqrt(fx * fx + fy * fy)
 
 
-@bare
+@inner
 def _felt_rate(
     ux: float,
     uy: float,
@@ -47,7 +47,7 @@ def _felt_rate(
     return fx * gx + fy * gy
 
 
-@bare
+@inner
 def inner_radius(
     ux: float,
     uy: float,
@@ -100,7 +100,7 @@ def inner_radius(
     return best
 
 
-@bare
+@inner
 def inner_felt(
     ux: float,
     uy: float,
@@ -159,7 +159,7 @@ def inner_felt(
     return best
 
 
-@bare
+@inner
 def note(
     history: Array,
     i: int,

@@ -6,7 +6,7 @@ from pipeline.models import model_named
 from pipeline.quantities import Array, G
 from pipeline.records import Excitation, Model
 from pipeline.response import REFINE, prepare
-from tests.benchmarks.common import OBJECTS, SEED, least, shaking
+from tests.benchmarks.common import OBJECTS, SEED, least, shaking, strongest
 
 
 def parameters() -> dict[str, tuple[float, dict[str, Array | float]]]:
@@ -51,7 +51,7 @@ def costs() -> None:
     """Print the cost of a single pass of each model, along the record's strongest direction where it needs one."""
     motion = shaking()
     x, y, z = motion.acceleration
-    along = max((x, y), key=lambda a: float(np.abs(a).max()))
+    along = strongest()
     print(f"{motion.samples} samples, {OBJECTS} objects, one thread, peak {np.abs(along).max() / G:.1f} g")
     print(f"{'model':<38}{'ns per object and sample':>26}{'aim':>8}{'at rest':>9}")
     for title, (aim, given) in parameters().items():
