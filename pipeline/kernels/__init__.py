@@ -4,6 +4,7 @@ Each file holds the scalar integration of one object and the batch driver beside
 for coverage and debuggers.
 """
 
+import functools
 import hashlib
 import os
 import tempfile
@@ -12,6 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import numba
+import numpy as np
+
+FIRST = np.int64(0)
+"""An index to begin with: for a literal number or truth value as an argument numba compiles the callee once more."""
 
 
 def kernel_version() -> str:
@@ -56,8 +61,18 @@ def cache_folder() -> str:
 
 # error_model="numpy": a division by zero gives inf, as in the arrays around it.  No fastmath: the order of operations
 # decides overturning.
-kernel: Callable[..., Any] = numba.njit(cache=True, nogil=True, error_model="numpy")
-"""Decorator of every compiled function."""
+_compiled: Any = functools.partial(numba.njit, cache=True, nogil=True, error_model="numpy")
 
-inlined: Callable[..., Any] = numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")
+kernel: Callable[..., Any] = _compiled()
+"""Decorator of a compiled function that makes arrays, or that Python calls."""
+
+# Arrays are counted references, and a call that hands one on adds and subtracts atomically: without this option of
+# numba's own libraries that took up to half of a kernel's time.
+bare: Callable[..., Any] = _compiled(_nrt=False)
+"""Decorator of a compiled function that makes no array: it counts no references to those that it is given."""
+
+inner: Callable[..., Any] = _compiled(_nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""Decorator of such a function that only kernels call: the entries for others took a quarter of the compilation."""
+
+inlined: Callable[..., Any] = _compiled(inline="always")
 """Decorator of a function that must melt into the loop around it for the loop to be vectorised."""

@@ -10,9 +10,30 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import kernel
+from pipeline.kernels import FIRST, inner, kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
-from pipeline.kernels.linear import peak_inside, transition
+from pipeline.kernels.line_phase import (
+    MU_K,
+    MU_S,
+    PHASE,
+    SIZE,
+    STEP,
+    TERMS,
+    U0,
+    U1,
+    UU,
+    UV,
+    ZETA,
+    B,
+    Body,
+    C,
+    W,
+    after,
+    expand,
+    first_stop,
+    make_body,
+    passed_on,
+)
 from pipeline.kernels.quiet import largest, next_above
 from pipeline.quantities import Array, G
 
@@ -22,18 +43,8 @@ CAP = 200.0
 FAINT = 1e-12
 """Share of the largest displacement that is no longer followed."""
 
-PHASE = 0.5
-"""Largest w (1 + zeta) times a stretch: the acceleration changes sign at most twice in it, and its series converges."""
 
-TERMS = 24
-"""Terms of a phase's Taylor series, at most: 1 / 24! is far below rounding."""
-
-# What _body holds; UU to U1: the new u by u, v, force and its rate after a whole step.
-W, ZETA, MU_S, MU_K, STEP, B, C, UU, UV, U0, U1, EASE = range(12)
-Body = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
-
-
-@kernel
+@inner
 def _first_beyond(q0: float, q1: float, l0: float, l1: float, span: float) -> float:
     # First time in [0, span] at which |q0 + q1 t| > l0 + l1 t, given that it is not so at 0; -1 if never.
     best = -1.0
@@ -46,121 +57,7 @@ def _first_beyond(q0: float, q1: float, l0: float, l1: float, span: float) -> fl
     return best
 
 
-@kernel
-def _body(w: float, zeta: float, mu_s: float, mu_k: float, step: float) -> Body:
-    # What a body is and what a whole step does to it: the constants of every phase.
-    b, c = w * w, 2.0 * zeta * w
-    uu, uv, u0, u1 = transition(w, zeta, step)
-    ease = 1.0 / (1.0 - 0.5 * c * step - 0.125 * b * step * step)
-    return w, zeta, mu_s, mu_k, step, b, c, uu, uv, u0, u1, ease
-
-
-@kernel
-def _expand(u: float, v: float, f0: float, f1: float, b: float, c: float, span: float, series: Array) -> int:
-    # Taylor series of the velocity (row 0) and displacement (row 1) of a phase over a span that is short against the
-    # period, and the number of its terms.
-    second = f0 - c * v - b * u
-    third = f1 - c * second - b * v
-    series[0, 0], series[0, 1], series[0, 2] = v, second, 0.5 * third
-    series[1, 0], series[1, 1], series[1, 2] = v, 0.5 * second, third / 6.0
-    size = abs(v) + abs(second) * span + abs(third) * span * span
-    before, now, power, n = second, 0.5 * third, span * span, 3
-    while n < TERMS:
-        # Each further derivative of u is -c times the one before it less b times the one before that.
-        before, now = now, -(c * now + b * before / (n - 1.0)) / n
-        power *= span
-        series[0, n], series[1, n] = now, now / (n + 1.0)
-        n += 1
-        if (abs(now) + abs(before)) * power <= 1e-17 * size:
-            break
-    return n
-
-
-@kernel
-def _speed(series: Array, n: int, t: float) -> tuple[float, float, float]:
-    # Velocity, acceleration and its rate after t.
-    v, a, half = 0.0, 0.0, 0.0
-    for k in range(n - 1, -1, -1):
-        half = half * t + a
-        a = a * t + v
-        v = v * t + series[0, k]
-    return v, a, 2.0 * half
-
-
-@kernel
-def _moved(series: Array, n: int, t: float) -> float:
-    # Displacement during t.
-    u = 0.0
-    for k in range(n - 1, -1, -1):
-        u = u * t + series[1, k]
-    return u * t
-
-
-@kernel
-def _zero(series: Array, n: int, order: int, low: float, high: float, at_high: float) -> float:
-    # Where the velocity (order 1) or the acceleration (order 2) vanishes, its sign being that of at_high only at high:
-    # Newton inside the bracket.
-    near = 1e-9 * high
-    t = 0.5 * (low + high)
-    for _ in range(100):
-        v, a, jerk = _speed(series, n, t)
-        value, rate = (v, a) if order == 1 else (a, jerk)
-        if value == 0.0:
-            break
-        if (value > 0.0) == (at_high > 0.0):
-            high = t
-        else:
-            low = t
-        then = t - value / rate if rate != 0.0 else low
-        # The next error is the square of the last move, but for a root that is nearly double.
-        if low < then < high and abs(then - t) <= near:
-            return then
-        if high - low <= 4e-16 * high:
-            break
-        t = then if low < then < high else 0.5 * (low + high)
-    return t
-
-
-@kernel
-def _first_stop(
-    u: float,
-    v: float,
-    s: float,
-    f0: float,
-    f1: float,
-    b: float,
-    c: float,
-    span: float,
-    un: float,
-    vn: float,
-    series: Array,
-) -> tuple[float, float]:
-    # First time in (0, span] at which the velocity in direction s vanishes, and the displacement then; -1 if it does
-    # not.  span is short against the period, so that the acceleration changes sign at most twice.  un, vn: after span.
-    moving = s * v > 0.0
-    dips = s * (f0 - c * v - b * u) < 0.0 < s * (f0 + f1 * span - c * vn - b * un)
-    if s * vn > 0.0 and not (moving and dips):
-        return -1.0, 0.0
-    n = _expand(u, v, f0, f1, b, c, span, series)
-    low, high = 0.0, span
-    if not moving:
-        # Starting from rest the velocity has a root at 0 that is no stop: find a time at which it moves in direction s.
-        low = 0.5 * span
-        for _ in range(60):
-            if s * _speed(series, n, low)[0] > 0.0:
-                break
-            low *= 0.5
-        else:
-            return 0.0, u
-    elif s * vn > 0.0:
-        high = _zero(series, n, 2, 0.0, span, s)
-        if s * _speed(series, n, high)[0] > 0.0:
-            return -1.0, 0.0
-    t = _zero(series, n, 1, low, high, -s)
-    return t, u + _moved(series, n, t)
-
-
-@kernel
+@inner
 def _piece(
     u: float,
     v: float,
@@ -177,7 +74,7 @@ def _piece(
     # One stretch on which excitation a0 + a1 t and normal force n0 + n1 t >= 0 are linear.
     # s: 0 at rest, else the direction of slip.  out: [max |u|, path, max transmitted, flags].
     now = 0.0
-    b, c, mu_s, mu_k = body[B], body[C], body[MU_S], body[MU_K]
+    b, mu_s, mu_k = body[B], body[MU_S], body[MU_K]
     for _ in range(1000):
         left = span - now
         if left <= 0.0:
@@ -204,29 +101,17 @@ def _piece(
                     return u, 0.0, s
             v = 0.0
         f0, f1 = -a - s * mu_k * n, -a1 - s * mu_k * n1
-        if left == body[STEP]:
-            uu, uv, u0, u1 = body[UU], body[UV], body[U0], body[U1]
-            un = u * uu + v * uv + f0 * u0 + f1 * u1
-            vn = -u * b * uv + v * (uu - c * uv) + f0 * uv + f1 * u0
-        else:
-            terms = _expand(u, v, f0, f1, b, c, left, series)
-            un, vn = u + _moved(series, terms, left), _speed(series, terms, left)[0]
-        stop, there = _first_stop(u, v, s, f0, f1, b, c, left, un, vn, series)
+        expand(u, v, f0, f1, body, series)
+        vn, moved = after(series, body[SIZE], left)
+        un = u + moved
+        stop, there = first_stop(u, v, s, f0, f1, body, series, left, un, vn)
         t = left
         if stop >= 0.0:
             t, un, vn = stop, there, 0.0
         out[1] += abs(un - u)
         out[0] = max(out[0], abs(un))
-        lift0, lift1 = s * mu_k * n, s * mu_k * n1
         if t > 0.0:
-            near = max(abs(c * v + b * u + lift0), abs(c * vn + b * un + lift0 + lift1 * t))
-            out[2] = max(out[2], near)
-            # Between the ends it rises by at most its curvature times t^2 / 8: see the oscillator's bounds.
-            push, speed = max(abs(f0), abs(f0 + f1 * t)), max(abs(v), abs(vn))
-            second = (push + c * speed + b * max(abs(u), abs(un))) * body[EASE]
-            bend = c * (abs(f1) + c * second + b * (speed + 0.5 * t * second)) + b * second
-            if b > 0.0 and near + 0.125 * t * t * bend > out[2]:
-                out[2] = max(out[2], peak_inside(u, v, f0, f1, body[W], body[ZETA], t, lift0, lift1, b, c))
+            out[2] = passed_on(u, v, un, vn, f0, f1, s * mu_k * n, s * mu_k * n1, t, body, out[2])
         u = un
         now += t
         if stop < 0.0:
@@ -239,7 +124,7 @@ def _piece(
     return u, v, s
 
 
-@kernel
+@inner
 def _split(
     u: float,
     v: float,
@@ -298,7 +183,7 @@ def _split(
     return u, v, s
 
 
-@kernel
+@inner
 def _stays(x: Array, z: Array, spring: float, mu_s: float, begin: int, end: int, out: Array) -> int:
     # The sample up to which a body at rest at begin stays so, at most end.  What holds it is convex between samples.
     top, i = 0.0, begin
@@ -309,7 +194,50 @@ def _stays(x: Array, z: Array, spring: float, mu_s: float, begin: int, end: int,
     return i - 1
 
 
-@kernel
+@inner
+def _glides(
+    x: Array,
+    z: Array,
+    dt: float,
+    pieces: int,
+    u: float,
+    v: float,
+    s: float,
+    body: Body,
+    begin: int,
+    end: int,
+    out: Array,
+) -> tuple[int, float, float]:
+    # The sample up to which a body that slips at begin does nothing else, at most end, with u and v there.
+    b, c, mu_k, step = body[B], body[C], body[MU_K], body[STEP]
+    top, path, felt = out[0], out[1], out[2]
+    i = begin
+    while i < end and G + z[i] >= 0.0 and G + z[i + 1] >= 0.0:
+        a1, lift1 = (x[i + 1] - x[i]) / dt, s * mu_k * ((z[i + 1] - z[i]) / dt)
+        p, q, slips = u, v, s * v > 0.0
+        for j in range(pieces):
+            lift0 = s * mu_k * (G + z[i]) + lift1 * (j * step)
+            f0, f1 = -(x[i] + a1 * (j * step)) - lift0, -a1 - lift1
+            un = p * body[UU] + q * body[UV] + f0 * body[U0] + f1 * body[U1]
+            vn = -p * b * body[UV] + q * (body[UU] - c * body[UV]) + f0 * body[UV] + f1 * body[U0]
+            dips = s * (f0 - c * q - b * p) < 0.0 < s * (f0 + f1 * step - c * vn - b * un)
+            slips = slips and s * vn > 0.0 and not dips
+            if not slips:
+                break
+            felt = passed_on(p, q, un, vn, f0, f1, lift0, lift1, step, body, felt)
+            p, q = un, vn
+        if not slips:
+            break
+        # It slips one way, so that path and displacement grow together.
+        path += abs(p - u)
+        top = max(top, abs(p))
+        u, v = p, q
+        i += 1
+    out[0], out[1], out[2] = top, path, felt
+    return i, u, v
+
+
+@inner
 def _felt(
     u: float, v: float, s: float, a: float, weight: float, w: float, zeta: float, mu_s: float, mu_k: float
 ) -> float:
@@ -322,8 +250,8 @@ def _felt(
     return -(2.0 * zeta * w * v + w * w * u + s * mu_k * weight)
 
 
-@kernel
-def friction_line_one(
+@inner
+def _follow(
     x: Array,
     z: Array,
     ratio: Array,
@@ -335,26 +263,17 @@ def friction_line_one(
     mu_s: float,
     mu_k: float,
     tail: float,
+    series: Array,
     out: Array,
     history: Array,
 ) -> float:
-    """Integrate one body and return its residual displacement |u| [m].
-
-    x, z           : (n,) m/s2
-    ratio, maxima  : from kernels.quiet, of this very motion; pushes: block maxima of |x|
-    out            : (4,) receives max |u| [m], path [m], max transmitted acceleration [m/s2], flags
-    history        : (m, 2) receives u and the absolute acceleration at the samples, as long as it is; rows after the
-                     record follow the body on without excitation
-    """
+    # The body through the record and until it rests.
     n = x.shape[0]
-    out[:] = 0.0
-    if n < 2:
-        return 0.0
     pieces = max(1, math.ceil(w * dt * (1.0 + zeta) / PHASE))
-    body, series = _body(w, zeta, mu_s, mu_k, dt / pieces), np.empty((2, TERMS))
+    body = make_body(w, zeta, mu_s, mu_k, dt / pieces)
     u, v, s = 0.0, 0.0, 0.0
     recording = history.shape[0] > 0
-    i = 0
+    i = FIRST
     while i < n - 1:
         if s == 0.0 and w == 0.0 and not recording:
             ahead = next_above(ratio, maxima, i, mu_s)
@@ -367,8 +286,13 @@ def friction_line_one(
         if i < history.shape[0]:
             history[i, 0] = u
             history[i, 1] = _felt(u, v, s, x[i], max(0.0, G + z[i]), w, zeta, mu_s, mu_k)
-        if s == 0.0:
+        if s == 0.0 and (w > 0.0 or recording):
             still = _stays(x, z, w * w * u, mu_s, i, i + 1 if recording else n - 1, out)
+            if still > i:
+                i = still
+                continue
+        elif s != 0.0:
+            still, u, v = _glides(x, z, dt, pieces, u, v, s, body, i, i + 1 if recording else n - 1, out)
             if still > i:
                 i = still
                 continue
@@ -399,11 +323,56 @@ def friction_line_one(
 
 
 @kernel
+def friction_line_one(
+    x: Array,
+    z: Array,
+    ratio: Array,
+    maxima: Array,
+    pushes: Array,
+    dt: float,
+    w: float,
+    zeta: float,
+    mu_s: float,
+    mu_k: float,
+    tail: float,
+    out: Array,
+    history: Array,
+) -> float:
+    """Integrate one body and return its residual displacement |u| [m].
+
+    x, z           : (n,) m/s2
+    ratio, maxima  : from kernels.quiet, of this very motion; pushes: block maxima of |x|
+    out            : (4,) receives max |u| [m], path [m], max transmitted acceleration [m/s2], flags
+    history        : (m, 2) receives u and the absolute acceleration at the samples, as long as it is; rows after the
+                     record follow the body on without excitation
+    """
+    out[:] = 0.0
+    if x.shape[0] < 2:
+        return 0.0
+    return _follow(
+        x,
+        z,
+        ratio,
+        maxima,
+        pushes,
+        dt,
+        w,
+        zeta,
+        mu_s,
+        mu_k,
+        tail,
+        np.empty((2, TERMS)),
+        out,
+        history,
+    )
+
+
+@inner
 def _coast(u: float, v: float, s: float, body: Body, series: Array, tail: float, out: Array) -> float:
     # After the record: no excitation, full weight, until the body rests for good, the tail ends, or the cap.
     if tail == 0.0:
         return u
-    w, zeta, mu_k, b, c = body[W], body[ZETA], body[MU_K], body[B], body[C]
+    w, zeta, mu_s, mu_k, b, c = body[W], body[ZETA], body[MU_S], body[MU_K], body[B], body[C]
     if tail < 0.0 and mu_k == 0.0 and (w == 0.0 or zeta == 0.0):
         # Nothing will ever stop it; a spring brings its largest excursion within the first period.
         if v != 0.0 or u != 0.0:
@@ -412,9 +381,10 @@ def _coast(u: float, v: float, s: float, body: Body, series: Array, tail: float,
             return u
         tail = 2.0 * math.pi / w
     stop = tail if tail > 0.0 else CAP
-    t = 0.0
+    t, longest = 0.0, stop if w == 0.0 else PHASE / (w * (1.0 + zeta))
+    body = make_body(w, zeta, mu_s, mu_k, longest)
     while t < stop:
-        span = stop - t if w == 0.0 else min(stop - t, PHASE / (w * (1.0 + zeta)))
+        span = min(stop - t, longest)
         u, v, s = _piece(u, v, s, 0.0, 0.0, G, 0.0, span, body, series, out)
         t += span
         if s == 0.0:

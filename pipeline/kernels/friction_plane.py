@@ -11,10 +11,10 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import kernel
+from pipeline.kernels import FIRST, inner, kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
 from pipeline.kernels.friction_line import CAP, FAINT
-from pipeline.kernels.plane_peaks import felt, inner_felt, inner_radius
+from pipeline.kernels.plane_peaks import felt, inner_felt, inner_radius, note
 from pipeline.kernels.plane_step import plane_step
 from pipeline.kernels.plane_stop import come_to_rest
 from pipeline.kernels.quiet import largest, next_above
@@ -38,7 +38,7 @@ SLOW = 1e-2
 """Scale of speeds before any motion, as a share of the largest push over a sample interval."""
 
 
-@kernel
+@inner
 def _onset(qx: float, qy: float, q1x: float, q1y: float, l0: float, l1: float, span: float) -> float:
     # First time in [0, span] at which |q| > l, given |q| <= l at 0: |q| - l is convex, so there is at most one.
     end = math.hypot(qx + q1x * span, qy + q1y * span) - (l0 + l1 * span)
@@ -54,7 +54,7 @@ def _onset(qx: float, qy: float, q1x: float, q1y: float, l0: float, l1: float, s
     return min(span, max(0.0, (root - half) / a)) if a > 0.0 else 0.0
 
 
-@kernel
+@inner
 def _piece(
     state: Array,
     load: Array,
@@ -198,12 +198,12 @@ def _piece(
     return slipping, guess
 
 
-@kernel
+@inner
 def _weigh(load: Array, mu_s: float, mu_k: float, n0: float, n1: float) -> None:
     load[4], load[5], load[6], load[7] = mu_k * n0, mu_k * n1, mu_s * n0, mu_s * n1
 
 
-@kernel
+@inner
 def _stretch(
     state: Array,
     load: Array,
@@ -243,6 +243,83 @@ def _stretch(
     return _piece(state, load, span - cut, slipping, guess, b, c, scale, control, out)
 
 
+@inner
+def _follow(
+    x: Array,
+    y: Array,
+    z: Array,
+    ratio: Array,
+    maxima: Array,
+    push: Array,
+    pushes: Array,
+    dt: float,
+    peak: float,
+    w: float,
+    zeta: float,
+    mu_s: float,
+    mu_k: float,
+    tail: float,
+    rtol: float,
+    longest: float,
+    state: Array,
+    load: Array,
+    out: Array,
+    history: Array,
+) -> float:
+    # The body through the record and until it rests.
+    n = x.shape[0]
+    b, c = w * w, 2.0 * zeta * w
+    scale = SLOW * peak * dt
+    control = (rtol, SHARE * rtol**0.125, 2.0 * rtol**0.25, 1e-2 * math.sqrt(rtol), longest)
+    slipping, guess = state[7] > 0.0, dt
+    recording = history.shape[0] > 0
+    i = FIRST
+    while i < n - 1:
+        if not slipping and w == 0.0 and not recording:
+            ahead = next_above(ratio, maxima, i, mu_s)
+            if ahead >= n:
+                out[2] = max(out[2], largest(push, pushes, i, n))
+                break
+            if ahead > i + 1:
+                out[2] = max(out[2], largest(push, pushes, i, ahead))
+                i = ahead - 1
+        if i < history.shape[0]:
+            note(history, i, state, x[i], y[i], mu_s, mu_k, max(0.0, G + z[i]), b, c, slipping)
+        slipping, guess = _stretch(
+            state,
+            load,
+            x[i],
+            (x[i + 1] - x[i]) / dt,
+            y[i],
+            (y[i + 1] - y[i]) / dt,
+            z[i],
+            (z[i + 1] - z[i]) / dt,
+            dt,
+            slipping,
+            guess,
+            b,
+            c,
+            mu_s,
+            mu_k,
+            scale,
+            control,
+            out,
+        )
+        scale = max(scale, state[7])
+        i += 1
+    if n - 1 < history.shape[0]:
+        note(history, n - 1, state, x[n - 1], y[n - 1], mu_s, mu_k, max(0.0, G + z[n - 1]), b, c, slipping)
+    if history.shape[0] > n:
+        load[:] = 0.0
+        _weigh(load, mu_s, mu_k, G, 0.0)
+        for k in range(n, history.shape[0]):
+            slipping, guess = _piece(state, load, dt, slipping, guess, b, c, scale, control, out)
+            note(history, k, state, 0.0, 0.0, mu_s, mu_k, G, b, c, slipping)
+    _coast(state, load, slipping, guess, w, zeta, mu_s, mu_k, tail, scale, control, dt, out)
+    out[1] = state[4]
+    return math.hypot(state[0], state[1])
+
+
 @kernel
 def friction_plane_one(
     x: Array,
@@ -274,96 +351,35 @@ def friction_plane_one(
     history        : (m, 4) receives ux, uy and the absolute accelerations at the samples, as long as it is; rows after
                      the record follow the body on without excitation
     """
-    n = x.shape[0]
     out[:] = 0.0
-    if n < 2 or peak == 0.0:
+    if x.shape[0] < 2 or peak == 0.0:
         return 0.0
-    b, c = w * w, 2.0 * zeta * w
-    # Nothing to slip over a denormal friction: it divides grips by it.
-    if mu_k < 1e-300:
-        mu_k = 0.0
-    state, load = np.zeros(8), np.zeros(8)
-    scale = SLOW * peak * dt
-    control = (rtol, SHARE * rtol**0.125, 2.0 * rtol**0.25, 1e-2 * math.sqrt(rtol), longest)
-    slipping, guess = False, dt
-    recording = history.shape[0] > 0
-    i = 0
-    while i < n - 1:
-        if not slipping and w == 0.0 and not recording:
-            ahead = next_above(ratio, maxima, i, mu_s)
-            if ahead >= n:
-                out[2] = max(out[2], largest(push, pushes, i, n))
-                break
-            if ahead > i + 1:
-                out[2] = max(out[2], largest(push, pushes, i, ahead))
-                i = ahead - 1
-        if i < history.shape[0]:
-            _note(history, i, state, x[i], y[i], mu_s, mu_k, max(0.0, G + z[i]), b, c, slipping)
-        slipping, guess = _stretch(
-            state,
-            load,
-            x[i],
-            (x[i + 1] - x[i]) / dt,
-            y[i],
-            (y[i + 1] - y[i]) / dt,
-            z[i],
-            (z[i + 1] - z[i]) / dt,
-            dt,
-            slipping,
-            guess,
-            b,
-            c,
-            mu_s,
-            mu_k,
-            scale,
-            control,
-            out,
-        )
-        scale = max(scale, state[7])
-        i += 1
-    if n - 1 < history.shape[0]:
-        _note(history, n - 1, state, x[n - 1], y[n - 1], mu_s, mu_k, max(0.0, G + z[n - 1]), b, c, slipping)
-    if history.shape[0] > n:
-        load[:] = 0.0
-        _weigh(load, mu_s, mu_k, G, 0.0)
-        for k in range(n, history.shape[0]):
-            slipping, guess = _piece(state, load, dt, slipping, guess, b, c, scale, control, out)
-            _note(history, k, state, 0.0, 0.0, mu_s, mu_k, G, b, c, slipping)
-    _coast(state, load, slipping, guess, w, zeta, mu_s, mu_k, tail, scale, control, dt, out)
-    out[1] = state[4]
-    return math.hypot(state[0], state[1])
+    # Grips are divided by: a denormal friction is none.
+    return _follow(
+        x,
+        y,
+        z,
+        ratio,
+        maxima,
+        push,
+        pushes,
+        dt,
+        peak,
+        w,
+        zeta,
+        mu_s,
+        mu_k if mu_k >= 1e-300 else 0.0,
+        tail,
+        rtol,
+        longest,
+        np.zeros(8),
+        np.zeros(8),
+        out,
+        history,
+    )
 
 
-@kernel
-def _note(
-    history: Array,
-    i: int,
-    state: Array,
-    ax: float,
-    ay: float,
-    mu_s: float,
-    mu_k: float,
-    weight: float,
-    b: float,
-    c: float,
-    slipping: bool,
-) -> None:
-    history[i, 0], history[i, 1] = state[0], state[1]
-    speed = math.hypot(state[2], state[3])
-    qx, qy = ax + b * state[0], ay + b * state[1]
-    push = math.hypot(qx, qy)
-    if slipping and speed > 0.0:
-        drag = c + mu_k * weight / speed
-        history[i, 2], history[i, 3] = -drag * state[2] - b * state[0], -drag * state[3] - b * state[1]
-    elif push > mu_s * weight:
-        # A jump past the hold is not felt: what is felt is the friction of the slip that begins here.
-        history[i, 2] = mu_k * weight * qx / push - b * state[0]
-        history[i, 3] = mu_k * weight * qy / push - b * state[1]
-    else:
-        history[i, 2], history[i, 3] = ax, ay
-
-
-@kernel
+@inner
 def _coast(
     state: Array,
     load: Array,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pipeline.kernels import kernel
+from pipeline.kernels import inner, kernel
 from pipeline.quantities import Array
 
 LANES = 16
@@ -20,7 +20,7 @@ def lanes(rows: int) -> Array:
     return raw[skip : skip + rows * LANES].reshape(rows, LANES)
 
 
-@kernel
+@inner
 def same_steps(pieces: Array, order: Array, begin: int) -> int:
     """Return the end of the group from begin on that shares a block: as many as fit and take equally many steps.
 

@@ -5,13 +5,18 @@ u'' + 2 zeta w u' + w^2 u = f0 + f1 t  (Nigam and Jennings 1969 for the piecewis
 
 import math
 
-from pipeline.kernels import kernel
+import numpy as np
+
+from pipeline.kernels import bare, inner
 from pipeline.kernels.roots import trial
 
 NEGLIGIBLE = 1e-17
 
+RECIPROCALS = np.array([0.0, *(1.0 / k for k in range(1, 46))])
+"""1 / k: a division costs as much as half a term."""
 
-@kernel
+
+@bare
 def transition(w: float, zeta: float, t: float) -> tuple[float, float, float, float]:
     """Return the responses after t to a unit displacement, velocity, step and ramp: (g, h, h1, h2).
 
@@ -26,12 +31,13 @@ def transition(w: float, zeta: float, t: float) -> tuple[float, float, float, fl
         h, h1, h2 = term, term * t / 2.0, term * t * t / 6.0
         k = 0
         while True:
-            following = -(a * (k + 1) * term + b * previous) / ((k + 2.0) * (k + 1.0))
+            following = -(a * term + b * previous * RECIPROCALS[k + 1]) * RECIPROCALS[k + 2]
             previous, term = term, following
             k += 1
             h += term
-            h1 += term * t / (k + 2.0)
-            h2 += term * t * t / ((k + 2.0) * (k + 3.0))
+            integral = term * t * RECIPROCALS[k + 2]
+            h1 += integral
+            h2 += integral * t * RECIPROCALS[k + 3]
             if k > 40 or abs(term) + abs(previous) < NEGLIGIBLE * t:
                 break
         return 1.0 - w * w * h1, h, h1, h2
@@ -52,14 +58,14 @@ def transition(w: float, zeta: float, t: float) -> tuple[float, float, float, fl
     return g, h, h1, h2
 
 
-@kernel
+@bare
 def advance(u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: float) -> tuple[float, float]:
     """Return displacement and velocity after t."""
     g, h, h1, h2 = transition(w, zeta, t)
     return u * g + v * h + f0 * h1 + f1 * h2, -u * w * w * h + v * (g - 2.0 * zeta * w * h) + f0 * h + f1 * h1
 
 
-@kernel
+@inner
 def slope(
     u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: float, c1: float, cu: float, cv: float
 ) -> float:
@@ -68,7 +74,7 @@ def slope(
     return c1 + cu * vn + cv * (f0 + f1 * t - 2.0 * zeta * w * vn - w * w * un)
 
 
-@kernel
+@inner
 def _stationary(
     u: float,
     v: float,
@@ -110,7 +116,7 @@ def _stationary(
     return abs(top)
 
 
-@kernel
+@bare
 def peak_inside(
     u: float,
     v: float,

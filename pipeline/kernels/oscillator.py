@@ -10,13 +10,16 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import inlined, kernel
+from pipeline.kernels import FIRST, bare, inlined, inner, kernel
 from pipeline.kernels.lanes import LANES, lanes, same_steps
 from pipeline.kernels.linear import peak_inside, transition
 from pipeline.quantities import Array
 
-PHASE = 0.9
-"""Largest w (1 + zeta) times the step: the bound of what lies between two steps needs it below 1."""
+PHASE = 1.5
+"""Largest w (1 + 2 zeta) times the step.
+
+The bound of what lies between two steps divides by 1 - zeta w step - (w step)^2 / 8, which is then at least 1/4.
+"""
 
 CHUNK = 128
 """Steps of which the excitation is laid out at a time; the fewest steps in a stretch."""
@@ -51,7 +54,7 @@ def _next(
     return uu * u + uv * v + (u0 * a0 + u1 * a1), vu * u + vv * v + (v0 * a0 + v1 * a1)
 
 
-@kernel
+@inner
 def _coefficients(w: float, zeta: float, share: float, step: float, k: int, factor: Array) -> None:
     g, h, h1, h2 = transition(w, zeta, step)
     b, c = w * w, 2.0 * zeta * w
@@ -73,7 +76,7 @@ def _between(
     return second, third, c * third + b * second
 
 
-@kernel
+@inner
 def _lay_out(base: Array, dt: float, pieces: int, start: int, count: int, a: Array) -> None:
     # The excitation at count + 1 steps from start on.
     step = dt / pieces
@@ -85,7 +88,7 @@ def _lay_out(base: Array, dt: float, pieces: int, start: int, count: int, a: Arr
             i, j = i + 1, 0
 
 
-@kernel
+@inner
 def _walk(a: Array, s: int, end: int, state: Array, factor: Array) -> None:
     # From step s to step end, four at a time, so that a state stays in its register.
     while s < end:
@@ -145,7 +148,7 @@ def _shake(
     a = np.empty(CHUNK + 1)
     for part in range(stretch.shape[0]):
         s, end = part * length, min(total, (part + 1) * length)
-        _lay_out(base, dt, pieces, s, 0, a)
+        _lay_out(base, dt, pieces, s, FIRST, a)
         here = a[0]
         for k in range(LANES):
             u, v = state[U, k], state[V, k]
@@ -158,7 +161,7 @@ def _shake(
             for first in range(s, end, CHUNK):
                 count = min(CHUNK, end - first)
                 _lay_out(base, dt, pieces, first, count, a)
-                _walk(a, 0, count, state, factor)
+                _walk(a, FIRST, count, state, factor)
         for k in range(LANES):
             top_u, top_y = state[TOP_U, k], state[TOP_Y, k]
             b, c, ease = factor[B, k], factor[C, k], factor[EASE, k]
@@ -170,7 +173,7 @@ def _shake(
             state[MAX_Y, k] = max(state[MAX_Y, k], top_y)
 
 
-@kernel
+@inner
 def _cubic_top(p0: float, d0: float, p1: float, d1: float, h: float) -> float:
     # The largest |p| on the cubic with these ends and rates there.
     first, last = h * d0 / 3.0, h * d1 / 3.0
@@ -188,7 +191,7 @@ def _cubic_top(p0: float, d0: float, p1: float, d1: float, h: float) -> float:
     return top
 
 
-@kernel
+@inner
 def _search(
     base: Array,
     dt: float,
@@ -237,7 +240,7 @@ def _search(
     return max_u, max_y
 
 
-@kernel
+@inner
 def _coast(
     u: float, v: float, w: float, zeta: float, share: float, tail: float, max_u: float, max_y: float
 ) -> tuple[float, float]:
@@ -287,13 +290,13 @@ def oscillator_batch(
         return
     pieces = np.empty(m, dtype=np.int64)
     for k in range(m):
-        pieces[k] = max(1, math.ceil(w[k] * dt * (1.0 + zeta[k]) / PHASE))
+        pieces[k] = max(1, math.ceil(w[k] * dt * (1.0 + 2.0 * zeta[k]) / PHASE))
     most, steepest = abs(base[0]), 0.0
     for i in range(base.shape[0] - 1):
         most, steepest = max(most, abs(base[i + 1])), max(steepest, abs(base[i + 1] - base[i]) / dt)
     order = np.argsort(pieces, kind="mergesort")
     factor, state = lanes(14), lanes(7)
-    begin = 0
+    begin = FIRST
     while begin < m:
         end = same_steps(pieces, order, begin)
         parts = pieces[order[begin]]
@@ -331,7 +334,7 @@ def oscillator_batch(
         begin = end
 
 
-@kernel
+@bare
 def oscillator_history(base: Array, dt: float, w: float, zeta: float, share: float, history: Array) -> None:
     """Fill history (m, 2) with u [m] and y = a + share u'' [m/s2] of one oscillator at the samples.
 

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import inlined, kernel
+from pipeline.kernels import FIRST, bare, inlined, inner, kernel
 from pipeline.kernels.flags import CUT
 from pipeline.kernels.lanes import LANES, lanes, same_steps
 from pipeline.kernels.roots import narrowed, trial
@@ -73,7 +73,7 @@ def _step(
     )
 
 
-@kernel
+@inner
 def _turn(
     theta: float,
     s: float,
@@ -115,7 +115,7 @@ def _turn(
     return angle
 
 
-@kernel
+@inner
 def _shake(x: Array, z: Array, dt: float, pieces: int, block: Array, history: Array) -> None:
     # Integrate a block of LANES pendulums through the record.  history: theta of the first lane.
     n = x.shape[0]
@@ -163,7 +163,7 @@ def _shake(x: Array, z: Array, dt: float, pieces: int, block: Array, history: Ar
         history[n - 1, 0] = block[THETA, 0]
 
 
-@kernel
+@inner
 def _coast(
     theta: float, rate: float, most: float, length: float, zeta: float, tail: float, refine: int
 ) -> tuple[float, float]:
@@ -193,7 +193,7 @@ def _coast(
     return most, float(CUT) if tail < 0.0 else 0.0
 
 
-@kernel
+@bare
 def substeps(length: float, zeta: float, peak: float, dt: float) -> int:
     """Return how many steps a sample interval takes; peak: the largest acceleration of the pivot [m/s2]."""
     fastest = math.sqrt((G + peak) / length) * (1.0 + 2.0 * zeta)
@@ -229,7 +229,7 @@ def pendulum_batch(
         pieces[k] = substeps(length[k], zeta[k], peak, dt) * refine
     order = np.argsort(pieces, kind="mergesort")
     block = lanes(12)
-    begin = 0
+    begin = FIRST
     while begin < m:
         end = same_steps(pieces, order, begin)
         block[:] = 0.0

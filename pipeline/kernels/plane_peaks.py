@@ -1,15 +1,16 @@
-"""The largest radius and the largest acceleration passed on inside a step of a body slipping in two directions."""
+"""The largest radius and acceleration passed on inside a step of a body slipping in two directions, and at samples."""
 
 import math
 
-from pipeline.kernels import kernel
+from pipeline.kernels import inner
 from pipeline.kernels.plane_step import plane_step
+from pipeline.quantities import Array
 
 TRIALS = 12
 """Shorter steps taken to find a stationary point: at one, the value itself is second order in the time's error."""
 
 
-@kernel
+@inner
 def felt(ux: float, uy: float, vx: float, vy: float, ex: float, ey: float, grip: float, b: float, c: float) -> float:
     """Return the absolute acceleration of a slipping body [m/s2]: what spring, dashpot and friction push it with."""
     if b == 0.0:
@@ -18,7 +19,7 @@ def felt(ux: float, uy: float, vx: float, vy: float, ex: float, ey: float, grip:
     return math.sqrt(fx * fx + fy * fy)
 
 
-@kernel
+@inner
 def _felt_rate(
     ux: float,
     uy: float,
@@ -46,7 +47,7 @@ def _felt_rate(
     return fx * gx + fy * gy
 
 
-@kernel
+@inner
 def inner_radius(
     ux: float,
     uy: float,
@@ -99,7 +100,7 @@ def inner_radius(
     return best
 
 
-@kernel
+@inner
 def inner_felt(
     ux: float,
     uy: float,
@@ -156,3 +157,36 @@ def inner_felt(
         if value == 0.0 or high - low <= 1e-7 * h:
             break
     return best
+
+
+@inner
+def note(
+    history: Array,
+    i: int,
+    state: Array,
+    ax: float,
+    ay: float,
+    mu_s: float,
+    mu_k: float,
+    weight: float,
+    b: float,
+    c: float,
+    slipping: bool,
+) -> None:
+    """Fill history[i] with ux, uy [m] and the absolute acceleration [m/s2] at a sample.
+
+    state  : as in friction_plane, ux, uy, vx, vy first;  a: base acceleration;  weight: N
+    """
+    history[i, 0], history[i, 1] = state[0], state[1]
+    speed = math.hypot(state[2], state[3])
+    qx, qy = ax + b * state[0], ay + b * state[1]
+    push = math.hypot(qx, qy)
+    if slipping and speed > 0.0:
+        drag = c + mu_k * weight / speed
+        history[i, 2], history[i, 3] = -drag * state[2] - b * state[0], -drag * state[3] - b * state[1]
+    elif push > mu_s * weight:
+        # A jump past the hold is not felt: what is felt is the friction of the slip that begins here.
+        history[i, 2] = mu_k * weight * qx / push - b * state[0]
+        history[i, 3] = mu_k * weight * qy / push - b * state[1]
+    else:
+        history[i, 2], history[i, 3] = ax, ay

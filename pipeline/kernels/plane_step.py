@@ -8,7 +8,7 @@ with W all that is known and D a number, so V is parallel to W and shorter by wh
 
 import math
 
-from pipeline.kernels import inlined, kernel
+from pipeline.kernels import bare, inlined
 
 DIAGONAL = 0.25
 C2, C3, C4, C5 = 0.5, 83.0 / 250.0, 31.0 / 50.0, 17.0 / 20.0
@@ -32,7 +32,7 @@ def _stage(wx: float, wy: float, taken: float, share: float) -> tuple[float, flo
     return wx * part, wy * part, size * share - taken
 
 
-@kernel
+@bare
 def plane_step(
     ux: float,
     uy: float,

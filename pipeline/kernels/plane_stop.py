@@ -7,7 +7,7 @@ quadratic form of the velocity.  On a straight line a push that changes linearly
 
 import math
 
-from pipeline.kernels import kernel
+from pipeline.kernels import bare, inner
 from pipeline.quantities import Array
 
 NEVER = -1.0
@@ -15,7 +15,7 @@ STRAIGHT = 1e-4
 """Angle between push and velocity up to which static friction catches a body that kinetic friction would not stop."""
 
 
-@kernel
+@inner
 def _straight_stop(speed: float, loss: float, loss1: float, span: float) -> float:
     """Return the first time [s] in (0, span] at which speed - loss t - loss1 t^2 / 2 vanishes, or NEVER."""
     square = loss * loss + 2.0 * loss1 * speed
@@ -27,7 +27,7 @@ def _straight_stop(speed: float, loss: float, loss1: float, span: float) -> floa
     return 2.0 * speed / below
 
 
-@kernel
+@inner
 def _plane_stop(
     speed: float,
     vx: float,
@@ -88,7 +88,7 @@ def _plane_stop(
     return t
 
 
-@kernel
+@inner
 def _way_left(speed: float, vx: float, vy: float, qx: float, qy: float, grip: float) -> tuple[float, float, float]:
     """Return the way (x, y) and the path [m] to rest under a constant push that is weaker than the grip."""
     push = qx * qx + qy * qy
@@ -102,7 +102,7 @@ def _way_left(speed: float, vx: float, vy: float, qx: float, qy: float, grip: fl
     return dx, dy, (0.5 * speed * speed + qx * dx + qy * dy) / grip
 
 
-@kernel
+@bare
 def come_to_rest(
     speed: float,
     vx: float,

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import kernel
+from pipeline.kernels import bare, kernel
 from pipeline.quantities import Array, G
 
 BLOCK = 64
@@ -40,7 +40,7 @@ def block_maxima(values: Array) -> Array:
     return out
 
 
-@kernel
+@bare
 def next_above(values: Array, maxima: Array, start: int, limit: float) -> int:
     """Return the first index >= start whose value exceeds the limit, or len(values)."""
     n = values.shape[0]
@@ -55,7 +55,7 @@ def next_above(values: Array, maxima: Array, start: int, limit: float) -> int:
     return n
 
 
-@kernel
+@bare
 def largest(x: Array, maxima: Array, begin: int, end: int) -> float:
     """Return the largest |x| from begin up to end, given the block maxima of |x|."""
     best = 0.0

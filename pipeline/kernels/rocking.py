@@ -10,11 +10,14 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import inlined, kernel
+from pipeline.kernels import FIRST, inlined, inner, kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
 from pipeline.kernels.quiet import next_above
 from pipeline.kernels.roots import narrowed, trial
 from pipeline.quantities import Array, G
+
+# What _locate looks for.
+ANGLE, SPEED = np.int64(0), np.int64(1)
 
 OVERTURNED = 0.5 * math.pi
 """Rotation [rad] from which no body comes back."""
@@ -77,7 +80,7 @@ def _step(
     )
 
 
-@kernel
+@inner
 def _locate(
     phi: float,
     rate: float,
@@ -95,26 +98,26 @@ def _locate(
     what: int,
     level: float,
 ) -> float:
-    # The step length between low and high after which phi (what 0) or its rate (what 1) reaches the level: Illinois,
-    # each trial being one step from the same beginning.
+    # The step length between low and high after which phi (what: ANGLE) or its rate (SPEED) reaches the level:
+    # Illinois, each trial being one step from the same beginning.
     p, r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, low, s, c)
-    at_low = (p if what == 0 else r) - level
+    at_low = (p if what == ANGLE else r) - level
     p, r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, high, s, c)
-    at_high = (p if what == 0 else r) - level
+    at_high = (p if what == ANGLE else r) - level
     side, tau = 0, high
     for _ in range(60):
         if at_high == at_low:
             break
         before, tau = tau, trial(low, high, at_low, at_high)
         p, r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, tau, s, c)
-        value = (p if what == 0 else r) - level
+        value = (p if what == ANGLE else r) - level
         low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, tau, value)
         if value == 0.0 or abs(tau - before) <= 1e-15 * tau:
             break
     return tau
 
 
-@kernel
+@inner
 def _lift_off(
     a0: float, a1: float, n0: float, n1: float, now: float, span: float, tan1: float, tan2: float
 ) -> tuple[float, float]:
@@ -135,7 +138,7 @@ def _lift_off(
     return time, edge
 
 
-@kernel
+@inner
 def _stretch(
     state: Array,
     a0: float,
@@ -177,12 +180,12 @@ def _stretch(
         landed = -1.0
         if phi > 0.0:
             if p1 < 0.0:
-                landed = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, 0, 0.0)
+                landed = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, ANGLE, 0.0)
             elif rate < 0.0 < r1:
-                dip = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, 1, 0.0)
+                dip = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, SPEED, 0.0)
                 lowest, _r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, dip, s, c)
                 if lowest < 0.0:
-                    landed = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, dip, s, c, 0, 0.0)
+                    landed = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, dip, s, c, ANGLE, 0.0)
         elif p1 <= 0.0:
             # A hop that begins and ends within the step: find a time at which the body is up.
             low = 0.5 * h
@@ -190,12 +193,12 @@ def _stretch(
             for _k in range(50):
                 p, _r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, low, s, c)
                 if p > 0.0:
-                    landed = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, low, h, s, c, 0, 0.0)
+                    landed = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, low, h, s, c, ANGLE, 0.0)
                     break
                 low *= 0.5
         if landed < 0.0:
             if p1 >= OVERTURNED:
-                tau = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, 0, OVERTURNED)
+                tau = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, ANGLE, OVERTURNED)
                 out[0] = max(out[0], OVERTURNED / alpha)
                 out[1], out[2] = 1.0, clock + t + tau
                 break
@@ -226,7 +229,7 @@ def _stretch(
     state[0], state[1], state[2], state[3], state[4] = s, phi, rate, sn, cs
 
 
-@kernel
+@inner
 def _peak(
     phi: float,
     rate: float,
@@ -244,13 +247,13 @@ def _peak(
     out: Array,
 ) -> None:
     if (phi + h * rate) / alpha > out[0]:
-        tau = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, 1, 0.0)
+        tau = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, SPEED, 0.0)
         top, _r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, tau, s, c)
         out[0] = max(out[0], top / alpha)
 
 
-@kernel
-def rocking_one(
+@inner
+def _follow(
     x: Array,
     z: Array,
     ratio: Array,
@@ -261,24 +264,12 @@ def rocking_one(
     initial: float,
     tail: float,
     refine: int,
+    state: Array,
     out: Array,
     history: Array,
 ) -> None:
-    """Integrate one body.
-
-    x, z           : (n,) m/s2;  peak: the largest |x|
-    ratio, maxima  : from kernels.quiet, of this very motion
-    body           : alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]; 1 is the edge towards +axis
-    initial        : rad, released from rest
-    out            : (6,) receives max ratio, overturned (0, 1), time of overturning, time of uplift [s] (-1: never),
-                     impacts, flags
-    history        : (m, 1) receives theta at the samples, as long as it is
-    """
+    # The body through the record and until it rests or lies.  state: as in _stretch.
     n = x.shape[0]
-    out[:] = 0.0
-    out[2] = -1.0
-    out[3] = -1.0
-    state = np.zeros(5)
     if initial != 0.0:
         state[0], state[1] = (1.0, initial) if initial > 0.0 else (-1.0, -initial)
         lean = (body[0] if initial > 0.0 else body[1]) - state[1]
@@ -293,7 +284,7 @@ def rocking_one(
     parts = max(1, refine // 2)
     weakest = math.tan(min(body[0], body[1]))
     recording = history.shape[0] > 0
-    i = 0
+    i = FIRST
     while i < n - 1:
         if state[0] == 0.0 and not recording:
             ahead = next_above(ratio, maxima, i, weakest)
@@ -339,6 +330,37 @@ def rocking_one(
         t += now
     if state[0] != 0.0 and tail < 0.0:
         out[5] = float(int(out[5]) | CUT)
+
+
+@kernel
+def rocking_one(
+    x: Array,
+    z: Array,
+    ratio: Array,
+    maxima: Array,
+    dt: float,
+    peak: float,
+    body: Array,
+    initial: float,
+    tail: float,
+    refine: int,
+    out: Array,
+    history: Array,
+) -> None:
+    """Integrate one body.
+
+    x, z           : (n,) m/s2;  peak: the largest |x|
+    ratio, maxima  : from kernels.quiet, of this very motion
+    body           : alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]; 1 is the edge towards +axis
+    initial        : rad, released from rest
+    out            : (6,) receives max ratio, overturned (0, 1), time of overturning, time of uplift [s] (-1: never),
+                     impacts, flags
+    history        : (m, 1) receives theta at the samples, as long as it is
+    """
+    out[:] = 0.0
+    out[2] = -1.0
+    out[3] = -1.0
+    _follow(x, z, ratio, maxima, dt, peak, body, initial, tail, refine, np.zeros(5), out, history)
 
 
 @kernel

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import inlined, kernel
+from pipeline.kernels import FIRST, inlined, inner, kernel
 from pipeline.kernels.flags import CUT
 from pipeline.kernels.lanes import LANES, lanes, same_steps
 from pipeline.kernels.roots import narrowed, trial
@@ -80,7 +80,7 @@ def _step(
     return p1, p2, p3, v1 - out * p1, v2 - out * p2, v3 - out * p3
 
 
-@kernel
+@inner
 def _advance(s: State, load: Load, h: float, curl: float, drag: float) -> State:
     # load: x, y, n at the beginning and their rates.
     x0, y0, n0, x1, y1, n1 = load
@@ -107,7 +107,7 @@ def _advance(s: State, load: Load, h: float, curl: float, drag: float) -> State:
     )
 
 
-@kernel
+@inner
 def _turn(s: State, load: Load, h: float, curl: float, drag: float, after: State) -> float:
     # The square of the radius [-] where it is stationary within the step; it is of second order in the time's error.
     low, high = 0.0, h
@@ -124,7 +124,7 @@ def _turn(s: State, load: Load, h: float, curl: float, drag: float, after: State
     return best
 
 
-@kernel
+@inner
 def _shake(x: Array, y: Array, z: Array, dt: float, pieces: int, block: Array, history: Array) -> None:
     # Integrate a block of LANES pendulums through the record.  history: q of the first lane.
     n = x.shape[0]
@@ -171,7 +171,7 @@ def _shake(x: Array, y: Array, z: Array, dt: float, pieces: int, block: Array, h
         history[n - 1, 0], history[n - 1, 1] = block[0, 0], block[1, 0]
 
 
-@kernel
+@inner
 def _coast(s: State, most: float, length: float, zeta: float, tail: float, refine: int) -> tuple[float, float]:
     # After the record the energy cannot grow; most and the result are squares of the radius.
     w = math.sqrt(G / length)
@@ -199,7 +199,7 @@ def _coast(s: State, most: float, length: float, zeta: float, tail: float, refin
     return most, float(CUT) if tail < 0.0 else 0.0
 
 
-@kernel
+@inner
 def _height(s: State) -> float:
     # 1 + q_z without cancellation near the lowest point.
     r2 = s[0] * s[0] + s[1] * s[1]
@@ -237,7 +237,7 @@ def spherical_batch(
         pieces[k] = max(1, math.ceil(fastest * dt / STEP)) * refine
     order = np.argsort(pieces, kind="mergesort")
     block = lanes(16)
-    begin = 0
+    begin = FIRST
     while begin < m:
         end = same_steps(pieces, order, begin)
         block[:] = 0.0

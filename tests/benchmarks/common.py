@@ -33,17 +33,23 @@ def shaking() -> Motion:
     return Motion(motion.dt, np.tile(motion.acceleration, 2)[:, :20_000], motion.name)
 
 
+def strongest() -> Array:
+    """Return the horizontal component of the record with the larger peak: what shakes a model in one direction."""
+    horizontal = shaking().acceleration[:2]
+    return np.ascontiguousarray(horizontal[np.abs(horizontal).max(axis=1).argmax()])
+
+
 def level(x: Array | None = None) -> Excitation:
-    """Return the record's x component, or another one, without vertical motion, ending with the record."""
+    """Return the strongest component, or another one, without vertical motion, ending with the record."""
     motion = shaking()
-    return Excitation(motion.dt, motion.acceleration[0] if x is None else x, None, np.zeros(motion.samples), 0.0)
+    return Excitation(motion.dt, strongest() if x is None else x, None, np.zeros(motion.samples), 0.0)
 
 
 def strong(directions: int) -> Excitation:
     """Return the first 40 s of the record, the strong shaking, for peers that take seconds for it."""
     motion = shaking()
     x, y, z = motion.acceleration[:, :SHORT]
-    return Excitation(motion.dt, x, y if directions == 2 else None, z, 0.0)
+    return Excitation(motion.dt, x if directions == 2 else strongest()[:SHORT], y if directions == 2 else None, z, 0.0)
 
 
 def least(work: Callable[[], object], repeats: int = 3) -> float:

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from pipeline.quantities import Array, G
 from pipeline.records import Excitation
-from tests.benchmarks.common import Comparison, Ours, clocked, fastest, level, shaking, strong
+from tests.benchmarks.common import Comparison, Ours, clocked, fastest, level, strong, strongest
 from tests.benchmarks.peers import peer
 from tests.benchmarks.truth import sliding_peak
 
@@ -24,7 +24,7 @@ def one_way() -> list[Comparison]:
     if pyslammer is None:
         return []
     mu = np.array([0.1, 0.12, 0.15, 0.18, 0.2, 0.25])
-    x = np.maximum(shaking().acceleration[0], -0.99 * mu[0] * G)
+    x = np.maximum(strongest(), -0.99 * mu[0] * G)
     motion = level(x)
     ground = pyslammer.GroundMotion(x / G, motion.dt)
 
