@@ -171,7 +171,13 @@ def read_motion(path: str | Path) -> list[Motion]:
 
     raises : MotionError, as `read_site`
     """
-    return [one.motion for level in read_site(path).levels for one in level.motions]
+    file = manifest_file(path)
+    manifest = load_manifest(file)
+    return [
+        prepare(file, f"level[{i}].record[{j}]", record, level.target, manifest.site.x_azimuth).motion
+        for i, level in enumerate(manifest.level)
+        for j, record in enumerate(level.record)
+    ]
 
 
 def measured(motion: Motion, velocity: Array | None = None) -> dict[str, float]:
