@@ -77,7 +77,9 @@ def strangers(floors: Floors, galleries: Iterable[str]) -> list[str]:
 def notes(settings: Settings, site: Site, galleries: Collection[str]) -> list[str]:
     """Say how each floor's motion was obtained and which galleries stand where."""
     if not site.floors:
-        return ["Every gallery is taken to stand on the ground: the site's manifest has no floors, which shake more."]
+        return [
+            "Every gallery is taken to stand on the ground: the manifest names no upper floors, which would shake more."
+        ]
     out = []
     for table in site.manifest.floor:
         on = sorted(name for name in galleries if settings.floors.of(name) == table.name)
