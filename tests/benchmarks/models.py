@@ -14,8 +14,8 @@ from tests.benchmarks.common import OBJECTS, SEED, fastest, shaking, strongest
 ROUNDS = 5
 """Runs of which the fastest counts."""
 
-PARTS = 8
-"""Parts that the threads share: enough that neither waits long for the other at the end."""
+BATCHES = 4
+"""Batches of objects that two threads share."""
 
 
 def parameters() -> dict[str, tuple[float, dict[str, Array | float]]]:
@@ -46,9 +46,8 @@ def parameters() -> dict[str, tuple[float, dict[str, Array | float]]]:
 
 
 def in_threads(work: Callable[[Columns], None], values: Columns) -> float:
-    """Return the seconds of the work on parts of the objects in two threads."""
-    parts = [{name: v[k::PARTS].copy() for name, v in values.items()} for k in range(PARTS)]
-    return fastest(lambda: Threads(2).map(work, parts), 1)
+    """Return the seconds of one of several batches, each of all objects, in two threads."""
+    return fastest(lambda: Threads(2).map(work, [values] * BATCHES), 1) / BATCHES
 
 
 def at_rest(model: Model, excitation: Excitation, values: dict[str, Array]) -> float:
