@@ -14,7 +14,8 @@ from pipeline.collection.cells import Cells
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, check_header
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
-from pipeline.collection.sheets import RECORD_LIMIT, Row, read_rows
+from pipeline.collection.sources.delimited import RECORD_LIMIT, read_rows
+from pipeline.collection.sources.rows import Row
 from pipeline.records import Item, Problem
 
 FILE_LIMIT = 1 << 30

@@ -17,7 +17,7 @@ from pipeline.collection.errors import CollectionError, MappingError
 from pipeline.collection.inventory import galleries
 from pipeline.collection.mapping import PRESETS, Mapping, load_mapping
 from pipeline.collection.reading import NOWHERE, Reading, read_items
-from pipeline.collection.sheets import FIELD_LIMIT
+from pipeline.collection.sources.delimited import FIELD_LIMIT
 from pipeline.records import Item, Support
 
 from .conftest import HEADER, MAPPING, Read
