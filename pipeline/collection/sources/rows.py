@@ -28,9 +28,10 @@ class Row:
 def as_text(value: object) -> str:
     """Return the text of a typed value (of a spreadsheet or a database): the same for the same number in every source.
 
-    None is an empty text; numbers are written with all their digits and no more: 79.0 as 79, decimals exactly; flags are
-    true and false; dates are ISO 8601.
-    raises : TypeError for a value that is no text, number, flag, date or time; ValueError for a float that is not finite
+    None is an empty text; numbers are written with all their digits and no more: 79.0 as 79, decimals exactly; flags
+    are true and false; dates are ISO 8601.
+
+    raises : TypeError for what is no text, number, flag, date or time; ValueError for a number that is not finite
     """
     if value is None:
         return ""
