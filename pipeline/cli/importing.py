@@ -1,0 +1,169 @@
+"""The verb `import`: the museum's records into the inventory, and its earlier versions."""
+
+import json
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from pipeline.cli.console import listed
+from pipeline.cli.options import Options, as_json
+
+if TYPE_CHECKING:
+    from pipeline.jobs.importing import Imported
+
+
+@click.command("import")
+@click.argument("source", required=False)
+@click.option("--mapping", help="A preset (see --presets) or the file of your mapping; default: the settings'.")
+@click.option("--shrink-limit", type=click.FloatRange(0.0, 1.0), help="Share of objects that may vanish at once.")
+@click.option("--dry-run", is_flag=True, help="Read, and say what would change; write nothing.")
+@click.option("--presets", is_flag=True, help="List the mappings that come with Kouros.")
+@click.option("--versions", is_flag=True, help="List the versions of the inventory, one for each import.")
+@click.option("--return-to", type=int, metavar="VERSION", help="Make the inventory what it was after that import.")
+@as_json
+@click.pass_obj
+def import_(
+    options: Options,
+    source: str | None,
+    mapping: str | None,
+    shrink_limit: float | None,
+    dry_run: bool,
+    presets: bool,
+    versions: bool,
+    return_to: int | None,
+    as_json: bool,
+) -> None:
+    """Read the museum's records into Kouros's inventory, by a mapping.
+
+    SOURCE is a file (CSV, TSV, XLSX, LIDO) or the URL of a database; ${NAME} in a URL is taken from the environment.
+
+    Example: kouros import export.csv --mapping carnegie --dry-run
+    """
+    if (source is not None) + presets + versions + (return_to is not None) != 1:
+        raise click.UsageError("give a SOURCE, or one of --presets, --versions, --return-to VERSION")
+    if presets:
+        _presets(as_json)
+    elif versions:
+        _versions(options, as_json)
+    elif return_to is not None:
+        _return(options, return_to, as_json)
+    elif source is not None:
+        _import(options, source, mapping, shrink_limit, dry_run, as_json)
+
+
+def _presets(wanted_json: bool) -> None:
+    from pipeline.jobs.importing import presets
+
+    found = presets()
+    if wanted_json:
+        click.echo(json.dumps(found, indent=2))
+        return
+    for name, about in found.items():
+        click.echo(f"{name:<18} {about}")
+
+
+def _versions(options: Options, wanted_json: bool) -> None:
+    from pipeline.collection.inventory import versions
+    from pipeline.jobs.workspace import open_workspace
+
+    found = versions(open_workspace(options.settings()).engine)
+    if wanted_json:
+        click.echo(json.dumps([asdict(info) for info in found], indent=2))
+        return
+    if not found:
+        click.echo("nothing was imported yet")
+    for info in found:
+        what = f"as version {info.returned_to}" if info.returned_to is not None else info.source
+        click.echo(
+            f"{info.id:>5}  {info.imported_at}  {info.items:>9,} objects  "
+            f"({info.added:,} new, {info.removed:,} gone, {info.changed:,} changed)  {what}"
+        )
+
+
+def _return(options: Options, version: int, wanted_json: bool) -> None:
+    from pipeline.jobs.importing import go_back
+    from pipeline.jobs.workspace import locked, open_workspace
+
+    settings = options.settings()
+    with locked(settings):
+        changes = go_back(open_workspace(settings), version)
+    if wanted_json:
+        click.echo(json.dumps(asdict(changes), indent=2))
+        return
+    c = changes.counts
+    click.echo(
+        f"inventory: {c.after:,} objects, as after import {version} "
+        f"({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed). Nights leave it so until the source changes."
+    )
+
+
+def _import(
+    options: Options, source: str, mapping: str | None, shrink_limit: float | None, dry_run: bool, wanted_json: bool
+) -> None:
+    from pipeline.jobs.importing import import_collection
+    from pipeline.jobs.workspace import locked, open_workspace
+
+    settings = options.settings()
+    wanted = settings.collection
+    limit = wanted.shrink_limit if shrink_limit is None else shrink_limit
+    with locked(settings):
+        workspace = open_workspace(settings)
+        done = import_collection(workspace, source, mapping or wanted.mapping, shrink_limit=limit, dry_run=dry_run)
+    if wanted_json:
+        click.echo(json.dumps(_plain(done), indent=2))
+    else:
+        _tell(done, dry_run=dry_run)
+
+
+def _plain(done: "Imported") -> dict[str, Any]:
+    reading = done.reading
+    return {
+        "source": reading.source,
+        "rows": reading.rows,
+        "items": len(reading.items),
+        "rejected": [asdict(r) for r in reading.rejected],
+        "suspicions": [asdict(s) for s in reading.suspicions],
+        "problems": [{"object_number": item.object_number, **asdict(p)} for item, p in done.problems],
+        "counts": None if done.changes is None else asdict(done.changes.counts),
+        "changes": None if done.changes is None else asdict(done.changes),
+        "log": None if done.log is None else str(done.log),
+    }
+
+
+def _tell(done: "Imported", *, dry_run: bool) -> None:
+    reading = done.reading
+    click.echo(
+        f"{reading.source}: {reading.rows:,} rows, {len(reading.items):,} objects, {len(reading.rejected):,} rejected"
+    )
+    listed("rejected", [f"{r.message}; {r.remedy}" for r in reading.rejected])
+    listed("suspicion", [f"{s.message}; {s.remedy}" for s in reading.suspicions])
+    problems = []
+    for item, place in zip(reading.items, reading.places, strict=True):
+        problems += [f"row {place[0]}, {item.object_number}: {p.field}: {p.message}; {p.remedy}" for p in item.problems]
+    listed("problem", problems)
+    if done.changes is None:
+        return
+    c = done.changes.counts
+    listed("new", list(done.changes.added))
+    listed("gone", list(done.changes.removed))
+    listed(
+        "changed",
+        [
+            f"{number}: {field}: {_short(old)} -> {_short(new)}"
+            for number, fields in done.changes.changed.items()
+            for field, (old, new) in fields.items()
+        ],
+    )
+    click.echo(f"inventory: {c.after:,} objects ({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed)")
+    if dry_run:
+        click.echo("dry run: nothing was written")
+    elif done.log is not None:
+        click.echo(f"log: {done.log}")
+    else:
+        click.echo("nothing has changed since the last import")
+
+
+def _short(value: Any) -> str:
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= 80 else f"{text[:80]}..."
