@@ -7,10 +7,12 @@ falls, measuring is a waste.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 from pipeline.assess import LevelMotions, assess
 from pipeline.models import MODELS
 from pipeline.records import Estimate, Executor, Finding, Origin, Progress, Scene, Verdict, Wish
+from pipeline.tables import number, table
 
 BATCH = 1000
 """Objects looked at together: bounds the memory."""
@@ -20,30 +22,34 @@ ENDS = ("low", "value", "high")
 
 @dataclass(frozen=True, slots=True)
 class Measurable:
-    """A field of the record that a person can fill in, and the parameters of the scene that hang on it.
+    """A field of the record that a person can fill in (a row of tables/survey.csv).
 
-    factor : the field's number for a number 1 of the first parameter
+    parameters : of the scene, that hang on it; none for a field that is only ever missing
+    factor     : the field's number for a number 1 of the first parameter; None where it cannot be said in one number
+    how        : how it is measured, for the sheet
     """
 
     field: str
+    label: str
     unit: str
     parameters: tuple[str, ...]
-    factor: float = 1.0
+    factor: float | None
+    how: str
 
 
-MEASURABLE = (
-    Measurable("friction", "-", ("friction_static",)),
-    Measurable("clearance_m", "m", ("clearance",)),
-    Measurable("cg_height_m", "m", ("cg_height", "lever")),
-    Measurable("base_width_m", "m", ("half_width",), 2.0),
-    Measurable("suspension_length_m", "m", ("length",)),
-    Measurable("damping", "-", ("damping",)),
-    Measurable("frequency_hz", "Hz", ("frequency",)),
-    Measurable("mass_kg", "kg", ("mass",)),
-    Measurable("section_width_m", "m", ("section_modulus", "area")),
-    Measurable("allowable_stress_pa", "Pa", ("allowable_stress",)),
-)
-"""What a survey asks for; the section's width stands for its shape and size, which belong together."""
+@cache
+def measurables() -> tuple[Measurable, ...]:
+    """Return what a survey may ask for, in the order of the table.
+
+    raises : TableError for a factor that is no number
+    """
+    out = []
+    for line, row in enumerate(table("survey"), start=2):
+        factor = number(row, "factor", f"survey.csv, line {line}") if row["factor"] else None
+        names = tuple(name for name in row["parameters"].split("|") if name)
+        out.append(Measurable(row["field"], row["label"], row["unit"], names, factor, row["how"]))
+    return tuple(out)
+
 
 _MISSING = {
     "height": "height_m",
@@ -121,7 +127,7 @@ def _trials(scene: Scene, findings: Sequence[Finding]) -> list[_Trial]:
         return []
     used = {model.name: _inputs(model.name) for model in MODELS}
     out = []
-    for measurable in MEASURABLE:
+    for measurable in measurables():
         uncertain = [
             scene.parameters[name]
             for name in measurable.parameters
@@ -145,7 +151,7 @@ def _missing(scene: Scene) -> list[_Trial]:
     for words in scene.missing:
         field = next((f for start, f in _MISSING.items() if words == start or words.startswith(f"{start} (")), None)
         if field is not None:
-            measurable = Measurable(field, "" if field == "support" else "m", ())
+            measurable = next(m for m in measurables() if m.field == field)
             out.append(_Trial(scene, measurable, frozenset(), (), f"not recorded: {words}", len(scene.models)))
     return out
 
@@ -163,13 +169,9 @@ def _measured(trial: _Trial, end: str) -> Scene:
 def _wish(trial: _Trial, settles: float) -> Wish:
     item, measurable = trial.scene.item, trial.measurable
     first = next((trial.scene.parameters[n] for n in measurable.parameters if n in trial.scene.parameters), None)
-    # A section's modulus is no width: its range is said in words only.
-    numbers = None if first is None or measurable.field == "section_width_m" else first
-    low, best, high = (
-        (None, None, None)
-        if numbers is None
-        else (measurable.factor * numbers.low, measurable.factor * numbers.value, measurable.factor * numbers.high)
-    )
+    low = best = high = None
+    if first is not None and measurable.factor is not None:
+        low, best, high = (measurable.factor * end for end in (first.low, first.value, first.high))
     return Wish(
         item.object_number,
         item.gallery,
