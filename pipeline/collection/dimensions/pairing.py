@@ -21,6 +21,11 @@ def agree(one: float, two: float, kind: str) -> bool:
     return gap <= _CLOSE[kind] + _EPS or gap <= _SHARE * max(one, two)
 
 
+def _near(one: float, two: float) -> bool:
+    """Say whether two numbers differ by no more than 3 %: a slip is only seen where 3 mm do not hide everything."""
+    return abs(one - two) <= _SHARE * max(one, two)
+
+
 def pair(open_: list[Quantity], others: list[Quantity], notes: list[Note]) -> list[Quantity]:
     """Set each number beside its conversion; return those of ``others`` that convert nothing and stand for themselves.
 
@@ -118,7 +123,7 @@ def _judge(a: Quantity, b: Quantity, notes: list[Note]) -> None:
     if kind == "length" and not a.written and a.unit is not None:
         for name in ("in", "ft", "cm", "mm", "m"):
             unit = units()[name]
-            if agree(a.num * unit.num / (a.den * unit.den), si, kind):
+            if _near(a.num * unit.num / (a.den * unit.den), si):
                 message = f"no unit is written here; {name} and not {a.unit.name} agrees with the number in brackets"
                 a.unit = unit
                 notes.append(Note("unit", message, a.start, a.end))
@@ -126,12 +131,12 @@ def _judge(a: Quantity, b: Quantity, notes: list[Note]) -> None:
     if glued:
         a.repaired = glued
         reason = "read with the blank that is missing before its fraction, which agrees with the other"
-    elif kind == "length" and any(agree(a.si() * factor, si, kind) for factor in (12.0, 1.0 / 12.0)):
+    elif kind == "length" and any(_near(a.si() * factor, si) for factor in (12.0, 1.0 / 12.0)):
         a.repaired = _exact(b)
         reason = "the marks of feet and inches are confused; the other reading is believed"
-    elif any(u.name != _name(b) and agree(b.num * u.num / (b.den * u.den), a.si(), kind) for u in _of(kind)):
+    elif any(u.name != _name(b) and _near(b.num * u.num / (b.den * u.den), a.si()) for u in _of(kind)):
         reason = "the second has the wrong unit; the first is believed"
-    elif any(agree(si * factor, a.si(), kind) for factor in (0.01, 0.1, 10.0, 100.0)):
+    elif any(_near(si * factor, a.si()) for factor in (0.01, 0.1, 10.0, 100.0)):
         reason = "the second has its decimal mark in the wrong place; the first is believed"
     elif kind == "length" and not _plausible(a.si()) and _plausible(si):
         a.repaired = _exact(b)
@@ -160,7 +165,7 @@ def _unglued(a: Quantity, si: float) -> tuple[int, int] | None:
     for cut in (1, 2):
         if len(above) > cut:
             num = int(above[:-cut]) * int(below) + int(above[-cut:])
-            if agree(a.scaled(num, int(below)), si, a.kind):
+            if _near(a.scaled(num, int(below)), si):
                 return num * a.unit.num, int(below) * a.unit.den
     return None
 
@@ -176,7 +181,8 @@ def _name(b: Quantity) -> str:
 
 
 def _of(kind: str) -> list[Unit]:
-    return [unit for unit in units().values() if unit.kind == kind]
+    # Nobody writes decimetres by mistake: what agrees in them has its decimal mark in the wrong place.
+    return [unit for unit in units().values() if unit.kind == kind and unit.name != "dm"]
 
 
 @cache
