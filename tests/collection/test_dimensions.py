@@ -7,6 +7,7 @@ import pytest
 from pipeline.collection.dimensions import choose, parse
 from pipeline.collection.dimensions.lexicon import meanings, unit_words, units
 from pipeline.quantities import LENGTHS, MASSES
+from pipeline.tables import table
 
 
 def found(text, **how):
@@ -24,6 +25,12 @@ def test_no_word_means_two_things_behind_a_number():
     assert {word for word in unit_words() if word in meanings()} == {"in", "t", "dm"}
 
 
+@pytest.mark.parametrize("name", ["dimension_units", "dimension_words"])
+def test_no_word_is_listed_twice(name):
+    words = [word for row in table(name) for word in row["words"].split("|")]
+    assert sorted(words) == sorted(set(words))
+
+
 @pytest.mark.parametrize(
     ("text", "kind", "values", "says"),
     [
@@ -37,6 +44,8 @@ def test_no_word_means_two_things_behind_a_number():
         ('7" (30 cm)', "contradiction", [0.1778], "the first is believed"),
         ("3000 m (30 cm)", "contradiction", [0.3], "no museum object's size"),
         ("3 oz. (93.2 g)", "unit", [0.0933104304], "troy"),
+        ("9' 10\" (25 cm)", "contradiction", [2.9972], "the first is believed"),
+        ("8 x 12 (20.3 x 25.4 cm)", "contradiction", [0.2032, 0.3048], "the first is believed"),
         ("8 x 10 (20.3 x 25.4 cm)", "unit", [0.2032, 0.254], "in agrees"),
         (
             '12 5/8 x 18 1/8" (32 x 46 x 6 cm)',
@@ -103,6 +112,11 @@ def test_wrong_options_are_refused():
 )
 def test_parts_are_named(text, names):
     assert [p.name for p in parse(text).parts] == names
+
+
+def test_a_dot_behind_an_abbreviation_is_no_decimal_mark():
+    assert found("h. 11 cm, diam.17 cm") == [("overall", "height", 0.11), ("overall", "diameter", 0.17)]
+    assert found(".5 cm") == [("overall", "unlabelled", 0.005)]
 
 
 def test_qualifiers_are_kept():

@@ -96,7 +96,7 @@ def _matches(ours: list[Quantity], theirs: list[Quantity], kind: str) -> list[tu
 
 
 def _infer(open_: list[Quantity], others: list[Quantity], notes: list[Note]) -> None:
-    """Give numbers without a unit the one with which inches and centimetres agree, if there is one."""
+    """Give numbers without a unit the one with which at least half of them agree with their partners, if any."""
     for bare, known in ((open_, others), (others, open_)):
         lengths = [q for q in known if q.kind == "length"]
         unknown = [q for q in bare if q.unit is None]
@@ -106,7 +106,8 @@ def _infer(open_: list[Quantity], others: list[Quantity], notes: list[Note]) -> 
         partner = {id(a): b for a, b in zip(bare, lengths, strict=False)}
         for name in _GUESSES[system] + _GUESSES[""]:
             unit = units()[name]
-            if all(agree(q.num * unit.num / (q.den * unit.den), partner[id(q)].si(), "length") for q in unknown):
+            near = [q for q in unknown if agree(q.num * unit.num / (q.den * unit.den), partner[id(q)].si(), "length")]
+            if 2 * len(near) >= len(unknown):  # one of them may have a slip of its own, which its note then tells
                 for q in unknown:
                     q.unit = unit
                 message = f"no unit is written; {name} agrees with the number beside it"
@@ -131,7 +132,9 @@ def _judge(a: Quantity, b: Quantity, notes: list[Note]) -> None:
     if glued:
         a.repaired = glued
         reason = "read with the blank that is missing before its fraction, which agrees with the other"
-    elif kind == "length" and any(_near(a.si() * factor, si) for factor in (12.0, 1.0 / 12.0)):
+    elif (
+        kind == "length" and " " not in a.unit_text and any(_near(a.si() * factor, si) for factor in (12.0, 1.0 / 12.0))
+    ):
         a.repaired = _exact(b)
         reason = "the marks of feet and inches are confused; the other reading is believed"
     elif any(u.name != _name(b) and _near(b.num * u.num / (b.den * u.den), a.si()) for u in _of(kind)):
