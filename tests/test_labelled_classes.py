@@ -1,4 +1,4 @@
-"""The rules against 540 real objects that were labelled by hand (tests/data/collections/README.md)."""
+"""The rules against 540 real objects that were labelled by hand (tests/data/collections/labelled_classes.md)."""
 
 from __future__ import annotations
 

@@ -32,7 +32,9 @@ def units() -> dict[str, Unit]:
         try:
             value = Fraction(row["si"])
         except ValueError as problem:
-            raise TableError(f"dimension_units.csv, {row['unit']!r}: si must be a number, not {row['si']!r}") from problem
+            raise TableError(
+                f"dimension_units.csv, {row['unit']!r}: si must be a number, not {row['si']!r}"
+            ) from problem
         if value <= 0:
             raise TableError(f"dimension_units.csv, {row['unit']!r}: si must be above zero, not {row['si']}")
         out[row["unit"]] = Unit(

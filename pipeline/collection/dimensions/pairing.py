@@ -1,4 +1,4 @@
-"""Inches and centimetres of the same thing: which number converts which, whether they agree, and which one is believed."""
+"""Inches and centimetres of the same thing: which converts which, whether they agree, which one is believed."""
 
 from __future__ import annotations
 
@@ -101,9 +101,7 @@ def _infer(open_: list[Quantity], others: list[Quantity], notes: list[Note]) -> 
         partner = {id(a): b for a, b in zip(bare, lengths, strict=False)}
         for name in _GUESSES[system] + _GUESSES[""]:
             unit = units()[name]
-            if all(
-                agree(q.num * unit.num / (q.den * unit.den), partner[id(q)].si(), "length") for q in unknown
-            ):
+            if all(agree(q.num * unit.num / (q.den * unit.den), partner[id(q)].si(), "length") for q in unknown):
                 for q in unknown:
                     q.unit = unit
                 message = f"no unit is written; {name} agrees with the number beside it"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
 from pipeline.collection.dimensions.lexicon import units
 from pipeline.collection.dimensions.quantities import Group, Quantity
 from pipeline.collection.dimensions.reader import Reader
@@ -13,7 +11,6 @@ from pipeline.collection.dimensions.tokens import tokens_of
 LONGEST = 2000
 """Characters of a text that are read; what follows is noted, not read."""
 
-_DIGIT = re.compile(r"[\d¼-¾⅐-⅞]")
 _ORDERS = {"": ("height", "width", "depth"), "length": ("width", "height", "depth")}
 _CONVENTION = "the order is taken as height x width x depth, the museums' convention; it is not written"
 
@@ -57,11 +54,6 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> 
         _part(group, number, q) for number, group in enumerate(_ordered(reader.groups, notes)) for q in group.quantities
     )
     return Dimensions(text, parts, tuple(notes))
-
-
-def has_number(text: str) -> bool:
-    """Say whether a text holds any digit or vulgar fraction."""
-    return _DIGIT.search(text) is not None
 
 
 def _share_units(group: Group, notes: list[Note]) -> None:

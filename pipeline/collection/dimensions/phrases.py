@@ -5,8 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from pipeline.collection.dimensions.tokens import (
-    CLOSE, COLON, COMMA, DIMENSION, DOT, DOTTED, JOIN, NUMBER, OPEN, TIME, UNIT, WORD, Token,
-)  # fmt: skip
+    CLOSE,
+    COLON,
+    COMMA,
+    DIMENSION,
+    DOT,
+    DOTTED,
+    JOIN,
+    NUMBER,
+    OPEN,
+    TIME,
+    UNIT,
+    WORD,
+    Token,
+)
 
 _GLUE = frozenset(("", "-", ".", "&", "'", "’", "/", "-.", "+"))
 
@@ -31,7 +43,7 @@ class Phrase:
 
 
 def is_label_letter(tokens: list[Token], at: int, text: str) -> bool:
-    """Say whether a letter such as the d of ".d" or "(b, lid)" numbers a component, and is not short for a dimension."""
+    """Say whether a letter such as the d of ".d" or "(b, lid)" numbers a component, and is not short for a word."""
     token = tokens[at]
     if token.end - token.start != 1:
         return False
@@ -70,7 +82,7 @@ def phrase_of(tokens: list[Token], indices: list[int], text: str) -> Phrase:
             if token.word == "and" and kept:
                 kept.append(("and", token))
         elif token.type in (NUMBER, DOTTED, TIME, WORD) or (token.type == UNIT and token.word.isalpha()):
-            kept.append((token.word.strip(".,"), token))
+            kept.append((token.word.strip(".,") or token.word, token))
             out.known = False
     out.joined = joins > 0 and len(out.dimensions) > 1
     if out.joined:

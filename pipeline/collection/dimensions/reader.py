@@ -1,4 +1,4 @@
-"""Tokens -> groups of numbers with the part that each belongs to.  One pass over the tokens, with a short look ahead."""
+"""Tokens -> groups of numbers with the part that each belongs to.  One pass, with a short look ahead."""
 
 from __future__ import annotations
 
@@ -8,9 +8,25 @@ from pipeline.collection.dimensions.quantities import Group, Quantity
 from pipeline.collection.dimensions.result import Note
 from pipeline.collection.dimensions.runs import area_at, conversion_at, run_at
 from pipeline.collection.dimensions.tokens import (
-    BREAK, CLOSE, COLON, COMMA, DASH, DIMENSION, DOT, DOTTED, END, JOIN, NUMBER, OPEN, OTHER, TIME, UNIT, WORD, Token,
-)  # fmt: skip
+    BREAK,
+    CLOSE,
+    COLON,
+    COMMA,
+    DASH,
+    DIMENSION,
+    DOT,
+    DOTTED,
+    END,
+    JOIN,
+    NUMBER,
+    OPEN,
+    TIME,
+    UNIT,
+    WORD,
+    Token,
+)
 
+_LONGEST_REMARK = 20  # tokens; so that no text makes the reader look at its words again and again
 _BEHIND = ("with", "framed", "unframed")
 _STATES = frozenset({"folded", "unfolded", "open", "opened", "closed", "unopened", "assembled", "extended"})
 _STRAY = frozenset("'\"’”′″")
@@ -63,7 +79,7 @@ class Reader:
                 continue
             else:
                 self.label.append(at)
-                if kind == DOT and self._is_sentence(at):
+                if kind == DOT and self._is_sentence():
                     self._remark()
             at += 1
 
@@ -139,19 +155,28 @@ class Reader:
                 self.runs += 1
                 group.quantities += left
                 self.open = []
-            elif tokens[place].type in (COMMA, COLON, DASH, NUMBER) or tokens[place].word in ("/", "|", ";", "or", "\\"):
+            elif tokens[place].type in (COMMA, COLON, DASH, NUMBER) or tokens[place].word in (
+                "/",
+                "|",
+                ";",
+                "or",
+                "\\",
+            ):
                 start = place if tokens[place].type == NUMBER else place + 1
-                behind = self._same(start, group)
+                behind = self._same(start)
                 if not behind:
                     return at
                 at = behind
             elif tokens[place].type == JOIN:
-                return self._joined(at, place, group)
+                behind = self._joined(place + 1, group)
+                if not behind:
+                    return at
+                at = behind
             else:
                 return at
 
-    def _same(self, at: int, group: Group) -> int:
-        """Take a run that repeats the open numbers in the other system and agrees with all; return 0 where it does not."""
+    def _same(self, at: int) -> int:
+        """Take a run that repeats the open numbers in the other system and agrees with all; else return 0."""
         if self.tokens[at].type != NUMBER:
             return 0
         found = run_at(self.tokens, at, self.text)
@@ -166,18 +191,18 @@ class Reader:
         self.open = []
         return found[1]
 
-    def _joined(self, at: int, join: int, group: Group) -> int:
-        """Read on in '6 in. (15 cm) x 8 in. (20 cm)': the next number belongs to the same run."""
-        found = run_at(self.tokens, join + 1, self.text)
+    def _joined(self, at: int, group: Group) -> int:
+        """Read on in '6 in. (15 cm) x 8 in. (20 cm)': the next number goes on with that run; 0 where none does."""
+        found = run_at(self.tokens, at, self.text)
         if found is None or any(q.kind not in ("", "length") for q in found[0]):
-            return at
+            return 0
         items, behind = found
         run = group.quantities[-1].run
         for item in items:
             item.run = run
         group.quantities += items
         self.open += items
-        return self._conversions(behind, group)
+        return behind
 
     def _group(self, phrase: Phrase, items: list[Quantity]) -> Group:
         """Return the group that numbers belong to: the last one where they go on with it, else a new one."""
@@ -186,7 +211,11 @@ class Reader:
             named = {q.dimension for q in last.quantities if q.dimension}
             continues = all(q.dimension and q.dimension not in named for q in items)
             aside = len(items) == 1 and any(self.tokens[at].type == COMMA for at in self.label)
-            if continues or items[0].kind == "mass" or aside or (len(items) == 1 and phrase.dimensions):
+            if items[0].kind == "mass" and (items[0].dimension or phrase.dimensions):
+                continues = last.name == "overall"  # "Weight: 20 kg" behind the base is the whole object's
+            elif items[0].kind == "mass":
+                continues = True
+            if continues or aside or (len(items) == 1 and phrase.dimensions):
                 last.qualifiers |= phrase.qualifiers
                 return last
         words = self.text[phrase.start : phrase.end].strip(" \t:,.-–—") if phrase.name else ""
@@ -219,18 +248,20 @@ class Reader:
         self._behind(phrase)
         return end + 1
 
-    def _is_sentence(self, at: int) -> bool:
-        """Say whether a full stop ends a remark on dimensions that vary: "Various composition dimensions. Sheet ..."."""
-        before = self.tokens[self.label[-2]] if len(self.label) > 1 else None
-        return before is not None and before.meaning in (("filler", ""), ("qualifier", "variable")) and (
-            len(before.word) > 3 and any(self.tokens[i].meaning == ("qualifier", "variable") for i in self.label)
+    def _is_sentence(self) -> bool:
+        """Say whether a full stop ends a remark such as "Various composition dimensions. Sheet ..."."""
+        before = self.tokens[self.label[-2]] if 1 < len(self.label) <= _LONGEST_REMARK else None
+        return (
+            before is not None
+            and before.meaning in (("filler", ""), ("qualifier", "variable"))
+            and (len(before.word) > 3 and any(self.tokens[i].meaning == ("qualifier", "variable") for i in self.label))
         )
 
     def _is_remark(self) -> bool:
         """Say whether the words since the last number belong to that number, and are not the next one's label."""
-        phrase = phrase_of(self.tokens, self.label, self.text)
-        if any(self.tokens[i].type == COLON for i in self.label):
+        if len(self.label) > _LONGEST_REMARK or any(self.tokens[i].type == COLON for i in self.label):
             return False
+        phrase = phrase_of(self.tokens, self.label, self.text)
         behind = phrase.name.startswith(_BEHIND)
         return behind or (not phrase.name and bool(phrase.dimensions or phrase.qualifiers))
 

@@ -1,4 +1,4 @@
-"""What a dimension text turns out to say: parts with their values, notes on what was judged, and the object's extents."""
+"""What a dimension text says: parts with their values, notes on what was judged, and the object's extents."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ class Part:
     words       : the words as written, or "" where the text names no part
     dimension   : height, width, depth, diameter, length, circumference, thickness, weight, or unlabelled
     value       : in SI (m or kg), rounded once; of a range the larger end; None where no unit is known
-    unit        : as understood ("in", "oz t"), of a sum the smaller length (8' 3") or the larger mass (3 oz. 2 dwt.); "" where none is known
+    unit        : as understood ("in", "oz t"); of a sum the smaller length (8' 3") or the larger mass (3 oz. 2 dwt.);
+                  "" where none is known
     unit_text   : as written behind the number, "" where it stands elsewhere or nowhere
     low, high   : the ends of a range, in SI; both equal to value where there is no range
     alternative : the same measure as the text's other system gives it, in SI; None where it stands once

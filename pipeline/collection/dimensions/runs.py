@@ -6,8 +6,21 @@ from pipeline.collection.dimensions.lexicon import Unit, unit_words, units
 from pipeline.collection.dimensions.phrases import is_label_letter
 from pipeline.collection.dimensions.quantities import Quantity, fill_units, troy
 from pipeline.collection.dimensions.tokens import (
-    CLOSE, COLON, COMMA, DASH, DIMENSION, DOT, DOTTED, JOIN, NUMBER, OPEN, OTHER, UNIT, WORD, Token,
-)  # fmt: skip
+    CLOSE,
+    COLON,
+    COMMA,
+    DASH,
+    DIMENSION,
+    DOT,
+    DOTTED,
+    JOIN,
+    NUMBER,
+    OPEN,
+    OTHER,
+    UNIT,
+    WORD,
+    Token,
+)
 
 _AREAS = frozenset({"sq", "square", "cubic", "cu", "quadrat"})
 
@@ -18,14 +31,15 @@ def unit_at(tokens: list[Token], at: int, *, weighing: bool = False) -> tuple[Un
     if token.type == DOT and tokens[at + 1].unit is not None and tokens[at + 1].type != DIMENSION:
         at += 1
         token = tokens[at]
-    if token.word == "troy" and tokens[at + 1].unit is not None and tokens[at + 1].unit.name == "oz":
+    ounce = unit_words()["oz"]
+    if token.word == "troy" and tokens[at + 1].unit is ounce:
         return units()["oz t"], at + 2, tokens[at + 1].end
     unit = token.unit
     if unit is None or (token.type == DIMENSION and token.word == "t" and not weighing):
         return None, at, token.start
     at += 1
     end = token.end
-    if unit.name == "oz":
+    if unit is ounce:
         behind = at + 1 if tokens[at].type == DOT else at
         if tokens[behind].word in ("troy", "t"):
             return units()["oz t"], behind + 1, tokens[behind].end
@@ -98,8 +112,9 @@ def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[Quantity], int
     while True:
         start = at
         label = ""
-        if tokens[at].type == DIMENSION and not is_label_letter(tokens, at, text):
-            label = tokens[at].meaning[1] if tokens[at].meaning else ""
+        meaning = tokens[at].meaning
+        if tokens[at].type == DIMENSION and meaning and not is_label_letter(tokens, at, text):
+            label = meaning[1]
             at += 1
             while tokens[at].type in (DOT, COLON) or tokens[at].word in ("of", "ca", "approx"):
                 at += 1
@@ -183,7 +198,15 @@ def conversion_at(tokens: list[Token], at: int, text: str) -> tuple[list[Quantit
                 item.run = run
             out += items
             run += 1
-        elif token.type in (COMMA, DOT, JOIN, DASH, COLON) or token.word in (";", "/", "or", "and", "approx", "ca", "="):
+        elif token.type in (COMMA, DOT, JOIN, DASH, COLON) or token.word in (
+            ";",
+            "/",
+            "or",
+            "and",
+            "approx",
+            "ca",
+            "=",
+        ):
             at += 1
         elif token.type == UNIT and out and token.word in ("'", '"', "”", "’"):
             at += 1  # a second mark behind a unit: (21 cm")

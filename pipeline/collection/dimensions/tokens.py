@@ -20,29 +20,29 @@ _VULGAR = {
 }  # fmt: skip
 _V = "".join(_VULGAR)
 _BLANK = "[ \t\u00a0\u2009\u202f]"
-# The pattern's groups: a date; a time of day or a scale; a number with a fraction; a fraction; a number; a number that
-# begins with its decimal mark; a vulgar fraction; a word; a mark of inches or feet; a line break; any other character.
-_TIME, _MIXED_NUMBER, _FRACTION, _DECIMAL, _DOTTED, _VULGAR_ALONE, _WORD, _QUOTE, _BREAK, _MARK = range(2, 12)
-_LAST_NUMBER = _VULGAR_ALONE
+# The pattern's groups: a word; a date; a time of day or a scale; a number with a fraction; a fraction; a number; one
+# that begins with its decimal mark; a vulgar fraction; a mark of inches or feet; a line break; any other character.
+_WORD, _DATE, _CLOCK, _MIXED_NUMBER, _FRACTION, _DECIMAL, _DOTTED, _VULGAR_ALONE, _QUOTE, _BREAK, _MARK = range(1, 12)
 _TOKEN = re.compile(
-    rf"(\d{{1,2}}/\d{{1,2}}/\d{{2,4}}(?!\d))"
+    rf"[ \t\u00a0]*+(?:([^\W\d_]+|[⌀㎝✕✖])"
+    rf"|(?=\d)(?:(\d{{1,2}}/\d{{1,2}}/\d{{2,4}}(?!\d))"
     rf"|(\d{{1,3}}:\d{{1,4}}(?::\d\d)?(?![\d./]|{_BLANK}{{0,3}}[x×\d]))"
     rf"|(\d[\d,]*(?:{_BLANK}{{0,3}}-{_BLANK}{{0,3}}|{_BLANK}{{1,3}})\d+{_BLANK}?[/⁄∕]{_BLANK}?\d+(?!/|\d)"
     rf"|\d[\d,]*{_BLANK}{{0,3}}-?{_BLANK}{{0,3}}[{_V}])"
     rf"|(\d+{_BLANK}?[/⁄∕]{_BLANK}?\d+(?!/|\d))"
-    rf"|(\d+(?:[.,]\d+)*)"
-    rf"|([.,]\d+)"
+    rf"|(\d+(?:[.,]\d+)*(?:[eE][+-]?\d+)?))"
+    rf"|(\.\d+)"
     rf"|([{_V}])"
-    rf"|([^\W\d_]+|[⌀㎝✕✖])"
     rf"|(''|’’|‘‘|′′|[\"“”″'’‘′])"
     rf"|([\r\n;\u2028\u2029]+)"
-    rf"|(\S)",
+    rf"|(\S))",
 )
 _MIXED = re.compile(rf"(\d[\d,]*)[^\d{_V}]*(?:(\d+)\D+(\d+)|([{_V}]))")
 _MARKS = {
-    "(": OPEN, "[": OPEN, "{": OPEN, "（": OPEN, "［": OPEN, ")": CLOSE, "]": CLOSE, "}": CLOSE, "）": CLOSE, "］": CLOSE,
-    ",": COMMA, "、": COMMA, "，": COMMA, ":": COLON, "：": COLON, "=": COLON, "-": DASH, "–": DASH, "—": DASH, "~": DASH,
-    "〜": DASH, "～": DASH, ".": DOT, "；": BREAK, "。": BREAK, "*": JOIN, "×": JOIN, "✕": JOIN, "✖": JOIN,
+    "(": OPEN, "[": OPEN, "{": OPEN, "（": OPEN, "［": OPEN, ")": CLOSE, "]": CLOSE, "}": CLOSE, "）": CLOSE,
+    "］": CLOSE, ",": COMMA, "、": COMMA, "，": COMMA, ":": COLON, "：": COLON, "=": COLON, "-": DASH, "–": DASH,
+    "—": DASH, "~": DASH, "〜": DASH, "～": DASH, ".": DOT, "；": BREAK, "。": BREAK, "*": JOIN, "×": JOIN,
+    "✕": JOIN, "✖": JOIN,
 }  # fmt: skip
 
 
@@ -75,15 +75,15 @@ def tokens_of(text: str, decimal: str) -> list[Token]:
     new = tuple.__new__  # a NamedTuple's own constructor takes twice as long, and a text has fifty tokens
     for match in _TOKEN.finditer(text):
         group = match.lastindex or 0
-        start, end = match.span()
-        word = match.group()
+        start, end = match.span(group)
+        word = match.group(group)
         if group == _WORD:
             word = word.lower()
             if word[-1] == "x" and word[:-1] in by_word:  # 10 cmx 12 cm
                 out.append(_word(word[:-1], start, end - 1, known, by_word))
                 word, start = "x", end - 1
             out.append(_word(word, start, end, known, by_word))
-        elif group <= _LAST_NUMBER and group > _TIME:
+        elif _CLOCK < group < _QUOTE:
             value = number_value(word, group, decimal)
             if value is None:
                 out.append(Token(OTHER, start, end, word))
@@ -99,9 +99,7 @@ def tokens_of(text: str, decimal: str) -> list[Token]:
     return out
 
 
-def _word(
-    word: str, start: int, end: int, known: dict[str, tuple[str, str]], by_word: dict[str, Unit]
-) -> Token:
+def _word(word: str, start: int, end: int, known: dict[str, tuple[str, str]], by_word: dict[str, Unit]) -> Token:
     meaning = known.get(word)
     unit = by_word.get(word)
     if meaning is not None:
@@ -114,8 +112,6 @@ def _word(
 
 
 @lru_cache(maxsize=4096)
-
-
 def number_value(text: str, group: int, decimal: str) -> tuple[int, int] | None:
     """Return a number's value as a fraction of two whole numbers; None where it is too long or divides by zero.
 
@@ -123,9 +119,9 @@ def number_value(text: str, group: int, decimal: str) -> tuple[int, int] | None:
     group   : which group
     decimal : the mark that separates decimals where the number leaves it open
     """
-    if len(text) > LONGEST_NUMBER:
+    if len(text) > LONGEST_NUMBER or "e" in text.lower():  # nobody measures 1e400 in.
         return None
-    if group == _DECIMAL or group == _DOTTED:
+    if group in (_DECIMAL, _DOTTED):
         return _decimal(text, decimal)
     if group == _VULGAR_ALONE:
         return _VULGAR[text]
@@ -140,14 +136,20 @@ def number_value(text: str, group: int, decimal: str) -> tuple[int, int] | None:
     return (int(whole.replace(",", "")) * den + num, den) if den else None
 
 
-def _decimal(text: str, decimal: str) -> tuple[int, int]:
-    """Return a number's value; groups of three behind the other mark are thousands, anything else are decimals."""
+def _decimal(text: str, decimal: str) -> tuple[int, int] | None:
+    """Return a number's value; groups of three behind the other mark are thousands, anything else are decimals.
+
+    None for a list such as 10,12,14, which is neither.
+    """
     if text.isdigit():
         return int(text), 1
     last = max(text.rfind("."), text.rfind(","))
     mark = text[last]
     tail = len(text) - last - 1
     digits = text.replace(".", "").replace(",", "")
+    groups = re.split("[.,]", text)
+    if len(groups) > 2 and any(len(group) != 3 for group in groups[1 : None if text.count(mark) > 1 else -1]):
+        return None
     if text.count(mark) > 1 or (mark != decimal and tail == 3 and last > 0 and text[0] != "0"):
         return int(digits), 1
     return int(digits), 10**tail
