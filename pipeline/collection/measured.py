@@ -25,6 +25,9 @@ FIELDS: Mapping[str, tuple[str, ...]] = {
 AGREE_ABSOLUTE, AGREE_RELATIVE = 0.003, 0.03
 """Two numbers for one thing contradict each other where they differ by more than both: 3 mm (or 3 g) and 3 %."""
 
+_PART = "weight of a part"
+"""How the reason of a weight begins that is not the whole object's."""
+
 _WORTH_A_WORD = {
     "contradiction": "measure it again, and correct the text in the museum's database",
     "conversion": "measure it again, and correct the text in the museum's database",
@@ -62,6 +65,10 @@ def _fill_from(values: dict[str, Any], given: set[str], cells: Cells, read: Dime
         if choice is None:
             continue
         found = True
+        if what == "mass" and choice.why.startswith(_PART):
+            message = f"only a part is weighed ({choice.value:.4g} kg), which is not the mass of the object"
+            cells.problems.append(Problem("mass_kg", message, "weigh the whole object"))
+            continue
         for field in fields:
             if field in given:
                 _compare(field, values[field], choice, cells)
