@@ -140,9 +140,11 @@ def assess(
     *,
     fidelity: str = "history",
     azimuth_step: float = 10.0,
+    outcomes: bool = True,
 ) -> tuple[Plan, list[list[Finding]]]:
     """Run everything the scenes require under every motion and judge it.
 
+    outcomes : whether to integrate the best estimates of what a certificate decides, to tell what happens after
     returns : the plan (with the reasons for models not run) and the findings of each scene, in the order of the scenes
     """
     todo = plan(scenes)
@@ -154,7 +156,7 @@ def assess(
         for work in todo.work:
             results = []
             screens = [_screens(work, motion) for motion in level.motions]
-            wanted = _wanted(work, scenes)
+            wanted = _wanted(work, scenes, outcomes)
             for motion in level.motions:
                 results.append(demands(work, motion, executor, wanted, fidelity=fidelity, azimuth_step=azimuth_step))
                 done += 1
@@ -164,8 +166,8 @@ def assess(
     return todo, findings
 
 
-def _wanted(work: Work, scenes: Sequence[Scene]) -> set[int]:
-    rows = set(work.best)
+def _wanted(work: Work, scenes: Sequence[Scene], outcomes: bool) -> set[int]:
+    rows = set(work.best) if outcomes else set()
     for index, span in zip(work.scenes, work.spread, strict=True):
         if work.model.otherwise(scenes[index]) is not None:
             rows.update(span)

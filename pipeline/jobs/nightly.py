@@ -16,7 +16,7 @@ from pipeline.classify import classify
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.execute import Threads
 from pipeline.jobs import tradeoff
-from pipeline.jobs.importing import import_collection
+from pipeline.jobs.importing import import_collection, source_of
 from pipeline.jobs.levels import notes, storeys
 from pipeline.jobs.workspace import KEPT, UsageError, Workspace, locked, open_workspace, site_folder
 from pipeline.kernels import KERNEL_VERSION
@@ -111,8 +111,10 @@ def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None
     if not wanted.source:
         return
     progress.step("collection", 0, 1)
-    source = workspace.settings.path(wanted.source)
-    import_collection(workspace, source, wanted.mapping, shrink_limit=wanted.shrink_limit, dry_run=dry_run)
+    source = source_of(workspace, wanted.source)
+    import_collection(
+        workspace, source, wanted.mapping, shrink_limit=wanted.shrink_limit, dry_run=dry_run, nightly=True
+    )
     progress.step("collection", 1, 1)
 
 
