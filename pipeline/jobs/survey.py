@@ -77,7 +77,7 @@ def read_sheet(path: Path) -> Reading:
         try:
             return read_items(path, sheet_mapping(length))
         except CollectionError as problem:
-            if f"no sheet {sheet_title(length)!r}" not in str(problem):
+            if f"has no sheet {sheet_title(length)!r}" not in str(problem):
                 raise
             fault = fault or problem
     raise CollectionError(f"{path.name}: no sheet of a survey, such as {sheet_title('cm')!r}; {fault}")

@@ -76,6 +76,7 @@ def read_database(
     query: str | None = None,
     table: str | None = None,
     columns: Sequence[str] | None = None,
+    optional: Sequence[str] = (),
     order_by: str | None = None,
     timeout_seconds: float = 600.0,
     environment: Mapping[str, str] | None = None,
@@ -86,6 +87,7 @@ def read_database(
     query           : one SELECT (or WITH, VALUES, TABLE), in the order that it says; or
     table           : a table or a view, as name or schema.name, exactly as the database lists it
     columns         : of the table, all where left out
+    optional        : further columns, which the table may lack
     order_by        : the table's column with the object number: the order of the rows; ties and, where it is left out,
                       all rows follow the primary key
     timeout_seconds : for all of it, what is done with the rows included
@@ -111,7 +113,7 @@ def read_database(
                     raise CollectionError(f"{address.shown}: the query gives no rows; begin it with SELECT")
                 names = list(result.keys())
             elif table is not None and query is None:
-                result, names = _select(connection, address, table, columns, order_by)
+                result, names = _select(connection, address, table, columns, optional, order_by)
             else:
                 raise CollectionError(f"{address.shown}: needs either a query or a table, and not both")
             stack.callback(result.close)
@@ -277,7 +279,12 @@ def _check_query(query: str, address: Address) -> None:
 
 
 def _select(
-    connection: Connection, address: Address, name: str, columns: Sequence[str] | None, order_by: str | None
+    connection: Connection,
+    address: Address,
+    name: str,
+    columns: Sequence[str] | None,
+    optional: Sequence[str],
+    order_by: str | None,
 ) -> tuple[CursorResult[Any], list[str]]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # on types that SQLAlchemy does not know, which do not matter here
@@ -285,7 +292,8 @@ def _select(
         schema, table = _find(inspector, address, name)
         there = [str(found["name"]) for found in inspector.get_columns(table, schema=schema)]
         key = inspector.get_pk_constraint(table, schema=schema).get("constrained_columns") or []
-    names = list(dict.fromkeys(there if columns is None else columns))
+    wished = there if columns is None else [*columns, *(each for each in optional if each in there)]
+    names = list(dict.fromkeys(wished))
     for wanted in (*names, *([] if order_by is None else [order_by])):
         if wanted not in there:
             known = ", ".join(repr(each) for each in there[:80])
