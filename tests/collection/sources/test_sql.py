@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sqlite3
 import threading
 import time
@@ -393,6 +394,8 @@ def test_a_server_that_goes_away(postgresql_museum: Museum, server: Engine) -> N
     with pytest.raises(CollectionError, match=f"after row {FETCH}: the connection was lost: .*read again") as caught:
         list(rows)
     assert caught.value.exit_code == 5
+    del caught, rows
+    gc.collect()  # a cursor that is left open would warn here
 
 
 def test_no_transaction_is_left_behind(postgresql_museum: Museum, server: Engine) -> None:
