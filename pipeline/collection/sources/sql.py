@@ -130,7 +130,7 @@ def read_database(
 
 
 def _let_go(cursor: Any) -> None:
-    """Close a driver's cursor: of a lost connection, SQLAlchemy leaves it open."""
+    """Close a driver's cursor: SQLAlchemy tries once only, which fails where the server has ended the connection."""
     with suppress(Exception):  # most often it is closed already, which some drivers mind
         cursor.close()
 
