@@ -14,7 +14,7 @@ import time
 import uuid
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -116,6 +116,7 @@ def read_database(
                 result, names = _select(connection, address, table, columns, optional, order_by)
             else:
                 raise CollectionError(f"{address.shown}: needs either a query or a table, and not both")
+            stack.callback(_let_go, result.cursor)
             stack.callback(result.close)
             yield Row(0, 0, names)
             for block in result.partitions(FETCH):
@@ -126,6 +127,12 @@ def read_database(
     except (SQLAlchemyError, OSError, UnicodeError, ImportError, _TimedOutError) as problem:
         # Not chained: what the driver says may hold the secrets.
         raise _explained(problem, address, reached, timeout_seconds) from None
+
+
+def _let_go(cursor: Any) -> None:
+    """Close a driver's cursor: SQLAlchemy tries once only, which fails where the server has ended the connection."""
+    with suppress(Exception):  # most often it is closed already, which some drivers mind
+        cursor.close()
 
 
 def _row(number: int, values: Sequence[Any]) -> Row:
