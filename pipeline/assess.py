@@ -195,11 +195,13 @@ def assess(
     fidelity: str = "history",
     azimuth_step: float = 10.0,
     charts: Shelf = SHELF,
+    outcomes: bool = True,
 ) -> tuple[Plan, list[list[Finding]]]:
     """Run everything the scenes require under every motion and judge it.
 
     fidelity : "chart", "history" or "reference"; what a chart's error leaves undecided is integrated
     charts   : where charts are found and kept
+    outcomes : whether to integrate the best estimates of what a certificate decides, to tell what happens after
     returns : the plan (with the reasons for models not run) and the findings of each scene, in the order of the scenes
     """
     todo = plan(scenes)
@@ -211,7 +213,7 @@ def assess(
         for work in todo.work:
             results = []
             screens = [_screens(work, motion) for motion in level.motions]
-            wanted = _wanted(work, scenes)
+            wanted = _wanted(work, scenes, outcomes)
             for motion in level.motions:
                 results.append(
                     demands(work, motion, executor, wanted, fidelity=fidelity, azimuth_step=azimuth_step, charts=charts)
@@ -266,8 +268,8 @@ def _judged(
     return judge(demand, low, high, capacity)
 
 
-def _wanted(work: Work, scenes: Sequence[Scene]) -> set[int]:
-    rows = set(work.best)
+def _wanted(work: Work, scenes: Sequence[Scene], outcomes: bool) -> set[int]:
+    rows = set(work.best) if outcomes else set()
     for index, span in zip(work.scenes, work.spread, strict=True):
         if work.model.otherwise(scenes[index]) is not None:
             rows.update(span)

@@ -12,7 +12,7 @@ from functools import cache
 from math import pi
 
 from pipeline.records import Estimate, Item, Origin, Scene, Support
-from pipeline.tables import Row, TableError, damping_of, friction_of, spread, table
+from pipeline.tables import Row, TableError, damping_of, friction_of, material_in, spread, table
 
 FLAT = 0.12
 """Depth over the larger face dimension below which a thing is a sheet, not a body."""
@@ -101,23 +101,10 @@ def _classes() -> Mapping[str, Row]:
     return {row["class"]: row for row in table("classes")}
 
 
-@cache
-def _materials() -> tuple[tuple[re.Pattern[str], Row], ...]:
-    out = []
-    for row in table("materials"):
-        words = [re.escape(w.strip()) for w in row["words"].split("|") if w.strip()]
-        if words:
-            out.append((re.compile(rf"\b(?:{'|'.join(words)})\b", re.IGNORECASE), row))
-    return tuple(out)
-
-
 def material_of(item: Item) -> Row:
     """Return the row of materials.csv for what an object is made of: the word that stands first in its record."""
-    text = item.material or item.medium
-    found = [(match.start(), row) for pattern, row in _materials() if (match := pattern.search(text))]
-    if found:
-        return min(found, key=lambda pair: pair[0])[1]
-    return next(row for row in table("materials") if row["material"] == "unknown")
+    found = material_in(item.material or item.medium)
+    return found or next(row for row in table("materials") if row["material"] == "unknown")
 
 
 def rule_for(item: Item) -> Rule:

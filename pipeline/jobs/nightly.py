@@ -17,7 +17,7 @@ from pipeline.classify import classify
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
-from pipeline.jobs.importing import import_collection
+from pipeline.jobs.importing import import_collection, source_of
 from pipeline.jobs.levels import Storey, notes, storeys
 from pipeline.jobs.workspace import (
     KEPT,
@@ -120,8 +120,10 @@ def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None
     if not wanted.source:
         return
     progress.step("collection", 0, 1)
-    source = workspace.settings.path(wanted.source)
-    import_collection(workspace, source, wanted.mapping, shrink_limit=wanted.shrink_limit, dry_run=dry_run)
+    source = source_of(workspace, wanted.source)
+    import_collection(
+        workspace, source, wanted.mapping, shrink_limit=wanted.shrink_limit, dry_run=dry_run, nightly=True
+    )
     progress.step("collection", 1, 1)
 
 

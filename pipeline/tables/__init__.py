@@ -1,6 +1,7 @@
 """Tables are data: CSV files whose rows carry a value, its range and who says so.  Code never repeats their numbers."""
 
 import csv
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -63,6 +64,22 @@ def spread(row: Row, value: str, low: str, high: str, where: str) -> Range:
     if not out.low <= out.value <= out.high:
         raise TableError(f"{where}: {low} <= {value} <= {high} does not hold ({out.low} {out.value} {out.high})")
     return out
+
+
+@cache
+def _materials() -> tuple[tuple[re.Pattern[str], Row], ...]:
+    out = []
+    for row in table("materials"):
+        words = [re.escape(w.strip()) for w in row["words"].split("|") if w.strip()]
+        if words:
+            out.append((re.compile(rf"\b(?:{'|'.join(words)})\b", re.IGNORECASE), row))
+    return tuple(out)
+
+
+def material_in(text: str) -> Row | None:
+    """Return the row of materials.csv for the material that stands first in a text, None where there is none."""
+    found = [(match.start(), row) for pattern, row in _materials() if (match := pattern.search(text))]
+    return min(found, key=lambda pair: pair[0])[1] if found else None
 
 
 def friction_of(object_material: str = "", surface_material: str = "") -> Range:
