@@ -4,7 +4,7 @@ import csv
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 Row = Mapping[str, str]
@@ -76,6 +76,7 @@ def _materials() -> tuple[tuple[re.Pattern[str], Row], ...]:
     return tuple(out)
 
 
+@lru_cache(maxsize=65536)
 def material_in(text: str) -> Row | None:
     """Return the row of materials.csv for the material that stands first in a text, None where there is none."""
     found = [(match.start(), row) for pattern, row in _materials() if (match := pattern.search(text))]
