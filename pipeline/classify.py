@@ -11,7 +11,7 @@ from functools import cache, lru_cache
 from math import pi
 
 from pipeline.records import Estimate, Item, Origin, Scene, Support
-from pipeline.rules import rule_for
+from pipeline.rules import Table, rule_for
 from pipeline.tables import Range, Row, damping_of, friction_of, material_in, spread, table
 
 SLENDEREST = 9.0
@@ -305,9 +305,12 @@ def section_properties(shape: str, width: float, depth: float, count: int, wall:
     return count * area, count * modulus
 
 
-def classify(item: Item) -> Scene:
-    """Return the scene of one object: class, support, models to try, estimates, and the fields that are missing."""
-    decision = rule_for(item)
+def classify(item: Item, rules: Table | None = None) -> Scene:
+    """Return the scene of one object: class, support, models to try, estimates, and the fields that are missing.
+
+    rules : the table that decides the class; None for Kouros's own
+    """
+    decision = rule_for(item, rules)
     row = _classes()[decision.rule.object_class]
     support = item.support or Support(row["support"])
     models = tuple(m for m in row["models"].split("|") if m and m != "none")

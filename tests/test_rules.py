@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.jobs.importing import bundled_collection
 from pipeline.records import Item
-from pipeline.rules import Decision, fold, identifiers, read_rules, rule_for, rules
+from pipeline.rules import Decision, fold, identifiers, read_rules, rule_for, rules, with_own
 from pipeline.tables import Row, TableError
 
 CLASSES = frozenset({"vessel", "object"})
@@ -142,3 +144,37 @@ def test_a_row_that_only_names_identifiers_takes_nothing_else() -> None:
     table = read_rules((row(rule="a", aat="300132254", **{"class": "vessel"}), row(**LAST)), CLASSES)
     assert rule_for(Item("1", "G", title="vase"), table).rule.name == "rest"
     assert rule_for(Item("1", "G", aat="300132254"), table).rule.name == "a"
+
+
+HEADER = "rule,class,aat,classification,words,medium,shape,why\n"
+
+
+def test_a_museums_own_rules_come_first_and_may_replace_ours(tmp_path: Path) -> None:
+    own = tmp_path / "ours.csv"
+    own.write_text(HEADER + "our-lamps,chandelier,,,beacon,,,hangs in our dome\n", encoding="utf-8-sig")
+    table = with_own(own)
+    assert (
+        rule_for(Item("1", "G", object_name="Beacon"), table).words == "our-lamps: hangs in our dome (named 'beacon')"
+    )
+    assert rule_for(Item("1", "G", object_name="Vase"), table) == rule_for(Item("1", "G", object_name="Vase"), table)
+    assert rule_for(Item("1", "G", object_name="Vase"), table).rule.object_class == "vessel"
+    replaced = rules().rules[0].name
+    own.write_text(HEADER + f"{replaced},vessel,,,beacon,,,ours\n", encoding="utf-8")
+    assert [rule.name for rule in with_own(own).rules].count(replaced) == 1
+    assert with_own(own).rules[0].object_class == "vessel"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (HEADER + "x,nonsense,,,,,,y\n", r"ours.csv, line 2, rule 'x': column 'class': classes.csv has no class"),
+        ("rule,class\nx,vessel\n", "ours.csv: there is no column 'aat'"),
+        (HEADER + "x,vessel\n", "ours.csv, line 2: not as many cells"),
+        (b"\xff\xfe\x00", "ours.csv: no CSV file in UTF-8"),
+    ],
+)
+def test_own_rules_that_cannot_be_used_are_named(text: str | bytes, message: str, tmp_path: Path) -> None:
+    own = tmp_path / "ours.csv"
+    own.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(TableError, match=message):
+        with_own(own)

@@ -184,7 +184,7 @@ def assess_items(
     motions = {one.motion.hash: one.motion for f in floors for level in f.levels for one in level.motions}
     with charts_of(settings, motions) as shelf:
         for storey in floors:
-            _assess_storey(storey, items, settings, executor, progress, shelf, assessments)
+            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments)
         drawn = _charts(workspace, list(motions.values()), executor, progress, shelf)
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
@@ -212,14 +212,14 @@ def assess_items(
 def _assess_storey(
     storey: Storey,
     items: Sequence[Item],
-    settings: Settings,
+    workspace: Workspace,
     executor: Executor,
     progress: Progress,
     shelf: Shelf,
     assessments: dict[int, Assessment],
 ) -> None:
-    scenes = [replace(classify(items[index]), floor=storey.name) for index in storey.members]
-    levels = storey.shaking
+    scenes = [replace(classify(items[index], workspace.rules), floor=storey.name) for index in storey.members]
+    settings, levels = workspace.settings, storey.shaking
     plan, findings = assess(
         scenes,
         levels,

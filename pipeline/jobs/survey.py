@@ -56,7 +56,7 @@ def survey(
     fidelity, step = integrated_at(settings.analysis.fidelity), settings.analysis.azimuth_step
     found: list[Wish] = []
     for storey in storeys(settings, site, items):
-        scenes = [classify(items[index]) for index in storey.members]
+        scenes = [classify(items[index], workspace.rules) for index in storey.members]
         shaking = storey.shaking
         _, findings = assess(scenes, shaking, executor, progress, fidelity=fidelity, azimuth_step=step, outcomes=False)
         found += wishes(scenes, findings, shaking, executor, progress, fidelity=fidelity, azimuth_step=step)

@@ -32,8 +32,22 @@ def table(name: str) -> tuple[Row, ...]:
 
     raises : TableError for a row of another length than the header, FileNotFoundError for an unknown table
     """
-    path = FOLDER / f"{name}.csv"
-    with path.open(encoding="utf-8", newline="") as stream:
+    return read_table(FOLDER / f"{name}.csv")
+
+
+def read_table(path: Path) -> tuple[Row, ...]:
+    """Return the rows of a CSV file, by column.
+
+    raises : TableError for a row of another length than the header, and for what is no CSV file in UTF-8
+    """
+    try:
+        return _read(path)
+    except (UnicodeDecodeError, csv.Error) as problem:
+        raise TableError(f"{path.name}: no CSV file in UTF-8: {problem}; save it as CSV (UTF-8)") from problem
+
+
+def _read(path: Path) -> tuple[Row, ...]:
+    with path.open(encoding="utf-8-sig", newline="") as stream:
         reader = csv.DictReader(stream, strict=True)
         rows = list(reader)
     for number, row in enumerate(rows, start=2):
