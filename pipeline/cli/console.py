@@ -1,6 +1,7 @@
 """What a person sees: progress bars on a terminal, plain lines elsewhere, one screen at the end."""
 
 import sys
+from collections.abc import Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -122,3 +123,11 @@ def tradeoff_lines(found: "Tradeoff", wanted: float) -> list[str]:
         told = "none of these" if setting is None else f"{setting.setting}, {setting.cost:.2f} ns"
         lines.append(f"    {name:<30}{told}")
     return lines
+
+
+def listed(title: str, lines: Sequence[str], most: int = 10) -> None:
+    """Print lines of one kind, the first of them only where they are many: JSON has all."""
+    for line in lines[:most]:
+        print(f"  {title}: {line}")
+    if len(lines) > most:
+        print(f"  {title}: and {len(lines) - most:,} more (--json lists all)")
