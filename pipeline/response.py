@@ -22,6 +22,7 @@ from pipeline.models import MODELS, model_named
 from pipeline.models.common import BOUND, SENSITIVE, words
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Columns, Excitation, Model, Motion
+from pipeline.supports import TRANSMITTED, refined, support_named
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,9 +38,6 @@ REFINE = {"history": 2, "reference": 16}
 
 SCAN_LIMIT = 16
 """Refinement up to which a worst direction that a finer step does not confirm is looked for again."""
-
-TRANSMITTED = 1e-3
-"""Error that what stands on a support may get from the sampling of what the support passes on."""
 
 AZIMUTH_STEP = 10.0
 """Degrees between the directions of which the worst counts when the orientation is unknown (RotD100)."""
@@ -408,16 +406,14 @@ def transmit(
     error      : largest error of the displacement of an oscillator of 2 to 20 Hz and 5 % damping on the support, as a
                  share of its peak; what is reached stands in the last of the motion's steps
     raises     : ValueError for an unknown support or parameter, and for an error that is not above 0
-    A floor's step follows from its modes, whatever is asked.
+    A floor by its factor is exact on the samples of its input, so that no error is asked of it.
     """
-    from pipeline.supports import refined, support_named
-
     row = support_named(support)
     values = _single(row, parameters, "transmit passes a motion through one support")
     if values.get("directions", 2.0) != 2.0:
         raise ValueError("transmit passes both horizontal directions on; leave directions out")
     _some_error(error)
-    if refine is not None or not row.refines:
+    if refine is not None or not row.refines(values):
         return row.transmit(motion, values, 1 if refine is None else refine)
     return refined(lambda samples: row.transmit(motion, values, samples), error)
 
