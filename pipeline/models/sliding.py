@@ -29,7 +29,7 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
     mu_s = parameters["friction_static"]
     free = np.zeros_like(mu_s)
     out = stick_slip(motion, free, free, mu_s, kinetic(parameters), refine, estimate)
-    del out["acceleration"]
+    del out["acceleration"], out["acceleration_error"]
     return out
 
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from pipeline.quantities import Array, Quantity
 from pipeline.records.motion import Excitation
 from pipeline.records.scene import Scene
@@ -66,6 +69,8 @@ class Model:
                  direction, without integration; what it shows to be below the capacity is never integrated
     exact      : the certificate is the demand itself, not only a bound
     rests      : certificate up to which nothing moves, so that there is nothing to integrate; None: always integrate
+    flips      : (excitation, parameters, columns of `run` without estimate) -> (n,) where 1 % of the excitation changes
+                 the yes or no among its outputs; None: it has none
     outcome    : (one row, one set of parameters) -> what the object does, in a word and in a sentence
     otherwise  : scene -> (output, capacity, sentence) that take the place of its own for this scene, or None
     chart      : how its response is tabulated; None: never, it is always integrated
@@ -96,6 +101,7 @@ class Model:
     certificate: Callable[[Excitation, Mapping[str, Array]], Array] | None = None
     exact: bool = False
     rests: float | None = None
+    flips: Callable[[Excitation, Mapping[str, Array], Columns], NDArray[np.bool_]] | None = None
     outcome: Callable[[Mapping[str, float], Mapping[str, float]], tuple[str, str]] = lambda _row, _parameters: ("", "")
     otherwise: Callable[[Scene], tuple[str, float, str] | None] = lambda _scene: None
     chart: ChartAxis | None = None
