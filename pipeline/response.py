@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.charting import SHELF, Settings, Shelf, tabulate
+from pipeline.charting import (
+    SHELF,
+    ResponseChart,
+    Run,
+    Settings,
+    Shelf,
+    Tabulated,
+    axis_of,
+    chart_of,
+    tabulate,
+)
 from pipeline.models import MODELS, model_named
 from pipeline.models.common import BOUND, words
 from pipeline.quantities import Array, Quantity
@@ -188,15 +198,9 @@ def run_chart(
     returns : columns, angles, and which rows (n,) came from a chart
     raises  : ValueError as ``run_model``, for a bad tolerance, and for a model that is never tabulated
     """
-    _check(angle, tail, azimuth_step)
-    both = _directions(model, values) == 2
-    settings = Settings(None if both else angle, both, tail, azimuth_step, REFINE["history"], tolerance)
-
-    def run(some: Mapping[str, Array]) -> Columns:
-        return run_model(model, motion, some, "history", angle, tail, azimuth_step)[0]
-
-    columns, looked = tabulate(model, motion, values, run, settings, charts)
-    angles = np.full(looked.size, np.nan if both or angle is None else angle)
+    found = look_up(model, motion, values, angle, tail, azimuth_step, tolerance, charts)
+    columns, looked = found.columns, found.found
+    angles = np.full(looked.size, np.nan if angle is None or _directions(model, values) == 2 else angle)
     rest = ~looked
     if rest.any():
         others = {name: column[rest] for name, column in values.items()}
@@ -204,6 +208,67 @@ def run_chart(
         for name, column in integrated.items():
             columns[name][rest] = column
     return columns, angles, looked
+
+
+def look_up(
+    model: Model,
+    motion: Motion,
+    values: Mapping[str, Array],
+    angle: float | None,
+    tail: float | None,
+    azimuth_step: float = AZIMUTH_STEP,
+    tolerance: float = TOLERANCE,
+    charts: Shelf = SHELF,
+) -> Tabulated:
+    """Look prepared parameters up in charts, building those that are missing; what is on none of them is left open.
+
+    raises : as ``run_chart``
+    """
+    run, settings = _charted(model, motion, values, angle, tail, azimuth_step, tolerance)
+    return tabulate(model, motion, values, run, settings, charts)
+
+
+def response_chart(
+    model: str,
+    motion: Motion,
+    *,
+    angle: float | None = None,
+    azimuth_step: float = AZIMUTH_STEP,
+    tolerance: float = TOLERANCE,
+    charts: Shelf = SHELF,
+    **fixed: Any,
+) -> ResponseChart:
+    """Return a model's response chart under a motion, from the shelf or built.
+
+    angle  : as in ``respond``
+    fixed  : the model's parameters besides that of the chart's axis, single numbers
+    raises : ValueError as ``respond``, and for a model that is never tabulated
+    """
+    row = model_named(model)
+    axis = axis_of(row)
+    values = prepare(row, {**fixed, axis.name: axis.low})
+    run, settings = _charted(row, motion, values, angle, None, azimuth_step, tolerance)
+    others = {name: column[0] for name, column in values.items() if name != axis.name}
+    return chart_of(row, motion, others, run, settings, charts)
+
+
+def _charted(
+    model: Model,
+    motion: Motion,
+    values: Mapping[str, Array],
+    angle: float | None,
+    tail: float | None,
+    azimuth_step: float,
+    tolerance: float,
+) -> tuple[Run, Settings]:
+    """Return how the nodes of a chart are run, and what the chart depends on besides model and motion."""
+    _check(angle, tail, azimuth_step)
+    both = _directions(model, values) == 2
+
+    def run(some: Mapping[str, Array]) -> Columns:
+        return run_model(model, motion, some, "history", angle, tail, azimuth_step)[0]
+
+    return run, Settings(None if both else angle, both, tail, azimuth_step, REFINE["history"], tolerance)
 
 
 def _check(angle: object, tail: object, azimuth_step: float) -> None:
@@ -326,27 +391,16 @@ def transmit(
     return refined(lambda samples: row.transmit(motion, values, samples), error)
 
 
-def cascade(
-    chain: Sequence[tuple[str, Mapping[str, Any]]],
-    motion: Motion,
-    *,
-    error: float = TRANSMITTED,
-    known: dict[Any, Motion] | None = None,
-) -> Motion:
+def cascade(chain: Sequence[tuple[str, Mapping[str, Any]]], motion: Motion, *, error: float = TRANSMITTED) -> Motion:
     """Return the motion on top of a chain of supports, the error shared out equally between them.
 
     chain  : (support, its parameters) from the ground up; empty: the motion itself
     error  : as in `transmit`, of all of them together
-    known  : kept by the caller, what earlier chains passed on: those that begin alike are computed once
     raises : ValueError as `transmit`
     """
     _some_error(error)
-    kept = {} if known is None else known
     for support, parameters in chain:
-        key = (motion.hash, motion.name, motion.steps, support, tuple(sorted(parameters.items())), error / len(chain))
-        if key not in kept:
-            kept[key] = transmit(support, motion, error=error / len(chain), **parameters)
-        motion = kept[key]
+        motion = transmit(support, motion, error=error / len(chain), **parameters)
     return motion
 
 

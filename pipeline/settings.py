@@ -72,9 +72,16 @@ class Floors(RootModel[dict[str, tuple[str, ...]]]):
 class Analysis(_Part):
     """How finely to look."""
 
-    fidelity: Literal["history", "reference"] = "history"
+    fidelity: Literal["chart", "history", "reference"] = "history"
     azimuth_step: float = Field(default=10.0, gt=0.0, le=90.0, description="degrees between directions (RotD100)")
     workers: int = Field(default=0, ge=0, le=256, description="threads; 0: as many as there are cores")
+
+
+class Charts(_Part):
+    """How long response charts are kept, and how much room they may take."""
+
+    unused_days: float = Field(default=30.0, ge=1.0, le=3650.0, description="after the last use of their motion")
+    megabytes: float = Field(default=200.0, ge=0.0, le=1e6, description="of all of them; the oldest are removed first")
 
 
 class Report(_Part):
@@ -93,6 +100,7 @@ class Settings(_Part):
     site: SiteFolder = SiteFolder()
     floors: Floors = Floors({})
     analysis: Analysis = Analysis()
+    charts: Charts = Charts()
     report: Report = Report()
     home: Path = Field(default=Path(), exclude=True)
     demonstration: bool = Field(default=False, description="say on every page that this is a demonstration")
@@ -166,12 +174,18 @@ folder = {site}
 # "2" = ["Hall of Sculpture", "Gallery 12"]
 
 [analysis]
-# fidelity = "reference" integrates eight times finer.
+# fidelity = "reference" integrates eight times finer; "chart" looks sliding and swinging up in charts of each motion
+# and integrates what they cannot decide.
 fidelity = "history"
 # Degrees between the directions tried for an object whose orientation is not recorded.
 azimuth_step = 10.0
 # Threads; 0 means as many as there are cores.
 workers = 0
+
+[charts]
+# Response charts are kept until their motion was unused for so many days, and in this much room.
+unused_days = 30
+megabytes = 200
 
 [report]
 folder = "reports"

@@ -1,7 +1,7 @@
 """The verbs.  Each parses its options, calls one job, prints its answer."""
 
 import json
-import math
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -66,12 +66,13 @@ def init(folder: Path) -> None:
 def check(options: Options, numerics: bool, as_json: bool) -> None:
     """Look at settings, database, mapping, motions, clock and disk, and say what to mend.
 
-    With --numerics: whether this machine's compiled code is right at the extremes; exit code 1 if not.
+    With --numerics: whether this machine's compiled code is right at the extremes; exit code 1 if not.  Beside a
+    kouros.toml the result is kept, and the next report shows it.
 
     Example: kouros check
     """
     if numerics:
-        _check_numerics(as_json)
+        _check_numerics(options, as_json)
         return
     from pipeline.jobs.doctor import diagnose
 
@@ -85,20 +86,20 @@ def check(options: Options, numerics: bool, as_json: bool) -> None:
         raise click.exceptions.Exit(2)
 
 
-def _check_numerics(as_json: bool) -> None:
-    from pipeline.jobs.numerics import outcomes
+def _check_numerics(options: Options, as_json: bool) -> None:
+    from pipeline.jobs.selftest import self_test
 
+    settings = options.settings() if Path(options.config).exists() else None
     done = []
-    for o in outcomes():
+    for o in self_test(settings):
         done.append(o)
         if not as_json:
-            says = f"{o.result:.1e}, limit {o.limit:.0e}" + (f": {o.problem}" if o.problem else "")
+            result = "no number" if o.result is None else f"{o.result:.1e}"
+            says = f"{result}, limit {o.limit:.0e}" + (f": {o.problem}" if o.problem else "")
             click.echo(f"{'ok' if o.ok else 'failed':<8} {o.what}; {o.truth}: {says}")
     wrong = sum(not o.ok for o in done)
     if as_json:
-        # JSON has no NaN.
-        rows = [{**asdict(o), "result": o.result if math.isfinite(o.result) else None} for o in done]
-        click.echo(json.dumps(rows, indent=2))
+        click.echo(json.dumps([asdict(o) for o in done], indent=2))
     else:
         click.echo(f"{len(done)} cases, {wrong} failed, {sum(o.seconds for o in done):.0f} s")
     if wrong:
@@ -109,7 +110,7 @@ def _check_numerics(as_json: bool) -> None:
 @click.option("--gallery", "galleries", multiple=True, help="Only this gallery; may be repeated.")
 @click.option("--object", "objects", multiple=True, help="Only this object number; may be repeated.")
 @click.option("--site", help="Another site's folder, or 'demo'.")
-@click.option("--fidelity", type=click.Choice(["history", "reference"]), help="How finely to integrate.")
+@click.option("--fidelity", type=click.Choice(["chart", "history", "reference"]), help="How finely to look.")
 @click.option("--dry-run", is_flag=True, help="Assess and summarise; store and publish nothing.")
 @as_json
 @click.pass_obj
@@ -235,7 +236,9 @@ def models(as_json: bool) -> None:
 @click.option("--fidelity", default="history", type=click.Choice(FIDELITIES), show_default=True)
 @click.option("--tail", type=click.FloatRange(min=0.0), help="Seconds after the record; default: until rest.")
 @as_json
+@click.pass_obj
 def respond(
+    options: Options,
     model: str,
     parameters: tuple[str, ...],
     site: str,
@@ -247,7 +250,8 @@ def respond(
 ) -> None:
     """Run one model on a site's motions, ad hoc.  Parameters in SI; several values make several rows.
 
-    With a site made by `kouros motions synthesise` it is a virtual shake table.
+    With a site made by `kouros motions synthesise` it is a virtual shake table.  Charts (--fidelity chart) are kept
+    beside kouros.toml where there is one.
 
     \b
     Example: kouros respond sliding friction_static=0.05,0.1,0.2
@@ -255,7 +259,11 @@ def respond(
     """
     from pipeline.jobs.adhoc import respond_on_site
 
-    table = respond_on_site(model, parameters, site, through=through, angle=angle, fidelity=fidelity, tail=tail)
+    # Only charts are kept anywhere.
+    settings = options.settings() if fidelity == "chart" and Path(options.config).exists() else None
+    table = respond_on_site(
+        model, parameters, site, through=through, angle=angle, fidelity=fidelity, tail=tail, settings=settings
+    )
     click.echo(table.to_json(orient="records", indent=2) if as_json else table.to_string(index=False))
 
 

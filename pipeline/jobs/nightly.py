@@ -11,21 +11,30 @@ from typing import TYPE_CHECKING, Any
 
 from pipeline import __version__
 from pipeline.assess import assess
-from pipeline.charts import chart_keys, charts
+from pipeline.charting import Shelf
+from pipeline.charts import chart_keys, charts, picture_version
 from pipeline.classify import classify
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.execute import Threads
-from pipeline.jobs import tradeoff
+from pipeline.jobs import selftest, tradeoff
 from pipeline.jobs.importing import import_collection, source_of
-from pipeline.jobs.levels import notes, storeys
-from pipeline.jobs.workspace import KEPT, UsageError, Workspace, locked, open_workspace, site_folder
+from pipeline.jobs.levels import Storey, notes, storeys
+from pipeline.jobs.workspace import (
+    KEPT,
+    UsageError,
+    Workspace,
+    charts_of,
+    locked,
+    open_workspace,
+    site_folder,
+)
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import advise
 from pipeline.motions.site import Level, Site, read_site
 from pipeline.records import Assessment, Chart, Executor, Item, Motion, Progress, RunRecord, Verdict
 from pipeline.report import Units, publish, render
 from pipeline.settings import Settings
-from pipeline.store.reuse import KERNELS, SELECTION, stored_charts, whole_runs
+from pipeline.store.reuse import KERNELS, PICTURES, SELECTION, stored_charts, whole_runs
 from pipeline.store.runs import compare_runs, save_run
 
 if TYPE_CHECKING:
@@ -165,34 +174,23 @@ def assess_items(
 
     inventory : all objects, the others included: which galleries there are
     started   : when the run began, which names it
-    raises  : SettingsError for a floor that the site does not have, MotionError for a floor's record
+    raises    : SettingsError for a floor that the site does not have, MotionError for a floor's record
     """
     settings = workspace.settings
     executor = Threads(settings.analysis.workers or None)
     floors = storeys(settings, site, items)
     assessments: dict[int, Assessment] = {}
-    for storey in floors:
-        scenes = [replace(classify(items[index]), floor=storey.name) for index in storey.members]
-        levels = storey.shaking
-        plan, findings = assess(
-            scenes,
-            levels,
-            executor,
-            progress,
-            fidelity=settings.analysis.fidelity,
-            azimuth_step=settings.analysis.azimuth_step,
-        )
-        scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
-        advice = advise(scenes, findings, levels, executor, progress)
-        for index, scene, found, advised in zip(storey.members, scenes, findings, advice, strict=True):
-            assessments[index] = Assessment(scene, tuple(found), tuple(advised))
     # Motions that two floors share (one record for several) are drawn once.
     motions = {one.motion.hash: one.motion for f in floors for level in f.levels for one in level.motions}
-    drawn = _charts(workspace, list(motions.values()), executor, progress)
+    with charts_of(settings, motions) as shelf:
+        for storey in floors:
+            _assess_storey(storey, items, settings, executor, progress, shelf, assessments)
+        drawn = _charts(workspace, list(motions.values()), executor, progress, shelf)
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
         picture = tradeoff.picture(measured)
         drawn[picture.key] = picture
+    tested = selftest.kept(settings.path(KEPT))
     info = latest_import(workspace.engine)
     levels_said = [_level_note(level) for level in site.levels]
     return RunRecord(
@@ -203,7 +201,7 @@ def assess_items(
         site=site.name,
         museum=settings.museum.name or (info.museum if info else ""),
         level_notes=(*levels_said, *notes(settings, site, {item.gallery for item in inventory})),
-        settings=_stored_settings(settings, info.credit if info else ""),
+        settings=_stored_settings(settings, info.credit if info else "", tested),
         assessments=tuple(assessments[index] for index in range(len(items))),
         charts=drawn,
         motions=tuple(summary for storey in floors for summary in storey.summaries),
@@ -211,26 +209,54 @@ def assess_items(
     )
 
 
-def _stored_settings(settings: Settings, credit: str) -> dict[str, Any]:
+def _assess_storey(
+    storey: Storey,
+    items: Sequence[Item],
+    settings: Settings,
+    executor: Executor,
+    progress: Progress,
+    shelf: Shelf,
+    assessments: dict[int, Assessment],
+) -> None:
+    scenes = [replace(classify(items[index]), floor=storey.name) for index in storey.members]
+    levels = storey.shaking
+    plan, findings = assess(
+        scenes,
+        levels,
+        executor,
+        progress,
+        fidelity=settings.analysis.fidelity,
+        azimuth_step=settings.analysis.azimuth_step,
+        charts=shelf,
+    )
+    scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
+    advice = advise(scenes, findings, levels, executor, progress)
+    for index, scene, found, advised in zip(storey.members, scenes, findings, advice, strict=True):
+        assessments[index] = Assessment(scene, tuple(found), tuple(advised))
+
+
+def _stored_settings(settings: Settings, credit: str, tested: selftest.SelfTest | None) -> dict[str, Any]:
     # Never the database's address: it may hold a password.
     return {
         KERNELS: KERNEL_VERSION,
+        PICTURES: picture_version(),
         "credit": credit,
         "analysis": settings.analysis.model_dump(),
         "length": settings.report.length,
         "site": settings.site.folder,
         "floors": settings.floors.model_dump(),
+        "numerics": None if tested is None else tested.plain(),
     }
 
 
 def _charts(
-    workspace: Workspace, motions: Sequence[Motion], executor: Executor, progress: Progress
+    workspace: Workspace, motions: Sequence[Motion], executor: Executor, progress: Progress, shelf: Shelf
 ) -> dict[str, Chart]:
     drawn: dict[str, Chart] = {}
     for done, motion in enumerate(motions):
         progress.step("charts", done, len(motions))
-        kept = stored_charts(workspace.engine, chart_keys(motion), KERNEL_VERSION)
-        drawn |= kept if len(kept) == len(chart_keys(motion)) else charts(motion, executor)
+        kept = stored_charts(workspace.engine, chart_keys(motion), picture_version())
+        drawn |= kept if len(kept) == len(chart_keys(motion)) else charts(motion, executor, shelf)
     progress.step("charts", len(motions), len(motions))
     return drawn
 

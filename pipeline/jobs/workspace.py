@@ -1,17 +1,24 @@
 """Where a job works: settings, database, lock."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pipeline.collection.database import Database, open_database
 from pipeline.resources import resource
 from pipeline.settings import Settings
 from pipeline.store import migrate
 
+if TYPE_CHECKING:
+    from pipeline.charting import Shelf
+
 KEPT = ".kouros-kept"
-"""Folder beside the settings in which processed motions and measurements are kept between nights."""
+"""Folder beside the settings in which processed motions, charts and measurements are kept between nights."""
+
+CHARTS = "charts"
+"""Folder in it for the response charts."""
 
 
 class LockedError(RuntimeError):
@@ -71,3 +78,22 @@ def locked(settings: Settings) -> Iterator[None]:
         yield
     finally:
         lock.release()
+
+
+@contextmanager
+def charts_of(settings: Settings | None, using: Collection[str] = ()) -> Iterator["Shelf"]:
+    """Lend the shelf of the workspace's response charts, and tidy it up at the end; None: one in memory only.
+
+    using : hashes of motions in use, whose charts stay although perhaps none of them is asked for
+    """
+    from pipeline.charting import Shelf
+
+    if settings is None:
+        yield Shelf()
+        return
+    shelf = Shelf(settings.path(KEPT) / CHARTS)
+    try:
+        yield shelf
+    finally:
+        limits = settings.charts
+        shelf.tidy(days=limits.unused_days, most_bytes=round(1e6 * limits.megabytes), using=using)

@@ -8,6 +8,7 @@ from pipeline.report.describe import Describer
 from pipeline.report.errors import ReportError
 from pipeline.report.ground import motion_view
 from pipeline.report.ranking import state_of, urgency
+from pipeline.report.selftest import self_test_view
 from pipeline.report.text import clean, slug, words
 from pipeline.report.units import Units
 from pipeline.report.views import (
@@ -62,6 +63,7 @@ def compose(record: RunRecord, units: Units) -> MuseumView:
         first=tuple([o for o in order if o.state is State.ACT][:8]),
         motions=tuple(motion_view(m, record.charts, units) for m in record.motions),
         level_notes=tuple(clean(n) for n in record.level_notes),
+        self_test=self_test_view(record),
     )
 
 
