@@ -1,7 +1,6 @@
 """The verbs.  Each parses its options, calls one job, prints its answer."""
 
 import json
-from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
