@@ -59,6 +59,34 @@ def init(folder: Path) -> None:
 
 
 @click.command()
+@click.option("--gallery", "galleries", multiple=True, help="Only this gallery; may be repeated.")
+@click.option(
+    "--out", type=click.Path(dir_okay=False, path_type=Path), help="The workbook; default: survey-<date>.xlsx."
+)
+@as_json
+@click.pass_obj
+def survey(options: Options, galleries: tuple[str, ...], out: Path | None, as_json: bool) -> None:
+    """Write a workbook of what is worth measuring: which missing numbers would settle a verdict.
+
+    Print it, fill it in, and read it back with `kouros import FILE --sheet`.
+
+    Example: kouros survey --gallery "Gallery 12"
+    """
+    from pipeline.jobs.survey import survey as job
+    from pipeline.jobs.workspace import locked, open_workspace
+
+    settings = options.settings()
+    with locked(settings), options.console() as console:
+        found = job(open_workspace(settings), console, galleries=galleries, path=out)
+    if as_json:
+        click.echo(json.dumps(asdict(found), indent=2, default=str))
+        return
+    click.echo(f"{found.quantities:,} measurements on {found.objects:,} objects are worth making: {found.path}")
+    click.echo(f"{found.waste:,} others would settle nothing wherever in their range they fall, and are left out")
+    listed("first", [f"{w.object_number} ({w.gallery}): {w.field}: {w.reason}" for w in found.wishes if not w.waste])
+
+
+@click.command()
 @click.option("--numerics", is_flag=True, help="Run the models at their extremes instead, against exact limits.")
 @as_json
 @click.pass_obj
@@ -295,4 +323,4 @@ def tradeoff(
     click.echo("\n".join(tradeoff_lines(found, wanted)))
 
 
-ALL = (demo, init, import_, check, run, report, diff, motions, models, respond, tradeoff)
+ALL = (demo, init, import_, survey, check, run, report, diff, motions, models, respond, tradeoff)

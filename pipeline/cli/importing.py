@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -10,6 +11,7 @@ from pipeline.cli.console import listed
 from pipeline.cli.options import Options, as_json
 
 if TYPE_CHECKING:
+    from pipeline.collection.inventory import Difference
     from pipeline.jobs.importing import Imported
 
 
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 @click.option("--mapping", help="A preset (see --presets) or the file of your mapping; default: the settings'.")
 @click.option("--shrink-limit", type=click.FloatRange(0.0, 1.0), help="Share of objects that may vanish at once.")
 @click.option("--dry-run", is_flag=True, help="Read, and say what would change; write nothing.")
+@click.option("--sheet", is_flag=True, help="SOURCE is a survey's sheet that was filled in: lay it over the inventory.")
 @click.option("--presets", is_flag=True, help="List the mappings that come with Kouros.")
 @click.option("--versions", is_flag=True, help="List the versions of the inventory, one for each import.")
 @click.option("--return-to", type=int, metavar="VERSION", help="Make the inventory what it was after that import.")
@@ -29,6 +32,7 @@ def import_(
     mapping: str | None,
     shrink_limit: float | None,
     dry_run: bool,
+    sheet: bool,
     presets: bool,
     versions: bool,
     return_to: int | None,
@@ -48,6 +52,8 @@ def import_(
         _versions(options, as_json)
     elif return_to is not None:
         _return(options, return_to, as_json)
+    elif source is not None and sheet:
+        _sheet(options, source, as_json)
     elif source is not None:
         _import(options, source, mapping, shrink_limit, dry_run, as_json)
 
@@ -79,6 +85,30 @@ def _versions(options: Options, wanted_json: bool) -> None:
             f"{info.id:>5}  {info.imported_at}  {info.items:>9,} objects  "
             f"({info.added:,} new, {info.removed:,} gone, {info.changed:,} changed)  {what}"
         )
+
+
+def _sheet(options: Options, source: str, wanted_json: bool) -> None:
+    from pipeline.jobs.survey import add_measurements
+    from pipeline.jobs.workspace import locked, open_workspace
+
+    settings = options.settings()
+    with locked(settings):
+        reading, changes, unknown = add_measurements(open_workspace(settings), Path(source))
+    problems = [
+        f"row {place[0]}, {item.object_number}: {p.field}: {p.message}; {p.remedy}"
+        for item, place in zip(reading.items, reading.places, strict=True)
+        for p in item.problems
+    ]
+    if wanted_json:
+        rejected = [asdict(r) for r in reading.rejected]
+        found = {"changes": asdict(changes), "unknown": unknown, "problems": problems, "rejected": rejected}
+        click.echo(json.dumps(found, indent=2))
+        return
+    listed("rejected", [f"{r.message}; {r.remedy}" for r in reading.rejected])
+    listed("problem", problems)
+    listed("not in the inventory", unknown)
+    _changed(changes)
+    click.echo(f"{reading.source}: {len(changes.changed):,} objects were given measurements")
 
 
 def _return(options: Options, version: int, wanted_json: bool) -> None:
@@ -147,14 +177,7 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
     c = done.changes.counts
     listed("new", list(done.changes.added))
     listed("gone", list(done.changes.removed))
-    listed(
-        "changed",
-        [
-            f"{number}: {field}: {_short(old)} -> {_short(new)}"
-            for number, fields in done.changes.changed.items()
-            for field, (old, new) in fields.items()
-        ],
-    )
+    _changed(done.changes)
     click.echo(f"inventory: {c.after:,} objects ({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed)")
     if dry_run:
         click.echo("dry run: nothing was written")
@@ -162,6 +185,18 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
         click.echo(f"log: {done.log}")
     else:
         click.echo("nothing has changed since the last import")
+
+
+def _changed(changes: "Difference") -> None:
+    listed(
+        "changed",
+        [
+            f"{number}: {field}: {_short(old)} -> {_short(new)}"
+            for number, fields in changes.changed.items()
+            for field, (old, new) in fields.items()
+            if field != "provenance"
+        ],
+    )
 
 
 def _short(value: Any) -> str:

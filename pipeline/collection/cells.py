@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from decimal import Context
 from math import isinf
 
-from pipeline.collection.mapping import ColumnMap
+from pipeline.collection.mapping import WRITTEN, ColumnMap
 from pipeline.collection.record import plausible, units_of
 from pipeline.collection.sources.rows import as_text
 from pipeline.records import Origin, Problem, Provenance, Support
@@ -44,6 +44,8 @@ class Cells:
         text = texts[0].strip(_SPACE)
         if _missing(text, column):
             return None
+        if column.unit == WRITTEN:
+            return self._written(name, column, text)
         value = self._parse(name, column, text)
         if value is None or any(value == m for m in column.missing if not isinstance(m, str)):
             return None
@@ -114,9 +116,29 @@ class Cells:
             return None
         return meaning
 
+    def plausible(self, name: str, value: float, written: str) -> bool:
+        """Say whether a number of a dimension text can be true; note it where it cannot."""
+        reason = _implausible(name, value)
+        if reason:
+            message = f"{_show(written)} = {value:.6g} {plausible()[name].unit} {reason}"
+            self.problems.append(Problem(name, message, "correct the text in the museum's database"))
+        return not reason
+
     def refuse(self, name: str, column: ColumnMap, message: str, remedy: str) -> None:
         """Note that a cell cannot be used, as its source says."""
         self._note(name, column, message, remedy)
+
+    def _written(self, name: str, column: ColumnMap, text: str) -> float | None:
+        from pipeline.collection.measured import of_cell
+
+        found = of_cell(text, plausible()[name].unit, self.decimal)
+        if found is None:
+            self._note(name, column, f"{_show(text)} is no number with its unit", "write it as in 23 cm or 8 1/2 in")
+            return None
+        if not self.plausible(name, found[0], text):
+            return None
+        self.provenance.append(Provenance(name, Origin.MEASURED, found[1]))
+        return found[0]
 
     def _parse(self, name: str, column: ColumnMap, text: str) -> float | None:
         plain = self._plain(text)

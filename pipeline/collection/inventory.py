@@ -27,9 +27,11 @@ from sqlalchemy import (
     update,
 )
 
+from pipeline.collection import supplement
 from pipeline.collection.database import METADATA
 from pipeline.collection.errors import CollectionError, ShrunkError
 from pipeline.collection.record import KINDS, to_items, to_records
+from pipeline.collection.supplement import filled_in, laid_over
 from pipeline.records import ITEM_FIELDS, Item
 
 if TYPE_CHECKING:
@@ -82,6 +84,7 @@ IMPORT_BATCH = Table(
     Column("rows", Integer(), nullable=False),
     Column("items", Integer(), nullable=False),
     Column("rejected", JSON(), nullable=False),
+    Column("kind", Text(), nullable=False, server_default="import"),
     Column("returned_to", Integer(), nullable=True),
     Column("added", Integer(), nullable=False, server_default="0"),
     Column("removed", Integer(), nullable=False, server_default="0"),
@@ -89,7 +92,8 @@ IMPORT_BATCH = Table(
 )
 """One row for each version: imported_at is ISO 8601 in UTC, rejected a JSON list of the rows that were kept out.
 
-returned_to : the version that this one gave back; null for an import
+kind        : "import" of the museum's records, "sheet" of our own measurements, or "return" to an earlier version
+returned_to : that earlier version
 """
 
 
@@ -107,6 +111,7 @@ class ImportInfo:
     rows: int
     items: int
     rejected: int
+    kind: str
     returned_to: int | None
     added: int
     removed: int
@@ -174,7 +179,8 @@ def replace_inventory(
     if not reading.items:
         raise CollectionError(f"{reading.source}: none of its {reading.rows} rows could be used. {_first(reading)}")
     with engine.begin() as connection:
-        found, digests = _difference(connection, reading.items)
+        items = laid_over(reading.items, supplement.current(connection))
+        found, digests = _difference(connection, items)
         lost = found.before - len(reading.items)
         if found.before and lost / found.before > shrink_limit:
             raise ShrunkError(
@@ -186,8 +192,43 @@ def replace_inventory(
         described = _described(reading)
         if not found and _says(connection, described):
             return found
-        _write(connection, reading.items, digests, found, described | _stamp(moment))
+        _write(connection, items, digests, found, described | _stamp(moment))
     return found
+
+
+def add_sheet(engine: Engine, reading: Reading, *, when: datetime | None = None) -> tuple[Difference, list[str]]:
+    """Lay a sheet of our own measurements over the inventory; it stays there through all later imports.
+
+    Cells that are empty change nothing; a later sheet's cell replaces an earlier one's.
+    returns : what changed, and the object numbers of the sheet that the inventory does not have (left out)
+    raises  : CollectionError for a sheet without any object of the inventory; ValueError for a time without a zone
+    """
+    moment = _moment(when)
+    with engine.begin() as connection:
+        now = list(_read(connection.execute(select(ITEM).where(ITEM.c.until.is_(None))).mappings()))
+        there = {item.object_number for item in now}
+        unknown = [item.object_number for item in reading.items if item.object_number not in there]
+        sheets = supplement.current(connection)
+        new = {}
+        for item in reading.items:
+            record = filled_in(item)
+            if record and item.object_number in there:
+                _, before = sheets.get(item.object_number, ("", {"provenance": []}))
+                older = [of for of in before["provenance"] if of["field"] not in record]
+                whole = before | record | {"provenance": [*older, *record["provenance"]]}
+                new[item.object_number] = (reading.source, whole)
+        if not new:
+            raise CollectionError(
+                f"{reading.source}: no row fills in anything for an object of the inventory. {_first(reading)}"
+            )
+        items = laid_over(now, new)
+        found, digests = _difference(connection, items)
+        if found:
+            version = _write(
+                connection, items, digests, found, _described(reading) | _stamp(moment) | {"kind": "sheet"}
+            )
+            supplement.store(connection, sheets | new, version)
+    return found, unknown
 
 
 def versions(engine: Engine) -> list[ImportInfo]:
@@ -213,7 +254,9 @@ def return_to(engine: Engine, version: int, *, when: datetime | None = None) -> 
         items = tuple(_read(connection.execute(select(ITEM).where(then)).mappings()))
         found, digests = _difference(connection, items)
         kept = {name: row[name] for name in ("source", "sha256", "mapping", "museum", "credit", "rows", "rejected")}
-        _write(connection, items, digests, found, kept | _stamp(moment) | {"returned_to": version})
+        back = kept | _stamp(moment) | {"kind": "return", "returned_to": version}
+        made = _write(connection, items, digests, found, back)
+        supplement.store(connection, supplement.current(connection, version), made)
     return found
 
 
@@ -226,7 +269,7 @@ def held(engine: Engine, sha256: str) -> int | None:
     if not known or known[0].returned_to is None:
         return None
     back = known[0].returned_to
-    left = {info.sha256 for info in known if info.id > back and info.returned_to is None}
+    left = {info.sha256 for info in known if info.id > back and info.kind == "import"}
     return back if sha256 in left else None
 
 
@@ -309,10 +352,10 @@ def _write(
     digests: Mapping[str, str],
     found: Difference,
     batch: Mapping[str, Any],
-) -> None:
+) -> int:
     counts = {"items": found.after, "added": len(found.added), "removed": len(found.removed)}
     record = {**batch, **counts, "changed": len(found.changed)}
-    version = connection.execute(insert(IMPORT_BATCH).values(record).returning(IMPORT_BATCH.c.id)).scalar_one()
+    version: int = connection.execute(insert(IMPORT_BATCH).values(record).returning(IMPORT_BATCH.c.id)).scalar_one()
     new = {*found.added, *found.changed}
     ended = [*found.removed, *found.changed]
     for start in range(0, len(ended), NAMED):
@@ -329,13 +372,14 @@ def _write(
         for record in records:
             record |= {"since": version, "until": None, "digest": digests[record["object_number"]]}
         connection.execute(insert(ITEM), records)
+    return version
 
 
 def _says(connection: Connection, described: Mapping[str, Any]) -> bool:
-    """Whether the newest version is an import of the same source, with the same rows kept out."""
-    newest = select(func.max(IMPORT_BATCH.c.id)).scalar_subquery()
+    """Whether the newest version, sheets of our own left out, is an import of the same source, row for row."""
+    newest = select(func.max(IMPORT_BATCH.c.id)).where(IMPORT_BATCH.c.kind != "sheet").scalar_subquery()
     row = connection.execute(select(IMPORT_BATCH).where(IMPORT_BATCH.c.id == newest)).mappings().one_or_none()
-    return row is not None and row["returned_to"] is None and all(row[k] == v for k, v in described.items())
+    return row is not None and row["kind"] == "import" and all(row[k] == v for k, v in described.items())
 
 
 def _read(rows: Iterable[Any]) -> Iterator[Item]:

@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.collection.cells import Cells
+from pipeline.collection.contradictions import contradictions
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, check_header
+from pipeline.collection.measured import fill
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
 from pipeline.collection.sources.delimited import RECORD_LIMIT
 from pipeline.collection.sources.opening import open_source
@@ -108,6 +110,9 @@ class _Desk:
                 self._columns.append((field, column, places))
         self._stores = {name.strip().casefold() for name in mapping.display.not_on_display}
         self._seen: dict[str, int] = {}
+        texts = mapping.dimensions
+        self._texts = texts and [names.index(source) for source in texts.columns if source in names]
+        self._mapping = mapping
         self._constants = {f: c.constant for f, c in mapping.columns.items() if c.constant is not None}
         self.items: list[Item] = []
         self.places: list[tuple[int, int]] = []
@@ -131,6 +136,15 @@ class _Desk:
             field: _READ[KINDS.get(field, "number")](cells, field, column, [row.cells[i] for i in places])
             for field, column, places in self._columns
         }
+        self._spread_diameter(values, cells)
+        if self._texts and self._mapping.dimensions is not None:
+            found = [row.cells[i] for i in self._texts]
+            fill(values, cells, self._mapping.dimensions, found, self._decimal)
+        for field, problem in contradictions(values):
+            cells.problems.append(problem)
+            if field:
+                values[field] = None
+                cells.provenance = [of for of in cells.provenance if of.field != field]
         number = values["object_number"]
         if not number:
             self._reject(row, "object_number", "the object has no number", "give it one in the museum's database")
@@ -146,7 +160,6 @@ class _Desk:
             self.places.append((row.number, row.line))
 
     def _item(self, values: dict[str, Any], cells: Cells) -> Item:
-        self._spread_diameter(values, cells)
         said = values.pop("on_display", None)
         gallery = values["gallery"]
         on_display = gallery.casefold() not in self._stores and said is not False

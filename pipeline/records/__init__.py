@@ -6,6 +6,7 @@ from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress
 from pipeline.records.result import Assessment, Check, Finding, Recommendation, RunRecord, Verdict
 from pipeline.records.scene import ITEM_FIELDS, Estimate, Item, Origin, Problem, Provenance, Scene, Support
+from pipeline.records.wish import Wish
 
 __all__ = [
     "ITEM_FIELDS",
@@ -35,5 +36,6 @@ __all__ = [
     "Scene",
     "Support",
     "Verdict",
+    "Wish",
     "Zone",
 ]

@@ -13,6 +13,7 @@ def upgrade() -> None:
     """Give every object the version that it is of: the last import brought all that is there."""
     for name in ("added", "removed", "changed"):
         op.add_column("import_batch", sa.Column(name, sa.Integer(), nullable=False, server_default="0"))
+    op.add_column("import_batch", sa.Column("kind", sa.Text(), nullable=False, server_default="import"))
     op.add_column("import_batch", sa.Column("returned_to", sa.Integer(), nullable=True))
     for name in ("aat", "dimensions", "digest"):
         op.add_column("item", sa.Column(name, sa.Text(), nullable=False, server_default=""))
@@ -26,6 +27,16 @@ def upgrade() -> None:
         for name in ("aat", "dimensions", "digest", "provenance", "since"):
             item.alter_column(name, server_default=None)
     op.create_index("ix_item_until", "item", ["until"])
+    op.create_table(
+        "supplement",
+        sa.Column("object_number", sa.Text(), nullable=False),
+        sa.Column("since", sa.Integer(), autoincrement=False, nullable=False),
+        sa.Column("until", sa.Integer(), nullable=True),
+        sa.Column("source", sa.Text(), nullable=False),
+        sa.Column("record", sa.JSON(), nullable=False),
+        sa.PrimaryKeyConstraint("object_number", "since", name="pk_supplement"),
+    )
+    op.create_index("ix_supplement_until", "supplement", ["until"])
 
 
 def downgrade() -> None:
