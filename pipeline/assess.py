@@ -5,7 +5,7 @@ from collections.abc import MutableMapping, Sequence
 from pipeline.charting import SHELF, Shelf
 from pipeline.climb import AUTO, Effort, examine
 from pipeline.findings import findings
-from pipeline.plan import EAST, Plan, plan
+from pipeline.plan import Plan, plan
 from pipeline.records import Executor, Finding, Progress, Scene
 from pipeline.verdicts import Judgement, LevelMotions, capacity_of, judge
 
@@ -25,19 +25,18 @@ def assess(
     azimuth_step: float = 10.0,
     charts: Shelf = SHELF,
     outcomes: bool = True,
-    x_azimuth: float = EAST,
     efforts: MutableMapping[str, Effort] | None = None,
 ) -> tuple[Plan, list[list[Finding]]]:
     """Run everything the scenes require under every motion and judge it.
 
+    levels    : of one site, at least one
     fidelity  : one of FIDELITIES; `auto` gives the verdicts of `history`
     charts    : where charts are found and kept
     outcomes  : whether to find numbers beyond the verdict: what fails, by how much, and what it does then
-    x_azimuth : degrees clockwise from north of the x axis of the motions
     efforts   : what the verdicts took is added here, by the name of the model
-    returns   : the plan (with the reasons for models not run) and the findings of each scene, in the order of the scenes
+    returns   : the plan (with the reasons for models not run) and the findings of each scene, in their order
     """
-    todo = plan(scenes, x_azimuth)
+    todo = plan(scenes, levels[0].x_azimuth)
     found: list[list[Finding]] = [[] for _ in scenes]
     total = len(todo.work) * sum(len(level.motions) for level in levels)
     done = 0
@@ -63,4 +62,3 @@ def assess(
             done += len(level.motions)
             progress.step("analyses", done, total)
     return todo, found
-

@@ -88,6 +88,18 @@ class Effort:
     numbers: int = 0
     needing: int = 0
 
+    def plain(self) -> dict[str, int]:
+        """Return the counts by name."""
+        names = ("certificate", "chart", "history")
+        return {
+            "analyses": self.analyses,
+            **dict(zip(names, self.decided, strict=True)),
+            "needing_history": self.needing,
+            "sets": self.sets,
+            "histories_for_verdicts": self.verdicts,
+            "histories_for_numbers": self.numbers,
+        }
+
     def add(self, other: "Effort") -> None:
         """Add what another level or floor took."""
         self.analyses += other.analyses
@@ -147,7 +159,7 @@ class Climb:
             rows = [self._unknown(case, found) for found in self.found]
             self.effort.verdicts += self._up(Step.HISTORY, [r[f.step[r] == Step.BOUND] for r, f in self._with(rows)])
             # Without `auto` nothing is decided before the last step.
-            steps = [case.spans.highest(found.step) for found in self.found]
+            steps = [case.spans.furthest(found.step) for found in self.found]
             self.decided[case.analyses] = np.max(steps, axis=0)
         else:
             self._look_up(case)
@@ -191,7 +203,7 @@ class Climb:
         """Add up by what the analyses of a case were decided, and how many needed any history."""
         for step in Step:
             self.effort.decided[step] += int(np.count_nonzero(self.decided[case.analyses] == step))
-        steps = [case.spans.highest(found.step) for found in self.found]
+        steps = [case.spans.furthest(found.step) for found in self.found]
         self.effort.needing += int(np.count_nonzero(np.max(steps, axis=0) == Step.HISTORY))
 
     def _with(self, rows: Sequence[Indices]) -> list[tuple[Indices, Demands]]:
@@ -243,7 +255,7 @@ class Climb:
             for asked, capacity in ((known.may_pass, part.capacity[0]), (known.may_fail, part.capacity[2])):
                 limit = spread(capacity)[:, None]
                 straddles = (low[rows] <= limit) & (high[rows] > limit)
-                needed |= straddles & spread(asked[chosen])[:, None]
+                needed |= straddles & np.repeat(asked[chosen], part.spans.lengths)[:, None]
         return np.unique(rows[needed])
 
     def _unknown(self, case: Case, found: Demands) -> Indices:
@@ -251,20 +263,17 @@ class Climb:
         return rows[found.low[case.output][rows] < found.high[case.output][rows]]
 
     def _numbers(self, part: Case) -> list[Indices]:
-        """Return the rows that may be the highest, or the governing best estimate, and are no better than bounded."""
+        """Return the rows that may have a say in the range of the demand, and are no better known than by a bound."""
         output, spans = part.output, part.spans
         mean = self.level.combine == "mean"
-        bests = spans.rows[spans.starts]
-        highest = np.max([spans.highest(found.low[output]) for found in self.found], axis=0)
-        governing = np.max([found.low[output][bests].max(axis=1) for found in self.found], axis=0)
+        # Of a maximum, what lies below the lowest that it can be under any one motion is never heard of.
+        lowest = np.max([spans.lowest(found.low[output]) for found in self.found], axis=0)
         out = []
         for found in self.found:
-            high = found.high[output]
-            every = mean | (high[spans.rows] > spans.spread(highest)[:, None])
-            first = mean | (high[bests] > governing[:, None])
-            rows = np.unique(np.concatenate([spans.rows[every], bests[first]]))
-            bounds = (found.step[rows] == Step.BOUND) & (found.low[output][rows] < high[rows])
-            out.append(rows[bounds])
+            low, high = found.low[output], found.high[output]
+            heard = mean | (high[spans.rows] > spans.spread(lowest)[:, None])
+            rows = np.unique(spans.rows[heard])
+            out.append(rows[(found.step[rows] == Step.BOUND) & (low[rows] < high[rows])])
         return out
 
     def _up(self, step: Step, rows: Sequence[Indices]) -> int:
@@ -272,9 +281,7 @@ class Climb:
         fresh = [(r[f.step[r] < step], f) for r, f in self._with(rows)]
         if step is Step.CHART:
             thrifty = self.fidelity == AUTO
-            self.executor.map(
-                lambda one: chart(one[1], one[0], self.charts, self.azimuth_step, thrifty=thrifty), fresh
-            )
+            self.executor.map(lambda one: chart(one[1], one[0], self.charts, self.azimuth_step, thrifty=thrifty), fresh)
             return 0
         how = self.integrated
         return sum(integrate(found, some, self.executor, how, self.azimuth_step) for some, found in fresh)

@@ -184,9 +184,7 @@ def _run(task: _RunTask) -> Columns:
 def integrate(found: Demands, rows: Indices, executor: Executor, fidelity: str, azimuth_step: float) -> int:
     """Integrate some rows, in chunks on the executor; return how many there were."""
     work = found.work
-    parts = [
-        (angle, group[i : i + CHUNK]) for angle, group in work.by_angle(rows) for i in range(0, group.size, CHUNK)
-    ]
+    parts = [(angle, group[i : i + CHUNK]) for angle, group in work.by_angle(rows) for i in range(0, group.size, CHUNK)]
     tasks: list[_RunTask] = [
         (work.model, found.motion, angle, work.some(chunk), fidelity, azimuth_step) for angle, chunk in parts
     ]

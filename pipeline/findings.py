@@ -13,7 +13,7 @@ from pipeline.plan import Indices, Work
 from pipeline.quantities import Array
 from pipeline.records import Columns, Estimate, Finding, Mark, Model, Origin, Scene, Verdict
 from pipeline.response import run_model
-from pipeline.verdicts import LevelMotions, utilisation
+from pipeline.verdicts import LevelMotions, Mask, utilisation
 
 _DECIDED = {Step.BOUND: "certificate", Step.CHART: "chart", Step.HISTORY: "history"}
 
@@ -32,7 +32,7 @@ class _Numbers:
     used: Array
     motion: Indices
     row: Indices
-    at_most: Array
+    at_most: Mask
     slack: Array
 
 
@@ -40,11 +40,11 @@ def _numbers(climb: Climb, case: Case) -> _Numbers:
     level, spans = climb.level, case.spans
     points = [found.points(case.output) for found in climb.found]
     demand = level.over([spans.best(high) for _, high in points])
-    slack = demand - level.over([spans.best(low) for low, _ in points])
+    slack = _gap(level.over([spans.best(low) for low, _ in points]), demand)
     motion, row = climb.governing(case)
     if level.combine == "max":
         # Under the other motions it may be less by more.
-        slack = np.choose(motion, [high[row] - low[row] for low, high in points])
+        slack = np.array([_gap(low[row], high[row]) for low, high in points])[motion, np.arange(row.size)]
     return _Numbers(
         demand,
         level.over([spans.lowest(low) for low, _ in points]),
@@ -52,9 +52,14 @@ def _numbers(climb: Climb, case: Case) -> _Numbers:
         utilisation(demand, case.capacity[1]),
         motion,
         row,
-        slack > 0.0,
+        np.asarray(slack > 0.0),
         slack,
     )
+
+
+def _gap(low: Array, high: Array) -> Array:
+    # Infinite demands, as where contact is lost, are known exactly.
+    return np.subtract(high, low, out=np.zeros_like(high), where=high > low)
 
 
 def findings(climb: Climb, case: Case, known: Known, scenes: Sequence[Scene]) -> list[Finding]:

@@ -10,12 +10,10 @@ from numpy.typing import NDArray
 from pipeline.models import MODELS
 from pipeline.quantities import Array
 from pipeline.records import Model, Scene
+from pipeline.verdicts import EAST
 
 Indices = NDArray[np.intp]
 """Places in another array, (n,)."""
-
-EAST = 90.0
-"""Azimuth of the x axis [degrees clockwise from north] where a site does not say another."""
 
 
 @dataclass(frozen=True)
@@ -57,9 +55,13 @@ class Spans:
         """Return the lowest demand of each analysis, (m,)."""
         return np.asarray(np.minimum.reduceat(self.each(column), self.starts))
 
+    def furthest(self, steps: NDArray[np.int8]) -> NDArray[np.int8]:
+        """Return the largest of steps (k,) of each analysis, (m,)."""
+        return np.asarray(np.maximum.reduceat(steps[self.rows].max(axis=1), self.starts))
+
     def best(self, column: Array) -> Array:
         """Return the demand of each analysis by its best estimates, (m,)."""
-        return column[self.rows[self.starts]].max(axis=1)
+        return np.asarray(column[self.rows[self.starts]].max(axis=1))
 
     def spread(self, each: Array) -> Array:
         """Return what is said of each analysis, (m,), set by set, (v,)."""

@@ -9,16 +9,23 @@ from numpy.typing import NDArray
 from pipeline.quantities import Array
 from pipeline.records import Estimate, Model, Motion, Origin, Scene, Verdict
 
+EAST = 90.0
+"""Azimuth of the x axis where a site does not turn it [degrees clockwise from north]."""
+
 Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
 class LevelMotions:
-    """The motions of one level of the site, and how their demands are combined ("max" or "mean")."""
+    """The motions of one level of the site, and how their demands are combined ("max" or "mean").
+
+    x_azimuth : degrees clockwise from north of their x axis
+    """
 
     name: str
     combine: str
     motions: tuple[Motion, ...]
+    x_azimuth: float = EAST
 
     def combined(self, each: Sequence[float] | Array) -> float:
         """Return the demand of the level from that under each of its motions."""

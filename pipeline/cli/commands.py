@@ -137,7 +137,7 @@ def _check_numerics(options: Options, as_json: bool) -> None:
 @click.option("--gallery", "galleries", multiple=True, help="Only this gallery; may be repeated.")
 @click.option("--object", "objects", multiple=True, help="Only this object number; may be repeated.")
 @click.option("--site", help="Another site's folder, or 'demo'.")
-@click.option("--fidelity", type=click.Choice(["chart", "history", "reference"]), help="How finely to look.")
+@click.option("--fidelity", type=click.Choice(["auto", "chart", "history", "reference"]), help="How finely to look.")
 @click.option("--dry-run", is_flag=True, help="Assess and summarise; store and publish nothing.")
 @as_json
 @click.pass_obj

@@ -14,6 +14,7 @@ from pipeline.assess import assess
 from pipeline.charting import Shelf
 from pipeline.charts import chart_keys, charts, picture_version
 from pipeline.classify import classify
+from pipeline.climb import Effort
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
@@ -30,6 +31,7 @@ from pipeline.jobs.workspace import (
 )
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import advise
+from pipeline.models import model_named
 from pipeline.motions.site import Level, Site, read_site
 from pipeline.records import Assessment, Chart, Executor, Item, Motion, Progress, RunRecord, Verdict
 from pipeline.report import Units, publish, render
@@ -39,6 +41,10 @@ from pipeline.store.runs import compare_runs, save_run
 
 if TYPE_CHECKING:
     from pipeline.store.changes import RunChanges
+
+
+EFFORTS = "efforts"
+"""Key of a run's settings: what the verdicts of each model took."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +65,7 @@ class Summary:
 
     objects       : all that were looked at; act + open + safe + cannot is the same number
     missing       : why objects could not be assessed, with how many of each
+    efforts       : what the verdicts of each model took, see `pipeline.climb.Effort`
     report        : the report's index, None for a dry run
     """
 
@@ -77,6 +84,7 @@ class Summary:
     measures: Mapping[str, int]
     missing: Mapping[str, int]
     first: Sequence[str]
+    efforts: Sequence[Mapping[str, Any]] = ()
     report: Path | None = None
     latest: Path | None = None
     changes: "RunChanges | None" = field(default=None, repr=False)
@@ -182,10 +190,12 @@ def assess_items(
     assessments: dict[int, Assessment] = {}
     # Motions that two floors share (one record for several) are drawn once.
     motions = {one.motion.hash: one.motion for f in floors for level in f.levels for one in level.motions}
+    efforts: dict[str, Effort] = {}
     with charts_of(settings, motions) as shelf:
-        for storey in floors:
-            _assess_storey(storey, items, settings, executor, progress, shelf, assessments)
+        # The pictures first: the verdicts use their charts.
         drawn = _charts(workspace, list(motions.values()), executor, progress, shelf)
+        for storey in floors:
+            _assess_storey(storey, items, settings, executor, progress, shelf, assessments, efforts)
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
         picture = tradeoff.picture(measured)
@@ -201,7 +211,7 @@ def assess_items(
         site=site.name,
         museum=settings.museum.name or (info.museum if info else ""),
         level_notes=(*levels_said, *notes(settings, site, {item.gallery for item in inventory})),
-        settings=_stored_settings(settings, info.credit if info else "", tested),
+        settings=_stored_settings(settings, info.credit if info else "", tested, efforts),
         assessments=tuple(assessments[index] for index in range(len(items))),
         charts=drawn,
         motions=tuple(summary for storey in floors for summary in storey.summaries),
@@ -217,6 +227,7 @@ def _assess_storey(
     progress: Progress,
     shelf: Shelf,
     assessments: dict[int, Assessment],
+    efforts: dict[str, Effort],
 ) -> None:
     scenes = [replace(classify(items[index]), floor=storey.name) for index in storey.members]
     levels = storey.shaking
@@ -228,6 +239,7 @@ def _assess_storey(
         fidelity=settings.analysis.fidelity,
         azimuth_step=settings.analysis.azimuth_step,
         charts=shelf,
+        efforts=efforts,
     )
     scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
     advice = advise(scenes, findings, levels, executor, progress)
@@ -235,7 +247,9 @@ def _assess_storey(
         assessments[index] = Assessment(scene, tuple(found), tuple(advised))
 
 
-def _stored_settings(settings: Settings, credit: str, tested: selftest.SelfTest | None) -> dict[str, Any]:
+def _stored_settings(
+    settings: Settings, credit: str, tested: selftest.SelfTest | None, efforts: Mapping[str, Effort]
+) -> dict[str, Any]:
     # Never the database's address: it may hold a password.
     return {
         KERNELS: KERNEL_VERSION,
@@ -245,6 +259,7 @@ def _stored_settings(settings: Settings, credit: str, tested: selftest.SelfTest 
         "length": settings.report.length,
         "site": settings.site.folder,
         "floors": settings.floors.model_dump(),
+        EFFORTS: [{"title": model_named(name).title, **effort.plain()} for name, effort in efforts.items()],
         "numerics": None if tested is None else tested.plain(),
     }
 
@@ -309,6 +324,7 @@ def summarise(record: RunRecord) -> Summary:
         measures=dict(Counter(advised.title for advised in advice).most_common()),
         missing=dict(missing.most_common()),
         first=_first(record),
+        efforts=record.settings.get(EFFORTS, ()),
     )
 
 
