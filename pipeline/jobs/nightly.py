@@ -104,7 +104,7 @@ def run(
         workspace = open_workspace(settings)
         _refresh(workspace, progress, dry_run=dry_run)
         inventory = read_inventory(workspace.engine)
-        items = _choose(inventory, chosen)
+        items = named(inventory, galleries=chosen.galleries, objects=chosen.objects)
         site = _read_site(workspace, progress)
         record = assess_items(workspace, items, inventory, site, started, progress)
         record = replace(record, settings={**record.settings, SELECTION: bool(chosen)})
@@ -135,16 +135,19 @@ def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None
     progress.step("collection", 1, 1)
 
 
-def _choose(items: list[Item], selection: Selection) -> list[Item]:
+def named(items: Sequence[Item], *, galleries: Sequence[str] = (), objects: Sequence[str] = ()) -> list[Item]:
+    """Return the items of these galleries and with these numbers; nothing named means all.
+
+    raises : EmptyCollectionError where there are none; UsageError for an unknown name, with close ones
+    """
     if not items:
         raise EmptyCollectionError("the inventory is empty: import the museum's export first (`kouros import FILE`)")
-    _known("gallery", selection.galleries, {item.gallery for item in items})
-    _known("object", selection.objects, {item.object_number for item in items})
+    _known("gallery", galleries, {item.gallery for item in items})
+    _known("object", objects, {item.object_number for item in items})
     return [
         item
         for item in items
-        if (not selection.galleries or item.gallery in selection.galleries)
-        and (not selection.objects or item.object_number in selection.objects)
+        if (not galleries or item.gallery in galleries) and (not objects or item.object_number in objects)
     ]
 
 
