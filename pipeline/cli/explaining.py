@@ -66,7 +66,7 @@ def _reasoning(reasoning: "Reasoning") -> Iterator[str]:
     if finding.screen:
         yield f"    screen    {finding.screen} (never decides)"
     for taken in reasoning.taken:
-        yield f"    {taken.step:<10}{taken.motion}, {taken.inputs}: {_taken(taken)}"
+        yield f"    {taken.step:<10}{taken.motion}, {taken.inputs}: {taken.told or _taken(taken)}"
     yield f"    capacity  {_estimate(reasoning.capacity)}"
     at_most = "at most " if finding.fidelity == "bound" and finding.error else ""
     yield f"    demand    {at_most}{_number(finding.demand)} ({_number(finding.low)} to {_number(finding.high)})"

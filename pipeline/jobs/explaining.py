@@ -30,6 +30,7 @@ class Taken:
     step       : bound, chart, or the fidelity that was integrated at
     low, high  : between these the demand lies; of a chart its value less and plus its error, of a history the same
     error      : as the chart or the history states it; None of a bound
+    told       : what the object does then, where the history tells
     """
 
     motion: str
@@ -38,6 +39,7 @@ class Taken:
     low: float
     high: float
     error: float | None = None
+    told: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +123,7 @@ def _reason(
     for found, bound in zip(examined.climb.found, bounds, strict=True):
         low, high = bound[case.output]
         exact = work.model.exact and case.output == work.model.demand
-        for row in range(work.size):
+        for row in dict.fromkeys(work.spans.rows.ravel().tolist()):
             # Only `auto` asks for bounds besides certificates.
             if analysis.fidelity == AUTO or low[row] == high[row]:
                 taken.append(Taken(found.motion.name, names[row], "bound", float(low[row]), float(high[row])))
@@ -132,7 +134,9 @@ def _reason(
                 value = float(low[row]) if exact else float(columns[case.output][at])
                 error = 0.0 if exact else float(columns["error"][at])
                 off = error if fidelity == "chart" else 0.0
-                taken.append(Taken(found.motion.name, names[row], fidelity, value - off, value + off, error))
+                one = {name: float(column[at]) for name, column in columns.items()}
+                told = work.model.outcome(one, {name: float(v[row]) for name, v in work.values.items()})[1]
+                taken.append(Taken(found.motion.name, names[row], fidelity, value - off, value + off, error, told))
     return Reasoning(finding, case.estimates[0], tuple(taken))
 
 
