@@ -160,8 +160,10 @@ def bounded(work: Work, motion: Motion, outputs: Sequence[str], executor: Execut
         for output in outputs:
             if output in bounds:
                 least, most = bounds[output]
-                low[output][rows] = least - HISTORY_ERROR * np.abs(least)
-                high[output][rows] = most + HISTORY_ERROR * np.abs(most)
+                # A yes or a no has no error.
+                off = 0.0 if model.output(output).unit == "bool" else HISTORY_ERROR
+                low[output][rows] = least - off * np.abs(least)
+                high[output][rows] = most + off * np.abs(most)
             if certificate is None:
                 continue
             if model.rests is not None:

@@ -79,7 +79,7 @@ def findings(climb: Climb, case: Case, known: Known, scenes: Sequence[Scene]) ->
     ):
         scene, motion, said = scenes[index], level.motions[at], rows.said(row, at)
         other = model.otherwise(scene)
-        sentence = model.at_most if at_most else other[2] if other else model.sentence
+        sentence = other[2] if other else model.at_most if at_most else model.sentence
         marked = model.mark(said.parameters, demand)
         out.append(
             Finding(

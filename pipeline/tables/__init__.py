@@ -4,10 +4,13 @@ import csv
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 Row = Mapping[str, str]
+
+PAIRS = 4096
+"""Pairs of materials that are remembered: a collection names a few, over and over."""
 
 FOLDER = Path(__file__).resolve().parent
 
@@ -82,6 +85,7 @@ def material_in(text: str) -> Row | None:
     return min(found, key=lambda pair: pair[0])[1] if found else None
 
 
+@lru_cache(PAIRS)
 def friction_of(object_material: str = "", surface_material: str = "") -> Range:
     """Return the friction of a pair (paper's Table 3): the median and the span of all rows that are not ruled out.
 
@@ -96,6 +100,7 @@ def friction_of(object_material: str = "", surface_material: str = "") -> Range:
     return _span(rows, "friction")
 
 
+@lru_cache(PAIRS)
 def damping_of(wall_surface: str = "", back_surface: str = "") -> Range:
     """Return the damping of a painting against its wall (paper's Table 4).
 
