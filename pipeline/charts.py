@@ -80,7 +80,11 @@ def charts(motion: Motion, executor: Executor, shelf: Shelf) -> dict[str, Chart]
 
 
 def _curve(label: str, x: Sequence[float] | Array, y: Sequence[float] | Array) -> Curve:
-    return Curve(label, tuple(float(f"{v:.5g}") for v in x), tuple(float(f"{v:.5g}") for v in y))
+    return Curve(label, tuple(map(_rounded, x)), tuple(map(_rounded, y)))
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.5g}")
 
 
 def sliding_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, float]) -> ResponseChart:
@@ -100,9 +104,11 @@ def isolator_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, float]) -> Res
 
 def _pictured(made: ResponseChart, label: str) -> Curve:
     """Return the curve of a response chart's first output: through its nodes, read between them as a lookup reads."""
-    along = np.union1d(made.nodes, np.geomspace(made.low, made.high, SMOOTH))
+    along = np.concatenate([made.nodes, np.geomspace(made.low, made.high, SMOOTH)])
     if made.settled < made.axis.high:
         along = np.append(along, made.axis.high)
+    # Read where the rounded points stand: next to a kink the chart's nodes are nearer than five digits tell apart.
+    along = np.unique([_rounded(value) for value in along])
     return _curve(label, along, made.look(along).columns[made.outputs[0]])
 
 

@@ -39,6 +39,7 @@ class Collection(_Part):
     source: str = Field(default="", description="the file to import")
     mapping: str = Field(default="kouros", description="a preset, or the file of a mapping")
     shrink_limit: float = Field(default=0.2, ge=0.0, le=1.0, description="share of objects that may vanish at once")
+    rules: str = Field(default="", description="a CSV file of your own rules of classification, read before Kouros's")
 
 
 class SiteFolder(_Part):
@@ -162,6 +163,8 @@ database = "kouros.sqlite"
 source = {source}
 # A preset (carnegie, kouros) or the file of your own mapping.
 mapping = {mapping}
+# A CSV file of your own rules of classification, with the columns of Kouros's table; they are read before it.
+rules = ""
 # A night that finds this share of objects fewer than the last one publishes nothing.
 shrink_limit = 0.2
 

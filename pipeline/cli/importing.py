@@ -1,6 +1,7 @@
 """The verb `import`: the museum's records into the inventory, and its earlier versions."""
 
 import json
+import sys
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 @click.option("--mapping", help="A preset (see --presets) or the file of your mapping; default: the settings'.")
 @click.option("--shrink-limit", type=click.FloatRange(0.0, 1.0), help="Share of objects that may vanish at once.")
 @click.option("--dry-run", is_flag=True, help="Read, and say what would change; write nothing.")
+@click.option("--guess", is_flag=True, help="Propose a mapping from the columns, and show ten rows as understood.")
+@click.option("--write", type=click.Path(dir_okay=False, path_type=Path), help="With --guess: write it here, unasked.")
 @click.option("--sheet", is_flag=True, help="SOURCE is a survey's sheet that was filled in: lay it over the inventory.")
 @click.option("--presets", is_flag=True, help="List the mappings that come with Kouros.")
 @click.option("--versions", is_flag=True, help="List the versions of the inventory, one for each import.")
@@ -32,6 +35,8 @@ def import_(
     mapping: str | None,
     shrink_limit: float | None,
     dry_run: bool,
+    guess: bool,
+    write: Path | None,
     sheet: bool,
     presets: bool,
     versions: bool,
@@ -52,6 +57,8 @@ def import_(
         _versions(options, as_json)
     elif return_to is not None:
         _return(options, return_to, as_json)
+    elif source is not None and guess:
+        _guess(Path(source), write, as_json)
     elif source is not None and sheet:
         _sheet(options, source, as_json)
     elif source is not None:
@@ -85,6 +92,37 @@ def _versions(options: Options, wanted_json: bool) -> None:
             f"{info.id:>5}  {info.imported_at}  {info.items:>9,} objects  "
             f"({info.added:,} new, {info.removed:,} gone, {info.changed:,} changed)  {what}"
         )
+
+
+def _guess(source: Path, target: Path | None, wanted_json: bool) -> None:
+    from pipeline.jobs.importing import proposed
+
+    found = proposed(source)
+    if wanted_json:
+        answer = {
+            "mapping": found.guess.text,
+            "doubts": found.guess.doubts,
+            "rows": found.rows,
+            "examples": found.examples,
+        }
+        click.echo(json.dumps(answer, indent=2, ensure_ascii=False))
+    else:
+        click.echo(found.guess.text)
+        click.echo(f"{found.rows:,} rows, {found.items:,} objects; ten of them as understood:")
+        for line in found.examples:
+            click.echo(f"  {line}")
+        listed("to look at", list(found.guess.doubts))
+        listed("suspicion", [f"{s.message}; {s.remedy}" for s in found.suspicions])
+    if target is None and not wanted_json and sys.stdin.isatty():
+        name = source.with_suffix(".toml").name
+        if click.confirm(f"Is that right? Write it to {name}?"):
+            target = Path(name)
+    if target is not None:
+        with target.open("x", encoding="utf-8") as stream:
+            stream.write(found.guess.text)
+        click.echo(f"written: {target}; now: kouros import {source.name} --mapping {target} --dry-run", err=wanted_json)
+    elif not wanted_json:
+        click.echo("nothing was written; --write FILE writes it")
 
 
 def _sheet(options: Options, source: str, wanted_json: bool) -> None:

@@ -41,7 +41,7 @@ def contradictions(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
 
 
 def _density(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
-    sides = [values.get(side) for side in ("height_m", "width_m", "depth_m")]
+    sides = [float(values.get(side) or 0.0) for side in ("height_m", "width_m", "depth_m")]
     mass = values.get("mass_kg")
     if mass is None or not all(sides):
         return []

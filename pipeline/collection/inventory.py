@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
-from hashlib import blake2b
 from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import (
@@ -30,7 +28,7 @@ from sqlalchemy import (
 from pipeline.collection import supplement
 from pipeline.collection.database import METADATA
 from pipeline.collection.errors import CollectionError, ShrunkError
-from pipeline.collection.record import KINDS, to_items, to_records
+from pipeline.collection.record import KINDS, digest_of, to_items, to_records
 from pipeline.collection.supplement import filled_in, laid_over
 from pipeline.records import ITEM_FIELDS, Item
 
@@ -304,7 +302,7 @@ def _difference(connection: Connection, items: Sequence[Item]) -> tuple[Differen
     old = {row.object_number: row.digest for row in connection.execute(now)}
     added, differing, digests = [], {}, {}
     for item in items:
-        digest = _digest(item)
+        digest = digest_of(item)
         before = old.get(item.object_number)
         if before == digest:
             continue
@@ -325,17 +323,6 @@ def _difference(connection: Connection, items: Sequence[Item]) -> tuple[Differen
 def _fields_changed(then: Item, now: Item) -> dict[str, tuple[Any, Any]]:
     before, after = to_records([then, now])
     return {name: (before[name], after[name]) for name in ITEM_FIELDS if before[name] != after[name]}
-
-
-def _digest(item: Item) -> str:
-    # Only what is recorded: a field that a later version of Kouros adds leaves the digests of old records alone.
-    record = {name: value for name in ITEM_FIELDS if (value := getattr(item, name)) not in (None, "", ())}
-    text = json.dumps(record, default=_plain, ensure_ascii=True, sort_keys=True, separators=(",", ":"))
-    return blake2b(text.encode(), digest_size=16).hexdigest()
-
-
-def _plain(value: Any) -> Any:
-    return asdict(value)
 
 
 def _named(connection: Connection, numbers: Sequence[str]) -> Iterator[tuple[str, Item]]:

@@ -288,13 +288,17 @@ def mapping_schema() -> dict[str, Any]:
         field: {
             "$ref": "#/$defs/ColumnMap",
             "required": ["unit"],
-            "properties": {"unit": {"enum": list(units_of(field))}},
+            "properties": {"unit": {"enum": [*units_of(field), WRITTEN]}},
         }
         if units_of(field)
         else {"$ref": "#/$defs/ColumnMap", "not": {"required": ["unit"]}}
         for field in MAPPABLE
     }
-    schema["$defs"]["ColumnMap"]["oneOf"] = [{"required": ["column"]}, {"required": ["columns"]}]
+    schema["$defs"]["ColumnMap"]["oneOf"] = [
+        {"required": ["column"]},
+        {"required": ["columns"]},
+        {"required": ["constant"]},
+    ]
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 

@@ -25,6 +25,9 @@ FIELDS: Mapping[str, tuple[str, ...]] = {
 AGREE_ABSOLUTE, AGREE_RELATIVE = 0.003, 0.03
 """Two numbers for one thing contradict each other where they differ by more than both: 3 mm (or 3 g) and 3 %."""
 
+_PART = "weight of a part"
+"""How the reason of a weight begins that is not the whole object's."""
+
 _WORTH_A_WORD = {
     "contradiction": "measure it again, and correct the text in the museum's database",
     "conversion": "measure it again, and correct the text in the museum's database",
@@ -42,7 +45,9 @@ def fill(values: dict[str, Any], cells: Cells, mapping: Texts, texts: Sequence[s
     texts  : of the mapping's columns, in its order; the first that says something counts
     """
     column = ColumnMap(columns=mapping.columns, separator="; ")
-    values["dimensions"] = cells.text("dimensions", column, texts, limit=TEXT_LIMIT)
+    # Lines are how such texts are written, and no fault of theirs.
+    lines = ["; ".join(filter(None, (line.strip() for line in text.splitlines()))) for text in texts]
+    values["dimensions"] = cells.text("dimensions", column, lines, limit=TEXT_LIMIT)
     given = {field for field in FIELDS_FILLED if values.get(field) is not None}
     for text in texts:
         if text.strip():
@@ -60,9 +65,13 @@ def _fill_from(values: dict[str, Any], given: set[str], cells: Cells, read: Dime
         if choice is None:
             continue
         found = True
+        if what == "mass" and choice.why.startswith(_PART):
+            message = f"only a part is weighed ({choice.value:.4g} kg), which is not the mass of the object"
+            cells.problems.append(Problem("mass_kg", message, "weigh the whole object"))
+            continue
         for field in fields:
             if field in given:
-                _compare(field, values[field], choice, read, cells)
+                _compare(field, values[field], choice, cells)
             elif values.get(field) is None and cells.plausible(
                 field, choice.value, read.text[choice.start : choice.end]
             ):
@@ -71,12 +80,12 @@ def _fill_from(values: dict[str, Any], given: set[str], cells: Cells, read: Dime
     for note in read.notes:
         if note.kind in _WORTH_A_WORD:
             cells.problems.append(Problem("dimensions", note.message, _WORTH_A_WORD[note.kind]))
-    if not found and any(c.isdigit() for c in read.text) and not read.parts:
+    if not found and any(c.isdigit() for c in read.text) and not read.parts and not read.having("left_out"):
         message = f"no dimension could be read from {read.text[:80]!r}"
         cells.problems.append(Problem("dimensions", message, "write it as in H 10 x W 5 x D 3 cm"))
 
 
-def _compare(field: str, value: float, choice: Choice, read: Dimensions, cells: Cells) -> None:
+def _compare(field: str, value: float, choice: Choice, cells: Cells) -> None:
     if any(p.field == field and p.message.startswith("the text says") for p in cells.problems):
         return
     if abs(value - choice.value) > max(AGREE_ABSOLUTE, AGREE_RELATIVE * max(value, choice.value)):
@@ -98,6 +107,11 @@ def written(part: Part, read: Dimensions) -> str:
     """Return the number of a part as it was written, with the unit that it is in."""
     characters = read.written(part)
     return characters if part.unit_text and part.unit_text in characters else f"{characters} {part.unit}".strip()
+
+
+def is_dimension(text: str) -> bool:
+    """Whether a text that should name an object is a dimension: a line of another cell that became a row."""
+    return any(part.unit_text for part in parse(text).parts)
 
 
 def of_cell(text: str, kind: str, decimal: str) -> tuple[float, str] | None:

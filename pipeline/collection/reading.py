@@ -11,7 +11,7 @@ from pipeline.collection.cells import Cells
 from pipeline.collection.contradictions import contradictions
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, check_header
-from pipeline.collection.measured import fill
+from pipeline.collection.measured import fill, is_dimension
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
 from pipeline.collection.sources.delimited import RECORD_LIMIT
 from pipeline.collection.sources.opening import open_source
@@ -151,6 +151,11 @@ class _Desk:
         elif len(number) > NUMBER_LIMIT:
             message = f"an object number of {len(number)} characters, more than {NUMBER_LIMIT}"
             self._reject(row, "object_number", message, "see whether the cells of this row were shifted")
+        elif " " in number and is_dimension(number):
+            message = f"the object number {number!r} is a dimension: a line inside a cell of the row above became a row"
+            self._reject(
+                row, "object_number", message, "export again with quotation marks around texts of several lines"
+            )
         elif number in self._seen:
             message = f"object number {number!r} was given in row {self._seen[number]} already; only that row is kept"
             self._reject(row, "object_number", message, "give each object its own number, and export one row an object")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from hashlib import blake2b
 from typing import Any, get_type_hints
 
 from pydantic import TypeAdapter
@@ -123,6 +124,16 @@ def to_records(items: list[Item]) -> list[dict[str, Any]]:
     """Return items as JSON-ready records, one key for each field of Item; floats are the same floats."""
     out: list[dict[str, Any]] = _items().dump_python(items, mode="json")
     return out
+
+
+@cache
+def _item() -> TypeAdapter[Item]:
+    return TypeAdapter(Item)
+
+
+def digest_of(item: Item) -> str:
+    """Return a digest of what is recorded: a field that a later Kouros adds leaves those of old records alone."""
+    return blake2b(_item().dump_json(item, exclude_defaults=True), digest_size=16).hexdigest()
 
 
 def to_items(records: list[Any]) -> list[Item]:

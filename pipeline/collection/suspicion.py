@@ -23,8 +23,8 @@ FEWEST_STEPS = 40
 FEWEST_DENSITIES = 20
 """Objects with mass and box that densities are judged by."""
 
-MOST = 0.6
-"""Share of the numbers that must be written in the other unit's steps."""
+MOST = 0.8
+"""Share of the telling numbers that must be written in the other unit's steps."""
 
 FILL = (0.015, 1.0)
 """What share of its box the median object may fill with its own material: from bowls and frames to solid blocks."""
@@ -60,21 +60,23 @@ def _steps(items: Iterable[Item]) -> list[Suspicion]:
                 fractions.setdefault(found[3], []).append(found[2])
     out = []
     for unit, digits in sorted(fractions.items()):
-        if len(digits) < FEWEST_STEPS or unit not in ("in", "cm", "mm"):
-            continue
+        # Halves and quarters are written in both.
         tenths = sum(len(d) == 1 and d != "5" for d in digits)
         sixteenths = sum(d in _SIXTEENTHS for d in digits)
-        if unit == "in" and tenths > MOST * len(digits):
-            out.append(_wrong_steps(tenths, digits, "in", "tenths, as centimetres are", "cm"))
-        elif unit != "in" and sixteenths > MOST * len(digits):
-            out.append(_wrong_steps(sixteenths, digits, unit, "eighths and sixteenths, as inches are", "in"))
+        telling = tenths + sixteenths
+        if telling < FEWEST_STEPS or unit not in ("in", "cm", "mm"):
+            continue
+        if unit == "in" and tenths > MOST * telling:
+            out.append(_wrong_steps(tenths, telling, "in", "tenths, as centimetres are", "cm"))
+        elif unit != "in" and sixteenths > MOST * telling:
+            out.append(_wrong_steps(sixteenths, telling, unit, "eighths and sixteenths, as inches are", "in"))
     return out
 
 
-def _wrong_steps(count: int, digits: Sequence[str], unit: str, steps: str, other: str) -> Suspicion:
+def _wrong_steps(count: int, telling: int, unit: str, steps: str, other: str) -> Suspicion:
     return Suspicion(
         "height_m",
-        f"{count:,} of {len(digits):,} lengths with a fraction are taken as {unit} and are written in {steps}",
+        f"{count:,} of {telling:,} lengths with a telling fraction are taken as {unit} and are written in {steps}",
         f'measure one object again; if it was {other}, say unit = "{other}" in the mapping',
     )
 

@@ -75,7 +75,7 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
         levels = storey.shaking
         with charts_of(settings, [m.hash for level in levels for m in level.motions]) as shelf:
             for index in storey.members:
-                scene = replace(classify(items[index]), floor=storey.name)
+                scene = replace(classify(items[index], workspace.rules), floor=storey.name)
                 out.append(_explain(scene, levels, settings, executor, progress, shelf))
     return out
 

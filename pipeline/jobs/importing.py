@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pipeline.collection.guess import Guess, guess
 from pipeline.collection.inventory import Difference, difference, held, latest_import, replace_inventory, return_to
 from pipeline.collection.mapping import load_mapping, preset_names
 from pipeline.collection.reading import Reading, read_items
 from pipeline.collection.sources.opening import is_database
+from pipeline.collection.suspicion import Suspicion
 from pipeline.jobs.workspace import Workspace
 from pipeline.records import Item, Problem
 from pipeline.report.exports import safe_cell
@@ -48,6 +50,37 @@ def bundled_collection() -> Path:
 def presets() -> dict[str, str]:
     """Return the mappings that come with Kouros, by name, with the museum or the system that they are for."""
     return {name: load_mapping(name).museum.name for name in preset_names()}
+
+
+@dataclass(frozen=True)
+class Proposed:
+    """A guessed mapping, and what it makes of the file: rows, objects, and some of them in words."""
+
+    guess: Guess
+    rows: int
+    items: int
+    examples: tuple[str, ...]
+    suspicions: tuple[Suspicion, ...]
+
+
+def proposed(source: Path, most: int = 10) -> Proposed:
+    """Guess a mapping for a file and read the file with it; nothing is written.
+
+    raises : CollectionError for a file that cannot be read
+    """
+    found = guess(source)
+    reading = read_items(source, found.mapping)
+    step = max(len(reading.items) // most, 1)
+    examples = tuple(_in_words(item) for item in reading.items[::step][:most])
+    return Proposed(found, reading.rows, len(reading.items), examples, reading.suspicions)
+
+
+def _in_words(item: Item) -> str:
+    sides = (("H", item.height_m), ("W", item.width_m), ("D", item.depth_m))
+    size = " x ".join(f"{name} {100.0 * value:.4g}" for name, value in sides if value is not None)
+    mass = "" if item.mass_kg is None else f", {item.mass_kg:.3g} kg"
+    what = " ".join(filter(None, (item.object_name, f"{item.title[:50]!r}", item.medium[:40])))
+    return f"{item.object_number} | {item.gallery} | {what} | {f'{size} cm' if size else 'no size'}{mass}"
 
 
 def source_of(workspace: Workspace, source: str) -> str:

@@ -198,7 +198,7 @@ def assess_items(
         # The pictures first: the verdicts use their charts.
         drawn = _charts(workspace, list(motions.values()), executor, progress, shelf)
         for storey in floors:
-            _assess_storey(storey, items, settings, executor, progress, shelf, assessments, efforts)
+            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments, efforts)
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
         picture = tradeoff.picture(measured)
@@ -225,15 +225,15 @@ def assess_items(
 def _assess_storey(
     storey: Storey,
     items: Sequence[Item],
-    settings: Settings,
+    workspace: Workspace,
     executor: Executor,
     progress: Progress,
     shelf: Shelf,
     assessments: dict[int, Assessment],
     efforts: dict[str, Effort],
 ) -> None:
-    scenes = [replace(classify(items[index]), floor=storey.name) for index in storey.members]
-    levels = storey.shaking
+    scenes = [replace(classify(items[index], workspace.rules), floor=storey.name) for index in storey.members]
+    settings, levels = workspace.settings, storey.shaking
     plan, findings = assess(
         scenes,
         levels,

@@ -53,9 +53,12 @@ def survey(
     site = read_site(site_folder(settings, settings.site.folder), kept=settings.path(KEPT))
     executor = Threads(settings.analysis.workers or None)
     fidelity, step = settings.analysis.fidelity, settings.analysis.azimuth_step
+    if fidelity == "chart":
+        # Each trial is asked once: a chart that is not there would not pay.
+        fidelity = "auto"
     found: list[Wish] = []
     for storey in storeys(settings, site, items):
-        scenes = [classify(items[index]) for index in storey.members]
+        scenes = [classify(items[index], workspace.rules) for index in storey.members]
         shaking = storey.shaking
         _, findings = assess(scenes, shaking, executor, progress, fidelity=fidelity, azimuth_step=step, outcomes=False)
         found += wishes(scenes, findings, shaking, executor, progress, fidelity=fidelity, azimuth_step=step)
@@ -77,7 +80,7 @@ def read_sheet(path: Path) -> Reading:
         try:
             return read_items(path, sheet_mapping(length))
         except CollectionError as problem:
-            if f"no sheet {sheet_title(length)!r}" not in str(problem):
+            if f"has no sheet {sheet_title(length)!r}" not in str(problem):
                 raise
             fault = fault or problem
     raise CollectionError(f"{path.name}: no sheet of a survey, such as {sheet_title('cm')!r}; {fault}")

@@ -3,11 +3,13 @@
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pipeline.collection.database import Database, open_database
 from pipeline.resources import resource
+from pipeline.rules import Table, with_own
 from pipeline.settings import Settings
 from pipeline.store import migrate
 
@@ -39,6 +41,20 @@ class Workspace:
 
     settings: Settings
     engine: Database
+
+    @cached_property
+    def rules(self) -> Table | None:
+        """The rules of classification, where the museum has some of its own.
+
+        raises : UsageError for a file that is not there, TableError for one that cannot be used
+        """
+        own = self.settings.collection.rules
+        if not own:
+            return None
+        path = self.settings.path(own)
+        if not path.is_file():
+            raise UsageError(f"{path} is not there; [collection] rules names the file of your own rules")
+        return with_own(path)
 
     @property
     def reports(self) -> Path:

@@ -14,7 +14,7 @@ def self_test_view(record: RunRecord) -> SelfTestView | None:
     if not test:
         return None
     return SelfTestView(
-        when=clean(str(test["when"])),
+        when=clean(str(test["when"])).replace("T", " ").replace("+00:00", " UTC"),
         version=clean(str(test["version"])),
         kernels=clean(str(test["kernels"])),
         machine=clean(str(test["machine"])),

@@ -9,9 +9,6 @@ from pathlib import Path
 
 Row = Mapping[str, str]
 
-PAIRS = 4096
-"""Pairs of materials that are remembered: a collection names a few, over and over."""
-
 FOLDER = Path(__file__).resolve().parent
 
 
@@ -35,8 +32,22 @@ def table(name: str) -> tuple[Row, ...]:
 
     raises : TableError for a row of another length than the header, FileNotFoundError for an unknown table
     """
-    path = FOLDER / f"{name}.csv"
-    with path.open(encoding="utf-8", newline="") as stream:
+    return read_table(FOLDER / f"{name}.csv")
+
+
+def read_table(path: Path) -> tuple[Row, ...]:
+    """Return the rows of a CSV file, by column.
+
+    raises : TableError for a row of another length than the header, and for what is no CSV file in UTF-8
+    """
+    try:
+        return _read(path)
+    except (UnicodeDecodeError, csv.Error) as problem:
+        raise TableError(f"{path.name}: no CSV file in UTF-8: {problem}; save it as CSV (UTF-8)") from problem
+
+
+def _read(path: Path) -> tuple[Row, ...]:
+    with path.open(encoding="utf-8-sig", newline="") as stream:
         reader = csv.DictReader(stream, strict=True)
         rows = list(reader)
     for number, row in enumerate(rows, start=2):
@@ -79,13 +90,13 @@ def _materials() -> tuple[tuple[re.Pattern[str], Row], ...]:
     return tuple(out)
 
 
+@lru_cache(maxsize=65536)
 def material_in(text: str) -> Row | None:
     """Return the row of materials.csv for the material that stands first in a text, None where there is none."""
     found = [(match.start(), row) for pattern, row in _materials() if (match := pattern.search(text))]
     return min(found, key=lambda pair: pair[0])[1] if found else None
 
 
-@lru_cache(PAIRS)
 def friction_of(object_material: str = "", surface_material: str = "") -> Range:
     """Return the friction of a pair (paper's Table 3): the median and the span of all rows that are not ruled out.
 
@@ -100,7 +111,6 @@ def friction_of(object_material: str = "", surface_material: str = "") -> Range:
     return _span(rows, "friction")
 
 
-@lru_cache(PAIRS)
 def damping_of(wall_surface: str = "", back_surface: str = "") -> Range:
     """Return the damping of a painting against its wall (paper's Table 4).
 

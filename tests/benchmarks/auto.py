@@ -3,7 +3,9 @@
 KOUROS_BENCH_COLLECTION names another collection with Carnegie's columns, such as the whole of it.
 """
 
+import gzip
 import os
+import tempfile
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -33,7 +35,7 @@ WANTED = 0.1
 def auto() -> None:
     """Print the cost of `auto` and of `history` for each model, with assumed and with measured parameters."""
     file = Path(os.environ.get(COLLECTION) or bundled_collection())
-    items = list(read_items(file, load_mapping("carnegie")).items)
+    items = _read(file)
     level = LevelMotions("design", "max", (read_motion(resource("site_motions", "demo"))[0],))
     assumed, measured = ([classify(i) for i in those] for those in (items, _measured(items)))
     for work in plan(measured[:300]).work:
@@ -55,6 +57,15 @@ def auto() -> None:
                 f"{ratio:>7.2f}{share:>11.1%}  {why}".rstrip(),
                 flush=True,
             )
+
+
+def _read(file: Path) -> list[Item]:
+    if file.suffix != ".gz":
+        return list(read_items(file, load_mapping("carnegie")).items)
+    with tempfile.TemporaryDirectory() as folder:
+        plain = Path(folder) / file.stem
+        plain.write_bytes(gzip.decompress(file.read_bytes()))
+        return _read(plain)
 
 
 def _seconds(work: Work, scenes: Sequence[Scene], level: LevelMotions, fidelity: str) -> tuple[float, Effort]:

@@ -40,12 +40,12 @@ def test_texts_with_a_length_give_dimensions(sample):
 
 
 def test_hardly_any_character_stays_unread(sample):
-    """A text may say what is no dimension ("see child records"); more than 1 % of such remainders is a parser's fault."""
+    """A text may say what is no dimension ("see child records"), but hardly one in a hundred does."""
     assert sum(bool(d.having("remainder") or d.having("conversion")) for d in sample) <= 0.01 * len(sample)
 
 
 def test_plain_texts_are_read_exactly(sample):
-    """Truth: the two thirds of the texts that are only 'A x B" (C x D cm)', read by a pattern and exact fractions."""
+    """Truth: the texts that are only 'A x B" (C x D cm)', four in ten, read by a pattern and exact fractions."""
     plain = [(d, match) for d in sample if (match := PLAIN.fullmatch(d.text))]
     assert len(plain) > 600
     for d, match in plain:
@@ -85,7 +85,7 @@ def test_parts_show_where_they_come_from(sample):
 
 
 def test_labelled_texts_are_wholly_right():
-    """Truth: 300 texts of three museums, labelled by a reader before the parser was written; target 98 % wholly right."""
+    """Truth: 300 texts of three museums, labelled by a reader before there was a parser; target 98 % wholly right."""
     labelled = json.loads((DATA / "dimensions_labelled_300.json").read_text(encoding="utf-8"))
     assert len(labelled) == 300
     wrong = []

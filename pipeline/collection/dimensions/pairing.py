@@ -21,6 +21,11 @@ def agree(one: float, two: float, kind: str) -> bool:
     return gap <= _CLOSE[kind] + _EPS or gap <= _SHARE * max(one, two)
 
 
+def _near(one: float, two: float) -> bool:
+    """Say whether two numbers differ by no more than 3 %: a slip is only seen where 3 mm do not hide everything."""
+    return abs(one - two) <= _SHARE * max(one, two)
+
+
 def pair(open_: list[Quantity], others: list[Quantity], notes: list[Note]) -> list[Quantity]:
     """Set each number beside its conversion; return those of ``others`` that convert nothing and stand for themselves.
 
@@ -91,7 +96,7 @@ def _matches(ours: list[Quantity], theirs: list[Quantity], kind: str) -> list[tu
 
 
 def _infer(open_: list[Quantity], others: list[Quantity], notes: list[Note]) -> None:
-    """Give numbers without a unit the one with which inches and centimetres agree, if there is one."""
+    """Give numbers without a unit the one with which at least half of them agree with their partners, if any."""
     for bare, known in ((open_, others), (others, open_)):
         lengths = [q for q in known if q.kind == "length"]
         unknown = [q for q in bare if q.unit is None]
@@ -101,7 +106,8 @@ def _infer(open_: list[Quantity], others: list[Quantity], notes: list[Note]) -> 
         partner = {id(a): b for a, b in zip(bare, lengths, strict=False)}
         for name in _GUESSES[system] + _GUESSES[""]:
             unit = units()[name]
-            if all(agree(q.num * unit.num / (q.den * unit.den), partner[id(q)].si(), "length") for q in unknown):
+            near = [q for q in unknown if agree(q.num * unit.num / (q.den * unit.den), partner[id(q)].si(), "length")]
+            if 2 * len(near) >= len(unknown):  # one of them may have a slip of its own, which its note then tells
                 for q in unknown:
                     q.unit = unit
                 message = f"no unit is written; {name} agrees with the number beside it"
@@ -118,7 +124,7 @@ def _judge(a: Quantity, b: Quantity, notes: list[Note]) -> None:
     if kind == "length" and not a.written and a.unit is not None:
         for name in ("in", "ft", "cm", "mm", "m"):
             unit = units()[name]
-            if agree(a.num * unit.num / (a.den * unit.den), si, kind):
+            if _near(a.num * unit.num / (a.den * unit.den), si):
                 message = f"no unit is written here; {name} and not {a.unit.name} agrees with the number in brackets"
                 a.unit = unit
                 notes.append(Note("unit", message, a.start, a.end))
@@ -126,12 +132,14 @@ def _judge(a: Quantity, b: Quantity, notes: list[Note]) -> None:
     if glued:
         a.repaired = glued
         reason = "read with the blank that is missing before its fraction, which agrees with the other"
-    elif kind == "length" and any(agree(a.si() * factor, si, kind) for factor in (12.0, 1.0 / 12.0)):
+    elif (
+        kind == "length" and " " not in a.unit_text and any(_near(a.si() * factor, si) for factor in (12.0, 1.0 / 12.0))
+    ):
         a.repaired = _exact(b)
         reason = "the marks of feet and inches are confused; the other reading is believed"
-    elif any(u.name != _name(b) and agree(b.num * u.num / (b.den * u.den), a.si(), kind) for u in _of(kind)):
+    elif any(u.name != _name(b) and _near(b.num * u.num / (b.den * u.den), a.si()) for u in _of(kind)):
         reason = "the second has the wrong unit; the first is believed"
-    elif any(agree(si * factor, a.si(), kind) for factor in (0.01, 0.1, 10.0, 100.0)):
+    elif any(_near(si * factor, a.si()) for factor in (0.01, 0.1, 10.0, 100.0)):
         reason = "the second has its decimal mark in the wrong place; the first is believed"
     elif kind == "length" and not _plausible(a.si()) and _plausible(si):
         a.repaired = _exact(b)
@@ -160,7 +168,7 @@ def _unglued(a: Quantity, si: float) -> tuple[int, int] | None:
     for cut in (1, 2):
         if len(above) > cut:
             num = int(above[:-cut]) * int(below) + int(above[-cut:])
-            if agree(a.scaled(num, int(below)), si, a.kind):
+            if _near(a.scaled(num, int(below)), si):
                 return num * a.unit.num, int(below) * a.unit.den
     return None
 
@@ -176,7 +184,8 @@ def _name(b: Quantity) -> str:
 
 
 def _of(kind: str) -> list[Unit]:
-    return [unit for unit in units().values() if unit.kind == kind]
+    # Nobody writes decimetres by mistake: what agrees in them has its decimal mark in the wrong place.
+    return [unit for unit in units().values() if unit.kind == kind and unit.name != "dm"]
 
 
 @cache

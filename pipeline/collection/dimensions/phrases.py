@@ -48,7 +48,7 @@ def is_label_letter(tokens: list[Token], at: int, text: str) -> bool:
     if token.end - token.start != 1:
         return False
     before = text[token.start - 1] if token.start else ""
-    if before == "-" or (before == "." and not text[token.start - 2 : token.start - 1].isalnum()):
+    if before in ("-", "&") or (before == "." and not text[token.start - 2 : token.start - 1].isalnum()):
         return True
     following = tokens[at + 1].type
     opened = at > 0 and tokens[at - 1].type == OPEN

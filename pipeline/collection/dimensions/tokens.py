@@ -24,14 +24,14 @@ _BLANK = "[ \t\u00a0\u2009\u202f]"
 # that begins with its decimal mark; a vulgar fraction; a mark of inches or feet; a line break; any other character.
 _WORD, _DATE, _CLOCK, _MIXED_NUMBER, _FRACTION, _DECIMAL, _DOTTED, _VULGAR_ALONE, _QUOTE, _BREAK, _MARK = range(1, 12)
 _TOKEN = re.compile(
-    rf"[ \t\u00a0]*+(?:([^\W\d_]+|[⌀㎝✕✖])"
+    rf"[ \t\u00a0]*+(?:([^\W\d_{_V}]+|[⌀㎝✕✖])"
     rf"|(?=\d)(?:(\d{{1,2}}/\d{{1,2}}/\d{{2,4}}(?!\d))"
     rf"|(\d{{1,3}}:\d{{1,4}}(?::\d\d)?(?![\d./]|{_BLANK}{{0,3}}[x×\d]))"
     rf"|(\d[\d,]*(?:{_BLANK}{{0,3}}-{_BLANK}{{0,3}}|{_BLANK}{{1,3}})\d+{_BLANK}?[/⁄∕]{_BLANK}?\d+(?!/|\d)"
     rf"|\d[\d,]*{_BLANK}{{0,3}}-?{_BLANK}{{0,3}}[{_V}])"
     rf"|(\d+{_BLANK}?[/⁄∕]{_BLANK}?\d+(?!/|\d))"
     rf"|(\d+(?:[.,]\d+)*(?:[eE][+-]?\d+)?))"
-    rf"|(\.\d+)"
+    rf"|((?<![^\W\d_])\.\d+)"  # not the 17 of "diam.17"
     rf"|([{_V}])"
     rf"|(''|’’|‘‘|′′|[\"“”″'’‘′])"
     rf"|([\r\n;\u2028\u2029]+)"

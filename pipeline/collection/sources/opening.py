@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -17,6 +18,9 @@ from pipeline.collection.sources.rows import Row
 
 FILE_LIMIT = 1 << 30
 """Bytes of a file (1 GiB)."""
+
+TIMEOUT = 600.0
+"""Seconds that a database may take, where the mapping says nothing."""
 
 _UTF8_MARK = b"\xef\xbb\xbf"
 
@@ -46,6 +50,14 @@ def open_source(where: str | Path, mapping: Mapping) -> Iterator[Opened]:
     raises : CollectionError for a source that cannot be opened, naming it (never a password) and the remedy; its rows
              raise the same while they are read
     """
+    if mapping.source.format == "sql":
+        yield _database(str(where), mapping)
+        return
+    if is_database(where):
+        raise CollectionError(
+            f'a database, and the mapping {mapping.name} reads {mapping.source.format}; say format = "sql" and a query '
+            "or table in its [source]"
+        )
     path = Path(where)
     with _open(path) as binary:
         digest = _digest(binary, path.name)
@@ -53,12 +65,45 @@ def open_source(where: str | Path, mapping: Mapping) -> Iterator[Opened]:
 
 
 def _file_rows(binary: BufferedReader, file: str, source: Source) -> Iterator[Row]:
+    if source.format == "xlsx":
+        from pipeline.collection.sources.xlsx import read_sheet
+
+        return read_sheet(binary, file, sheet=source.sheet, header_row=source.header_row or 1)
+    if source.format == "lido":
+        from pipeline.collection.sources.lido import read_records
+
+        return read_records(binary, file, languages=(source.language or "en",))
     encoding = source.encoding or "utf-8"
     _mark(binary, file, encoding)
     # "utf-8-sig" also reads files without the mark.
     codec = "utf-8-sig" if encoding == "utf-8" else encoding
     stream = TextIOWrapper(binary, encoding=codec, errors="surrogateescape", newline="")
     return read_rows(stream, file, source.delimiter or "\t", encoding)
+
+
+def _database(url: str, mapping: Mapping) -> Opened:
+    from pipeline.collection.sources.address import expand_secrets
+    from pipeline.collection.sources.sql import read_database
+
+    source = mapping.source
+    wanted = list(mapping.wanted())
+    rows = read_database(
+        url,
+        query=source.query,
+        table=source.table,
+        columns=[column for _, column, may_lack in wanted if not may_lack] if source.table else None,
+        optional=[column for _, column, may_lack in wanted if may_lack],
+        order_by=mapping.columns["object_number"].sources[0] if source.table else None,
+        timeout_seconds=source.timeout_seconds or TIMEOUT,
+    )
+    digest = hashlib.sha256()
+
+    def told() -> Iterator[Row]:
+        for row in rows:
+            digest.update(json.dumps([row.cells, sorted(row.faults.items())], ensure_ascii=True).encode())
+            yield row
+
+    return Opened(expand_secrets(url).shown, told(), digest.hexdigest)
 
 
 def _open(path: Path) -> BufferedReader:
