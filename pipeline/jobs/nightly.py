@@ -17,6 +17,7 @@ from pipeline.classify import classify
 from pipeline.climb import Effort
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.execute import Threads
+from pipeline.fragility.objects import fragilities
 from pipeline.jobs import selftest, tradeoff
 from pipeline.jobs.importing import import_collection, source_of
 from pipeline.jobs.levels import Storey, notes, storeys
@@ -33,7 +34,19 @@ from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import advise
 from pipeline.models import model_named
 from pipeline.motions.site import Level, Site, read_site
-from pipeline.records import Assessment, Chart, Executor, Item, Motion, Progress, RunRecord, Verdict
+from pipeline.neighbours import neighbours
+from pipeline.records import (
+    Assessment,
+    Chart,
+    Executor,
+    Fragility,
+    Item,
+    Motion,
+    Progress,
+    RunRecord,
+    Spacing,
+    Verdict,
+)
 from pipeline.report import Units, publish, render
 from pipeline.settings import Settings
 from pipeline.store.reuse import KERNELS, PICTURES, SELECTION, stored_charts, whole_runs
@@ -194,11 +207,12 @@ def assess_items(
     # Motions that two floors share (one record for several) are drawn once.
     motions = {one.motion.hash: one.motion for f in floors for level in f.levels for one in level.motions}
     efforts: dict[str, Effort] = {}
+    spacings: list[Spacing] = []
     with charts_of(settings, motions) as shelf:
         # The pictures first: the verdicts use their charts.
         drawn = _charts(workspace, list(motions.values()), executor, progress, shelf)
         for storey in floors:
-            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments, efforts)
+            spacings += _assess_storey(storey, items, workspace, executor, progress, shelf, assessments, efforts)
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
         picture = tradeoff.picture(measured)
@@ -219,6 +233,7 @@ def assess_items(
         charts=drawn,
         motions=tuple(summary for storey in floors for summary in storey.summaries),
         demonstration=settings.demonstration,
+        spacings=tuple(spacings),
     )
 
 
@@ -231,7 +246,8 @@ def _assess_storey(
     shelf: Shelf,
     assessments: dict[int, Assessment],
     efforts: dict[str, Effort],
-) -> None:
+) -> list[Spacing]:
+    """Fill in what is found about the objects of a storey; return what was found between them."""
     scenes = [replace(classify(items[index], workspace.rules), floor=storey.name) for index in storey.members]
     settings, levels = workspace.settings, storey.shaking
     plan, findings = assess(
@@ -246,8 +262,13 @@ def _assess_storey(
     )
     scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
     advice = advise(scenes, findings, levels, executor, progress)
-    for index, scene, found, advised in zip(storey.members, scenes, findings, advice, strict=True):
-        assessments[index] = Assessment(scene, tuple(found), tuple(advised))
+    curves: Sequence[tuple[Fragility, ...]] = [()] * len(scenes)
+    if settings.analysis.fragility:
+        shown = [scene.item.on_display for scene in scenes]
+        curves = fragilities(scenes, plan.work, storey.stripes, executor, progress, chosen=shown)
+    for index, scene, found, advised, curve in zip(storey.members, scenes, findings, advice, curves, strict=True):
+        assessments[index] = Assessment(scene, tuple(found), tuple(advised), curve)
+    return neighbours(scenes, findings, levels)
 
 
 def _stored_settings(

@@ -1,10 +1,11 @@
 """The nouns that every floor shares: motions, items, scenes, models, findings, recommendations, charts."""
 
+from pipeline.records.fragility import Fragility
 from pipeline.records.model import Bounds, ChartAxis, Columns, Model
 from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress
-from pipeline.records.result import Assessment, Check, Finding, Recommendation, RunRecord, Verdict
+from pipeline.records.result import Assessment, Check, Finding, Recommendation, RunRecord, Spacing, Verdict
 from pipeline.records.scene import ITEM_FIELDS, Estimate, Item, Origin, Problem, Provenance, Scene, Support
 from pipeline.records.wish import Wish
 
@@ -22,6 +23,7 @@ __all__ = [
     "Excitation",
     "Executor",
     "Finding",
+    "Fragility",
     "Item",
     "Mark",
     "Model",
@@ -34,6 +36,7 @@ __all__ = [
     "Recommendation",
     "RunRecord",
     "Scene",
+    "Spacing",
     "Support",
     "Verdict",
     "Wish",

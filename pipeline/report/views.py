@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from pipeline.report.judging import FragilityView, RoomView, ShakingView, SpacingView
 from pipeline.report.svg import Spot
 
 
@@ -137,6 +138,7 @@ class ObjectView:
     missing: tuple[str, ...]
     problems: tuple[tuple[str, str, str], ...]
     skipped: tuple[str, ...]
+    fragilities: tuple[FragilityView, ...] = ()
 
     @property
     def carded(self) -> bool:
@@ -191,6 +193,9 @@ class GalleryView:
     charts: tuple[str, ...]
     motions: tuple[MotionLink, ...]
     several_levels: bool
+    spacings: tuple[SpacingView, ...] = ()
+    rooms: tuple[RoomView, ...] = ()
+    shaking: ShakingView | None = None
 
     def standing(self, state: State) -> tuple[ObjectView, ...]:
         """Return the objects in that state, the most urgent first."""

@@ -14,12 +14,13 @@ from sqlalchemy.types import TypeDecorator, TypeEngine
 from pipeline.collection.database import METADATA
 from pipeline.collection.inventory import IMPORT_BATCH, ITEM
 from pipeline.collection.supplement import SUPPLEMENT
-from pipeline.records import Chart, Finding, MotionSummary, Recommendation, Scene
+from pipeline.records import Chart, Finding, Fragility, MotionSummary, Recommendation, Scene, Spacing
 from pipeline.store import codec
 
 # The inventory's tables are handed on so that METADATA is whole wherever this module is imported.
 __all__ = [
     "FINDING",
+    "FRAGILITY",
     "IMPORT_BATCH",
     "ITEM",
     "METADATA",
@@ -28,6 +29,7 @@ __all__ = [
     "RUN_CHART",
     "RUN_MOTION",
     "RUN_SCENE",
+    "SPACING",
     "SUPPLEMENT",
 ]
 
@@ -264,3 +266,23 @@ RECOMMENDATION = Table(
     Index(None, "run_id", "object_number"),
 )
 """One row a recommendation."""
+
+FRAGILITY = Table(
+    "fragility",
+    METADATA,
+    _of_run(),
+    _position(),
+    *_columns(Fragility),
+    Index(None, "run_id", "object_number"),
+)
+"""One row a fragility curve."""
+
+SPACING = Table(
+    "spacing",
+    METADATA,
+    _of_run(),
+    _position(),
+    *_columns(Spacing),
+    Index(None, "run_id", "gallery"),
+)
+"""One row a pair of neighbours under one level."""

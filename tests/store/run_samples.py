@@ -21,6 +21,7 @@ from pipeline.records import (
     Recommendation,
     RunRecord,
     Scene,
+    Spacing,
     Support,
     Verdict,
 )
@@ -77,6 +78,7 @@ def _own(assessment: Assessment) -> Assessment:
         assessment,
         findings=tuple(replace(finding, object_number=number) for finding in assessment.findings),
         recommendations=tuple(replace(advice, object_number=number) for advice in assessment.recommendations),
+        fragilities=tuple(replace(curve, object_number=number) for curve in assessment.fragilities),
     )
 
 
@@ -91,6 +93,7 @@ RUNS = st.builds(
     charts=values_of(Mapping[str, Chart]),
     motions=values_of(tuple[MotionSummary, ...]),
     demonstration=st.booleans(),
+    spacings=values_of(tuple[Spacing, ...]),
 )
 
 
