@@ -59,5 +59,6 @@ FRICTION_ISOLATOR = Model(
     capacity="clearance",
     applies=_applies,
     sentence="On its low-friction pad it slides up to {demand}; there is room for {capacity}.",
+    at_most="On its low-friction pad it slides at most {demand} (at most {high}); there is room for {capacity}.",
     fails="slides",
 )

@@ -50,7 +50,7 @@ HORIZONTAL_ISOLATOR = Model(
     directions=0,
     run=_run,
     trace=_trace,
-    chart=ChartAxis("frequency", 0.1, 10.0),
+    chart=ChartAxis("frequency", 0.1, 10.0, nodes=330),
     demand="displacement",
     capacity="stroke",
     applies=_applies,

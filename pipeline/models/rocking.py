@@ -266,6 +266,7 @@ ROCKING = Model(
         Quantity("uplift_ratio", "-", "largest |a_h| / (max(0, g + a_z) b/h)"),
     ),
     directions=1,
+    axes=({"half_width": "half_base_width"}, {"half_width": "half_base_depth"}),
     run=_run,
     screen=_screen,
     say_screen=_say,

@@ -19,6 +19,7 @@ FRICTION_AXIS = ChartAxis(
     "friction_static",
     low=0.01,
     high=1.5,
+    nodes=250,
     absent=("friction_kinetic",),
     # From here on it rests: it moves only where |a_h| exceeds mu (g + a_z).
     settled=lambda motion: max(lift_ratios(motion)),
@@ -84,6 +85,10 @@ SLIDING = Model(
     sentence=(
         "It slides up to {demand} from where it stands (its friction may be lower or higher: {low} to {high}); there "
         "is room for {capacity}."
+    ),
+    at_most=(
+        "It slides at most {demand} from where it stands (at most {high}, its friction being uncertain); there is room "
+        "for {capacity}."
     ),
     fails="slides",
 )

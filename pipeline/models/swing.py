@@ -1,6 +1,7 @@
 """Generic models 4 and 5: swinging in two and in three dimensions (Agbabian et al. 1991, sec. 2.4 and Figure 5)."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,7 +20,7 @@ CHANCE = 1e-9
 most swings.  It falls with the fourth power of the step."""
 
 LENGTH = Quantity("length", "m", "from the point of suspension to the centre of gravity", 0.0, exclusive=True)
-LENGTH_AXIS = ChartAxis("length", low=0.1, high=20.0)
+LENGTH_AXIS = ChartAxis("length", low=0.1, high=20.0, nodes=400)
 
 
 def _swept(angle: Array) -> Array:
@@ -123,6 +124,8 @@ SWING = Model(
     ),
     directions=1,
     run=_run,
+    # In the plane of its wall, that is along its width.
+    axes=({},),
     trace=_trace,
     chart=LENGTH_AXIS,
     mark=lambda parameters, demand: ("swing", parameters["length"], demand),
@@ -146,7 +149,7 @@ SWING_3D = Model(
     screen=_screen_3d,
     say_screen=_say_3d,
     trace=_trace_3d,
-    chart=LENGTH_AXIS,
+    chart=replace(LENGTH_AXIS, nodes=1200),
     mark=lambda parameters, demand: ("swing", parameters["length"], demand),
     demand="displacement",
     capacity="clearance",
