@@ -15,8 +15,18 @@ from typing import Any
 import numba
 import numpy as np
 
+from pipeline.quantities import Array
+
 FIRST = np.int64(0)
 """An index to begin with: for a literal number or truth value as an argument numba compiles the callee once more."""
+
+
+def samples(values: Array) -> Array:
+    """Return samples of a motion as the kernels take them: contiguous and writable, a copy where they are not.
+
+    For an array that may not be written numba compiles each kernel once more: half of the time of a first rocking body.
+    """
+    return np.require(values, np.float64, ["C", "W"])
 
 
 def kernel_version() -> str:

@@ -30,6 +30,8 @@ CHUNK = 128
 STRETCHES = 2048
 """Stretches of which the bounds are kept, at most; a longer record has longer ones."""
 
+# How many rows there are of coefficients and of the lanes' state.
+FACTORS, STATES = np.int64(18), np.int64(7)
 # Rows of the coefficients: the new u by u, v and both ends of a; the same for v; y by u, v, a; w^2, 2 zeta w, the
 # share, w, 2 zeta, 1 / (w dt), and by how much |u - (its particular part)| w^2 may exceed the root of the energy.
 UU, UV, U0, U1, VU, VV, V0, V1, YU, YV, YA, B, C, SHARE, W, TWICE, RAMP, NORM = range(18)
@@ -370,14 +372,17 @@ def oscillator_batch(
     max_u[:], max_y[:] = 0.0, 0.0
     if n < 2:
         return
-    # A sample more, so that the last one has a slope like the others.
+    # A sample more, so that the last one has a slope like the others; one by one, as a slice that is set brings numba's
+    # messages about shapes into the compilation, a fifth of it.
     a = np.empty(n + 1)
-    a[:n], a[n] = base, base[n - 1]
+    for i in range(n):
+        a[i] = base[i]
+    a[n] = base[n - 1]
     length = CHUNK * ((n - 2) // (CHUNK * STRETCHES) + 1)
     parts = (n - 2) // length + 1
     outline, stretch = np.empty((parts, 3)), np.empty((parts, 8, LANES))
     _outline(a, n, length, outline)
-    factor, state = lanes(18), lanes(7)
+    factor, state = lanes(FACTORS), lanes(STATES)
     for begin in range(FIRST, m, LANES):
         end = min(begin + LANES, m)
         state[:] = 0.0
