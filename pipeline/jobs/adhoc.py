@@ -30,6 +30,7 @@ def respond_on_site(
     """
     import pandas as pd
 
+    from pipeline.kernels import user_cache
     from pipeline.motions.site import read_motion
     from pipeline.response import cascade, respond
 
@@ -37,7 +38,7 @@ def respond_on_site(
     direction = None if angle == "worst" else _number("angle", angle)
     tables = []
     chain = [_support(word) for word in through]
-    for ground in read_motion(site_folder(Settings(), site)):
+    for ground in read_motion(site_folder(Settings(), site), kept=user_cache("motions")):
         motion = cascade(chain, ground)
         table = respond(model, motion, fidelity=fidelity, angle=direction, tail=tail, **given)
         rows = len(table)

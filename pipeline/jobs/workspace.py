@@ -4,11 +4,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from pipeline.collection.database import Database, open_database
 from pipeline.resources import resource
 from pipeline.settings import Settings
-from pipeline.store import migrate
+
+if TYPE_CHECKING:
+    from pipeline.collection.database import Database
 
 KEPT = ".kouros-kept"
 """Folder beside the settings in which processed motions and measurements are kept between nights."""
@@ -31,7 +33,7 @@ class Workspace:
     """Open settings: the database is at the newest schema, the folders are known."""
 
     settings: Settings
-    engine: Database
+    engine: "Database"
 
     @property
     def reports(self) -> Path:
@@ -46,6 +48,9 @@ def site_folder(settings: Settings, name: str) -> Path:
 
 def open_workspace(settings: Settings) -> Workspace:
     """Open the database, bringing its tables to the newest schema."""
+    from pipeline.collection.database import open_database
+    from pipeline.store import migrate
+
     engine = open_database(settings.database)
     migrate.upgrade(engine)
     return Workspace(settings, engine)
