@@ -1,99 +1,21 @@
 """Item -> Scene: which generic class an object belongs to, and every number its models need, with its origin.
 
-The rules are rows of tables/rules.csv, read from the top; the first whose conditions all hold decides.  Numbers that
-the museum did not record come from the row of the class (tables/classes.csv) and the material (tables/materials.csv) as
-value, low and high, and are named as assumed.
+The class is what the table of rules says (`pipeline.rules`).  Numbers that the museum did not record come from the row
+of the class (tables/classes.csv) and the material (tables/materials.csv) as value, low and high, and are named as
+assumed.
 """
 
-import re
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from functools import cache
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from functools import cache, lru_cache
 from math import pi
 
 from pipeline.records import Estimate, Item, Origin, Scene, Support
-from pipeline.tables import Row, TableError, damping_of, friction_of, spread, table
+from pipeline.rules import Table, rule_for
+from pipeline.tables import Range, Row, damping_of, friction_of, material_in, spread, table
 
-FLAT = 0.12
-"""Depth over the larger face dimension below which a thing is a sheet, not a body."""
-TALL = 2.0
-"""Height over the larger plan dimension from which a sculpture is taken as a standing figure."""
-SMALL = 0.4
-"""Height [m] below which a sculpture is handled as a figurine."""
-
-THIN = 9.0
+SLENDEREST = 9.0
 """Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
-
-_WORD = re.compile(r"[^\W\d_]+")
-
-
-def _shape(name: str) -> Callable[[Item], bool]:
-    def plan(item: Item) -> float:
-        return max(item.width_m or 0.0, item.depth_m or 0.0)
-
-    shapes: dict[str, Callable[[Item], bool]] = {
-        "": lambda _: True,
-        "flat": lambda i: (i.depth_m or 0.0) < FLAT * max(i.height_m or 0.0, i.width_m or 0.0),
-        "tall": lambda i: i.height_m is not None and plan(i) > 0.0 and i.height_m >= TALL * plan(i),
-        "small": lambda i: i.height_m is not None and i.height_m < SMALL,
-    }
-    if name not in shapes:
-        raise TableError(f"rules.csv: there is no shape {name!r}; use one of {', '.join(s for s in shapes if s)}")
-    return shapes[name]
-
-
-@dataclass(frozen=True)
-class Rule:
-    """One row of rules.csv, ready to match."""
-
-    name: str
-    object_class: str
-    classifications: frozenset[str]
-    words: frozenset[str]
-    phrases: tuple[str, ...]
-    medium: re.Pattern[str] | None
-    shape: Callable[[Item], bool]
-    why: str
-
-    def holds(self, item: Item, words: frozenset[str], text: str) -> bool:
-        """Say whether all conditions of the row hold."""
-        if self.classifications and item.classification.strip().lower() not in self.classifications:
-            return False
-        if (self.words or self.phrases) and not (self.words & words or any(p in text for p in self.phrases)):
-            return False
-        if self.medium is not None and not self.medium.search(f"{item.material} {item.medium}"):
-            return False
-        return self.shape(item)
-
-
-@cache
-def rules() -> tuple[Rule, ...]:
-    """Return the table of rules, in order.
-
-    raises : TableError for a row that names a class or shape that does not exist
-    """
-    out = []
-    known = {r["class"] for r in table("classes")}
-    for row in table("rules"):
-        if row["class"] not in known:
-            raise TableError(
-                f"rules.csv: rule {row['rule']!r} names class {row['class']!r}, which classes.csv does not have"
-            )
-        words = [w.strip().lower() for w in row["words"].split("|") if w.strip()]
-        medium = [re.escape(m.strip()) for m in row["medium"].split("|") if m.strip()]
-        out.append(
-            Rule(
-                row["rule"],
-                row["class"],
-                frozenset(c.strip().lower() for c in row["classification"].split("|") if c.strip()),
-                frozenset(w for w in words if " " not in w),
-                tuple(f" {w}" for w in words if " " in w),
-                re.compile(rf"\b(?:{'|'.join(medium)})\b", re.IGNORECASE) if medium else None,
-                _shape(row["shape"]),
-                row["why"],
-            )
-        )
-    return tuple(out)
 
 
 @cache
@@ -101,35 +23,10 @@ def _classes() -> Mapping[str, Row]:
     return {row["class"]: row for row in table("classes")}
 
 
-@cache
-def _materials() -> tuple[tuple[re.Pattern[str], Row], ...]:
-    out = []
-    for row in table("materials"):
-        words = [re.escape(w.strip()) for w in row["words"].split("|") if w.strip()]
-        if words:
-            out.append((re.compile(rf"\b(?:{'|'.join(words)})\b", re.IGNORECASE), row))
-    return tuple(out)
-
-
 def material_of(item: Item) -> Row:
     """Return the row of materials.csv for what an object is made of: the word that stands first in its record."""
-    text = item.material or item.medium
-    found = [(match.start(), row) for pattern, row in _materials() if (match := pattern.search(text))]
-    if found:
-        return min(found, key=lambda pair: pair[0])[1]
-    return next(row for row in table("materials") if row["material"] == "unknown")
-
-
-def rule_for(item: Item) -> Rule:
-    """Return the first rule whose conditions hold for the object; the last row of the table holds for all."""
-    text = f" {item.object_name} {item.title}".lower()
-    words = set(_WORD.findall(text))
-    words |= {w[:-1] for w in words if w.endswith("s")}
-    frozen = frozenset(words)
-    for rule in rules():
-        if rule.holds(item, frozen, text):
-            return rule
-    raise TableError("rules.csv: no rule holds; the last row must have no conditions")
+    found = material_in(item.material or item.medium)
+    return found or next(row for row in table("materials") if row["material"] == "unknown")
 
 
 def _assumed(value: float, low: float, high: float, unit: str, note: str, source: str) -> Estimate:
@@ -140,11 +37,54 @@ def _measured(value: float | None, unit: str) -> Estimate | None:
     return None if value is None else Estimate.measured(value, unit)
 
 
+def _half(side: Estimate) -> Estimate:
+    return replace(side, value=0.5 * side.value, low=0.5 * side.low, high=0.5 * side.high)
+
+
 def _times(row: Row, kind: str, base: float, unit: str, what: str, of: str) -> Estimate:
     """Return a share of a recorded dimension, as the row of the class assumes it."""
-    share = spread(row, f"{kind}_ratio", f"{kind}_low", f"{kind}_high", f"classes.csv, {row['class']}")
+    share = _range(row["class"], kind)
     note = f"{what}: {share.value:g} ({share.low:g} to {share.high:g}) of its {of}, assumed for: {row['title'].lower()}"
-    return _assumed(share.value * base, share.low * base, share.high * base, unit, note, f"classes.csv, {row['class']}")
+    return _assumed(share.value * base, share.low * base, share.high * base, unit, note, share.source)
+
+
+# What depends on a table and a few words only is worked out once, not for every object of a collection.
+
+
+@cache
+def _range(object_class: str, kind: str) -> Range:
+    """Return the range of a class's share (cg, base, section) or quantity (fill, clearance), with its source."""
+    row = _classes()[object_class]
+    where = f"classes.csv, {object_class}"
+    value = f"{kind}_ratio" if f"{kind}_ratio" in row else kind
+    span = spread(row, value, f"{kind}_low", f"{kind}_high", where)
+    return replace(span, source=f"{where} ({row['source']})")
+
+
+@cache
+def _clearance_of(object_class: str) -> Estimate:
+    span = _range(object_class, "clearance")
+    low, value, high = (100.0 * v for v in (span.low, span.value, span.high))
+    note = f"clearance to neighbour, wall or edge: {value:g} cm ({low:g} to {high:g})"
+    note += f", assumed for: {_classes()[object_class]['title'].lower()}"
+    return _assumed(span.value, span.low, span.high, "m", note, span.source)
+
+
+@lru_cache(maxsize=4096)
+def _friction_of(material: str, surface: str) -> Estimate:
+    span = friction_of(material, surface)
+    pair = f"{material or 'any material'} on {surface or 'any floor'}"
+    note = f"friction: {span.value:g} ({span.low:g} to {span.high:g}), Table 3 for {pair}; not measured"
+    return _assumed(span.value, span.low, span.high, "-", note, span.source)
+
+
+@lru_cache(maxsize=4096)
+def _wall_damping_of(wall: str, back: str) -> Estimate:
+    span = damping_of(wall, back)
+    note = "damping against the wall: wood on paint, the least of Table 4; wall and back surfaces not recorded"
+    if wall or back:
+        note = f"damping of {back or 'its back'} on {wall or 'the wall'} (Table 4)"
+    return _assumed(span.value, span.low, span.high, "-", note, span.source)
 
 
 class _Builder:
@@ -180,11 +120,7 @@ class _Builder:
         self._keep("length", length)
         damping = _measured(item.damping, "-")
         if damping is None and self.support is Support.HUNG:
-            span = damping_of(item.wall_surface, item.back_surface)
-            note = "damping against the wall: wood on paint, the least of Table 4; wall and back surfaces not recorded"
-            if item.wall_surface or item.back_surface:
-                note = f"damping of {item.back_surface or 'its back'} on {item.wall_surface or 'the wall'} (Table 4)"
-            damping = _assumed(span.value, span.low, span.high, "-", note, span.source)
+            damping = _wall_damping_of(item.wall_surface, item.back_surface)
         elif damping is None:
             note = "damping: none, as the paper takes it for chandeliers"
             damping = _assumed(0.0, 0.0, 0.0, "-", note, "Agbabian et al. 1991, sec. 2.4")
@@ -203,6 +139,10 @@ class _Builder:
             source = narrow.source or width.source or depth.source
             half = Estimate(0.5 * narrow.value, "m", origin, 0.5 * low, 0.5 * high, note, source)
             self._keep("half_width", half)
+            if item.orientation_deg is not None:
+                # Along its own axes each half counts in its direction; where nothing is known of them, the narrow one.
+                self._keep("half_base_width", _half(width))
+                self._keep("half_base_depth", _half(depth))
         cg = _measured(item.cg_height_m, "m")
         if cg is None and item.height_m is not None:
             cg = _times(self.row, "cg", item.height_m, "m", "height of the centre of gravity", "height")
@@ -245,22 +185,13 @@ class _Builder:
         item = self.item
         friction = _measured(item.friction, "-")
         if friction is None:
-            material = item.base_material or self.material["friction_as"]
-            span = friction_of(material, item.surface_material)
-            pair = f"{material or 'any material'} on {item.surface_material or 'any floor'}"
-            note = f"friction: {span.value:g} ({span.low:g} to {span.high:g}), Table 3 for {pair}; not measured"
-            friction = _assumed(span.value, span.low, span.high, "-", note, span.source)
+            friction = _friction_of(item.base_material or self.material["friction_as"], item.surface_material)
         self._keep("friction_static", friction)
 
     def _clearance(self) -> None:
-        row = self.row
         clearance = _measured(self.item.clearance_m, "m")
-        if clearance is None and row["clearance"]:
-            span = spread(row, "clearance", "clearance_low", "clearance_high", f"classes.csv, {row['class']}")
-            low, value, high = (100.0 * v for v in (span.low, span.value, span.high))
-            note = f"clearance to neighbour, wall or edge: {value:g} cm ({low:g} to {high:g})"
-            note += f", assumed for: {row['title'].lower()}"
-            clearance = _assumed(span.value, span.low, span.high, "m", note, f"classes.csv, {row['class']}")
+        if clearance is None and self.row["clearance"]:
+            clearance = _clearance_of(self.row["class"])
         self._keep("clearance", clearance)
 
     def _mass(self) -> None:
@@ -274,7 +205,7 @@ class _Builder:
         along = item.depth_m or item.width_m
         if mass is None and row["fill"] and item.height_m and across and along:
             box = item.height_m * across * along * (0.25 * pi if row["round"] == "yes" else 1.0)
-            fill = spread(row, "fill", "fill_low", "fill_high", f"classes.csv, {row['class']}")
+            fill = _range(row["class"], "fill")
             where = f"materials.csv, {self.material['material']}"
             density = spread(self.material, "density", "density_low", "density_high", where)
             of = f"{self.material['material']} of {density.value:g} kg/m3"
@@ -328,6 +259,12 @@ class _Builder:
         self._keep(
             "section_modulus", Estimate(modulus, "m3", size.origin, modulus_low, modulus_high, base, size.source)
         )
+        if item.orientation_deg is not None and shape == "rectangle" and size.value != deep.value:
+            # Both sides of the section were measured: it bends the less, the longer the side along the push.
+            sides = (("section_modulus_width", size, deep), ("section_modulus_depth", deep, size))
+            for name, along, across in sides:
+                value = count * rectangle_modulus(along.value, across.value, wall)
+                self._keep(name, Estimate(value, "m3", size.origin, value, value, base, size.source))
 
     def _section_size(
         self, width: Estimate | None, depth: Estimate | None
@@ -373,25 +310,33 @@ def section_properties(shape: str, width: float, depth: float, count: int, wall:
         modulus = pi * (width**4 - inner**4) / (32.0 * width)
     elif shape in ("rectangle", "legs"):
         narrow, wide = min(width, depth), max(width, depth)
-        inner_narrow = max(narrow - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
-        inner_wide = max(wide - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
-        area = narrow * wide - inner_narrow * inner_wide
-        modulus = (wide * narrow**3 - inner_wide * inner_narrow**3) / (6.0 * narrow)
+        inner = max(narrow - 2.0 * wall, 0.0) * max(wide - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
+        area = narrow * wide - inner
+        modulus = rectangle_modulus(narrow, wide, wall)
     else:
         raise ValueError(f"section_shape {shape!r} is not known; use round, rectangle, or legs with section_count")
     return count * area, count * modulus
 
 
-def classify(item: Item) -> Scene:
-    """Return the scene of one object: class, support, models to try, estimates, and the fields that are missing."""
-    rule = rule_for(item)
-    row = _classes()[rule.object_class]
+def rectangle_modulus(along: float, across: float, wall: float) -> float:
+    """Return the section modulus [m3] of a rectangle, hollow where wall > 0, for a push along one side [m]."""
+    inner_along = max(along - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
+    inner_across = max(across - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
+    return (across * along**3 - inner_across * inner_along**3) / (6.0 * along)
+
+
+def classify(item: Item, rules: Table | None = None) -> Scene:
+    """Return the scene of one object: class, support, models to try, estimates, and the fields that are missing.
+
+    rules : the table that decides the class; None for Kouros's own
+    """
+    decision = rule_for(item, rules)
+    row = _classes()[decision.rule.object_class]
     support = item.support or Support(row["support"])
     models = tuple(m for m in row["models"].split("|") if m and m != "none")
-    rule_words = f"{rule.name}: {rule.why}"
     if not models and item.support is None:
         why = f"no generic model applies: it {row['why']}"
-        return Scene(item, row["class"], rule_words, support, (), {}, (), (why,))
+        return Scene(item, row["class"], decision.words, support, (), {}, (), (why,))
     if item.support is not None and item.support is not Support(row["support"]):
         models = MODELS_OF[item.support]
     elif item.frequency_hz is not None and "stress" in models:
@@ -406,7 +351,7 @@ def classify(item: Item) -> Scene:
     return Scene(
         item,
         row["class"],
-        rule_words,
+        decision.words,
         support,
         models,
         builder.found,
@@ -421,7 +366,7 @@ def _unheld(item: Item, support: Support) -> list[str]:
     if item.support is not None or support is not Support.FREESTANDING or not plan or item.height_m is None:
         return []
     times = item.height_m / min(plan)
-    if times <= THIN:
+    if times <= SLENDEREST:
         return []
     return [
         f"support (it is {times:.0f} times as high as it is deep: it cannot stand by itself, or a measure is wrong)"

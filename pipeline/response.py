@@ -7,11 +7,22 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.charting import SHELF, Settings, Shelf, tabulate
+from pipeline.charting import (
+    SHELF,
+    ResponseChart,
+    Run,
+    Settings,
+    Shelf,
+    Tabulated,
+    axis_of,
+    chart_of,
+    tabulate,
+)
 from pipeline.models import MODELS, model_named
-from pipeline.models.common import BOUND, words
+from pipeline.models.common import BOUND, SENSITIVE, words
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Columns, Excitation, Model, Motion
+from pipeline.supports import TRANSMITTED, refined, support_named
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,14 +33,17 @@ FIDELITIES = ("screen", "bound", "chart", "history", "reference")
 TOLERANCE = 1e-3
 """Relative error that a chart's interpolation is granted."""
 
+DECIDES = 1e-2
+"""The same where charts only have to tell a verdict: what lies closer to its capacity is integrated.
+
+Of a thousand objects about six do.  At 1e-3 it would be one, of a chart that takes three times as many analyses.
+"""
+
 REFINE = {"history": 2, "reference": 16}
 """How much finer than the coarsest step, which only ever looks for the worst direction, each fidelity integrates."""
 
 SCAN_LIMIT = 16
 """Refinement up to which a worst direction that a finer step does not confirm is looked for again."""
-
-TRANSMITTED = 1e-3
-"""Error that what stands on a support may get from the sampling of what the support passes on."""
 
 AZIMUTH_STEP = 10.0
 """Degrees between the directions of which the worst counts when the orientation is unknown (RotD100)."""
@@ -188,15 +202,9 @@ def run_chart(
     returns : columns, angles, and which rows (n,) came from a chart
     raises  : ValueError as ``run_model``, for a bad tolerance, and for a model that is never tabulated
     """
-    _check(angle, tail, azimuth_step)
-    both = _directions(model, values) == 2
-    settings = Settings(None if both else angle, both, tail, azimuth_step, REFINE["history"], tolerance)
-
-    def run(some: Mapping[str, Array]) -> Columns:
-        return run_model(model, motion, some, "history", angle, tail, azimuth_step)[0]
-
-    columns, looked = tabulate(model, motion, values, run, settings, charts)
-    angles = np.full(looked.size, np.nan if both or angle is None else angle)
+    found = look_up(model, motion, values, angle, tail, azimuth_step, tolerance, charts)
+    columns, looked = found.columns, found.found
+    angles = np.full(looked.size, np.nan if angle is None or _directions(model, values) == 2 else angle)
     rest = ~looked
     if rest.any():
         others = {name: column[rest] for name, column in values.items()}
@@ -204,6 +212,69 @@ def run_chart(
         for name, column in integrated.items():
             columns[name][rest] = column
     return columns, angles, looked
+
+
+def look_up(
+    model: Model,
+    motion: Motion,
+    values: Mapping[str, Array],
+    angle: float | None,
+    tail: float | None,
+    azimuth_step: float = AZIMUTH_STEP,
+    tolerance: float = TOLERANCE,
+    charts: Shelf = SHELF,
+    least: int = 0,
+) -> Tabulated:
+    """Look prepared parameters up in charts, building those that are missing; what is on none of them is left open.
+
+    least  : how many sets must ask for a chart that is not on the shelf before it is built
+    raises : as ``run_chart``
+    """
+    run, settings = _charted(model, motion, values, angle, tail, azimuth_step, tolerance)
+    return tabulate(model, motion, values, run, settings, charts, least)
+
+
+def response_chart(
+    model: str,
+    motion: Motion,
+    *,
+    angle: float | None = None,
+    azimuth_step: float = AZIMUTH_STEP,
+    tolerance: float = TOLERANCE,
+    charts: Shelf = SHELF,
+    **fixed: Any,
+) -> ResponseChart:
+    """Return a model's response chart under a motion, from the shelf or built.
+
+    angle  : as in ``respond``
+    fixed  : the model's parameters besides that of the chart's axis, single numbers
+    raises : ValueError as ``respond``, and for a model that is never tabulated
+    """
+    row = model_named(model)
+    axis = axis_of(row)
+    values = prepare(row, {**fixed, axis.name: axis.low})
+    run, settings = _charted(row, motion, values, angle, None, azimuth_step, tolerance)
+    others = {name: column[0] for name, column in values.items() if name != axis.name}
+    return chart_of(row, motion, others, run, settings, charts)
+
+
+def _charted(
+    model: Model,
+    motion: Motion,
+    values: Mapping[str, Array],
+    angle: float | None,
+    tail: float | None,
+    azimuth_step: float,
+    tolerance: float,
+) -> tuple[Run, Settings]:
+    """Return how the nodes of a chart are run, and what the chart depends on besides model and motion."""
+    _check(angle, tail, azimuth_step)
+    both = _directions(model, values) == 2
+
+    def run(some: Mapping[str, Array]) -> Columns:
+        return run_model(model, motion, some, "history", angle, tail, azimuth_step)[0]
+
+    return run, Settings(None if both else angle, both, tail, azimuth_step, REFINE["history"], tolerance)
 
 
 def _check(angle: object, tail: object, azimuth_step: float) -> None:
@@ -259,8 +330,10 @@ def _worst_direction(
     first, demand = model.gives[0].name, model.demand
     where = np.zeros(size)
     most, push = np.full(size, -np.inf), np.full(size, -np.inf)
+    scans: dict[float, Columns] = {}
     for direction in np.arange(0.0, turn - 1e-9, azimuth_step):
         columns = model.run(motion.excitation(float(direction), tail), values, scan, False)
+        scans[float(direction)] = columns
         # Where the first output ties (nothing moved in either direction), the demand decides.
         larger = (columns[first] > most) | ((columns[first] == most) & (columns[demand] > push))
         most[larger], push[larger] = columns[first][larger], columns[demand][larger]
@@ -274,14 +347,43 @@ def _worst_direction(
             best.setdefault(name, np.empty(size))[rows] = column
     # A worst direction that the finer integration does not confirm (a block that fell, and then did not) says nothing:
     # look again with half the step, so that no direction in which it does fall is missed.
-    unsure = best[first] < 0.999 * most
-    if unsure.any() and refine < SCAN_LIMIT:
+    unsure = (best[first] < 0.999 * most) & (refine < SCAN_LIMIT)
+    _doubt_directions(model, motion, values, tail, scans, where, best, ~unsure)
+    if unsure.any():
         again = {name: v[unsure] for name, v in values.items()}
         columns, directions = _worst_direction(model, motion, again, 2 * refine, tail, azimuth_step)
         where[unsure] = directions
         for name, column in columns.items():
             best[name][unsure] = column
     return best, where
+
+
+def _doubt_directions(
+    model: Model,
+    motion: Motion,
+    values: Mapping[str, Array],
+    tail: float | None,
+    scans: Mapping[float, Columns],
+    where: Array,
+    best: Columns,
+    rows: NDArray[np.bool_],
+) -> None:
+    # Whether 1 % of the amplitude changes the outcome of the worst of all directions: a yes in one that stays a yes
+    # settles it, whatever the others do; a no can become a yes in any.  `best` is the row of the direction `where`.
+    if model.flips is None:
+        return
+    outcome = next(q.name for q in model.gives if q.unit == "bool")
+    note = best["note"].astype(np.int64)
+    told = (note & SENSITIVE) > 0
+    for direction, columns in scans.items():
+        yes = best[outcome] > 0.0
+        asked = rows & (where != direction) & ((columns[outcome] > 0.0) == yes) & (told == yes)
+        if not asked.any():
+            continue
+        some = {name: value[asked] for name, value in values.items()}
+        found = {name: column[asked] for name, column in columns.items()}
+        told[asked] = model.flips(motion.excitation(direction, tail), some, found)
+    best["note"] = np.where(told, note | SENSITIVE, note & ~SENSITIVE).astype(np.float64)
 
 
 def trace(model: str, motion: Motion, *, angle: float = 0.0, **parameters: Any) -> "pd.DataFrame":
@@ -312,41 +414,28 @@ def transmit(
     error      : largest error of the displacement of an oscillator of 2 to 20 Hz and 5 % damping on the support, as a
                  share of its peak; what is reached stands in the last of the motion's steps
     raises     : ValueError for an unknown support or parameter, and for an error that is not above 0
-    A floor's step follows from its modes, whatever is asked.
+    A floor by its factor is exact on the samples of its input, so that no error is asked of it.
     """
-    from pipeline.supports import refined, support_named
-
     row = support_named(support)
     values = _single(row, parameters, "transmit passes a motion through one support")
     if values.get("directions", 2.0) != 2.0:
         raise ValueError("transmit passes both horizontal directions on; leave directions out")
     _some_error(error)
-    if refine is not None or not row.refines:
+    if refine is not None or not row.refines(values):
         return row.transmit(motion, values, 1 if refine is None else refine)
     return refined(lambda samples: row.transmit(motion, values, samples), error)
 
 
-def cascade(
-    chain: Sequence[tuple[str, Mapping[str, Any]]],
-    motion: Motion,
-    *,
-    error: float = TRANSMITTED,
-    known: dict[Any, Motion] | None = None,
-) -> Motion:
+def cascade(chain: Sequence[tuple[str, Mapping[str, Any]]], motion: Motion, *, error: float = TRANSMITTED) -> Motion:
     """Return the motion on top of a chain of supports, the error shared out equally between them.
 
     chain  : (support, its parameters) from the ground up; empty: the motion itself
     error  : as in `transmit`, of all of them together
-    known  : kept by the caller, what earlier chains passed on: those that begin alike are computed once
     raises : ValueError as `transmit`
     """
     _some_error(error)
-    kept = {} if known is None else known
     for support, parameters in chain:
-        key = (motion.hash, motion.name, motion.steps, support, tuple(sorted(parameters.items())), error / len(chain))
-        if key not in kept:
-            kept[key] = transmit(support, motion, error=error / len(chain), **parameters)
-        motion = kept[key]
+        motion = transmit(support, motion, error=error / len(chain), **parameters)
     return motion
 
 

@@ -39,6 +39,7 @@ class Collection(_Part):
     source: str = Field(default="", description="the file to import")
     mapping: str = Field(default="kouros", description="a preset, or the file of a mapping")
     shrink_limit: float = Field(default=0.2, ge=0.0, le=1.0, description="share of objects that may vanish at once")
+    rules: str = Field(default="", description="a CSV file of your own rules of classification, read before Kouros's")
 
 
 class SiteFolder(_Part):
@@ -72,9 +73,16 @@ class Floors(RootModel[dict[str, tuple[str, ...]]]):
 class Analysis(_Part):
     """How finely to look."""
 
-    fidelity: Literal["history", "reference"] = "history"
+    fidelity: Literal["auto", "chart", "history", "reference"] = "auto"
     azimuth_step: float = Field(default=10.0, gt=0.0, le=90.0, description="degrees between directions (RotD100)")
     workers: int = Field(default=0, ge=0, le=256, description="threads; 0: as many as there are cores")
+
+
+class Charts(_Part):
+    """How long response charts are kept, and how much room they may take."""
+
+    unused_days: float = Field(default=30.0, ge=1.0, le=3650.0, description="after the last use of their motion")
+    megabytes: float = Field(default=200.0, ge=0.0, le=1e6, description="of all of them; the oldest are removed first")
 
 
 class Report(_Part):
@@ -93,6 +101,7 @@ class Settings(_Part):
     site: SiteFolder = SiteFolder()
     floors: Floors = Floors({})
     analysis: Analysis = Analysis()
+    charts: Charts = Charts()
     report: Report = Report()
     home: Path = Field(default=Path(), exclude=True)
     demonstration: bool = Field(default=False, description="say on every page that this is a demonstration")
@@ -154,6 +163,8 @@ database = "kouros.sqlite"
 source = {source}
 # A preset (carnegie, kouros) or the file of your own mapping.
 mapping = {mapping}
+# A CSV file of your own rules of classification, with the columns of Kouros's table; they are read before it.
+rules = ""
 # A night that finds this share of objects fewer than the last one publishes nothing.
 shrink_limit = 0.2
 
@@ -166,12 +177,18 @@ folder = {site}
 # "2" = ["Hall of Sculpture", "Gallery 12"]
 
 [analysis]
-# fidelity = "reference" integrates eight times finer.
-fidelity = "history"
+# "auto" climbs from bounds over charts to histories only as far as each verdict needs, with the verdicts of "history",
+# which integrates everything; "reference" does so eight times finer, and "chart" looks up whatever is on a chart.
+fidelity = "auto"
 # Degrees between the directions tried for an object whose orientation is not recorded.
 azimuth_step = 10.0
 # Threads; 0 means as many as there are cores.
 workers = 0
+
+[charts]
+# Response charts are kept until their motion was unused for so many days, and in this much room.
+unused_days = 30
+megabytes = 200
 
 [report]
 folder = "reports"

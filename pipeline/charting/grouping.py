@@ -7,8 +7,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.charting.keeping import chart_identity
 from pipeline.charting.response_chart import ResponseChart, Run, axis_of
-from pipeline.charting.shelf import Shelf, chart_identity
+from pipeline.charting.shelf import Shelf
 from pipeline.quantities import Array
 from pipeline.records import Columns, Model, Motion
 
@@ -29,6 +30,8 @@ class Settings:
     tail         : s after the record; None: until rest
     azimuth_step : degrees between the directions of which the worst counts
     refine       : how finely the nodes are integrated
+    tolerance    : of the interpolation, relative to max(value, 1 % of the largest value on the chart)
+    raises       : ValueError for a tolerance that makes no sense
     """
 
     angle: float | None
@@ -38,31 +41,57 @@ class Settings:
     refine: int
     tolerance: float
 
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.tolerance) and 1e-6 <= self.tolerance <= 1.0):
+            raise ValueError(f"tolerance must be from 1e-6 to 1 of the value, not {self.tolerance!r}")
+
+
+@dataclass(frozen=True)
+class Tabulated:
+    """Rows looked up in charts, (n,) each.
+
+    columns : the outputs, "error" (of the first output) and "note"
+    bounds  : by how much each output may be wrong; of the first it is the error
+    found   : which rows were looked up.  The others are NaN and are to be integrated: they lie outside of the chart,
+              have a parameter that no chart has, or lie where the chart did not reach the tolerance
+    """
+
+    columns: Columns
+    bounds: Columns
+    found: NDArray[np.bool_]
+
 
 def tabulate(
-    model: Model, motion: Motion, values: Mapping[str, Array], run: Run, settings: Settings, shelf: Shelf
-) -> tuple[Columns, NDArray[np.bool_]]:
+    model: Model,
+    motion: Motion,
+    values: Mapping[str, Array],
+    run: Run,
+    settings: Settings,
+    shelf: Shelf,
+    least: int = 0,
+) -> Tabulated:
     """Look rows up in the charts of a model under a motion, building those that the shelf does not have.
 
-    values  : the model's parameters, (n,) each
-    run     : the model under the motion, with the settings, for parameters of its own
-    returns : the columns (n,) with "error" (of the first output) and "note"; and which rows (n,) were looked up.  The
-              others are NaN and are to be integrated: they lie outside of the chart, have a parameter that no chart
-              has, or lie where the chart did not reach the tolerance
-    raises  : ValueError for a model that is never tabulated, and for a tolerance that makes no sense
+    values : the model's parameters, (n,) each
+    run    : the model under the motion, with the settings, for parameters of its own
+    least  : how many sets must ask for a chart that the shelf does not have before it is built
+    raises : ValueError for a model that is never tabulated
     """
     axis = axis_of(model)
-    if not (np.isfinite(settings.tolerance) and 1e-6 <= settings.tolerance <= 1.0):
-        raise ValueError(f"tolerance must be from 1e-6 to 1 of the value, not {settings.tolerance!r}")
     along = values[axis.name]
-    columns: Columns = {name: np.full(along.size, np.nan) for name in (*(q.name for q in model.gives), "error", "note")}
+    outputs = [q.name for q in model.gives]
+    columns: Columns = {name: np.full(along.size, np.nan) for name in (*outputs, "error", "note")}
+    bounds: Columns = {name: np.full(along.size, np.nan) for name in outputs}
     found = np.zeros(along.size, dtype=bool)
     possible = np.ones(along.size, dtype=bool)
     for name in axis.absent:
         possible &= np.isnan(values[name])
     fixed = {q.name: values[q.name] for q in model.needs if q.name != axis.name}
     for rows in _groups(fixed, np.flatnonzero(possible)):
-        chart = _chart(model, motion, {n: float(v[rows[0]]) for n, v in fixed.items()}, run, settings, shelf)
+        alike = {n: float(v[rows[0]]) for n, v in fixed.items()}
+        if rows.size < least and not shelf.has(_identity(model, motion, alike, settings), axis):
+            continue
+        chart = chart_of(model, motion, alike, run, settings, shelf)
         inside = rows[chart.covers(along[rows])]
         looked = chart.look(along[inside])
         good = looked.resolved
@@ -70,9 +99,11 @@ def tabulate(
         found[at] = True
         for name in chart.outputs:
             columns[name][at] = looked.columns[name][good]
-        columns["error"][at] = (looked.bounds[chart.outputs[0]] + looked.own)[good]
+            bounds[name][at] = looked.bounds[name][good]
+        bounds[chart.outputs[0]][at] += looked.own[good]
+        columns["error"][at] = bounds[chart.outputs[0]][at]
         columns["note"][at] = looked.note[good]
-    return columns, found
+    return Tabulated(columns, bounds, found)
 
 
 def _groups(fixed: Mapping[str, Array], rows: NDArray[np.intp]) -> list[NDArray[np.intp]]:
@@ -92,14 +123,26 @@ def _groups(fixed: Mapping[str, Array], rows: NDArray[np.intp]) -> list[NDArray[
     return [rows[which == group] for group in largest]
 
 
-def _chart(
+def chart_of(
     model: Model, motion: Motion, fixed: Mapping[str, float], run: Run, settings: Settings, shelf: Shelf
 ) -> ResponseChart:
+    """Return the chart of a model under a motion, from the shelf or built.
+
+    fixed  : the model's parameters besides that of the axis (NaN: left out)
+    run    : as in `tabulate`
+    raises : as `tabulate`
+    """
     axis = axis_of(model)
+    key = _identity(model, motion, fixed, settings)
+    excitation = motion.excitation(None if settings.both else settings.angle, settings.tail)
+    return shelf.get(key, axis, partial(ResponseChart.build, model, excitation, fixed, run, settings.tolerance))
+
+
+def _identity(model: Model, motion: Motion, fixed: Mapping[str, float], settings: Settings) -> str:
     worst = settings.angle is None and not settings.both
-    key = chart_identity(
+    return chart_identity(
+        motion.hash,
         model=model.name,
-        motion=motion.hash,
         angle="both" if settings.both else settings.angle,
         azimuth_step=settings.azimuth_step if worst else None,
         tail=settings.tail,
@@ -107,5 +150,3 @@ def _chart(
         tolerance=settings.tolerance,
         fixed=dict(fixed),
     )
-    excitation = motion.excitation(None if settings.both else settings.angle, settings.tail)
-    return shelf.get(key, axis, partial(ResponseChart.build, model, excitation, fixed, run, settings.tolerance))

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.charting.refine import MOST_NODES, SMALL, UNITS, Cells, Integers, refine
-from pipeline.kernels.lookup import lookup_batch
+from pipeline.kernels.lookup import POINTS, lookup_batch
 from pipeline.quantities import Array
 from pipeline.records import ChartAxis, Columns, Excitation, Model
 
@@ -107,10 +107,19 @@ class ResponseChart:
         )
 
     @property
-    def worst(self) -> float:
-        """The largest bound anywhere, relative to max(value, 1 % of the largest value of its output)."""
-        values, bounds = self.cells.values, self.cells.bounds
-        size = np.maximum(values.min(axis=1), SMALL * values.max(axis=(0, 1)))
+    def nodes(self) -> Array:
+        """The values of the axis' parameter, rising, at which the model was run for the cells as they are."""
+        edges = self.cells.edges
+        within = np.arange(POINTS - 1) / (POINTS - 1)
+        places = np.append(np.ravel(edges[:-1, None] + np.diff(edges)[:, None] * within), UNITS)
+        along = self.low * (self.high / self.low) ** (places / UNITS)
+        return np.append(np.clip(along[:-1], self.low, self.high), self.high)
+
+    def worst(self, output: str) -> float:
+        """Return the largest bound of an output anywhere, relative to max(value, 1 % of its largest value)."""
+        at = self.outputs.index(output)
+        values, bounds = self.cells.values[..., at], self.cells.bounds[:, at]
+        size = np.maximum(values.min(axis=1), SMALL * values.max())
         return float(np.divide(bounds, size, out=np.zeros_like(size), where=size > 0.0).max())
 
 

@@ -1,46 +1,17 @@
 """Where charts are kept: a few in memory, and, where a folder is given, all that were built, from night to night."""
 
-import hashlib
-import json
-import os
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from concurrent.futures import Future
-from dataclasses import fields
-from functools import cache
 from pathlib import Path
-from threading import Lock, get_ident
-from typing import Any
-from zipfile import BadZipFile
+from threading import Lock
 
-import numpy as np
-
-from pipeline.charting.refine import Cells
+from pipeline.charting.keeping import keep, prune, recall
 from pipeline.charting.response_chart import ResponseChart
-from pipeline.kernels import KERNEL_VERSION
 from pipeline.records import ChartAxis
 
 KEPT = 64
 """Charts held in memory, of about 0.2 MB each; the one that was asked for longest ago goes first."""
-
-
-@cache
-def _code() -> bytes:
-    """What computes a chart besides the kernels, as one hash: models, records, charts and the search of directions."""
-    digest = hashlib.sha256()
-    package = Path(__file__).parents[1]
-    for source in sorted(s for folder in ("charting", "models", "records") for s in (package / folder).glob("*.py")):
-        digest.update(source.read_bytes())
-    digest.update((package / "response.py").read_bytes())
-    return digest.digest()
-
-
-def chart_identity(**parts: object) -> str:
-    """Return the identity of a chart: of the code, the kernels and all that it depends on besides."""
-    digest = hashlib.sha256(_code())
-    digest.update(KERNEL_VERSION.encode())
-    digest.update(json.dumps(parts, sort_keys=True).encode())
-    return digest.hexdigest()
 
 
 class Shelf:
@@ -79,44 +50,23 @@ class Shelf:
                 raise
         return chart.result()
 
+    def has(self, key: str, axis: ChartAxis) -> bool:
+        """Say whether the chart of that identity need not be built."""
+        with self._lock:
+            if key in self._charts:
+                return True
+        # What is found is kept in memory, so that it is read once.
+        found = None if self._folder is None else recall(self._folder, key, axis)
+        if found is None:
+            return False
+        self.get(key, axis, lambda: found)
+        return True
+
+    def tidy(self, *, days: float, most_bytes: int, using: Collection[str] = ()) -> None:
+        """Remove from the folder what `prune` removes; what is in memory stays."""
+        if self._folder is not None:
+            prune(self._folder, days=days, most_bytes=most_bytes, using=using)
+
 
 SHELF = Shelf()
 """The charts of this process, for a caller who brings no shelf."""
-
-_CELLS = tuple(field.name for field in fields(Cells))
-
-
-def keep(folder: Path, key: str, chart: ResponseChart) -> None:
-    """Keep a chart, atomically; a folder that cannot be written only costs the next process its time."""
-    said = {
-        "key": key,
-        "axis": chart.axis.name,
-        "outputs": chart.outputs,
-        "low": chart.low,
-        "high": chart.high,
-        "settled": chart.settled,
-        "tolerance": chart.tolerance,
-    }
-    aside = folder / f".{os.getpid()}-{get_ident()}.npz"
-    cells: dict[str, Any] = {name: np.asarray(getattr(chart.cells, name)) for name in _CELLS}
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        np.savez(aside, said=np.array(json.dumps(said)), **cells)
-        aside.replace(folder / f"{key}.npz")
-    except OSError:
-        aside.unlink(missing_ok=True)
-
-
-def recall(folder: Path, key: str, axis: ChartAxis) -> ResponseChart | None:
-    """Return the chart that was kept under this very identity, or None; a damaged file counts as none."""
-    try:
-        with np.load(folder / f"{key}.npz", allow_pickle=False) as kept:
-            said = json.loads(str(kept["said"]))
-            if said["key"] != key or said["axis"] != axis.name:
-                return None
-            cells = Cells(**{name: kept[name] for name in _CELLS[:-1]}, nodes=int(kept["nodes"]))
-            return ResponseChart(
-                axis, tuple(said["outputs"]), said["low"], said["high"], said["settled"], said["tolerance"], cells
-            )
-    except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile):
-        return None

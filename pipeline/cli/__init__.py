@@ -1,6 +1,7 @@
 """The command `kouros`: parse, call, print; decides nothing."""
 
 import sys
+import warnings
 
 import click
 
@@ -38,6 +39,7 @@ for command in commands.ALL:
 def main() -> None:
     """Run the command; errors name file, row, field and remedy, and become exit codes."""
     debug = "--debug" in sys.argv
+    warnings.formatwarning = _warned
     try:
         code = kouros.main(standalone_mode=False)
     except click.exceptions.Exit as leaving:
@@ -61,3 +63,15 @@ def _said(problem: Exception) -> str:
     if isinstance(problem, ValueError) or hasattr(problem, "exit_code"):
         return text
     return f"unexpected {type(problem).__name__}: {text} (run again with --debug for the traceback)"
+
+
+def _warned(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    line: str | None = None,  # noqa: ARG001 - as the standard library calls it
+) -> str:
+    # What Kouros itself warns of is for the user; where it says so in the code is not.
+    own = category.__module__.startswith("pipeline.")
+    return f"kouros: {message}\n" if own else f"{category.__name__}: {message} ({filename}:{lineno})\n"

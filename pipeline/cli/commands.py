@@ -1,15 +1,15 @@
 """The verbs.  Each parses its options, calls one job, prints its answer."""
 
 import json
-import math
-from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
-from pipeline.cli.console import summary_lines, tradeoff_lines
+from pipeline.cli.console import listed, summary_lines, tradeoff_lines
+from pipeline.cli.explaining import print_explanation
+from pipeline.cli.importing import import_
 from pipeline.cli.motions import motions
 from pipeline.cli.options import Options, as_json
 
@@ -59,61 +59,32 @@ def init(folder: Path) -> None:
         click.echo(f"made {made}")
 
 
-@click.command("import")
-@click.argument("source", type=click.Path(dir_okay=False, path_type=Path))
-@click.option("--mapping", help="A preset (carnegie, kouros) or the file of your mapping; default: the settings'.")
-@click.option("--shrink-limit", type=click.FloatRange(0.0, 1.0), help="Share of objects that may vanish at once.")
-@click.option("--dry-run", is_flag=True, help="Read and report; write nothing.")
+@click.command()
+@click.option("--gallery", "galleries", multiple=True, help="Only this gallery; may be repeated.")
+@click.option(
+    "--out", type=click.Path(dir_okay=False, path_type=Path), help="The workbook; default: survey-<date>.xlsx."
+)
 @as_json
 @click.pass_obj
-def import_(
-    options: Options, source: Path, mapping: str | None, shrink_limit: float | None, dry_run: bool, as_json: bool
-) -> None:
-    """Read the museum's export into Kouros's inventory, by a mapping.
+def survey(options: Options, galleries: tuple[str, ...], out: Path | None, as_json: bool) -> None:
+    """Write a workbook of what is worth measuring: which missing numbers would settle a verdict.
 
-    Example: kouros import export.csv --mapping carnegie --dry-run
+    Print it, fill it in, and read it back with `kouros import FILE --sheet`.
+
+    Example: kouros survey --gallery "Gallery 12"
     """
-    from pipeline.jobs.importing import import_collection
+    from pipeline.jobs.survey import survey as job
     from pipeline.jobs.workspace import locked, open_workspace
 
     settings = options.settings()
-    wanted = settings.collection
-    limit = wanted.shrink_limit if shrink_limit is None else shrink_limit
-    with locked(settings):
-        workspace = open_workspace(settings)
-        done = import_collection(workspace, source, mapping or wanted.mapping, shrink_limit=limit, dry_run=dry_run)
-    reading, problems = done.reading, done.problems
+    with locked(settings), options.console() as console:
+        found = job(open_workspace(settings), console, galleries=galleries, path=out)
     if as_json:
-        answer: dict[str, Any] = {
-            "source": reading.source,
-            "rows": reading.rows,
-            "items": len(reading.items),
-            "rejected": [asdict(r) for r in reading.rejected],
-            "problems": [{"object_number": item.object_number, **asdict(p)} for item, p in problems],
-            "counts": None if done.counts is None else asdict(done.counts),
-        }
-        click.echo(json.dumps(answer, indent=2))
+        click.echo(json.dumps(asdict(found), indent=2, default=str))
         return
-    click.echo(
-        f"{reading.source}: {reading.rows:,} rows, {len(reading.items):,} objects, {len(reading.rejected):,} rejected"
-    )
-    _list(
-        "rejected",
-        [f"{r.file}, row {r.row} (line {r.line}): {r.field}: {r.message}; {r.remedy}" for r in reading.rejected],
-    )
-    _list("not accepted", [f"{item.object_number}: {p.field}: {p.message}; {p.remedy}" for item, p in problems])
-    if done.counts is None:
-        click.echo("dry run: nothing was written")
-    else:
-        c = done.counts
-        click.echo(f"inventory: {c.after:,} objects ({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed)")
-
-
-def _list(title: str, lines: Sequence[str], most: int = 10) -> None:
-    for line in lines[:most]:
-        click.echo(f"  {title}: {line}")
-    if len(lines) > most:
-        click.echo(f"  {title}: and {len(lines) - most:,} more (--json lists all)")
+    click.echo(f"{found.quantities:,} measurements on {found.objects:,} objects are worth making: {found.path}")
+    click.echo(f"{found.waste:,} others would settle nothing wherever in their range they fall, and are left out")
+    listed("first", [f"{w.object_number} ({w.gallery}): {w.field}: {w.reason}" for w in found.wishes if not w.waste])
 
 
 @click.command()
@@ -123,12 +94,13 @@ def _list(title: str, lines: Sequence[str], most: int = 10) -> None:
 def check(options: Options, numerics: bool, as_json: bool) -> None:
     """Look at settings, database, mapping, motions, clock and disk, and say what to mend.
 
-    With --numerics: whether this machine's compiled code is right at the extremes; exit code 1 if not.
+    With --numerics: whether this machine's compiled code is right at the extremes; exit code 1 if not.  Beside a
+    kouros.toml the result is kept, and the next report shows it.
 
     Example: kouros check
     """
     if numerics:
-        _check_numerics(as_json)
+        _check_numerics(options, as_json)
         return
     from pipeline.jobs.doctor import diagnose
 
@@ -142,20 +114,20 @@ def check(options: Options, numerics: bool, as_json: bool) -> None:
         raise click.exceptions.Exit(2)
 
 
-def _check_numerics(as_json: bool) -> None:
-    from pipeline.jobs.numerics import outcomes
+def _check_numerics(options: Options, as_json: bool) -> None:
+    from pipeline.jobs.selftest import self_test
 
+    settings = options.settings() if Path(options.config).exists() else None
     done = []
-    for o in outcomes():
+    for o in self_test(settings):
         done.append(o)
         if not as_json:
-            says = f"{o.result:.1e}, limit {o.limit:.0e}" + (f": {o.problem}" if o.problem else "")
+            result = "no number" if o.result is None else f"{o.result:.1e}"
+            says = f"{result}, limit {o.limit:.0e}" + (f": {o.problem}" if o.problem else "")
             click.echo(f"{'ok' if o.ok else 'failed':<8} {o.what}; {o.truth}: {says}")
     wrong = sum(not o.ok for o in done)
     if as_json:
-        # JSON has no NaN.
-        rows = [{**asdict(o), "result": o.result if math.isfinite(o.result) else None} for o in done]
-        click.echo(json.dumps(rows, indent=2))
+        click.echo(json.dumps([asdict(o) for o in done], indent=2))
     else:
         click.echo(f"{len(done)} cases, {wrong} failed, {sum(o.seconds for o in done):.0f} s")
     if wrong:
@@ -166,8 +138,9 @@ def _check_numerics(as_json: bool) -> None:
 @click.option("--gallery", "galleries", multiple=True, help="Only this gallery; may be repeated.")
 @click.option("--object", "objects", multiple=True, help="Only this object number; may be repeated.")
 @click.option("--site", help="Another site's folder, or 'demo'.")
-@click.option("--fidelity", type=click.Choice(["history", "reference"]), help="How finely to integrate.")
+@click.option("--fidelity", type=click.Choice(["auto", "chart", "history", "reference"]), help="How finely to look.")
 @click.option("--dry-run", is_flag=True, help="Assess and summarise; store and publish nothing.")
+@click.option("--explain", metavar="OBJECT", help="Print the whole chain of reasoning for one object instead.")
 @as_json
 @click.pass_obj
 def run(
@@ -177,13 +150,17 @@ def run(
     site: str | None,
     fidelity: str | None,
     dry_run: bool,
+    explain: str | None,
     as_json: bool,
 ) -> None:
     """Run the nightly job: read, assess, recommend, store, publish the report.
 
     A run of a part of the collection is stored and has its report, but does not become the latest one.
 
+    With --explain nothing is stored: it prints class, numbers, every step of each model and the advice for an object.
+
     Example: kouros run --gallery "Hall of Sculpture"
+    Example: kouros run --explain 1922.9
     """
     from pipeline.jobs.nightly import Selection
     from pipeline.jobs.nightly import run as job
@@ -193,6 +170,11 @@ def run(
         settings = settings.model_copy(update={"site": settings.site.model_copy(update={"folder": site})})
     if fidelity is not None:
         settings = settings.model_copy(update={"analysis": settings.analysis.model_copy(update={"fidelity": fidelity})})
+    if explain is not None:
+        if galleries or objects:
+            raise click.UsageError("--explain is about one object: leave out --gallery and --object")
+        print_explanation(settings, explain, options, as_json)
+        return
     with options.console() as console:
         summary = job(settings, console, Selection(galleries, objects), dry_run=dry_run)
     _print_summary(summary, as_json)
@@ -231,13 +213,13 @@ def diff(options: Options, old: str | None, new: str | None, as_json: bool) -> N
         return
     click.echo(f"from {changes.old} to {changes.new}")
     for title, places in (("new", changes.added), ("gone", changes.removed)):
-        _list(title, [f"{p.object_number} ({p.gallery})" for p in places])
-    _list("changed", [f"{i.object_number} ({i.gallery}): {', '.join(i.fields)}" for i in changes.inputs])
-    _list("motion", [f"{m.level} {m.name}" for m in changes.motions])
+        listed(title, [f"{p.object_number} ({p.gallery})" for p in places])
+    listed("changed", [f"{i.object_number} ({i.gallery}): {', '.join(i.fields)}" for i in changes.inputs])
+    listed("motion", [f"{m.level} {m.name}" for m in changes.motions])
     verdicts = [
         f"{v.object_number} ({v.gallery}) {v.model}, {v.level}: {v.before} -> {v.after}" for v in changes.verdicts
     ]
-    _list("verdict", verdicts)
+    listed("verdict", verdicts)
     if not changes:
         click.echo("nothing changed")
 
@@ -292,7 +274,9 @@ def models(as_json: bool) -> None:
 @click.option("--fidelity", default="history", type=click.Choice(FIDELITIES), show_default=True)
 @click.option("--tail", type=click.FloatRange(min=0.0), help="Seconds after the record; default: until rest.")
 @as_json
+@click.pass_obj
 def respond(
+    options: Options,
     model: str,
     parameters: tuple[str, ...],
     site: str,
@@ -304,7 +288,8 @@ def respond(
 ) -> None:
     """Run one model on a site's motions, ad hoc.  Parameters in SI; several values make several rows.
 
-    With a site made by `kouros motions synthesise` it is a virtual shake table.
+    With a site made by `kouros motions synthesise` it is a virtual shake table.  Charts (--fidelity chart) are kept
+    beside kouros.toml where there is one.
 
     \b
     Example: kouros respond sliding friction_static=0.05,0.1,0.2
@@ -312,7 +297,11 @@ def respond(
     """
     from pipeline.jobs.adhoc import respond_on_site
 
-    table = respond_on_site(model, parameters, site, through=through, angle=angle, fidelity=fidelity, tail=tail)
+    # Only charts are kept anywhere.
+    settings = options.settings() if fidelity == "chart" and Path(options.config).exists() else None
+    table = respond_on_site(
+        model, parameters, site, through=through, angle=angle, fidelity=fidelity, tail=tail, settings=settings
+    )
     click.echo(table.to_json(orient="records", indent=2) if as_json else table.to_string(index=False))
 
 
@@ -345,4 +334,4 @@ def tradeoff(
     click.echo("\n".join(tradeoff_lines(found, wanted)))
 
 
-ALL = (demo, init, import_, check, run, report, diff, motions, models, respond, tradeoff)
+ALL = (demo, init, import_, survey, check, run, report, diff, motions, models, respond, tradeoff)

@@ -1,4 +1,5 @@
 """Any museum's records -> Item: mappings, reading, and Kouros's own inventory.
 
-Only `database` and `inventory` import SQLAlchemy, so that a dry run of an import does without.
+Only `database`, `inventory` and, for a museum's own database, `sources.sql` and `sources.address` import SQLAlchemy, so
+that a dry run of a file's import does without.
 """

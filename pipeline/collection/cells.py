@@ -8,16 +8,18 @@ from dataclasses import dataclass, field
 from decimal import Context
 from math import isinf
 
-from pipeline.collection.mapping import ColumnMap
+from pipeline.collection.mapping import WRITTEN, ColumnMap
 from pipeline.collection.record import plausible, units_of
-from pipeline.records import Problem, Support
+from pipeline.collection.sources.rows import as_text
+from pipeline.records import Origin, Problem, Provenance, Support
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
 _INFINITE = re.compile(r"[+-]?inf(inity)?", re.IGNORECASE)
 _LONGEST_NUMBER = 40
 _BREAKS = re.compile("[\t\n\v\f\r\x85\u2028\u2029]+")
 # The C0 and C1 controls; and the marks that turn the direction of all text that follows, also outside of the cell.
-_CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
+# Half a surrogate pair is no letter, and no database takes it.
+_CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 _SPACE = " \t\r\n\v\f\u00a0\u3000"
 # A product of two decimals is rounded once, to the nearest double: 79 in is 2.0066 m and not its neighbour.
 _EXACT = Context(prec=80)
@@ -28,13 +30,13 @@ _FLAGS = {"true": True, "yes": True, "y": True, "1": True, "false": False, "no":
 class Cells:
     """The cells of one row on their way into a record.
 
-    place    : names file and row in messages
-    decimal  : the file's decimal mark
-    problems : gathers what is wrong
+    decimal    : the source's decimal mark
+    provenance : gathers where each number comes from
+    problems   : gathers what is wrong; without the row's number, for a row that moves in its file is no other record
     """
 
-    place: str
     decimal: str = "."
+    provenance: list[Provenance] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
 
     def number(self, name: str, column: ColumnMap, texts: Sequence[str]) -> float | None:
@@ -42,21 +44,23 @@ class Cells:
         text = texts[0].strip(_SPACE)
         if _missing(text, column):
             return None
+        if column.unit == WRITTEN:
+            return self._written(name, column, text)
         value = self._parse(name, column, text)
         if value is None or any(value == m for m in column.missing if not isinstance(m, str)):
             return None
         units = units_of(name)
         unit = column.unit or plausible()[name].unit
-        metric = value
-        if units:
-            exact = _EXACT.multiply(_EXACT.create_decimal(self._plain(text)), _EXACT.create_decimal(repr(units[unit])))
-            metric = float(exact)
+        exact = _EXACT.create_decimal(self._plain(text))
+        metric = float(_EXACT.multiply(exact, _EXACT.create_decimal(repr(units[unit])))) if units else value
         reason = _implausible(name, metric)
         if reason:
             shown = f"{_show(text)}{'' if unit == '-' else f' {unit}'}"
             converted = f" = {metric:.6g} {plausible()[name].unit}" if units and unit != plausible()[name].unit else ""
             self._note(name, column, f"{shown}{converted} {reason}", _remedy(metric))
             return None
+        written = as_text(exact) if unit == "-" else f"{as_text(exact)} {unit}"
+        self.provenance.append(Provenance(name, Origin.MEASURED, written))
         # No negative zero: it equals zero, but a database may not give it back.
         return metric + 0.0
 
@@ -65,6 +69,7 @@ class Cells:
         value = self.number(name, column, texts)
         if value is not None and not value.is_integer():
             self._note(name, column, f"{_show(texts[0])} is not a whole number", "give a count")
+            self.provenance.pop()
             return None
         return None if value is None else int(value)
 
@@ -111,6 +116,30 @@ class Cells:
             return None
         return meaning
 
+    def plausible(self, name: str, value: float, written: str) -> bool:
+        """Say whether a number of a dimension text can be true; note it where it cannot."""
+        reason = _implausible(name, value)
+        if reason:
+            message = f"{_show(written)} = {value:.6g} {plausible()[name].unit} {reason}"
+            self.problems.append(Problem(name, message, "correct the text in the museum's database"))
+        return not reason
+
+    def refuse(self, name: str, column: ColumnMap, message: str, remedy: str) -> None:
+        """Note that a cell cannot be used, as its source says."""
+        self._note(name, column, message, remedy)
+
+    def _written(self, name: str, column: ColumnMap, text: str) -> float | None:
+        from pipeline.collection.measured import of_cell
+
+        found = of_cell(text, plausible()[name].unit, self.decimal)
+        if found is None:
+            self._note(name, column, f"{_show(text)} is no number with its unit", "write it as in 23 cm or 8 1/2 in")
+            return None
+        if not self.plausible(name, found[0], text):
+            return None
+        self.provenance.append(Provenance(name, Origin.MEASURED, found[1]))
+        return found[0]
+
     def _parse(self, name: str, column: ColumnMap, text: str) -> float | None:
         plain = self._plain(text)
         if len(plain) <= _LONGEST_NUMBER and _NUMBER.fullmatch(plain):
@@ -141,7 +170,7 @@ class Cells:
 
     def _note(self, name: str, column: ColumnMap, message: str, remedy: str) -> None:
         source = " + ".join(_show(part) for part in column.sources)
-        self.problems.append(Problem(name, f"{self.place}: column {source}: {message}", remedy))
+        self.problems.append(Problem(name, f"column {source}: {message}", remedy))
 
 
 def _missing(text: str, column: ColumnMap) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -17,6 +17,7 @@ from pydantic import (
     StrictFloat,
     StrictStr,
     ValidationError,
+    field_validator,
     model_validator,
 )
 
@@ -30,8 +31,12 @@ PRESETS = Path(__file__).resolve().parent / "presets"
 DIAMETER = "diameter_m"
 """The one column that is not a field of the record: it fills width_m and depth_m where they are missing."""
 
-MAPPABLE = (*(name for name, kind in KINDS.items() if kind != "problems"), DIAMETER)
+MAPPABLE = (*(name for name, kind in KINDS.items() if kind != "list" and name != "dimensions"), DIAMETER)
+
 """What a mapping may name under [columns]."""
+
+WRITTEN = "as written"
+"""The unit of a column whose cells name their own."""
 
 # In all but UTF-16 (Excel's "Unicode text") the line ends survive a broken byte, so that it spoils one row only.
 Encoding = Literal[
@@ -65,23 +70,54 @@ class _Part(BaseModel):
 
 
 class Source(_Part):
-    """How the museum's file is written."""
+    """How the museum's file or database is read."""
 
-    format: Literal["csv"] = Field(description="The kind of file.")
-    encoding: Encoding = Field(description="How its letters are coded; Excel's older exports use cp1252.")
-    delimiter: str = Field(
-        pattern=r'^[^"\r\n\x00]$', description="The one character between two cells: a comma, a semicolon or a tab."
+    format: Literal["csv", "tsv", "xlsx", "lido", "sql"] = Field(description="The kind of source.")
+    encoding: Encoding | None = Field(
+        default=None, description="csv, tsv: how its letters are coded; Excel's older exports use cp1252."
     )
-    decimal: Literal[".", ","] = Field(default=".", description="The decimal mark of its numbers.")
+    delimiter: str | None = Field(
+        default=None,
+        pattern=r'^[^"\r\n\x00]$',
+        description="csv: the one character between two cells: a comma, a semicolon or a tab.",
+    )
+    decimal: Literal[".", ","] = Field(default=".", description="The decimal mark of numbers that stand in texts.")
+    sheet: Name | None = Field(default=None, description="xlsx: the name of the sheet; the first where none is named.")
+    header_row: int | None = Field(default=None, ge=1, le=100, description="xlsx: the row of the column names; 1.")
+    language: Name | None = Field(default=None, description='lido: the language to prefer, such as "en" or "de".')
+    query: Name | None = Field(default=None, description="sql: one SELECT; or name a table instead.")
+    table: Name | None = Field(default=None, description='sql: a table or view, such as "tms.objects".')
+    timeout_seconds: float | None = Field(
+        default=None, gt=0.0, le=86400.0, description="sql: how long the database may take for it; 600."
+    )
     unmapped_columns: Literal["ignore", "refuse"] = Field(
         default="ignore", description="What to do with a column that no field is mapped to."
     )
 
     @model_validator(mode="after")
-    def _distinct(self) -> Self:
+    def _fits(self) -> Self:
+        needs, may = _KEYS[self.format]
+        for key in ("encoding", "delimiter", "sheet", "header_row", "language", "query", "table", "timeout_seconds"):
+            given = getattr(self, key) is not None
+            if key in needs and not given:
+                raise ValueError(f'{key} is missing; a source of format "{self.format}" needs it')
+            if given and key not in needs + may:
+                raise ValueError(f'{key} has no meaning for format "{self.format}"; leave it out')
         if self.delimiter == self.decimal == ",":
             raise ValueError('a comma cannot be both delimiter and decimal mark; most such files have delimiter = ";"')
+        if self.format == "sql" and (self.query is None) == (self.table is None):
+            raise ValueError('a source of format "sql" needs either query = "SELECT ..." or table = "name"')
         return self
+
+
+_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "csv": (("encoding", "delimiter"), ()),
+    "tsv": (("encoding",), ()),
+    "xlsx": ((), ("sheet", "header_row")),
+    "lido": ((), ("language",)),
+    "sql": ((), ("query", "table", "timeout_seconds")),
+}
+"""Of each format: which keys of [source] it needs, and which it may have."""
 
 
 class Museum(_Part):
@@ -94,13 +130,18 @@ class Museum(_Part):
 class ColumnMap(_Part):
     """Where one field of the record comes from."""
 
+    constant: Name | None = Field(
+        default=None, description="A text that holds for every object, where the source has no such column."
+    )
     column: Name | None = Field(default=None, description="The column's name in the file's first row.")
     columns: tuple[Name, ...] = Field(
         default=(), description="Several columns, joined to one text; empty cells left out."
     )
     separator: str = Field(default=" ", description="What stands between the texts of several columns.")
     unit: str | None = Field(
-        default=None, description="Unit of the column's numbers; required for every length and mass, for them only."
+        default=None,
+        description="Unit of the column's numbers; required for every length and mass, for them only. "
+        f'"{WRITTEN}" where each cell holds number and unit, such as 23 cm or 8 1/2 in.',
     )
     missing: tuple[Number | StrictStr, ...] = Field(
         default=(), description="Numbers (in the column's own unit) or texts that mean: not recorded."
@@ -117,9 +158,29 @@ class ColumnMap(_Part):
 
     @model_validator(mode="after")
     def _one_source(self) -> Self:
-        if (self.column is None) == (not self.columns):
-            raise ValueError('needs either column = "name" or columns = ["first", "second"]')
+        if (self.column is not None) + bool(self.columns) + (self.constant is not None) != 1:
+            raise ValueError('needs one of column = "name", columns = ["first", "second"] and constant = "text"')
         return self
+
+
+class Texts(_Part):
+    """Texts in which dimensions and weights stand, such as "8 1/2 x 11 in. (21.6 x 27.9 cm)"."""
+
+    columns: tuple[Name, ...] = Field(
+        min_length=1, description="The columns; what the first does not say is taken from the next."
+    )
+    unit: str | None = Field(
+        default=None, description="Unit of numbers that have none; without it they are reported and not used."
+    )
+    framed: bool = Field(default=True, description="Whether works in frames hang in them: then the frame counts.")
+    optional: bool = Field(default=False, description="The source may lack these columns.")
+
+    @field_validator("unit")
+    @classmethod
+    def _known(cls, unit: str | None) -> str | None:
+        if unit is not None and unit not in LENGTHS:
+            raise ValueError(f"{unit!r} is no unit of length; use one of {', '.join(LENGTHS)}")
+        return unit
 
 
 class Display(_Part):
@@ -133,10 +194,13 @@ class Display(_Part):
 class Mapping(_Part):
     """A museum's file, column by column; ``name`` is the preset's or the file's name, for messages."""
 
-    source: Source = Field(description="How the file is written.")
+    source: Source = Field(description="How the source is read.")
     museum: Museum = Field(description="Whose collection it is.")
     columns: dict[str, ColumnMap] = Field(
         description="Field of the object record (or diameter_m) -> where it comes from."
+    )
+    dimensions: Texts | None = Field(
+        default=None, description="Texts that fill heights, widths, depths and masses which no column gives."
     )
     display: Display = Field(default=Display(), description="Which locations are no galleries.")
     _name: str = PrivateAttr(default="mapping")
@@ -145,6 +209,15 @@ class Mapping(_Part):
     def name(self) -> str:
         """The preset's or the file's name."""
         return self._name
+
+    def wanted(self) -> Iterator[tuple[str, str, bool]]:
+        """Yield every column that it reads, with the key that names it and whether the source may lack it."""
+        for field, column in self.columns.items():
+            for source in column.sources:
+                yield f"columns.{field}", source, column.optional
+        if self.dimensions is not None:
+            for source in self.dimensions.columns:
+                yield "dimensions", source, self.dimensions.optional
 
     @model_validator(mode="after")
     def _columns_fit(self) -> Self:
@@ -215,13 +288,17 @@ def mapping_schema() -> dict[str, Any]:
         field: {
             "$ref": "#/$defs/ColumnMap",
             "required": ["unit"],
-            "properties": {"unit": {"enum": list(units_of(field))}},
+            "properties": {"unit": {"enum": [*units_of(field), WRITTEN]}},
         }
         if units_of(field)
         else {"$ref": "#/$defs/ColumnMap", "not": {"required": ["unit"]}}
         for field in MAPPABLE
     }
-    schema["$defs"]["ColumnMap"]["oneOf"] = [{"required": ["column"]}, {"required": ["columns"]}]
+    schema["$defs"]["ColumnMap"]["oneOf"] = [
+        {"required": ["column"]},
+        {"required": ["columns"]},
+        {"required": ["constant"]},
+    ]
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
@@ -231,20 +308,19 @@ def check_header(mapping: Mapping, file: str, header: Sequence[str]) -> None:
     raises : MappingError naming the mapping, the field, the column, the columns that are there and the closest of them
     """
     there = ", ".join(repr(name[:60]) for name in header[:80]) + (", ..." if len(header) > 80 else "")
-    for field, column in mapping.columns.items():
-        for source in column.sources:
-            if source not in header and not column.optional:
-                raise MappingError(
-                    f"{mapping.name}: columns.{field}: {file} has no column {source!r}{closest(source, header)}. "
-                    f"Its columns are {there}. Name one of them in the mapping"
-                )
-            if header.count(source) > 1:
-                raise MappingError(
-                    f"{mapping.name}: columns.{field}: {file} has {header.count(source)} columns named {source!r}; "
-                    "rename all but the one that is meant"
-                )
+    for key, source, optional in mapping.wanted():
+        if source not in header and not optional:
+            raise MappingError(
+                f"{mapping.name}: {key}: {file} has no column {source!r}{closest(source, header)}. "
+                f"Its columns are {there}. Name one of them in the mapping"
+            )
+        if header.count(source) > 1:
+            raise MappingError(
+                f"{mapping.name}: {key}: {file} has {header.count(source)} columns named {source!r}; "
+                "rename all but the one that is meant"
+            )
     if mapping.source.unmapped_columns == "refuse":
-        known = [source for column in mapping.columns.values() for source in column.sources]
+        known = [source for _, source, _ in mapping.wanted()]
         for name in header:
             if name not in known:
                 raise MappingError(
@@ -255,7 +331,9 @@ def check_header(mapping: Mapping, file: str, header: Sequence[str]) -> None:
 
 def _fault(field: str, column: ColumnMap) -> str:
     kind, units = KINDS.get(field, "number"), units_of(field)
-    if units and column.unit not in units:
+    if column.constant is not None:
+        return _constant_fault(field, kind, column)
+    if units and column.unit not in units and column.unit != WRITTEN:
         given = "has no unit" if column.unit is None else f"cannot be in {column.unit!r}"
         return f'a {"length" if units is LENGTHS else "mass"} {given}; add unit = "..." with one of {", ".join(units)}'
     if not units and column.unit is not None:
@@ -281,7 +359,21 @@ def _fault(field: str, column: ColumnMap) -> str:
     return ""
 
 
-_SECTIONS: dict[str, type[BaseModel]] = {"source": Source, "museum": Museum, "columns": ColumnMap, "display": Display}
+def _constant_fault(field: str, kind: str, column: ColumnMap) -> str:
+    if kind != "text" or field == "object_number":
+        return "a constant is for texts that all objects share, such as the gallery; name a column"
+    if column.unit is not None or column.missing or column.values or column.optional:
+        return "a constant needs no unit, missing, values or optional; leave them out"
+    return ""
+
+
+_SECTIONS: dict[str, type[BaseModel]] = {
+    "source": Source,
+    "museum": Museum,
+    "columns": ColumnMap,
+    "dimensions": Texts,
+    "display": Display,
+}
 
 
 def _say(error: Any) -> str:

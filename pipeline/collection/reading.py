@@ -1,32 +1,29 @@
-"""A museum's file -> items: every row becomes an item, or is rejected with its number, its reason and the remedy."""
+"""A museum's records -> items: every row becomes an item, or is rejected with its number, its reason and the remedy."""
 
 from __future__ import annotations
 
-import hashlib
-import stat
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from io import BufferedReader, TextIOWrapper
 from pathlib import Path
 from typing import Any
 
 from pipeline.collection.cells import Cells
+from pipeline.collection.contradictions import contradictions
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, check_header
+from pipeline.collection.measured import fill, is_dimension
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
-from pipeline.collection.sheets import RECORD_LIMIT, Row, read_rows
-from pipeline.records import Item, Problem
-
-FILE_LIMIT = 1 << 30
-"""Bytes of a file (1 GiB)."""
+from pipeline.collection.sources.delimited import RECORD_LIMIT
+from pipeline.collection.sources.opening import open_source
+from pipeline.collection.sources.rows import Row
+from pipeline.collection.suspicion import Suspicion, suspicions
+from pipeline.records import Item, Origin, Problem, Provenance
 
 ROW_LIMIT = 5_000_000
 """Data rows of a file."""
 
 NOWHERE = "Location not recorded"
 """The gallery of an object whose location is empty."""
-
-_UTF8_MARK = b"\xef\xbb\xbf"
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,11 +40,13 @@ class Rejected:
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What a file held: ``rows`` is always the number of items and of rejected rows together.
+    """What a source held: ``rows`` is always the number of items and of rejected rows together.
 
-    source  : the file's name, without its folder
-    sha256  : of the file's bytes
+    source  : the file's name, without its folder, or the database without its password
+    sha256  : of the file's bytes, or of the rows that the database gave
     mapping : name of the mapping; museum and credit as the mapping gives them
+    places  : of each item, its row and its line in the source
+    suspicions : units that the whole source seems to have wrong
     """
 
     items: tuple[Item, ...]
@@ -58,41 +57,41 @@ class Reading:
     mapping: str
     museum: str
     credit: str = ""
+    places: tuple[tuple[int, int], ...] = ()
+    suspicions: tuple[Suspicion, ...] = ()
 
 
-def read_items(path: str | Path, mapping: Mapping) -> Reading:
-    """Read a museum's file, row by row.
+def read_items(where: str | Path, mapping: Mapping) -> Reading:
+    """Read a museum's file or database, row by row.
 
     A value that cannot be accepted is None in its item, which keeps the reason as a problem; only rows that are broken,
     have no object number or repeat one are rejected.
 
-    raises : CollectionError for a file that is missing, unreadable, too large, empty or not in its encoding;
-             MappingError where the mapping's columns are not the file's
+    where  : path of a file, or the URL of a database
+    raises : CollectionError for a source that is missing, unreadable, too large, empty or not in its encoding;
+             MappingError where the mapping's columns are not the source's
     """
-    where = Path(path)
-    with _open(where) as binary:
-        digest = _identify(binary, where.name, mapping.source.encoding)
-        # "utf-8-sig" also reads files without the mark.
-        encoding = "utf-8-sig" if mapping.source.encoding == "utf-8" else mapping.source.encoding
-        stream = TextIOWrapper(binary, encoding=encoding, errors="surrogateescape", newline="")
-        rows = read_rows(stream, where.name, mapping.source.delimiter, mapping.source.encoding)
-        header = next(rows, None)
+    with open_source(where, mapping) as source:
+        header = next(source.rows, None)
         if header is None:
-            raise CollectionError(f"{where.name}: empty collection: the file holds no header; export it again")
-        desk = _Desk(where.name, mapping, header)
-        for row in rows:
+            raise CollectionError(f"{source.name}: empty collection: there is no header; export it again")
+        desk = _Desk(source.name, mapping, header)
+        for row in source.rows:
             desk.take(row)
+        digest = source.digest()
     if not desk.rows:
-        raise CollectionError(f"{where.name}: empty collection: a header and no data rows; export it again")
+        raise CollectionError(f"{source.name}: empty collection: a header and no data rows; export it again")
     return Reading(
         items=tuple(desk.items),
         rows=desk.rows,
         rejected=tuple(desk.rejected),
-        source=where.name,
+        source=source.name,
         sha256=digest,
         mapping=mapping.name,
         museum=mapping.museum.name,
         credit=mapping.museum.credit,
+        places=tuple(desk.places),
+        suspicions=suspicions(desk.items),
     )
 
 
@@ -111,7 +110,12 @@ class _Desk:
                 self._columns.append((field, column, places))
         self._stores = {name.strip().casefold() for name in mapping.display.not_on_display}
         self._seen: dict[str, int] = {}
+        texts = mapping.dimensions
+        self._texts = texts and [names.index(source) for source in texts.columns if source in names]
+        self._mapping = mapping
+        self._constants = {f: c.constant for f, c in mapping.columns.items() if c.constant is not None}
         self.items: list[Item] = []
+        self.places: list[tuple[int, int]] = []
         self.rejected: list[Rejected] = []
         self.rows = 0
 
@@ -123,39 +127,64 @@ class _Desk:
         if message:
             self._reject(row, "", message, remedy)
             return
-        place = f"{self._file}, row {row.number} (line {row.line})"
-        cells = Cells(place, self._decimal)
-        values = {
+        cells = Cells(self._decimal)
+        for field, column, places in self._columns:
+            for cell in places:
+                if cell in row.faults:
+                    cells.refuse(field, column, *row.faults[cell])
+        values: dict[str, Any] = self._constants | {
             field: _READ[KINDS.get(field, "number")](cells, field, column, [row.cells[i] for i in places])
             for field, column, places in self._columns
         }
+        self._spread_diameter(values, cells)
+        if self._texts and self._mapping.dimensions is not None:
+            found = [row.cells[i] for i in self._texts]
+            fill(values, cells, self._mapping.dimensions, found, self._decimal)
+        for field, problem in contradictions(values):
+            cells.problems.append(problem)
+            if field:
+                values[field] = None
+                cells.provenance = [of for of in cells.provenance if of.field != field]
         number = values["object_number"]
         if not number:
             self._reject(row, "object_number", "the object has no number", "give it one in the museum's database")
         elif len(number) > NUMBER_LIMIT:
             message = f"an object number of {len(number)} characters, more than {NUMBER_LIMIT}"
             self._reject(row, "object_number", message, "see whether the cells of this row were shifted")
+        elif " " in number and is_dimension(number):
+            message = f"the object number {number!r} is a dimension: a line inside a cell of the row above became a row"
+            self._reject(
+                row, "object_number", message, "export again with quotation marks around texts of several lines"
+            )
         elif number in self._seen:
             message = f"object number {number!r} was given in row {self._seen[number]} already; only that row is kept"
             self._reject(row, "object_number", message, "give each object its own number, and export one row an object")
         else:
             self._seen[number] = row.number
             self.items.append(self._item(values, cells))
+            self.places.append((row.number, row.line))
 
     def _item(self, values: dict[str, Any], cells: Cells) -> Item:
-        diameter = values.pop(DIAMETER, None)
-        for field in ("width_m", "depth_m"):
-            if values.get(field) is None:
-                values[field] = diameter
         said = values.pop("on_display", None)
         gallery = values["gallery"]
         on_display = gallery.casefold() not in self._stores and said is not False
         if not gallery:
             gallery, on_display = NOWHERE, False
             remedy = "record its current location; until then it counts as not on display"
-            cells.problems.append(Problem("gallery", f"{cells.place}: the location is empty", remedy))
-        values.update(gallery=gallery, on_display=on_display, problems=tuple(cells.problems))
+            cells.problems.append(Problem("gallery", "the location is empty", remedy))
+        provenance = tuple(sorted(cells.provenance, key=lambda of: of.field))
+        values.update(gallery=gallery, on_display=on_display, provenance=provenance, problems=tuple(cells.problems))
         return Item(**values)
+
+    def _spread_diameter(self, values: dict[str, Any], cells: Cells) -> None:
+        diameter = values.pop(DIAMETER, None)
+        written = next((of.written for of in cells.provenance if of.field == DIAMETER), "")
+        cells.provenance = [of for of in cells.provenance if of.field != DIAMETER]
+        for field in ("width_m", "depth_m"):
+            if values.get(field) is None:
+                values[field] = diameter
+                if diameter is not None:
+                    cells.provenance.append(Provenance(field, Origin.DERIVED, written, "its diameter"))
 
     def _reject(self, row: Row, field: str, message: str, remedy: str) -> None:
         where = f"{self._file}, row {row.number} (line {row.line}): {message}"
@@ -174,37 +203,3 @@ _READ: dict[str, Callable[[Cells, str, ColumnMap, Sequence[str]], Any]] = {
     "choice": Cells.choice,
     "flag": Cells.flag,
 }
-
-
-def _open(path: Path) -> BufferedReader:
-    try:
-        state = path.stat()
-        if not stat.S_ISREG(state.st_mode):
-            raise CollectionError(f"{path}: not a file; name the museum's export itself")
-        if state.st_size > FILE_LIMIT:
-            raise CollectionError(
-                f"{path}: {state.st_size:,} bytes, more than {FILE_LIMIT:,}; export fewer columns or objects"
-            )
-        return path.open("rb")
-    except OSError as problem:
-        raise CollectionError(
-            f"{path}: cannot be read: {problem.strerror or problem}; see whether the path is right, the share is "
-            "mounted and Kouros may read it"
-        ) from problem
-
-
-def _identify(binary: BufferedReader, file: str, encoding: str) -> str:
-    try:
-        mark = binary.read(len(_UTF8_MARK))
-        binary.seek(0)
-        digest = hashlib.file_digest(binary, "sha256").hexdigest()
-        binary.seek(0)
-    except OSError as problem:
-        raise CollectionError(
-            f"{file}: reading stopped: {problem.strerror or problem}; see whether the disk or network share is there"
-        ) from problem
-    if mark == _UTF8_MARK and encoding != "utf-8":
-        raise CollectionError(
-            f'{file}: begins with the mark of UTF-8, and the mapping says {encoding}; say encoding = "utf-8" there'
-        )
-    return digest

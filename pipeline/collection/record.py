@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from hashlib import blake2b
 from typing import Any, get_type_hints
 
 from pydantic import TypeAdapter
 
 from pipeline.quantities import LENGTHS, MASSES
-from pipeline.records import ITEM_FIELDS, Item, Problem, Support
+from pipeline.records import ITEM_FIELDS, Item, Problem, Provenance, Support
 from pipeline.tables import number, table
 
 KINDS: Mapping[str, str] = {
@@ -21,11 +22,12 @@ KINDS: Mapping[str, str] = {
         bool: "flag",
         bool | None: "flag",
         Support | None: "choice",
-        tuple[Problem, ...]: "problems",
+        tuple[Provenance, ...]: "list",
+        tuple[Problem, ...]: "list",
     }[hint]
     for name, hint in get_type_hints(Item).items()
 }
-"""Field of Item -> "text", "number", "integer", "flag", "choice" or "problems", as its type hint says."""
+"""Field of Item -> "text", "number", "integer", "flag", "choice" or "list", as its type hint says."""
 
 REQUIRED = ("object_number", "gallery")
 """The only fields that every record must have."""
@@ -43,10 +45,12 @@ _MEANINGS = {
     "object_name": "What kind of thing it is, such as vase or bust.",
     "classification": "The museum's classification.",
     "medium": "Material and technique in the museum's words.",
+    "aat": "Getty AAT identifiers of its kind, material and technique, separated by spaces.",
+    "dimensions": "Dimensions and weight in the museum's words, where they were read from a text.",
     "case": "Display case or plinth it stands in or on.",
     "position_x_m": "Position in the gallery, towards x (east).",
     "position_y_m": "Position in the gallery, towards y (north).",
-    "orientation_deg": "Direction of the object's width, from x towards y.",
+    "orientation_deg": "Direction of the object's width, clockwise from north.",
     "support": "How the object is held.",
     "isolator": "Name of the isolator it stands on, if any.",
     "height_m": "Height.",
@@ -77,7 +81,8 @@ _MEANINGS = {
     "susceptible": "Whether rocking itself damages it.",
     "value_class": "The museum's own class of value.",
     "on_display": "Whether it is on display now; only then it is assessed.",
-    "problems": "What the import could not accept.",
+    "provenance": "Where each quantity comes from: how it was recorded, and the characters it was read from.",
+    "problems": "What the import could not accept, or doubts.",
 }
 
 
@@ -121,6 +126,16 @@ def to_records(items: list[Item]) -> list[dict[str, Any]]:
     return out
 
 
+@cache
+def _item() -> TypeAdapter[Item]:
+    return TypeAdapter(Item)
+
+
+def digest_of(item: Item) -> str:
+    """Return a digest of what is recorded: a field that a later Kouros adds leaves those of old records alone."""
+    return blake2b(_item().dump_json(item, exclude_defaults=True), digest_size=16).hexdigest()
+
+
 def to_items(records: list[Any]) -> list[Item]:
     """Return the items of records that `to_records` made.
 
@@ -132,10 +147,9 @@ def to_items(records: list[Any]) -> list[Item]:
 def item_schema() -> dict[str, Any]:
     """Return the JSON Schema (2020-12) of an object record, derived from Item; units and ranges in the descriptions."""
     derived = TypeAdapter(Item).json_schema(mode="serialization")
-    problem = derived["$defs"]["Problem"]
-    derived["$defs"]["Problem"] = {**problem, "additionalProperties": False}
-    derived["$defs"]["Problem"].pop("description", None)
-    derived["$defs"]["Support"].pop("description", None)
+    for name, part in derived["$defs"].items():
+        closed = {"additionalProperties": False} if part["type"] == "object" else {}
+        derived["$defs"][name] = {key: value for key, value in part.items() if key != "description"} | closed
     properties = {}
     for name in ITEM_FIELDS:
         shape = {k: v for k, v in derived["properties"][name].items() if k != "title"}

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from pipeline.jobs.workspace import UsageError, site_folder
+from pipeline.jobs.workspace import KEPT, UsageError, charts_of, site_folder
+from pipeline.records import Motion
 from pipeline.settings import Settings
 
 if TYPE_CHECKING:
@@ -19,34 +20,48 @@ def respond_on_site(
     angle: str,
     fidelity: str,
     tail: float | None,
+    settings: Settings | None = None,
 ) -> "pd.DataFrame":
     """Run one model under every motion of a site, as it comes through a chain of supports.
 
     parameters : "name=value" or "name=value,value,..." in SI
     through    : the supports from the ground up, each "name:parameter=value,parameter=value"
     angle      : degrees, or "worst"
+    settings   : of the workspace in which charts and processed motions are kept; None keeps motions in the user's
+                 cache, and no charts
     returns    : the table of `respond` with the parameters and the motion in front
     raises     : UsageError for words that are not name=value, ValueError as `respond`
     """
     import pandas as pd
 
-    from pipeline.kernels import user_cache
-    from pipeline.motions.site import read_motion
     from pipeline.response import cascade, respond
 
     given: dict[str, Any] = dict(_parsed(word) for word in parameters)
     direction = None if angle == "worst" else _number("angle", angle)
     tables = []
     chain = [_support(word) for word in through]
-    for ground in read_motion(site_folder(Settings(), site), kept=user_cache("motions")):
-        motion = cascade(chain, ground)
-        table = respond(model, motion, fidelity=fidelity, angle=direction, tail=tail, **given)
-        rows = len(table)
-        for at, (name, values) in enumerate(given.items()):
-            table.insert(at, name, values * rows if len(values) == 1 else values)
-        table.insert(0, "motion", motion.name)
-        tables.append(table)
+    with charts_of(settings) as charts:
+        for ground in _motions(site, settings):
+            motion = cascade(chain, ground)
+            table = respond(model, motion, fidelity=fidelity, angle=direction, tail=tail, charts=charts, **given)
+            rows = len(table)
+            for at, (name, values) in enumerate(given.items()):
+                table.insert(at, name, values * rows if len(values) == 1 else values)
+            table.insert(0, "motion", motion.name)
+            tables.append(table)
     return pd.concat(tables, ignore_index=True)
+
+
+def _motions(site: str, settings: Settings | None) -> Sequence[Motion]:
+    from pipeline.kernels import user_cache
+    from pipeline.motions.site import read_motion, read_site
+
+    folder = site_folder(Settings(), site)
+    if settings is None:
+        return read_motion(folder, kept=user_cache("motions"))
+    # Processed once for the nights and for this.
+    kept = read_site(folder, kept=settings.path(KEPT))
+    return [one.motion for level in kept.levels for one in level.motions]
 
 
 def _support(word: str) -> tuple[str, dict[str, Any]]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.collection.mapping import load_mapping, preset_names
+from pipeline.collection.sources.opening import is_database
 from pipeline.jobs.workspace import LockedError, Workspace, locked, open_workspace
 from pipeline.settings import Settings, load_settings
 from pipeline.store.runs import list_runs
@@ -67,6 +68,8 @@ def _collection(settings: Settings) -> tuple[str, str]:
     load_mapping(wanted.mapping if wanted.mapping in preset_names() else settings.path(wanted.mapping))
     if not wanted.source:
         return "ok", "no source: the inventory is used as it was last imported"
+    if is_database(wanted.source):
+        return "ok", f"a database, mapping {wanted.mapping}; `kouros import --dry-run` asks it"
     source = settings.path(wanted.source)
     if not source.is_file():
         return "wrong", f"{source} is not there; export the collection to it, or change [collection] source"

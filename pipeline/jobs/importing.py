@@ -1,25 +1,44 @@
-"""The museum's export -> Kouros's inventory."""
+"""The museum's records -> Kouros's inventory, with a log of what was read, refused and changed."""
 
+import csv
+import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from pipeline.collection.inventory import Counts, replace_inventory
+from pipeline.collection.guess import Guess, guess
+from pipeline.collection.inventory import Difference, difference, held, latest_import, replace_inventory, return_to
 from pipeline.collection.mapping import load_mapping, preset_names
 from pipeline.collection.reading import Reading, read_items
+from pipeline.collection.sources.opening import is_database
+from pipeline.collection.suspicion import Suspicion
 from pipeline.jobs.workspace import Workspace
 from pipeline.records import Item, Problem
+from pipeline.report.exports import safe_cell
+
+LOGS = "imports"
+"""Folder beside the settings that holds the log of every import that changed something."""
+
+LOG_COLUMNS = ("row", "line", "object_number", "field", "what", "message", "remedy")
 
 
 @dataclass(frozen=True)
 class Imported:
-    """What an import read, and what it changed (None for a dry run)."""
+    """What an import read, and what it changes, or would change if it were not a dry run.
+
+    held : the version that a person went back to from this very source; a night leaves it there, and changes nothing
+    log  : the file of the log; None for a dry run, and where nothing changed
+    """
 
     reading: Reading
-    counts: Counts | None
+    changes: Difference | None
+    held: int | None = None
+    log: Path | None = None
 
     @property
     def problems(self) -> list[tuple[Item, Problem]]:
-        """Return every value that could not be accepted, with its object."""
+        """Return every value that could not be accepted or is doubted, with its object."""
         return [(item, problem) for item in self.reading.items for problem in item.problems]
 
 
@@ -28,12 +47,117 @@ def bundled_collection() -> Path:
     return Path(__file__).resolve().parents[1] / "collection" / "data" / "carnegie_2000.csv"
 
 
+def presets() -> dict[str, str]:
+    """Return the mappings that come with Kouros, by name, with the museum or the system that they are for."""
+    return {name: load_mapping(name).museum.name for name in preset_names()}
+
+
+@dataclass(frozen=True)
+class Proposed:
+    """A guessed mapping, and what it makes of the file: rows, objects, and some of them in words."""
+
+    guess: Guess
+    rows: int
+    items: int
+    examples: tuple[str, ...]
+    suspicions: tuple[Suspicion, ...]
+
+
+def proposed(source: Path, most: int = 10) -> Proposed:
+    """Guess a mapping for a file and read the file with it; nothing is written.
+
+    raises : CollectionError for a file that cannot be read
+    """
+    found = guess(source)
+    reading = read_items(source, found.mapping)
+    step = max(len(reading.items) // most, 1)
+    examples = tuple(_in_words(item) for item in reading.items[::step][:most])
+    return Proposed(found, reading.rows, len(reading.items), examples, reading.suspicions)
+
+
+def _in_words(item: Item) -> str:
+    sides = (("H", item.height_m), ("W", item.width_m), ("D", item.depth_m))
+    size = " x ".join(f"{name} {100.0 * value:.4g}" for name, value in sides if value is not None)
+    mass = "" if item.mass_kg is None else f", {item.mass_kg:.3g} kg"
+    what = " ".join(filter(None, (item.object_name, f"{item.title[:50]!r}", item.medium[:40])))
+    return f"{item.object_number} | {item.gallery} | {what} | {f'{size} cm' if size else 'no size'}{mass}"
+
+
+def source_of(workspace: Workspace, source: str) -> str:
+    """Return where a source of the settings is: a database's URL as it is, a file's path from the settings' folder."""
+    return source if is_database(source) else str(workspace.settings.path(source))
+
+
 def import_collection(
-    workspace: Workspace, source: Path, mapping: str, *, shrink_limit: float, dry_run: bool = False
+    workspace: Workspace,
+    source: str | Path,
+    mapping: str,
+    *,
+    shrink_limit: float,
+    dry_run: bool = False,
+    nightly: bool = False,
 ) -> Imported:
-    """Read a museum's file and make the inventory what it says, all of it or nothing."""
+    """Read a museum's records and make the inventory what they say, all of it or nothing.
+
+    source  : path of a file, or the URL of a database
+    nightly : nobody is there to decide: a version that a person went back to stays until the source changes
+    raises  : CollectionError, MappingError and ShrunkError, as reading and writing do; nothing is written then
+    """
     named = mapping if mapping in preset_names() else workspace.settings.path(mapping)
     reading = read_items(source, load_mapping(named))
+    if nightly:
+        stays = held(workspace.engine, reading.sha256)
+        if stays is not None:
+            return Imported(reading, None, held=stays)
     if dry_run:
-        return Imported(reading, None)
-    return Imported(reading, replace_inventory(workspace.engine, reading, shrink_limit=shrink_limit))
+        return Imported(reading, difference(workspace.engine, reading))
+    before = latest_import(workspace.engine)
+    changes = replace_inventory(workspace.engine, reading, shrink_limit=shrink_limit)
+    after = latest_import(workspace.engine)
+    if after is None or before == after:
+        return Imported(reading, changes)
+    log = workspace.settings.path(LOGS) / f"{after.id:05d}-{after.imported_at[:10]}.csv"
+    _write_log(log, reading, changes)
+    return Imported(reading, changes, log=log)
+
+
+def go_back(workspace: Workspace, version: int) -> Difference:
+    """Make the inventory what it was after an earlier import.
+
+    raises : CollectionError for a version that does not exist
+    """
+    return return_to(workspace.engine, version)
+
+
+def _write_log(path: Path, reading: Reading, changes: Difference) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(LOG_COLUMNS)
+        writer.writerows(
+            [safe_cell(cell) if isinstance(cell, str) else cell for cell in row] for row in log_rows(reading, changes)
+        )
+
+
+def log_rows(reading: Reading, changes: Difference) -> Iterator[tuple[Any, ...]]:
+    """Yield the log, row by row as LOG_COLUMNS names them: what was refused, doubted, new, changed and gone."""
+    for out in reading.rejected:
+        yield out.row, out.line, "", out.field, "rejected", out.message, out.remedy
+    for doubt in reading.suspicions:
+        yield "", "", "", doubt.field, "suspicion", doubt.message, doubt.remedy
+    added = set(changes.added)
+    for item, (row, line) in zip(reading.items, reading.places, strict=True):
+        number = item.object_number
+        for problem in item.problems:
+            yield row, line, number, problem.field, "problem", problem.message, problem.remedy
+        if number in added:
+            yield row, line, number, "", "new", "", ""
+        for field, (old, new) in changes.changed.get(number, {}).items():
+            yield row, line, number, field, "changed", f"{_short(old)} -> {_short(new)}", ""
+    for number in changes.removed:
+        yield "", "", number, "", "gone", "no longer in the source", ""
+
+
+def _short(value: Any, most: int = 200) -> str:
+    text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= most else f"{text[:most]}..."

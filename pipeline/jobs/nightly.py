@@ -11,25 +11,40 @@ from typing import TYPE_CHECKING, Any
 
 from pipeline import __version__
 from pipeline.assess import assess
-from pipeline.charts import chart_keys, charts
+from pipeline.charting import Shelf
+from pipeline.charts import chart_keys, charts, picture_version
 from pipeline.classify import classify
+from pipeline.climb import Effort
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.execute import Threads
-from pipeline.jobs import tradeoff
-from pipeline.jobs.importing import import_collection
-from pipeline.jobs.levels import notes, storeys
-from pipeline.jobs.workspace import KEPT, UsageError, Workspace, locked, open_workspace, site_folder
+from pipeline.jobs import selftest, tradeoff
+from pipeline.jobs.importing import import_collection, source_of
+from pipeline.jobs.levels import Storey, notes, storeys
+from pipeline.jobs.workspace import (
+    KEPT,
+    UsageError,
+    Workspace,
+    charts_of,
+    locked,
+    open_workspace,
+    site_folder,
+)
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import advise
+from pipeline.models import model_named
 from pipeline.motions.site import Level, Site, read_site
 from pipeline.records import Assessment, Chart, Executor, Item, Motion, Progress, RunRecord, Verdict
 from pipeline.report import Units, publish, render
 from pipeline.settings import Settings
-from pipeline.store.reuse import KERNELS, SELECTION, stored_charts, whole_runs
+from pipeline.store.reuse import KERNELS, PICTURES, SELECTION, stored_charts, whole_runs
 from pipeline.store.runs import compare_runs, save_run
 
 if TYPE_CHECKING:
     from pipeline.store.changes import RunChanges
+
+
+EFFORTS = "efforts"
+"""Key of a run's settings: what the verdicts of each model took."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +65,7 @@ class Summary:
 
     objects       : all that were looked at; act + open + safe + cannot is the same number
     missing       : why objects could not be assessed, with how many of each
+    efforts       : what the verdicts of each model took, see `pipeline.climb.Effort`
     report        : the report's index, None for a dry run
     """
 
@@ -68,6 +84,7 @@ class Summary:
     measures: Mapping[str, int]
     missing: Mapping[str, int]
     first: Sequence[str]
+    efforts: Sequence[Mapping[str, Any]] = ()
     report: Path | None = None
     latest: Path | None = None
     changes: "RunChanges | None" = field(default=None, repr=False)
@@ -87,7 +104,7 @@ def run(
         workspace = open_workspace(settings)
         _refresh(workspace, progress, dry_run=dry_run)
         inventory = read_inventory(workspace.engine)
-        items = _choose(inventory, chosen)
+        items = named(inventory, galleries=chosen.galleries, objects=chosen.objects)
         site = _read_site(workspace, progress)
         record = assess_items(workspace, items, inventory, site, started, progress)
         record = replace(record, settings={**record.settings, SELECTION: bool(chosen)})
@@ -111,21 +128,26 @@ def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None
     if not wanted.source:
         return
     progress.step("collection", 0, 1)
-    source = workspace.settings.path(wanted.source)
-    import_collection(workspace, source, wanted.mapping, shrink_limit=wanted.shrink_limit, dry_run=dry_run)
+    source = source_of(workspace, wanted.source)
+    import_collection(
+        workspace, source, wanted.mapping, shrink_limit=wanted.shrink_limit, dry_run=dry_run, nightly=True
+    )
     progress.step("collection", 1, 1)
 
 
-def _choose(items: list[Item], selection: Selection) -> list[Item]:
+def named(items: Sequence[Item], *, galleries: Sequence[str] = (), objects: Sequence[str] = ()) -> list[Item]:
+    """Return the items of these galleries and with these numbers; nothing named means all.
+
+    raises : EmptyCollectionError where there are none; UsageError for an unknown name, with close ones
+    """
     if not items:
         raise EmptyCollectionError("the inventory is empty: import the museum's export first (`kouros import FILE`)")
-    _known("gallery", selection.galleries, {item.gallery for item in items})
-    _known("object", selection.objects, {item.object_number for item in items})
+    _known("gallery", galleries, {item.gallery for item in items})
+    _known("object", objects, {item.object_number for item in items})
     return [
         item
         for item in items
-        if (not selection.galleries or item.gallery in selection.galleries)
-        and (not selection.objects or item.object_number in selection.objects)
+        if (not galleries or item.gallery in galleries) and (not objects or item.object_number in objects)
     ]
 
 
@@ -163,34 +185,25 @@ def assess_items(
 
     inventory : all objects, the others included: which galleries there are
     started   : when the run began, which names it
-    raises  : SettingsError for a floor that the site does not have, MotionError for a floor's record
+    raises    : SettingsError for a floor that the site does not have, MotionError for a floor's record
     """
     settings = workspace.settings
     executor = Threads(settings.analysis.workers or None)
     floors = storeys(settings, site, items)
     assessments: dict[int, Assessment] = {}
-    for storey in floors:
-        scenes = [replace(classify(items[index]), floor=storey.name) for index in storey.members]
-        levels = storey.shaking
-        plan, findings = assess(
-            scenes,
-            levels,
-            executor,
-            progress,
-            fidelity=settings.analysis.fidelity,
-            azimuth_step=settings.analysis.azimuth_step,
-        )
-        scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
-        advice = advise(scenes, findings, levels, executor, progress)
-        for index, scene, found, advised in zip(storey.members, scenes, findings, advice, strict=True):
-            assessments[index] = Assessment(scene, tuple(found), tuple(advised))
     # Motions that two floors share (one record for several) are drawn once.
     motions = {one.motion.hash: one.motion for f in floors for level in f.levels for one in level.motions}
-    drawn = _charts(workspace, list(motions.values()), executor, progress)
+    efforts: dict[str, Effort] = {}
+    with charts_of(settings, motions) as shelf:
+        # The pictures first: the verdicts use their charts.
+        drawn = _charts(workspace, list(motions.values()), executor, progress, shelf)
+        for storey in floors:
+            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments, efforts)
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
         picture = tradeoff.picture(measured)
         drawn[picture.key] = picture
+    tested = selftest.kept(settings.path(KEPT))
     info = latest_import(workspace.engine)
     levels_said = [_level_note(level) for level in site.levels]
     return RunRecord(
@@ -201,7 +214,7 @@ def assess_items(
         site=site.name,
         museum=settings.museum.name or (info.museum if info else ""),
         level_notes=(*levels_said, *notes(settings, site, {item.gallery for item in inventory})),
-        settings=_stored_settings(settings, info.credit if info else ""),
+        settings=_stored_settings(settings, info.credit if info else "", tested, efforts),
         assessments=tuple(assessments[index] for index in range(len(items))),
         charts=drawn,
         motions=tuple(summary for storey in floors for summary in storey.summaries),
@@ -209,26 +222,59 @@ def assess_items(
     )
 
 
-def _stored_settings(settings: Settings, credit: str) -> dict[str, Any]:
+def _assess_storey(
+    storey: Storey,
+    items: Sequence[Item],
+    workspace: Workspace,
+    executor: Executor,
+    progress: Progress,
+    shelf: Shelf,
+    assessments: dict[int, Assessment],
+    efforts: dict[str, Effort],
+) -> None:
+    scenes = [replace(classify(items[index], workspace.rules), floor=storey.name) for index in storey.members]
+    settings, levels = workspace.settings, storey.shaking
+    plan, findings = assess(
+        scenes,
+        levels,
+        executor,
+        progress,
+        fidelity=settings.analysis.fidelity,
+        azimuth_step=settings.analysis.azimuth_step,
+        charts=shelf,
+        efforts=efforts,
+    )
+    scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
+    advice = advise(scenes, findings, levels, executor, progress)
+    for index, scene, found, advised in zip(storey.members, scenes, findings, advice, strict=True):
+        assessments[index] = Assessment(scene, tuple(found), tuple(advised))
+
+
+def _stored_settings(
+    settings: Settings, credit: str, tested: selftest.SelfTest | None, efforts: Mapping[str, Effort]
+) -> dict[str, Any]:
     # Never the database's address: it may hold a password.
     return {
         KERNELS: KERNEL_VERSION,
+        PICTURES: picture_version(),
         "credit": credit,
         "analysis": settings.analysis.model_dump(),
         "length": settings.report.length,
         "site": settings.site.folder,
         "floors": settings.floors.model_dump(),
+        EFFORTS: [{"title": model_named(name).title, **effort.plain()} for name, effort in efforts.items()],
+        "numerics": None if tested is None else tested.plain(),
     }
 
 
 def _charts(
-    workspace: Workspace, motions: Sequence[Motion], executor: Executor, progress: Progress
+    workspace: Workspace, motions: Sequence[Motion], executor: Executor, progress: Progress, shelf: Shelf
 ) -> dict[str, Chart]:
     drawn: dict[str, Chart] = {}
     for done, motion in enumerate(motions):
         progress.step("charts", done, len(motions))
-        kept = stored_charts(workspace.engine, chart_keys(motion), KERNEL_VERSION)
-        drawn |= kept if len(kept) == len(chart_keys(motion)) else charts(motion, executor)
+        kept = stored_charts(workspace.engine, chart_keys(motion), picture_version())
+        drawn |= kept if len(kept) == len(chart_keys(motion)) else charts(motion, executor, shelf)
     progress.step("charts", len(motions), len(motions))
     return drawn
 
@@ -281,6 +327,7 @@ def summarise(record: RunRecord) -> Summary:
         measures=dict(Counter(advised.title for advised in advice).most_common()),
         missing=dict(missing.most_common()),
         first=_first(record),
+        efforts=record.settings.get(EFFORTS, ()),
     )
 
 

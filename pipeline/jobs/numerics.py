@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from pipeline.jobs.extremes import MODELS, PROMISED, along_x, complaint, motions, objects, shaking
+from pipeline.jobs.selftest import Outcome
 from pipeline.quantities import Array, G
 from pipeline.records import Motion
 from pipeline.response import respond, trace
@@ -28,30 +29,18 @@ class Case:
     measure: Callable[[], float]
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """What a case gave: result is not above limit where ok; problem is what stopped it."""
-
-    what: str
-    truth: str
-    result: float
-    limit: float
-    ok: bool
-    seconds: float
-    problem: str = ""
-
-
 def outcomes() -> Iterator[Outcome]:
     """Run each case and yield its outcome; a case that fails does not stop the others."""
     for case in CASES:
         start = perf_counter()
-        result, problem = float("nan"), ""
+        result, problem = np.nan, ""
         try:
             result = float(case.measure())
         except Exception as wrong:  # noqa: BLE001 - a self-test reports whatever its cases raise
             problem = f"{type(wrong).__name__}: {wrong}"
         # A NaN is not within any limit.
-        yield Outcome(case.what, case.truth, result, case.limit, result <= case.limit, perf_counter() - start, problem)
+        ok, number = result <= case.limit, result if np.isfinite(result) else None
+        yield Outcome(case.what, case.truth, number, case.limit, ok, perf_counter() - start, problem)
 
 
 def _worst(got: Any, want: Any, scale: Any = None) -> float:

@@ -17,7 +17,7 @@ from pipeline.charting import Shelf
 from pipeline.classify import classify
 from pipeline.collection.inventory import read_inventory
 from pipeline.jobs.records import desk
-from pipeline.jobs.workspace import KEPT, UsageError, open_workspace
+from pipeline.jobs.workspace import KEPT, UsageError, charts_of, open_workspace
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.models import MODELS, model_named
 from pipeline.models.common import SENSITIVE
@@ -147,6 +147,7 @@ def measure(
     models: Sequence[str] = (),
     objects: int = 128,
     seed: int = 1991,
+    charts: Shelf | None = None,
 ) -> Tradeoff:
     """Measure error against cost for each model at every setting.
 
@@ -154,18 +155,20 @@ def measure(
     items   : the collection that parameters are drawn from, at random with the seed
     models  : their names; all where empty
     objects : parameter sets of each model
+    charts  : where charts are found and kept; None: in memory only
     error   : against a step TRUTH times finer than the coarsest, and directions every AZIMUTH_TRUTH degrees
     """
     chosen = [model_named(name) for name in models] or list(MODELS)
     scenes = [classify(item) for item in items]
     samples, settings = [], []
+    shelf = Shelf() if charts is None else charts
     for done, model in enumerate(chosen):
         progress.step("models", done, len(chosen))
         values, source = _drawn(model, scenes, objects, np.random.default_rng(seed))
         size = next(iter(values.values())).size
         # A few objects would not fill the lanes that the kernels work in, and each would seem dear.
         full = {name: np.resize(column, max(size, objects)) for name, column in values.items()}
-        rows, moved, sensitive = _of_model(model, motions, full)
+        rows, moved, sensitive = _of_model(model, motions, full, shelf)
         settings += rows
         counted, doubtful = (int(one[:, :size].sum()) for one in (moved, sensitive))
         samples.append(Sample(model.name, size, counted, doubtful, source))
@@ -179,7 +182,7 @@ def _drawn(
 ) -> tuple[dict[str, Array], str]:
     for work in plan(scenes).work if scenes else ():
         if work.model is model:
-            rows = np.unique(list(work.best))
+            rows = np.unique(work.spans.rows[work.spans.starts])
             picked = rng.choice(rows, min(objects, rows.size), replace=False)
             return {
                 name: np.ascontiguousarray(column[picked]) for name, column in work.values.items()
@@ -192,7 +195,7 @@ def _drawn(
 
 
 def _of_model(
-    model: Model, motions: Sequence[Motion], values: Mapping[str, Array]
+    model: Model, motions: Sequence[Motion], values: Mapping[str, Array], shelf: Shelf
 ) -> tuple[list[Setting], NDArray[np.bool_], NDArray[np.bool_]]:
     two = model.directions == 2 or (model.directions == 0 and values["directions"][0] == 2.0)
     angle = None if two else 0.0
@@ -209,7 +212,7 @@ def _of_model(
         # One chart serves the objects that differ along its axis only: the others are those of the first.
         along = {n: v if n == model.chart.name else np.full_like(v, v[0]) for n, v in values.items()}
         charted = [_stepped(model, motion, along, angle, TRUTH) for motion in motions]
-        looked = partial(_looked_up, model, angle=angle, shelf=Shelf())
+        looked = partial(_looked_up, model, angle=angle, shelf=shelf)
         runs = [_timed(partial(looked, motion, along)) for motion in motions]
         rows.append(_setting(model, "chart", f"chart to {CHARTED:g}", "chart", motions, runs, charted))
     for refine in STEPS:
@@ -383,7 +386,8 @@ def tradeoff_on(settings: Settings | None, site: str | None, progress: Progress,
         raise UsageError(str(problem)) from problem
     motions = read_motion(desk(settings, site))
     items = [] if settings is None else read_inventory(open_workspace(settings).engine)
-    found = measure(motions, items, progress, models=names, **wishes)
+    with charts_of(settings) as charts:
+        found = measure(motions, items, progress, models=names, charts=charts, **wishes)
     # A part would take the place of the whole in the report.
     if settings is not None and site is None and not names:
         keep(found, settings.path(KEPT))

@@ -1,19 +1,25 @@
 """Where a job works: settings, database, lock."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pipeline.resources import resource
+from pipeline.rules import Table, with_own
 from pipeline.settings import Settings
 
 if TYPE_CHECKING:
+    from pipeline.charting import Shelf
     from pipeline.collection.database import Database
 
 KEPT = ".kouros-kept"
-"""Folder beside the settings in which processed motions and measurements are kept between nights."""
+"""Folder beside the settings in which processed motions, charts and measurements are kept between nights."""
+
+CHARTS = "charts"
+"""Folder in it for the response charts."""
 
 
 class LockedError(RuntimeError):
@@ -34,6 +40,20 @@ class Workspace:
 
     settings: Settings
     engine: "Database"
+
+    @cached_property
+    def rules(self) -> Table | None:
+        """The rules of classification, where the museum has some of its own.
+
+        raises : UsageError for a file that is not there, TableError for one that cannot be used
+        """
+        own = self.settings.collection.rules
+        if not own:
+            return None
+        path = self.settings.path(own)
+        if not path.is_file():
+            raise UsageError(f"{path} is not there; [collection] rules names the file of your own rules")
+        return with_own(path)
 
     @property
     def reports(self) -> Path:
@@ -76,3 +96,22 @@ def locked(settings: Settings) -> Iterator[None]:
         yield
     finally:
         lock.release()
+
+
+@contextmanager
+def charts_of(settings: Settings | None, using: Collection[str] = ()) -> Iterator["Shelf"]:
+    """Lend the shelf of the workspace's response charts, and tidy it up at the end; None: one in memory only.
+
+    using : hashes of motions in use, whose charts stay although perhaps none of them is asked for
+    """
+    from pipeline.charting import Shelf
+
+    if settings is None:
+        yield Shelf()
+        return
+    shelf = Shelf(settings.path(KEPT) / CHARTS)
+    try:
+        yield shelf
+    finally:
+        limits = settings.charts
+        shelf.tidy(days=limits.unused_days, most_bytes=round(1e6 * limits.megabytes), using=using)

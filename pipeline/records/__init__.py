@@ -5,7 +5,8 @@ from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress
 from pipeline.records.result import Assessment, Check, Finding, Recommendation, RunRecord, Verdict
-from pipeline.records.scene import ITEM_FIELDS, Estimate, Item, Origin, Problem, Scene, Support
+from pipeline.records.scene import ITEM_FIELDS, Estimate, Item, Origin, Problem, Provenance, Scene, Support
+from pipeline.records.wish import Wish
 
 __all__ = [
     "ITEM_FIELDS",
@@ -29,10 +30,12 @@ __all__ = [
     "Origin",
     "Problem",
     "Progress",
+    "Provenance",
     "Recommendation",
     "RunRecord",
     "Scene",
     "Support",
     "Verdict",
+    "Wish",
     "Zone",
 ]

@@ -35,11 +35,28 @@ class Problem:
 
 
 @dataclass(frozen=True, slots=True)
+class Provenance:
+    """Where one quantity of a record comes from.
+
+    field   : the quantity, such as height_m
+    origin  : measured (the museum recorded it) or derived (from another of its measurements)
+    written : the characters it was read from, with their unit, such as "8 1/2 in"
+    note    : which part it is of, or what it was derived from
+    """
+
+    field: str
+    origin: Origin
+    written: str
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Item:
     """One object of the collection.  Lengths in m, mass in kg, stress in Pa, frequency in Hz; None where not recorded.
 
-    Everything recorded here was measured or stated by the museum; what Kouros derives or assumes lives in the scene.
-    ``problems`` keeps what the import could not accept, so that nothing is lost and nothing silently defaulted.
+    Everything recorded here was measured or stated by the museum, as ``provenance`` tells of each quantity; what Kouros
+    assumes lives in the scene.  ``dimensions`` is the museum's own text where they were read from one.  ``problems``
+    keeps what the import could not accept or doubts, so that nothing is lost and nothing silently defaulted.
     """
 
     object_number: str
@@ -48,6 +65,8 @@ class Item:
     object_name: str = ""
     classification: str = ""
     medium: str = ""
+    aat: str = ""
+    dimensions: str = ""
     case: str = ""
     position_x_m: float | None = None
     position_y_m: float | None = None
@@ -82,6 +101,7 @@ class Item:
     susceptible: bool | None = None
     value_class: str = ""
     on_display: bool = True
+    provenance: tuple[Provenance, ...] = ()
     problems: tuple[Problem, ...] = ()
 
 

@@ -2,17 +2,20 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from pipeline.records import Assessment, Recommendation, RunRecord
 from pipeline.report.describe import Describer
 from pipeline.report.errors import ReportError
 from pipeline.report.ground import motion_view
 from pipeline.report.ranking import state_of, urgency
+from pipeline.report.selftest import self_test_view
 from pipeline.report.text import clean, slug, words
 from pipeline.report.units import Units
 from pipeline.report.views import (
     STATES,
     Counts,
+    EffortView,
     GalleryView,
     MuseumView,
     ObjectView,
@@ -62,6 +65,20 @@ def compose(record: RunRecord, units: Units) -> MuseumView:
         first=tuple([o for o in order if o.state is State.ACT][:8]),
         motions=tuple(motion_view(m, record.charts, units) for m in record.motions),
         level_notes=tuple(clean(n) for n in record.level_notes),
+        efforts=tuple(_effort(e) for e in record.settings.get("efforts") or ()),
+        self_test=self_test_view(record),
+    )
+
+
+def _effort(effort: Mapping[str, Any]) -> EffortView:
+    analyses, needing = int(effort["analyses"]), int(effort["needing_history"])
+    return EffortView(
+        clean(str(effort["title"])),
+        analyses,
+        int(effort["certificate"]),
+        int(effort["chart"]),
+        int(effort["history"]),
+        f"{100.0 * needing / max(analyses, 1):.0f} %",
     )
 
 

@@ -222,8 +222,51 @@ class MotionView:
 
 
 @dataclass(frozen=True, slots=True)
+class CaseView:
+    """One case of the numerical self-test: the extreme, its truth, what came out, the limit, whether it is within."""
+
+    what: str
+    truth: str
+    result: str
+    limit: str
+    passes: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SelfTestView:
+    """The last numerical self-test; outdated where the run's kernels are not those that it tested."""
+
+    when: str
+    version: str
+    kernels: str
+    machine: str
+    outdated: bool
+    cases: tuple[CaseView, ...]
+
+    @property
+    def failed(self) -> tuple[CaseView, ...]:
+        """The cases that are not within their limits."""
+        return tuple(case for case in self.cases if not case.passes)
+
+
+@dataclass(frozen=True, slots=True)
+class EffortView:
+    """By what the verdicts of one model were decided; ``any`` is the share of analyses for which a history was run."""
+
+    title: str
+    analyses: int
+    certificate: int
+    chart: int
+    history: int
+    any: str
+
+
+@dataclass(frozen=True, slots=True)
 class MuseumView:
-    """The index: all galleries, ranked, with totals over all objects; ``credit`` is the source's own line."""
+    """The index: all galleries, ranked, with totals over all objects; ``credit`` is the source's own line.
+
+    self_test : None where none was run before this run
+    """
 
     museum: str
     site: str
@@ -238,3 +281,5 @@ class MuseumView:
     first: tuple[ObjectView, ...]
     motions: tuple[MotionView, ...]
     level_notes: tuple[str, ...] = field(default=())
+    efforts: tuple[EffortView, ...] = ()
+    self_test: SelfTestView | None = None

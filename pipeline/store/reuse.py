@@ -11,6 +11,10 @@ KERNELS = "kernels"
 """Key of a run's settings under which the version of the compiled models is kept."""
 
 
+PICTURES = "pictures"
+"""The same of the version of the kernels and of all other code that its charts depend on."""
+
+
 SELECTION = "selection"
 """Key of a run's settings that is true for a run of a part of the collection."""
 
@@ -22,11 +26,11 @@ def whole_runs(engine: Engine) -> list[str]:
         return [row.run_id for row in connection.execute(finished) if not row.settings.get(SELECTION)]
 
 
-def stored_charts(engine: Engine, keys: Iterable[str], kernels: str) -> dict[str, Chart]:
-    """Return those of the charts that the newest finished run has, if it ran the same kernels.
+def stored_charts(engine: Engine, keys: Iterable[str], version: str) -> dict[str, Chart]:
+    """Return those of the charts that the newest finished run has, if the same kernels and code drew them.
 
     keys    : chart keys; each contains the hash of its motion
-    kernels : version of the kernels that made them
+    version : of the kernels and the code that draw them
     """
     wanted = set(keys)
     newest = (
@@ -34,7 +38,7 @@ def stored_charts(engine: Engine, keys: Iterable[str], kernels: str) -> dict[str
     )
     with engine.connect() as connection:
         row = connection.execute(newest).one_or_none()
-        if row is None or row.settings.get(KERNELS) != kernels:
+        if row is None or row.settings.get(PICTURES) != version:
             return {}
         charts = connection.execute(select(RUN_CHART.c.chart).where(RUN_CHART.c.run_id == row.run_id)).scalars()
         return {chart.key: chart for chart in charts if chart.key in wanted}

@@ -13,6 +13,7 @@ from sqlalchemy.types import TypeDecorator, TypeEngine
 
 from pipeline.collection.database import METADATA
 from pipeline.collection.inventory import IMPORT_BATCH, ITEM
+from pipeline.collection.supplement import SUPPLEMENT
 from pipeline.records import Chart, Finding, MotionSummary, Recommendation, Scene
 from pipeline.store import codec
 
@@ -27,6 +28,7 @@ __all__ = [
     "RUN_CHART",
     "RUN_MOTION",
     "RUN_SCENE",
+    "SUPPLEMENT",
 ]
 
 

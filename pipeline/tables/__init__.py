@@ -1,9 +1,10 @@
 """Tables are data: CSV files whose rows carry a value, its range and who says so.  Code never repeats their numbers."""
 
 import csv
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 Row = Mapping[str, str]
@@ -31,8 +32,22 @@ def table(name: str) -> tuple[Row, ...]:
 
     raises : TableError for a row of another length than the header, FileNotFoundError for an unknown table
     """
-    path = FOLDER / f"{name}.csv"
-    with path.open(encoding="utf-8", newline="") as stream:
+    return read_table(FOLDER / f"{name}.csv")
+
+
+def read_table(path: Path) -> tuple[Row, ...]:
+    """Return the rows of a CSV file, by column.
+
+    raises : TableError for a row of another length than the header, and for what is no CSV file in UTF-8
+    """
+    try:
+        return _read(path)
+    except (UnicodeDecodeError, csv.Error) as problem:
+        raise TableError(f"{path.name}: no CSV file in UTF-8: {problem}; save it as CSV (UTF-8)") from problem
+
+
+def _read(path: Path) -> tuple[Row, ...]:
+    with path.open(encoding="utf-8-sig", newline="") as stream:
         reader = csv.DictReader(stream, strict=True)
         rows = list(reader)
     for number, row in enumerate(rows, start=2):
@@ -63,6 +78,23 @@ def spread(row: Row, value: str, low: str, high: str, where: str) -> Range:
     if not out.low <= out.value <= out.high:
         raise TableError(f"{where}: {low} <= {value} <= {high} does not hold ({out.low} {out.value} {out.high})")
     return out
+
+
+@cache
+def _materials() -> tuple[tuple[re.Pattern[str], Row], ...]:
+    out = []
+    for row in table("materials"):
+        words = [re.escape(w.strip()) for w in row["words"].split("|") if w.strip()]
+        if words:
+            out.append((re.compile(rf"\b(?:{'|'.join(words)})\b", re.IGNORECASE), row))
+    return tuple(out)
+
+
+@lru_cache(maxsize=65536)
+def material_in(text: str) -> Row | None:
+    """Return the row of materials.csv for the material that stands first in a text, None where there is none."""
+    found = [(match.start(), row) for pattern, row in _materials() if (match := pattern.search(text))]
+    return min(found, key=lambda pair: pair[0])[1] if found else None
 
 
 def friction_of(object_material: str = "", surface_material: str = "") -> Range:

@@ -19,15 +19,19 @@ from pipeline.collection.inventory import (
     IMPORT_BATCH,
     ITEM,
     Counts,
+    difference,
     galleries,
+    held,
     latest_import,
     read_inventory,
     replace_inventory,
+    return_to,
+    versions,
 )
 from pipeline.collection.mapping import PRESETS, load_mapping
 from pipeline.collection.reading import Reading, Rejected, read_items
 from pipeline.collection.record import KINDS, NUMBER_LIMIT
-from pipeline.records import Item, Problem, Support
+from pipeline.records import Item, Origin, Problem, Provenance, Support
 
 # What `read_items` lets through: no NUL, no halves of surrogate pairs, no negative zero, nothing infinite.
 _TEXT = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=60)
@@ -37,24 +41,25 @@ _VALUES = {
     "integer": st.none() | st.integers(0, 2**31 - 1),
     "flag": st.none() | st.booleans(),
     "choice": st.none() | st.sampled_from(Support),
-    "problems": st.lists(st.builds(Problem, _TEXT, _TEXT, _TEXT), max_size=3).map(tuple),
 }
 _SPECIAL = {
     "object_number": st.text(
         st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1, max_size=NUMBER_LIMIT
     ),
     "on_display": st.booleans(),
+    "problems": st.lists(st.builds(Problem, _TEXT, _TEXT, _TEXT), max_size=3).map(tuple),
+    "provenance": st.lists(st.builds(Provenance, _TEXT, st.sampled_from(Origin), _TEXT, _TEXT), max_size=3).map(tuple),
 }
 ITEMS = st.lists(
-    st.builds(Item, **{name: _SPECIAL.get(name, _VALUES[kind]) for name, kind in KINDS.items()}),
+    st.builds(Item, **{name: _SPECIAL[name] if name in _SPECIAL else _VALUES[kind] for name, kind in KINDS.items()}),
     min_size=1,
     max_size=4,
     unique_by=lambda item: item.object_number,
 )
 
 
-def made(items: list[Item], rejected: tuple[Rejected, ...] = ()) -> Reading:
-    return Reading(tuple(items), len(items) + len(rejected), rejected, "a.csv", "0" * 64, "carnegie", "M", "C")
+def made(items: list[Item], rejected: tuple[Rejected, ...] = (), sha256: str = "0" * 64) -> Reading:
+    return Reading(tuple(items), len(items) + len(rejected), rejected, "a.csv", sha256, "carnegie", "M", "C")
 
 
 def numbered(count: int) -> list[Item]:
@@ -97,10 +102,10 @@ def test_items_come_back_as_they_were_written(shared: Engine, items: list[Item])
 
 def test_carnegie_through_the_database(engine: Engine) -> None:
     reading = read_items(PRESETS.parent / "data" / "carnegie_2000.csv", load_mapping("carnegie"))
-    assert replace_inventory(engine, reading) == Counts(before=0, after=2000, added=2000, removed=0, changed=0)
+    assert replace_inventory(engine, reading).counts == Counts(before=0, after=2000, added=2000, removed=0, changed=0)
     assert read_inventory(engine) == sorted(reading.items, key=lambda item: item.object_number)
     assert len(galleries(read_inventory(engine))) == 34
-    assert replace_inventory(engine, reading) == Counts(before=2000, after=2000, added=0, removed=0, changed=0)
+    assert replace_inventory(engine, reading).counts == Counts(before=2000, after=2000, added=0, removed=0, changed=0)
 
 
 def test_hostile_text_is_stored_and_not_run(engine: Engine) -> None:
@@ -144,13 +149,78 @@ def test_what_changed_is_counted(engine: Engine) -> None:
     old = numbered(10)
     replace_inventory(engine, made(old))
     new = [*old[1:8], replace(old[8], height_m=9.0), old[9], Item("X", "Hall")]
-    assert replace_inventory(engine, made(new)) == Counts(before=10, after=10, added=1, removed=1, changed=1)
+    assert replace_inventory(engine, made(new)).counts == Counts(before=10, after=10, added=1, removed=1, changed=1)
+
+
+def test_a_difference_names_objects_fields_and_both_values(engine: Engine) -> None:
+    old = numbered(4)
+    replace_inventory(engine, made(old))
+    new = [Item("X", "Hall"), replace(old[1], height_m=9.0, gallery="East"), *old[2:]]
+    would = difference(engine, made(new))
+    assert (would.added, would.removed) == (("X",), ("0001",))
+    assert would.changed == {"0002": {"gallery": ("Hall", "East"), "height_m": (0.2, 9.0)}}
+    assert read_inventory(engine) == old, "a difference writes nothing"
+    assert replace_inventory(engine, made(new), shrink_limit=1.0) == would
+
+
+def test_the_same_again_makes_no_version(engine: Engine) -> None:
+    replace_inventory(engine, made(numbered(3)))
+    assert not replace_inventory(engine, made(numbered(3)))
+    assert len(versions(engine)) == 1
+    # The same objects from another file are another import: the log must say so.
+    assert not replace_inventory(engine, made(numbered(3), sha256="1" * 64))
+    assert [(info.added, info.changed) for info in versions(engine)] == [(0, 0), (3, 0)]
+
+
+def test_every_import_can_be_had_back(engine: Engine) -> None:
+    states = [
+        numbered(5),
+        [replace(item, title="new") for item in numbered(4)],
+        [Item("0005", "Elsewhere"), Item("0009", "Hall")],
+    ]
+    for number, state in enumerate(states):
+        replace_inventory(engine, made(state, sha256=str(number) * 64), shrink_limit=1.0)
+    first = versions(engine)[-1].id
+    for back, state in enumerate(states):
+        return_to(engine, first + back)
+        assert read_inventory(engine) == state
+    # Going back is a version as well: going back to it gives the same.
+    return_to(engine, first + 3)
+    assert read_inventory(engine) == states[0]
+    newest = versions(engine)[0]
+    assert (newest.returned_to, newest.source, newest.items) == (first + 3, "a.csv", 5)
+    with pytest.raises(CollectionError, match=f"no version 99: there are {first} to {newest.id}"):
+        return_to(engine, 99)
+
+
+def test_a_night_does_not_undo_going_back(engine: Engine) -> None:
+    good, bad = made(numbered(3), sha256="a" * 64), made(numbered(2), sha256="b" * 64)
+    assert held(engine, bad.sha256) is None
+    replace_inventory(engine, good, shrink_limit=1.0)
+    replace_inventory(engine, bad, shrink_limit=1.0)
+    assert held(engine, bad.sha256) is None
+    version = versions(engine)[-1].id
+    return_to(engine, version)
+    assert held(engine, bad.sha256) == version
+    # A source that has changed is read again.
+    assert held(engine, "c" * 64) is None
+
+
+def test_records_of_before_digests_are_the_same_records(engine: Engine) -> None:
+    replace_inventory(engine, made(numbered(3)))
+    with engine.begin() as connection:
+        connection.execute(ITEM.update().values(digest=""))
+    assert not replace_inventory(engine, made(numbered(3), sha256="1" * 64))
+    with engine.connect() as connection:
+        digests = connection.execute(select(ITEM.c.digest)).scalars().all()
+    assert len(set(digests)) == 3
+    assert "" not in digests
 
 
 @pytest.mark.parametrize(("before", "after", "limit"), [(100, 80, 0.2), (100, 71, 0.29), (10, 1, 1.0), (3, 5, 0.0)])
 def test_a_loss_up_to_the_limit_is_taken(before: int, after: int, limit: float, engine: Engine) -> None:
     replace_inventory(engine, made(numbered(before)))
-    assert replace_inventory(engine, made(numbered(after)), shrink_limit=limit).after == after
+    assert replace_inventory(engine, made(numbered(after)), shrink_limit=limit).counts.after == after
 
 
 @pytest.mark.parametrize(("before", "after", "limit"), [(100, 79, 0.2), (100, 70, 0.29), (10, 9, 0.0)])

@@ -17,8 +17,9 @@ from pipeline.collection.errors import CollectionError, MappingError
 from pipeline.collection.inventory import galleries
 from pipeline.collection.mapping import PRESETS, Mapping, load_mapping
 from pipeline.collection.reading import NOWHERE, Reading, read_items
-from pipeline.collection.sheets import FIELD_LIMIT
-from pipeline.records import Item, Support
+from pipeline.collection.sources.delimited import FIELD_LIMIT
+from pipeline.collection.sources.opening import FILE_LIMIT
+from pipeline.records import Item, Origin, Provenance, Support
 
 from .conftest import HEADER, MAPPING, Read
 
@@ -102,7 +103,7 @@ def test_a_bad_value_is_named_and_costs_no_object(height: str, message: str, rem
     item = one(read(f"{HEADER}A1,Hall,Vase,{height},\n"))
     (problem,) = item.problems
     assert (item.object_number, item.height_m, problem.field) == ("A1", None, "height_m")
-    assert problem.message.startswith("museum.csv, row 1 (line 2): column 'height': ")
+    assert problem.message.startswith("column 'height': ")
     assert message in problem.message
     assert remedy in problem.remedy
 
@@ -194,7 +195,7 @@ def test_locations(read: Read) -> None:
     hall, store, nowhere = read(f"{HEADER}A1,Hall,,,\nA2, STORE ,,,\nA3, ,,,\n").items
     assert (hall.on_display, store.on_display, nowhere.on_display) == (True, False, False)
     assert (nowhere.gallery, nowhere.problems[0].field) == (NOWHERE, "gallery")
-    assert "row 3 (line 4): the location is empty" in nowhere.problems[0].message
+    assert "the location is empty" in nowhere.problems[0].message
     assert not store.problems
 
 
@@ -202,7 +203,8 @@ def test_the_template_sheet(tmp_path: Path) -> None:
     sheet = tmp_path / "sheet.csv"
     sheet.write_text("object_number,gallery,height_m,support,on_display\n1,Hall,1.2,hung,no\n2,Hall,,,\n", "utf-8")
     first, second = read_items(sheet, load_mapping("kouros")).items
-    assert first == Item("1", "Hall", height_m=1.2, support=Support.HUNG, on_display=False)
+    height = Provenance("height_m", Origin.MEASURED, "1.2 m")
+    assert first == Item("1", "Hall", height_m=1.2, support=Support.HUNG, on_display=False, provenance=(height,))
     assert second == Item("2", "Hall")
 
 
@@ -309,7 +311,7 @@ def test_a_file_beyond_the_limit_is_not_even_opened(tmp_path: Path, make_mapping
     """A sparse file: 1 GiB and a byte of holes that take no room on the disk."""
     path = tmp_path / "large.csv"
     with path.open("wb") as stream:
-        stream.truncate(reading_module.FILE_LIMIT + 1)
+        stream.truncate(FILE_LIMIT + 1)
     with pytest.raises(CollectionError, match="1,073,741,825 bytes, more than 1,073,741,824"):
         read_items(path, make_mapping(MAPPING))
 

@@ -381,12 +381,24 @@ def record(*extra: Assessment) -> RunRecord:
         site="malibu",
         museum="Museum of the Shore",
         level_notes=("The design level returns once in 475 years.",),
-        settings={"fidelity": "auto"},
+        settings={"fidelity": "auto", "kernels": "0123456789ab", "numerics": self_test()},
         assessments=objects,
         charts=charts(),
         motions=(motion(),),
         demonstration=True,
     )
+
+
+def self_test(kernels: str = "0123456789ab", **wrong: object) -> dict[str, object]:
+    """Return what a run keeps of a self-test of three cases; ``wrong`` goes into the last."""
+    good = {"limit": 1e-9, "ok": True, "seconds": 0.1, "problem": ""}
+    cases = [
+        {"what": "friction 0", "truth": "it stays in space", "result": 2.4e-16, **good},
+        {"what": "friction 5", "truth": "does not move", "result": 0.0, **good, "limit": 0.0},
+        {"what": HOSTILE["H.2"], "truth": HOSTILE["H.1"], "result": 3e-12, **good, **wrong},
+    ]
+    when, machine = "2026-02-28T12:00:00+00:00", "Linux x86_64, 2 cores, Python 3.11.2"
+    return {"when": when, "version": "0.1.0", "kernels": kernels, "machine": machine, "cases": cases}
 
 
 def crowd(count: int) -> RunRecord:

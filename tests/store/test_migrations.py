@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from alembic import command
 from alembic.autogenerate import compare_metadata
 from alembic.config import Config
 from alembic.migration import MigrationContext
@@ -15,7 +16,8 @@ from sqlalchemy import URL, Engine, insert, inspect, text
 
 import pipeline
 from pipeline.collection.database import open_database
-from pipeline.collection.inventory import latest_import, read_inventory
+from pipeline.collection.inventory import latest_import, read_inventory, replace_inventory, versions
+from pipeline.collection.reading import Reading
 from pipeline.collection.record import to_records
 from pipeline.records import Item, Problem, Support
 from pipeline.resources import resource
@@ -55,13 +57,49 @@ def test_the_inventory_works_on_migrated_tables(engine: Engine) -> None:
     ]
     batch = {"sha256": "", "mapping": "", "museum": "", "credit": "", "rows": 2, "items": 2, "rejected": []}
     with engine.begin() as connection:
-        connection.execute(insert(ITEM), to_records(items))
+        version = {"since": 1, "until": None, "digest": ""}
+        connection.execute(insert(ITEM), [record | version for record in to_records(items)])
         for source in ("first.csv", "second.csv"):  # the database numbers them
             connection.execute(insert(IMPORT_BATCH), batch | {"imported_at": "2031-05-01", "source": source})
     assert read_inventory(engine) == items
     latest = latest_import(engine)
     assert latest is not None
     assert latest.source == "second.csv"
+
+
+def test_an_inventory_of_before_versions_is_the_version_of_its_last_import(empty: Engine) -> None:
+    _upgrade_to(empty, "0002")
+    old = {"gallery": "G1", "on_display": True, "problems": "[]"}
+    texts = ("title", "object_name", "classification", "medium", "case", "isolator", "material", "base_material")
+    texts += ("surface_material", "wall_surface", "back_surface", "section_shape", "value_class")
+    record = old | dict.fromkeys(texts, "") | {"height_m": 0.1 + 0.2}
+    columns = ", ".join(f'"{name}"' for name in ("object_number", *record))
+    with empty.begin() as connection:
+        for number in ("A", "B"):
+            values = ", ".join(f":{name}" for name in ("object_number", *record))
+            command = text(f"INSERT INTO item ({columns}) VALUES ({values})")  # noqa: S608 - our own names
+            connection.execute(command, {"object_number": number} | record)
+        batch = "imported_at, source, sha256, mapping, museum, credit, rows, items, rejected"
+        for _ in range(2):
+            connection.execute(
+                text(f"INSERT INTO import_batch ({batch}) VALUES ('2031-05-01', 'a', '', '', '', '', 2, 2, '[]')")  # noqa: S608
+            )
+    upgrade(empty)
+    items = [Item("A", "G1", height_m=0.1 + 0.2), Item("B", "G1", height_m=0.1 + 0.2)]
+    assert read_inventory(empty) == items
+    with empty.connect() as connection:
+        assert connection.execute(text("SELECT DISTINCT since FROM item")).scalars().all() == [2]
+    changes = replace_inventory(empty, Reading(tuple(items), 2, (), "a", "", "", ""))
+    assert not changes
+    assert [info.id for info in versions(empty)] == [2, 1]
+
+
+def _upgrade_to(engine: Engine, revision: str) -> None:
+    config = Config()
+    config.set_main_option("script_location", str(resource("schemas", "migrations")))
+    with engine.begin() as connection:
+        config.attributes["connection"] = connection
+        command.upgrade(config, revision)
 
 
 def test_the_last_file_is_the_only_head() -> None:

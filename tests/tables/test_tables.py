@@ -165,10 +165,19 @@ def test_rules_name_classes_and_classes_name_models() -> None:
         assert row["round"] in ("yes", "no")
 
 
+def test_every_class_with_numbers_says_who_says_so() -> None:
+    for row in table("classes"):
+        numbers = [row[c] for c in row if c.endswith(("_ratio", "_low", "_high"))]
+        assert (row["source"] == "no numbers are assumed") == (not any(numbers)), row
+        if row["models"] != "none" and row["support"] == "freestanding":
+            kinds = ("cg", "base", "section", "fill", "clearance")
+            assert all(row[f"{kind}_{end}"] for kind in kinds for end in ("low", "high")), row
+
+
 def test_the_last_rule_takes_whatever_is_left() -> None:
     last = table("rules")[-1]
-    assert not any(last[c] for c in ("classification", "words", "medium", "shape"))
-    assert all(any(r[c] for c in ("classification", "words", "medium", "shape")) for r in table("rules")[:-1])
+    assert not any(last[c] for c in ("aat", "classification", "words", "medium", "shape"))
+    assert all(any(r[c] for c in ("aat", "classification", "words", "medium", "shape")) for r in table("rules")[:-1])
 
 
 def test_isolators_are_within_the_limits_of_their_models() -> None:

@@ -7,10 +7,10 @@ import re
 from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from io import TextIOBase
 
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.sources.rows import Row
 
 FIELD_LIMIT = 1 << 20
 """Characters of one cell."""
@@ -22,19 +22,6 @@ RESCUE_LIMIT = 64 << 20
 """Characters that may be read again after broken rows, all together: broken quotes in every row must not take hours."""
 
 _UNDECODED = re.compile("[\udc80-\udcff]")
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """A row as it stands in the file: its number (1 = first data row), its first line, its cells.
-
-    fault : why the row cannot be used, with the remedy; ("", "") where it can
-    """
-
-    number: int
-    line: int
-    cells: list[str]
-    fault: tuple[str, str] = ("", "")
 
 
 class _Lines:

@@ -1,0 +1,55 @@
+"""Numbers of one record that cannot all be true: what is refused, what is only doubted, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pipeline.records import Problem
+
+HEAVIEST = 22_600.0
+"""Density of osmium [kg/m3], the heaviest thing there is: no object is heavier than a box of it."""
+
+LIGHTEST = 0.1
+"""Mass of an object over the box around it [kg/m3]: a mobile of wire reaches it; air itself has 1.2."""
+
+_TOLERANCE = 1.03
+"""Two rounded measurements of the same thing."""
+
+
+def contradictions(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
+    """Return what contradicts itself in a record: the field to leave out ("" where all is kept), and the problem.
+
+    values : the fields of the record [SI]; None where not recorded
+    """
+    out = []
+    height = values.get("height_m")
+    for field, what in (("cg_height_m", "centre of gravity"), ("section_height_m", "weakest section")):
+        value = values.get(field)
+        if value is not None and height is not None and value > height * _TOLERANCE:
+            message = f"the {what} at {value:.4g} m would lie above the object, which is {height:.4g} m high"
+            out.append((field, Problem(field, message, "measure both again; the height is used")))
+    for field, largest in (("base_width_m", "width_m"), ("base_depth_m", "depth_m")):
+        value, most = values.get(field), values.get(largest)
+        across = max(filter(None, (values.get("width_m"), values.get("depth_m"))), default=None)
+        if value is not None and most is not None and across is not None and value > across * _TOLERANCE:
+            message = f"the base is {value:.4g} m wide, the object at its widest {across:.4g} m"
+            remedy = "measure both again; the base is used, as overall sizes are often given without it"
+            out.append(("", Problem(field, message, remedy)))
+    out += _density(values)
+    return out
+
+
+def _density(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
+    sides = [float(values.get(side) or 0.0) for side in ("height_m", "width_m", "depth_m")]
+    mass = values.get("mass_kg")
+    if mass is None or not all(sides):
+        return []
+    density = mass / (sides[0] * sides[1] * sides[2])
+    if LIGHTEST <= density <= HEAVIEST:
+        return []
+    box = " x ".join(f"{side:.3g}" for side in sides)
+    limit = "osmium, the heaviest metal" if density > HEAVIEST else "a mobile of wire"
+    than = "heavier" if density > HEAVIEST else "lighter"
+    message = f"{mass:.4g} kg in a box of {box} m is {density:.3g} kg/m3, {than} than {limit}: mass or size is wrong"
+    return [("mass_kg", Problem("mass_kg", message, "weigh and measure it again; the mass is left out until then"))]

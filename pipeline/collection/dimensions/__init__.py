@@ -1,0 +1,7 @@
+"""The text of a museum's dimensions field -> measured parts, and the extents of the object that they give."""
+
+from pipeline.collection.dimensions.choice import choose
+from pipeline.collection.dimensions.parsing import parse
+from pipeline.collection.dimensions.result import Choice, Chosen, Dimensions, Note, Part
+
+__all__ = ["Choice", "Chosen", "Dimensions", "Note", "Part", "choose", "parse"]

@@ -1,0 +1,146 @@
+"""Which of a text's numbers are the object's own extents, its base and its mass (`choose`)."""
+
+from __future__ import annotations
+
+from math import hypot, pi
+
+from pipeline.collection.dimensions.result import Choice, Chosen, Dimensions, Part
+
+_FRAMED = frozenset({"framed", "frame"})
+_FACES = {"mount": 4, "mat": 4, "sheet": 5, "page": 5, "image": 6, "composition": 6, "plate": 6, "block": 6}
+_DETAILS = frozenset(
+    {"rim", "seat", "lid", "top", "mouth", "handle", "stem", "neck", "cord", "label", "crate", "storage", "opening"}
+)
+_BASES = frozenset({"base", "foot", "feet", "plinth", "pedestal", "bottom"})
+_LAST = 9
+_FLAT = 0.5
+"""First number of a base over its second from which both lie in plan; below it the first is the base's own height."""
+
+
+def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
+    """Choose the object's extents and mass among a text's parts.
+
+    The whole object goes before its parts: "with base", then "overall" and what no part is named for, then framed,
+    other named parts, mount, sheet, image.  Of several alike the largest is taken, never the height of one with the
+    width of another.  What is said of a base or foot is the base's.
+
+    hung    : the object hangs on a wall, so that its frame comes first
+    returns : extents in m, mass in kg, each with the characters it came from and the reason; ranges by their larger end
+    """
+    groups: dict[int, list[Part]] = {}
+    for part in dimensions.parts:
+        if part.value is not None and part.value > 0.0:
+            groups.setdefault(part.group, []).append(part)
+    bodies = [g for g in groups.values() if not _is_base(g[0].name) and any(p.dimension != "weight" for p in g)]
+    out: dict[str, Choice] = {}
+    chosen: list[Part] = []
+    if bodies:
+        best = min(_rank(g, hung) for g in bodies)
+        alike = [g for g in bodies if _rank(g, hung) == best]
+        chosen = max(alike, key=_size)
+        out = _extents(chosen, _reason(chosen, len(alike), hung and best == 0))
+    bases = [g for g in groups.values() if _is_base(g[0].name)]
+    if bases:
+        out |= _base(max(bases, key=_size))
+    mass = _mass(dimensions, chosen)
+    if mass is not None:
+        out["mass"] = mass
+    return Chosen(**out)
+
+
+def _is_base(name: str) -> bool:
+    words = name.split()
+    return not name.startswith(("with ", "without ")) and bool(_BASES.intersection(words))
+
+
+def _rank(group: list[Part], hung: bool) -> int:
+    """Return the place of a group in the order of preference, 0 first."""
+    name = group[0].name
+    words = name.split()
+    if "sight" in group[0].qualifiers:
+        return 6
+    if _FRAMED.intersection(words):
+        return 0 if hung else 3
+    if name == "with base":
+        return 1
+    if name.startswith("overall"):
+        return 2
+    if _DETAILS.intersection(words):
+        return _LAST
+    faces = [_FACES[word] for word in words if word in _FACES]
+    return min(faces) if faces else 3
+
+
+def _size(group: list[Part]) -> float:
+    return hypot(*(p.value for p in group if p.value is not None and p.dimension != "weight"))
+
+
+def _reason(group: list[Part], alike: int, framed: bool) -> str:
+    part = group[0]
+    if framed:
+        return "framed, as it hangs"
+    what = f"of {part.words!r}" if part.words else "of the object itself"
+    if alike > 1:
+        what += f", the largest of {alike} alike"
+    return what
+
+
+def _extents(group: list[Part], reason: str) -> dict[str, Choice]:
+    out: dict[str, Choice] = {}
+
+    def take(field: str, part: Part, how: str, factor: float = 1.0) -> None:
+        if field not in out and part.value is not None:
+            said = ", as" if part.qualifiers else ""
+            why = f"{how}, {reason}{said} {', '.join(part.qualifiers)}".rstrip()
+            out[field] = Choice(part.value * factor, part.start, part.end, why)
+
+    for part in group:
+        if part.dimension in ("height", "width", "depth", "diameter"):
+            order = ", by the order height x width x depth" if part.assumed else ""
+            take(part.dimension, part, f"{part.dimension}{order}")
+    for part in group:
+        if part.dimension == "length":
+            take("depth" if "width" in out else "width", part, "length, which lies in plan")
+        elif part.dimension == "thickness":
+            take("depth", part, "thickness")
+        elif part.dimension == "circumference":
+            take("diameter", part, "circumference divided by pi", 1.0 / pi)
+    if not out:
+        largest = max((p for p in group if p.dimension == "unlabelled"), key=lambda p: p.value or 0.0, default=None)
+        if largest is not None:
+            take("height", largest, "a number without a label, taken as the height")
+    return out
+
+
+def _base(group: list[Part]) -> dict[str, Choice]:
+    """Return width and depth of a base; they win over the object's largest width where it stands."""
+    by_name = {part.dimension: part for part in reversed(group)}
+    width, depth = by_name.get("width"), by_name.get("depth")
+    how = "of the base"
+    height = by_name.get("height")
+    if height and width and not depth and height.assumed and (height.value or 0.0) >= _FLAT * (width.value or 0.0):
+        width, depth = height, width
+        how = "of the base, whose first number is too large to be its height: both lie in plan"
+    if width is None:
+        width = by_name.get("diameter") or by_name.get("length") or by_name.get("unlabelled")
+        how = f"of the base, its {width.dimension} in both directions" if width else how
+    depth = depth or width
+    if width is None or depth is None or width.value is None or depth.value is None:
+        return {}
+    if depth is width and "directions" not in how:
+        how = "of the base, taken as deep as it is wide"
+    return {
+        "base_width": Choice(width.value, width.start, width.end, f"width {how}"),
+        "base_depth": Choice(depth.value, depth.start, depth.end, f"depth {how}"),
+    }
+
+
+def _mass(dimensions: Dimensions, chosen: list[Part]) -> Choice | None:
+    masses = [p for p in dimensions.parts if p.dimension == "weight" and p.value is not None and p.value > 0.0]
+    if not masses:
+        return None
+    group = chosen[0].group if chosen else -1
+    own = [p for p in masses if p.group == group] or [p for p in masses if p.name == "overall"]
+    heaviest = max(own or masses, key=lambda p: p.value or 0.0)
+    why = "weight of the object itself" if own else "weight of a part, the heaviest given"
+    return Choice(heaviest.value or 0.0, heaviest.start, heaviest.end, why)

@@ -1,0 +1,56 @@
+"""The units and words that the parser knows, from the tables dimension_units.csv and dimension_words.csv."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+
+from pipeline.tables import TableError, table
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit of the table: one of it is num / den in SI, exactly."""
+
+    name: str
+    kind: str
+    num: int
+    den: int
+    smaller: str
+    system: str
+
+
+@cache
+def units() -> dict[str, Unit]:
+    """Return the units by name.
+
+    raises : TableError where a unit's value is no decimal number above zero
+    """
+    out = {}
+    for row in table("dimension_units"):
+        try:
+            value = Fraction(row["si"])
+        except ValueError as problem:
+            raise TableError(
+                f"dimension_units.csv, {row['unit']!r}: si must be a number, not {row['si']!r}"
+            ) from problem
+        if value <= 0:
+            raise TableError(f"dimension_units.csv, {row['unit']!r}: si must be above zero, not {row['si']}")
+        out[row["unit"]] = Unit(
+            row["unit"], row["kind"], value.numerator, value.denominator, row["smaller"], row["system"]
+        )
+    return out
+
+
+@cache
+def unit_words() -> dict[str, Unit]:
+    """Return the units by every word and mark that stands for one, in small letters."""
+    by_name = units()
+    return {word: by_name[row["unit"]] for row in table("dimension_units") for word in row["words"].split("|")}
+
+
+@cache
+def meanings() -> dict[str, tuple[str, str]]:
+    """Return kind and meaning of every word that is not a unit, in small letters."""
+    return {word: (row["kind"], row["meaning"]) for row in table("dimension_words") for word in row["words"].split("|")}

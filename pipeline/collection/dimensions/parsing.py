@@ -1,0 +1,103 @@
+"""The text of a dimensions field -> measured parts (`parse`)."""
+
+from __future__ import annotations
+
+from pipeline.collection.dimensions.lexicon import units
+from pipeline.collection.dimensions.quantities import Group, Quantity
+from pipeline.collection.dimensions.reader import Reader
+from pipeline.collection.dimensions.result import Dimensions, Note, Part
+from pipeline.collection.dimensions.tokens import tokens_of
+
+LONGEST = 2000
+"""Characters of a text that are read; what follows is noted, not read."""
+
+_ORDERS = {"": ("height", "width", "depth"), "length": ("width", "height", "depth")}
+_CONVENTION = "the order is taken as height x width x depth, the museums' convention; it is not written"
+
+
+def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> Dimensions:
+    """Read the text of a dimensions field.
+
+    text         : any text; the first 2,000 characters are read
+    default_unit : the unit of lengths that none is written for, "cm" for instance; None leaves them without a value
+    decimal      : the decimal mark where a number leaves it open ("1,234"), "." or ","
+    returns      : the parts in the order of the text, values in m and kg, each rounded once; and notes
+    raises       : ValueError for an unknown default unit or decimal mark
+    source       : the conventions of the CC0 open data of MoMA, the Met and Williams College; height x width x depth
+                   as in Cataloging Cultural Objects (2006), ch. 3
+    """
+    default = None
+    if default_unit is not None:
+        default = units().get(default_unit)
+        if default is None or default.kind != "length":
+            known = ", ".join(unit.name for unit in units().values() if unit.kind == "length")
+            raise ValueError(f"default_unit must be one of {known}, not {default_unit!r}")
+    if decimal not in (".", ","):
+        raise ValueError(f'decimal must be "." or ",", not {decimal!r}')
+    head = text[:LONGEST]
+    reader = Reader(head, tokens_of(head, decimal), default is not None)
+    reader.read()
+    notes = reader.notes
+    if len(text) > LONGEST:
+        notes.append(Note("truncated", f"{len(text):,} characters, of which {LONGEST:,} are read", LONGEST, len(text)))
+    for group in reader.groups:
+        if all(q.unit is not None for q in group.quantities):
+            continue
+        _share_units(group, notes)
+        for q in group.quantities:
+            if q.unit is None and default is not None:
+                q.unit = default
+                notes.append(Note("unit", f"no unit is written; {default.name} is the source's own", q.start, q.end))
+            elif q.unit is None:
+                notes.append(Note("missing_unit", "no unit is written, so there is no value", q.start, q.end))
+    parts = tuple(
+        _part(group, number, q) for number, group in enumerate(_ordered(reader.groups, notes)) for q in group.quantities
+    )
+    return Dimensions(text, parts, tuple(notes))
+
+
+def _share_units(group: Group, notes: list[Note]) -> None:
+    """Carry a unit back in 'H. 10, W. 5, D. 3 cm'."""
+    unit = None
+    for q in reversed(group.quantities):
+        if q.unit is not None and q.unit.kind == "length":
+            unit = q.unit
+        elif q.unit is None and unit is not None and q.dimension != "weight":
+            q.unit = unit
+            notes.append(Note("unit", f"the unit is that of the next number, {unit.name}", q.start, q.end))
+
+
+def _ordered(groups: list[Group], notes: list[Note]) -> list[Group]:
+    """Give numbers without a written dimension theirs, by their order within a run."""
+    first: tuple[int, int] | None = None
+    for group in groups:
+        bare = [q for q in group.quantities if not q.dimension]
+        for number in dict.fromkeys(q.run for q in bare):
+            run = [q for q in group.quantities if q.run == number]
+            if len(run) == 1:
+                run[0].dimension = "unlabelled"
+                continue
+            used = {q.dimension for q in run}
+            order = iter([d for d in _ORDERS["length" if "length" in used else ""] if d not in used])
+            for q in run:
+                if not q.dimension:
+                    q.dimension, q.assumed = next(order, "unlabelled"), True
+            first = first or (run[0].start, run[-1].end)
+    if first:
+        notes.append(Note("order", _CONVENTION, *first))
+    return groups
+
+
+def _part(group: Group, number: int, q: Quantity) -> Part:
+    if q.unit is None:
+        value = low = high = None
+        unit = ""
+    else:
+        unit = q.unit.name
+        value = high = q.si()
+        low = q.scaled(*q.first) if q.first else value
+    return Part(
+        group.name, group.words, q.dimension, value, unit, q.unit_text, low, high,
+        q.other.si() if q.other is not None and q.other.unit is not None else None,
+        tuple(sorted(group.qualifiers)), q.assumed, number, q.start, q.end,
+    )  # fmt: skip

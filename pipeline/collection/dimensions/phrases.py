@@ -1,0 +1,115 @@
+"""The words around the numbers: which part they name, which dimensions, which qualifiers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from pipeline.collection.dimensions.tokens import (
+    CLOSE,
+    COLON,
+    COMMA,
+    DIMENSION,
+    DOT,
+    DOTTED,
+    JOIN,
+    NUMBER,
+    OPEN,
+    TIME,
+    UNIT,
+    WORD,
+    Token,
+)
+
+_GLUE = frozenset(("", "-", ".", "&", "'", "’", "/", "-.", "+"))
+
+
+@dataclass(slots=True)
+class Phrase:
+    """What a stretch of words says.
+
+    name       : the part, normalised; "" where none is named
+    known      : every word of the name is in the table, so that it may also stand behind the numbers
+    dimensions : the dimensions named, in their order
+    joined     : they are joined by "x", as in "height x width x depth"
+    """
+
+    name: str = ""
+    known: bool = True
+    dimensions: list[str] = field(default_factory=list)
+    joined: bool = False
+    qualifiers: set[str] = field(default_factory=set)
+    start: int = 0
+    end: int = 0
+
+
+def is_label_letter(tokens: list[Token], at: int, text: str) -> bool:
+    """Say whether a letter such as the d of ".d" or "(b, lid)" numbers a component, and is not short for a word."""
+    token = tokens[at]
+    if token.end - token.start != 1:
+        return False
+    before = text[token.start - 1] if token.start else ""
+    if before in ("-", "&") or (before == "." and not text[token.start - 2 : token.start - 1].isalnum()):
+        return True
+    following = tokens[at + 1].type
+    opened = at > 0 and tokens[at - 1].type == OPEN
+    return opened and (following == COMMA or (following == CLOSE and tokens[at + 2].type in (COLON, DOT)))
+
+
+def phrase_of(tokens: list[Token], indices: list[int], text: str) -> Phrase:
+    """Return what the tokens at the indices say together."""
+    out = Phrase()
+    if not indices:
+        return out
+    kept: list[tuple[str, Token]] = []
+    joins = 0
+    for at in indices:
+        token = tokens[at]
+        kind, meaning = token.meaning or ("", "")
+        if token.type == DIMENSION:
+            if is_label_letter(tokens, at, text):
+                kept.append((token.word, token))
+                out.known = False
+            else:
+                out.dimensions.append(meaning)
+        elif token.type == JOIN:
+            joins += 1
+            kept.append((token.word, token))
+        elif kind == "qualifier":
+            out.qualifiers.add(meaning)
+        elif kind in ("with", "without", "part"):
+            kept.append((meaning or kind, token))
+        elif kind == "filler":
+            if token.word == "and" and kept:
+                kept.append(("and", token))
+        elif token.type in (NUMBER, DOTTED, TIME, WORD) or (token.type == UNIT and token.word.isalpha()):
+            kept.append((token.word.strip(".,") or token.word, token))
+            out.known = False
+    out.joined = joins > 0 and len(out.dimensions) > 1
+    if out.joined:
+        kept = [(word, token) for word, token in kept if token.type != JOIN]
+    while kept and kept[-1][0] == "and":
+        kept.pop()
+    out.name = _normal(_glued(kept, text))
+    out.start, out.end = tokens[indices[0]].start, tokens[indices[-1]].end
+    return out
+
+
+def _glued(kept: list[tuple[str, Token]], text: str) -> str:
+    """Join words by blanks, and by what stood between them where no blank did: "ex-libris", "b&w", "1a"."""
+    name = ""
+    last = -1
+    for word, token in kept:
+        between = text[last : token.start] if last >= 0 else ""
+        name += (between[:1] if between in _GLUE else " ") + word if name else word
+        last = token.end
+    return name
+
+
+def _normal(name: str) -> str:
+    for preposition, framed in (("with", "framed"), ("without", "unframed")):
+        bare = name.removeprefix("overall ")
+        if bare.startswith(preposition + " "):
+            if bare.rsplit(" ", 1)[-1] in ("frame", "framing", "framed"):
+                return framed
+            return f"{preposition} base" if bare.endswith(" base") else bare
+    return name

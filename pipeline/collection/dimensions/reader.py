@@ -1,0 +1,332 @@
+"""Tokens -> groups of numbers with the part that each belongs to.  One pass, with a short look ahead."""
+
+from __future__ import annotations
+
+from pipeline.collection.dimensions.pairing import agree, pair
+from pipeline.collection.dimensions.phrases import Phrase, phrase_of
+from pipeline.collection.dimensions.quantities import Group, Quantity
+from pipeline.collection.dimensions.result import Note
+from pipeline.collection.dimensions.runs import area_at, conversion_at, run_at
+from pipeline.collection.dimensions.tokens import (
+    BREAK,
+    CLOSE,
+    COLON,
+    COMMA,
+    DASH,
+    DIMENSION,
+    DOT,
+    DOTTED,
+    END,
+    JOIN,
+    NUMBER,
+    OPEN,
+    TIME,
+    UNIT,
+    WORD,
+    Token,
+)
+
+_LONGEST_REMARK = 20  # tokens; so that no text makes the reader look at its words again and again
+_BEHIND = ("with", "framed", "unframed")
+_STATES = frozenset({"folded", "unfolded", "open", "opened", "closed", "unopened", "assembled", "extended"})
+_STRAY = frozenset("'\"’”′″")
+_ASIDE = frozenset({OPEN, CLOSE, COLON, COMMA, DASH, DOT})
+
+
+class Reader:
+    """Reads one text; `groups` and `notes` hold what it said."""
+
+    def __init__(self, text: str, tokens: list[Token], default_unit: bool) -> None:
+        self.text = text
+        self.tokens = tokens
+        self.default_unit = default_unit
+        self.groups: list[Group] = []
+        self.notes: list[Note] = []
+        self.label: list[int] = []  # words since the last number: the next number's label, or the last one's remark
+        self.open: list[Quantity] = []  # numbers of this clause that have no conversion yet
+        self.fresh = True  # no number since the last line break
+        self.runs = 0
+
+    def read(self) -> None:
+        """Read the whole text."""
+        tokens = self.tokens
+        at = 0
+        while True:
+            token = tokens[at]
+            kind = token.type
+            if kind == END:
+                self._remark()
+                return
+            if kind in (NUMBER, DOTTED, DIMENSION):
+                legend = kind == DIMENSION and bool(self.label) and tokens[self.label[-1]].type == JOIN
+                behind = 0 if legend else self._measure(at)
+                if behind:
+                    at = behind
+                    continue
+                self.label.append(at)
+            elif kind == TIME:
+                at = self._leave_out(at, at + 1, "a time, a date or a scale")
+                continue
+            elif kind == BREAK:
+                self._break(at)
+            elif kind == COMMA:
+                if not self.fresh and self.label and self._is_remark():
+                    self._remark()
+                else:
+                    self.label.append(at)
+            elif kind == OPEN and not self.label and not self.fresh:
+                at = self._brackets(at)
+                continue
+            else:
+                self.label.append(at)
+                if kind == DOT and self._is_sentence():
+                    self._remark()
+            at += 1
+
+    def _measure(self, at: int) -> int:
+        """Read the numbers that begin at a token into a group; return the token behind them, 0 where none begin."""
+        tokens = self.tokens
+        behind = area_at(tokens, at)
+        if behind:
+            return self._leave_out(at, behind, "an area or a volume")
+        found = run_at(tokens, at, self.text)
+        if found is None:
+            return 0
+        items, behind = found
+        if any(q.kind not in ("", "length", "mass") for q in items):
+            return self._leave_out(at, behind, "neither a length nor a mass")
+        if not self._measures(at, items, behind):
+            return 0
+        if items[-1].unit is None and (tokens[behind].type == DASH or tokens[behind].word == "to"):
+            other = run_at(tokens, behind + 1, self.text)  # 24 x 18 - 25 x 19 in.
+            if other is not None and other[0][0].kind == "length":
+                for item in items:
+                    item.unit = other[0][0].unit
+        phrase = phrase_of(tokens, self.label, self.text)
+        group = self._group(phrase, items)
+        for item in items:
+            item.run = self.runs
+            if not item.dimension and item.kind == "mass":
+                item.dimension = "weight"
+        self._apply(phrase, items)
+        self.runs += 1
+        group.quantities += items
+        self.open += items
+        self.label = []
+        self.fresh = False
+        return self._conversions(behind, group)
+
+    def _measures(self, at: int, items: list[Quantity], behind: int) -> bool:
+        """Say whether numbers measure something; a number without unit and partner may as well count or name a part."""
+        tokens = self.tokens
+        first = tokens[at]
+        if len(items) > 1:
+            # "d: 4 x 6": the letter numbers a component.
+            letter = first.type == DIMENSION and first.end - first.start == 1
+            return not (letter and tokens[at + 1].type == COLON and not any(q.dimension for q in items[1:]))
+        item = items[0]
+        if item.unit is not None:
+            return True
+        if first.type == DOTTED or self.text[first.end : first.end + 1].isalpha():
+            return False  # ".1b": the number of a component
+        if item.dimension:
+            return tokens[behind].type != COLON
+        if tokens[behind].type not in (END, BREAK, COMMA, CLOSE, DOT):
+            return False
+        alone = not self.label or tokens[self.label[-1]].type == COLON
+        return alone and (self.default_unit or (at == 0 and tokens[behind].type == END))
+
+    def _conversions(self, at: int, group: Group) -> int:
+        """Pair the numbers with the same in another system, in brackets or behind a stroke; return the token behind."""
+        tokens = self.tokens
+        while True:
+            place = at + 1 if tokens[at].type == DOT else at
+            if tokens[place].type == OPEN:
+                found = conversion_at(tokens, place, self.text)
+                if found is None:
+                    return at
+                others, at = found
+                left = pair(self.open, others, self.notes)
+                for q in left:
+                    if q.kind == "mass":
+                        q.dimension, q.run = "weight", self.runs
+                    elif q.run < 0:
+                        q.run = self.runs
+                self.runs += 1
+                group.quantities += left
+                self.open = []
+            elif tokens[place].type in (COMMA, COLON, DASH, NUMBER) or tokens[place].word in (
+                "/",
+                "|",
+                ";",
+                "or",
+                "\\",
+            ):
+                start = place if tokens[place].type == NUMBER else place + 1
+                behind = self._same(start)
+                if not behind:
+                    return at
+                at = behind
+            elif tokens[place].type == JOIN:
+                behind = self._joined(place + 1, group)
+                if not behind:
+                    return at
+                at = behind
+            else:
+                return at
+
+    def _same(self, at: int) -> int:
+        """Take a run that repeats the open numbers in the other system and agrees with all; else return 0."""
+        if self.tokens[at].type != NUMBER:
+            return 0
+        found = run_at(self.tokens, at, self.text)
+        if found is None or len(found[0]) != len(self.open):
+            return 0
+        for a, b in zip(self.open, found[0], strict=True):
+            if a.unit is None or b.unit is None or a.unit.kind != b.unit.kind or a.unit.system == b.unit.system:
+                return 0
+            if a.kind not in ("length", "mass") or not agree(a.si(), b.si(), a.kind) or b.dimension:
+                return 0
+        pair(self.open, found[0], self.notes)
+        self.open = []
+        return found[1]
+
+    def _joined(self, at: int, group: Group) -> int:
+        """Read on in '6 in. (15 cm) x 8 in. (20 cm)': the next number goes on with that run; 0 where none does."""
+        found = run_at(self.tokens, at, self.text)
+        if found is None or any(q.kind not in ("", "length") for q in found[0]):
+            return 0
+        items, behind = found
+        run = group.quantities[-1].run
+        for item in items:
+            item.run = run
+        group.quantities += items
+        self.open += items
+        return behind
+
+    def _group(self, phrase: Phrase, items: list[Quantity]) -> Group:
+        """Return the group that numbers belong to: the last one where they go on with it, else a new one."""
+        if self.groups and not self.fresh and not phrase.name:
+            last = self.groups[-1]
+            named = {q.dimension for q in last.quantities if q.dimension}
+            continues = all(q.dimension and q.dimension not in named for q in items)
+            aside = len(items) == 1 and any(self.tokens[at].type == COMMA for at in self.label)
+            if items[0].kind == "mass" and (items[0].dimension or phrase.dimensions):
+                continues = last.name == "overall"  # "Weight: 20 kg" behind the base is the whole object's
+            elif items[0].kind == "mass":
+                continues = True
+            if continues or aside or (len(items) == 1 and phrase.dimensions):
+                last.qualifiers |= phrase.qualifiers
+                return last
+        words = self.text[phrase.start : phrase.end].strip(" \t:,.-–—") if phrase.name else ""
+        group = Group(phrase.name or "overall", words, set(phrase.qualifiers))
+        self.groups.append(group)
+        self.open = []
+        return group
+
+    def _apply(self, phrase: Phrase, items: list[Quantity]) -> None:
+        """Give numbers the dimensions that a phrase names: a legend to all, one dimension to a single number."""
+        if phrase.joined and len(phrase.dimensions) == len(items):
+            for item, dimension in zip(items, phrase.dimensions, strict=True):
+                item.dimension = item.dimension or dimension
+        elif phrase.dimensions and len(items) == 1 and not items[0].dimension:
+            items[0].dimension = phrase.dimensions[-1]
+
+    def _brackets(self, at: int) -> int:
+        """Read a remark in brackets right behind numbers, such as (irreg.), (h x w) or (framed)."""
+        tokens = self.tokens
+        end = at + 1
+        while tokens[end].type in (WORD, DIMENSION, DOT, COMMA, JOIN):
+            end += 1
+        following = tokens[end + 1].type if tokens[end].type == CLOSE else COLON
+        phrase = phrase_of(tokens, list(range(at, end)), self.text)
+        remark = phrase.qualifiers or phrase.dimensions or phrase.name
+        ends = following in (END, BREAK, COMMA, DOT)
+        if following in (COLON, NUMBER) or not remark or (phrase.name and not (phrase.known and ends)):
+            self.label.append(at)
+            return at + 1
+        self._behind(phrase)
+        return end + 1
+
+    def _is_sentence(self) -> bool:
+        """Say whether a full stop ends a remark such as "Various composition dimensions. Sheet ..."."""
+        before = self.tokens[self.label[-2]] if 1 < len(self.label) <= _LONGEST_REMARK else None
+        return (
+            before is not None
+            and before.meaning in (("filler", ""), ("qualifier", "variable"))
+            and (len(before.word) > 3 and any(self.tokens[i].meaning == ("qualifier", "variable") for i in self.label))
+        )
+
+    def _is_remark(self) -> bool:
+        """Say whether the words since the last number belong to that number, and are not the next one's label."""
+        if len(self.label) > _LONGEST_REMARK or any(self.tokens[i].type == COLON for i in self.label):
+            return False
+        phrase = phrase_of(self.tokens, self.label, self.text)
+        behind = phrase.name.startswith(_BEHIND)
+        return behind or (not phrase.name and bool(phrase.dimensions or phrase.qualifiers))
+
+    def _break(self, at: int) -> None:
+        """End a clause at a semicolon, a line at a line break; a heading's words wait for the next line."""
+        line = self.tokens[at].word != ";"
+        heading = self.label and self.tokens[self.label[-1]].type == COLON
+        if not (line and heading):
+            self._remark()
+        self.fresh = self.fresh or line
+        self.open = []
+
+    def _remark(self) -> None:
+        """Use words that no number follows: for the numbers before them, as a note, or as the unread remainder."""
+        label, self.label = self.label, []
+        words = [at for at in label if self.tokens[at].type not in _ASIDE and self.tokens[at].word not in _STRAY]
+        if not words:
+            return
+        phrase = phrase_of(self.tokens, words, self.text)
+        if self.groups and not self.fresh and self._behind(phrase):
+            return
+        start, end = self.tokens[words[0]].start, self.tokens[words[-1]].end
+        if "variable" in phrase.qualifiers:
+            self.notes.append(Note("variable", "dimensions are said to vary", start, end))
+        else:
+            self.notes.append(Note("remainder", f"not understood: {self.text[start:end][:80]!r}", start, end))
+
+    def _behind(self, phrase: Phrase) -> bool:
+        """Apply a phrase that stands behind numbers to them; say whether there was any use for it."""
+        group = self.groups[-1]
+        use = False
+        if phrase.dimensions:
+            run = [q for q in group.quantities if q.run == group.quantities[-1].run]
+            if phrase.joined and len(run) == len(phrase.dimensions):
+                self._apply(phrase, run)
+            elif not run[-1].dimension:
+                run[-1].dimension = phrase.dimensions[-1]
+            use = True
+        name = phrase.name
+        if name.endswith(" base") and not phrase.dimensions and not name.startswith("with"):
+            name = "with base"  # "on wooden base" without numbers of its own
+        stands = phrase.known or name.startswith(_BEHIND)
+        stands = stands or ("each" in phrase.qualifiers and not group.words)
+        if name and stands and group.name == "overall":
+            group.name = name
+            group.words = self.text[phrase.start : phrase.end].strip(" \t:,.()")
+            use = True
+        elif name in _STATES:
+            group.name = f"{group.name} {name}"
+            use = True
+        elif phrase.name and not phrase.dimensions:
+            return False
+        if phrase.qualifiers and "variable" not in phrase.qualifiers:
+            group.qualifiers |= phrase.qualifiers
+            use = True
+        return use
+
+    def _leave_out(self, at: int, behind: int, what: str) -> int:
+        """Note something that is no dimension, with the words before it and its unit; return the token behind it."""
+        tokens = self.tokens
+        words = [i for i in self.label if tokens[i].type not in _ASIDE]
+        start = tokens[words[0]].start if words else tokens[at].start
+        self.label = []
+        while tokens[behind].type in (UNIT, DOT) or tokens[behind].word in ("per", "second", "a"):
+            behind += 1
+        end = tokens[behind - 1].end
+        self.notes.append(Note("left_out", f"{what}: {self.text[start:end][:80]!r}", start, end))
+        return behind

@@ -1,0 +1,96 @@
+"""What a dimension text says: parts with their values, notes on what was judged, and the object's extents."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One measured number of a text.
+
+    name        : which part of the object, normalised: "overall", "base", "with base", "frame", "sheet"; "overall" too
+                  where the text names none
+    words       : the words as written, or "" where the text names no part
+    dimension   : height, width, depth, diameter, length, circumference, thickness, weight, or unlabelled
+    value       : in SI (m or kg), rounded once; of a range the larger end; None where no unit is known
+    unit        : as understood ("in", "oz t"); of a sum the smaller length (8' 3") or the larger mass (3 oz. 2 dwt.);
+                  "" where none is known
+    unit_text   : as written behind the number, "" where it stands elsewhere or nowhere
+    low, high   : the ends of a range, in SI; both equal to value where there is no range
+    alternative : the same measure as the text's other system gives it, in SI; None where it stands once
+    qualifiers  : sorted, of each, approximate, irregular, variable, sight, maximum, minimum
+    assumed     : the dimension is not written but follows from the order, height x width x depth
+    group       : numbers that stand together share it, counted from 0 in the order of the text
+    start, end  : the characters of the text that hold the number
+    """
+
+    name: str
+    words: str
+    dimension: str
+    value: float | None
+    unit: str
+    unit_text: str
+    low: float | None
+    high: float | None
+    alternative: float | None
+    qualifiers: tuple[str, ...]
+    assumed: bool
+    group: int
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """Something that a reader of the text should know.
+
+    kind : contradiction (two readings differ by more than 3 mm and 3 %), conversion (a reading that pairs with none),
+           order (the order was assumed), unit (a unit was assumed or inferred), missing_unit, ambiguous,
+           left_out (a duration, a date, a scale), variable, remainder (characters not understood), truncated
+    """
+
+    kind: str
+    message: str
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
+class Dimensions:
+    """A text's measured parts in the order of the text, and the notes."""
+
+    text: str
+    parts: tuple[Part, ...] = ()
+    notes: tuple[Note, ...] = ()
+
+    def having(self, kind: str) -> tuple[Note, ...]:
+        """Return the notes of one kind."""
+        return tuple(note for note in self.notes if note.kind == kind)
+
+    def written(self, part: Part) -> str:
+        """Return the characters that a part came from."""
+        return self.text[part.start : part.end]
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """One extent of the object [m or kg], the characters of the text that it came from, and why it was taken."""
+
+    value: float
+    start: int
+    end: int
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """The object's extents [m] and mass [kg]; None where the text does not say."""
+
+    height: Choice | None = None
+    width: Choice | None = None
+    depth: Choice | None = None
+    base_width: Choice | None = None
+    base_depth: Choice | None = None
+    diameter: Choice | None = None
+    mass: Choice | None = None

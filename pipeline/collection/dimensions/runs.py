@@ -1,0 +1,224 @@
+"""Numbers that stand together: 8 7/8 in., 4' 3", 10-12 cm, H. 3 x W. 4 in., 3 oz. 2 dwt."""
+
+from __future__ import annotations
+
+from pipeline.collection.dimensions.lexicon import Unit, unit_words, units
+from pipeline.collection.dimensions.phrases import is_label_letter
+from pipeline.collection.dimensions.quantities import Quantity, fill_units, troy
+from pipeline.collection.dimensions.tokens import (
+    CLOSE,
+    COLON,
+    COMMA,
+    DASH,
+    DIMENSION,
+    DOT,
+    DOTTED,
+    JOIN,
+    NUMBER,
+    OPEN,
+    OTHER,
+    UNIT,
+    WORD,
+    Token,
+)
+
+_AREAS = frozenset({"sq", "square", "cubic", "cu", "quadrat"})
+
+
+def unit_at(tokens: list[Token], at: int, *, weighing: bool = False) -> tuple[Unit | None, int, int]:
+    """Return the unit at a token, the token behind it, and where its characters end; no unit leaves the place."""
+    token = tokens[at]
+    if token.type == DOT and tokens[at + 1].unit is not None and tokens[at + 1].type != DIMENSION:
+        at += 1
+        token = tokens[at]
+    ounce = unit_words()["oz"]
+    if token.word == "troy" and tokens[at + 1].unit is ounce:
+        return units()["oz t"], at + 2, tokens[at + 1].end
+    unit = token.unit
+    if unit is None or (token.type == DIMENSION and token.word == "t" and not weighing):
+        return None, at, token.start
+    at += 1
+    end = token.end
+    if unit is ounce:
+        behind = at + 1 if tokens[at].type == DOT else at
+        if tokens[behind].word in ("troy", "t"):
+            return units()["oz t"], behind + 1, tokens[behind].end
+    if tokens[at].type == DOT:
+        end = tokens[at].end
+        at += 1
+    return unit, at, end
+
+
+def quantity_at(tokens: list[Token], at: int, *, joined: bool, weighing: bool) -> tuple[Quantity, int]:
+    """Return the quantity whose number is at a token, and the token behind it."""
+    token = tokens[at]
+    out = Quantity(token.num, token.den, token.start, token.end, token.word)
+    at = _take_unit(tokens, at + 1, out, weighing)
+    second = tokens[at + 1] if tokens[at].type == DASH or tokens[at].word in ("to", "bis", "à") else None
+    if second is not None and second.type == NUMBER:
+        end = Quantity(second.num, second.den, second.start, second.end, second.word)
+        behind = _take_unit(tokens, at + 2, end, weighing)
+        apart = tokens[behind].type == JOIN and (joined or out.written)
+        if not apart and (out.unit is None or end.unit is None or out.unit.name == end.unit.name):
+            unit = end.unit or out.unit
+            low, high = sorted(((out.num, out.den), (end.num, end.den)), key=lambda pair: pair[0] / pair[1])
+            merged = Quantity(*high, out.start, end.end, out.word, unit, end.unit_text or out.unit_text)
+            merged.first, merged.written = low, unit is not None
+            return merged, behind
+    while out.unit is not None and out.unit.kind in ("length", "mass"):
+        smaller, behind = _smaller(tokens, at, out)
+        if smaller is None:
+            break
+        if smaller.unit is not None and smaller.unit.name == "dwt" and out.unit.name == "oz":
+            troy(out)
+        out.add(smaller)
+        at = behind
+    return out, at
+
+
+def _take_unit(tokens: list[Token], at: int, out: Quantity, weighing: bool) -> int:
+    unit, behind, end = unit_at(tokens, at, weighing=weighing)
+    if unit is None:
+        return at
+    first = tokens[at + 1] if tokens[at].type == DOT else tokens[at]
+    out.unit, out.written, out.end = unit, True, end
+    out.unit_text = first.word
+    return behind
+
+
+def _smaller(tokens: list[Token], at: int, larger: Quantity) -> tuple[Quantity | None, int]:
+    """Return the inches behind feet, the pennyweights behind ounces; feet may leave the mark of the inches out."""
+    comma = tokens[at].type == COMMA
+    number = tokens[at + 1] if comma else tokens[at]
+    if number.type != NUMBER or larger.unit is None:
+        return None, at
+    out = Quantity(number.num, number.den, number.start, number.end, number.word)
+    behind = _take_unit(tokens, at + (2 if comma else 1), out, False)
+    if out.unit is None:
+        if larger.unit.name != "ft" or comma or number.num >= 12 * number.den:
+            return None, at
+        out.unit = units()["in"]
+        return out, behind
+    chain = "dwt" if larger.unit.name == "oz" else larger.unit.smaller
+    if out.unit.name != chain or (comma and larger.unit.kind == "length" and larger.unit.system == "metric"):
+        return None, at
+    return out, behind
+
+
+def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[Quantity], int] | None:
+    """Return the numbers joined by "x" that begin at a token, and the token behind them; None where none begin."""
+    items: list[Quantity] = []
+    before = False
+    while True:
+        start = at
+        label = ""
+        meaning = tokens[at].meaning
+        if tokens[at].type == DIMENSION and meaning and not is_label_letter(tokens, at, text):
+            label = meaning[1]
+            at += 1
+            while tokens[at].type in (DOT, COLON) or tokens[at].word in ("of", "ca", "approx"):
+                at += 1
+        if tokens[at].type not in (NUMBER, DOTTED):
+            at = start
+            break
+        quantity, at = quantity_at(tokens, at, joined=bool(items), weighing=label == "weight")
+        if label:
+            quantity.dimension, before = label, True
+        elif not before:
+            at = _label_behind(tokens, at, quantity, text)
+        items.append(quantity)
+        following = at + 1 if tokens[at].type == DOT else at
+        if tokens[following].type != JOIN or not _begins(tokens, following + 1):
+            break
+        at = following + 1
+    if not items:
+        return None
+    fill_units(items)
+    return items, at
+
+
+def _begins(tokens: list[Token], at: int) -> bool:
+    """Say whether a number, or a dimension and a number, begin at a token."""
+    if tokens[at].type == DIMENSION:
+        at += 1
+        while tokens[at].type in (DOT, COLON):
+            at += 1
+    return tokens[at].type in (NUMBER, DOTTED)
+
+
+def _label_behind(tokens: list[Token], at: int, quantity: Quantity, text: str) -> int:
+    """Take the H of '10 in. H' and of '10 (h) x 12 (w) in.', and a unit behind it; return the token behind all that."""
+    place = at + 1 if tokens[at].type == DOT else at
+    bracket = tokens[place].type == OPEN
+    if bracket:
+        place += 1
+    token = tokens[place]
+    if token.type != DIMENSION or token.meaning is None or is_label_letter(tokens, place, text):
+        return at
+    behind = place + 1
+    if tokens[behind].type == DOT:
+        behind += 1
+    if bracket:
+        if tokens[behind].type != CLOSE:
+            return at
+        behind += 1
+    elif tokens[behind].type == COLON or (tokens[behind].type == WORD and tokens[behind].unit is None):
+        return at  # "3 in. diam. at rim" and "3 in. high back: ..." are phrases
+    quantity.dimension = token.meaning[1]
+    quantity.end = max(quantity.end, tokens[place].end)
+    if quantity.unit is None:
+        behind = _take_unit(tokens, behind, quantity, False)
+    return behind
+
+
+def area_at(tokens: list[Token], at: int) -> int | None:
+    """Return the token behind an area or a volume ("100 sq. ft."), or None where there is none."""
+    behind = at + 1
+    if tokens[behind].word not in _AREAS:
+        return None
+    behind += 1
+    if tokens[behind].type == DOT:
+        behind += 1
+    return behind + 1 if tokens[behind].word in unit_words() else None
+
+
+def conversion_at(tokens: list[Token], at: int, text: str) -> tuple[list[Quantity], int] | None:
+    """Return the numbers of brackets that hold nothing but numbers, and the token behind the brackets; else None."""
+    out: list[Quantity] = []
+    at += 1
+    run = 0
+    while tokens[at].type != CLOSE:
+        token = tokens[at]
+        if token.type in (NUMBER, DOTTED, DIMENSION):
+            found = run_at(tokens, at, text)
+            if found is None:
+                return None
+            items, at = found
+            for item in items:
+                item.run = run
+            out += items
+            run += 1
+        elif token.type in (COMMA, DOT, JOIN, DASH, COLON) or token.word in (
+            ";",
+            "/",
+            "or",
+            "and",
+            "approx",
+            "ca",
+            "=",
+        ):
+            at += 1
+        elif token.type == UNIT and out and token.word in ("'", '"', "”", "’"):
+            at += 1  # a second mark behind a unit: (21 cm")
+        elif token.type == OTHER and token.word in "?*":
+            at += 1
+        else:
+            # Nobody closed them: the line's end does, if all that stood in them were numbers with units.
+            if out and token.type not in (WORD, OPEN) and all(q.unit for q in out):
+                break
+            return None
+    if tokens[at].type == CLOSE:
+        at += 1
+    if not out or (len(out) == 1 and out[0].unit is None and not out[0].dimension and out[0].den == 1):
+        return None
+    return out, at

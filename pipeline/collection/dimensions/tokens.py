@@ -1,0 +1,155 @@
+"""Text -> tokens: numbers, words, marks.  One pass; no pattern can look at a character more than a few times."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import NamedTuple
+
+from pipeline.collection.dimensions.lexicon import Unit, meanings, unit_words
+
+NUMBER, DOTTED, WORD, UNIT, DIMENSION, JOIN, OPEN, CLOSE, BREAK, COMMA, COLON, DASH, DOT, TIME, OTHER, END = range(16)
+
+LONGEST_NUMBER = 24
+"""Characters of a number beyond which it measures nothing."""
+
+_VULGAR = {
+    "¼": (1, 4), "½": (1, 2), "¾": (3, 4), "⅐": (1, 7), "⅑": (1, 9), "⅒": (1, 10), "⅓": (1, 3), "⅔": (2, 3),
+    "⅕": (1, 5), "⅖": (2, 5), "⅗": (3, 5), "⅘": (4, 5), "⅙": (1, 6), "⅚": (5, 6), "⅛": (1, 8), "⅜": (3, 8),
+    "⅝": (5, 8), "⅞": (7, 8),
+}  # fmt: skip
+_V = "".join(_VULGAR)
+_BLANK = "[ \t\u00a0\u2009\u202f]"
+# The pattern's groups: a word; a date; a time of day or a scale; a number with a fraction; a fraction; a number; one
+# that begins with its decimal mark; a vulgar fraction; a mark of inches or feet; a line break; any other character.
+_WORD, _DATE, _CLOCK, _MIXED_NUMBER, _FRACTION, _DECIMAL, _DOTTED, _VULGAR_ALONE, _QUOTE, _BREAK, _MARK = range(1, 12)
+_TOKEN = re.compile(
+    rf"[ \t\u00a0]*+(?:([^\W\d_{_V}]+|[⌀㎝✕✖])"
+    rf"|(?=\d)(?:(\d{{1,2}}/\d{{1,2}}/\d{{2,4}}(?!\d))"
+    rf"|(\d{{1,3}}:\d{{1,4}}(?::\d\d)?(?![\d./]|{_BLANK}{{0,3}}[x×\d]))"
+    rf"|(\d[\d,]*(?:{_BLANK}{{0,3}}-{_BLANK}{{0,3}}|{_BLANK}{{1,3}})\d+{_BLANK}?[/⁄∕]{_BLANK}?\d+(?!/|\d)"
+    rf"|\d[\d,]*{_BLANK}{{0,3}}-?{_BLANK}{{0,3}}[{_V}])"
+    rf"|(\d+{_BLANK}?[/⁄∕]{_BLANK}?\d+(?!/|\d))"
+    rf"|(\d+(?:[.,]\d+)*(?:[eE][+-]?\d+)?))"
+    rf"|((?<![^\W\d_])\.\d+)"  # not the 17 of "diam.17"
+    rf"|([{_V}])"
+    rf"|(''|’’|‘‘|′′|[\"“”″'’‘′])"
+    rf"|([\r\n;\u2028\u2029]+)"
+    rf"|(\S))",
+)
+_MIXED = re.compile(rf"(\d[\d,]*)[^\d{_V}]*(?:(\d+)\D+(\d+)|([{_V}]))")
+_MARKS = {
+    "(": OPEN, "[": OPEN, "{": OPEN, "（": OPEN, "［": OPEN, ")": CLOSE, "]": CLOSE, "}": CLOSE, "）": CLOSE,
+    "］": CLOSE, ",": COMMA, "、": COMMA, "，": COMMA, ":": COLON, "：": COLON, "=": COLON, "-": DASH, "–": DASH,
+    "—": DASH, "~": DASH, "〜": DASH, "～": DASH, ".": DOT, "；": BREAK, "。": BREAK, "*": JOIN, "×": JOIN,
+    "✕": JOIN, "✖": JOIN,
+}  # fmt: skip
+
+
+class Token(NamedTuple):
+    """A piece of the text: its type, its characters, and what they mean.
+
+    word       : in small letters
+    meaning    : of a word its (kind, meaning) of the table, or None where it is not known
+    unit       : the unit that it is, if it stands behind a number
+    num, den   : the value of a number, exactly
+    """
+
+    type: int
+    start: int
+    end: int
+    word: str = ""
+    meaning: tuple[str, str] | None = None
+    unit: Unit | None = None
+    num: int = 0
+    den: int = 1
+
+
+def tokens_of(text: str, decimal: str) -> list[Token]:
+    """Return the tokens of a text, closed by an END.
+
+    decimal : the mark that separates decimals where a number leaves it open, "." or ","
+    """
+    out: list[Token] = []
+    known, by_word = meanings(), unit_words()
+    new = tuple.__new__  # a NamedTuple's own constructor takes twice as long, and a text has fifty tokens
+    for match in _TOKEN.finditer(text):
+        group = match.lastindex or 0
+        start, end = match.span(group)
+        word = match.group(group)
+        if group == _WORD:
+            word = word.lower()
+            if word[-1] == "x" and word[:-1] in by_word:  # 10 cmx 12 cm
+                out.append(_word(word[:-1], start, end - 1, known, by_word))
+                word, start = "x", end - 1
+            out.append(_word(word, start, end, known, by_word))
+        elif _CLOCK < group < _QUOTE:
+            value = number_value(word, group, decimal)
+            if value is None:
+                out.append(Token(OTHER, start, end, word))
+            else:
+                out.append(new(Token, (DOTTED if group == _DOTTED else NUMBER, start, end, word, None, None, *value)))
+        elif group == _QUOTE:
+            out.append(new(Token, (UNIT, start, end, word, None, by_word[word], 0, 1)))
+        elif group == _MARK:
+            out.append(new(Token, (_MARKS.get(word, OTHER), start, end, word, None, None, 0, 1)))
+        else:
+            out.append(Token(BREAK if group == _BREAK else TIME, start, end, word))
+    out.append(Token(END, len(text), len(text)))
+    return out
+
+
+def _word(word: str, start: int, end: int, known: dict[str, tuple[str, str]], by_word: dict[str, Unit]) -> Token:
+    meaning = known.get(word)
+    unit = by_word.get(word)
+    if meaning is not None:
+        if meaning[0] == "dimension":
+            return Token(DIMENSION, start, end, word, meaning, unit)
+        if meaning[0] == "join":
+            return Token(JOIN, start, end, word)
+        return Token(WORD, start, end, word, meaning, unit)
+    return Token(UNIT if unit else WORD, start, end, word, None, unit)
+
+
+@lru_cache(maxsize=4096)
+def number_value(text: str, group: int, decimal: str) -> tuple[int, int] | None:
+    """Return a number's value as a fraction of two whole numbers; None where it is too long or divides by zero.
+
+    text    : the characters that a group of the pattern matched
+    group   : which group
+    decimal : the mark that separates decimals where the number leaves it open
+    """
+    if len(text) > LONGEST_NUMBER or "e" in text.lower():  # nobody measures 1e400 in.
+        return None
+    if group in (_DECIMAL, _DOTTED):
+        return _decimal(text, decimal)
+    if group == _VULGAR_ALONE:
+        return _VULGAR[text]
+    if group == _FRACTION:
+        above, below = re.split(r"\D+", text)
+        return (int(above), int(below)) if int(below) else None
+    match = _MIXED.match(text)
+    if match is None:
+        return None
+    whole, above, below, vulgar = match.groups()
+    num, den = _VULGAR[vulgar] if vulgar else (int(above), int(below))
+    return (int(whole.replace(",", "")) * den + num, den) if den else None
+
+
+def _decimal(text: str, decimal: str) -> tuple[int, int] | None:
+    """Return a number's value; groups of three behind the other mark are thousands, anything else are decimals.
+
+    None for a list such as 10,12,14, which is neither.
+    """
+    if text.isdigit():
+        return int(text), 1
+    last = max(text.rfind("."), text.rfind(","))
+    mark = text[last]
+    tail = len(text) - last - 1
+    digits = text.replace(".", "").replace(",", "")
+    groups = re.split("[.,]", text)
+    if len(groups) > 2 and any(len(group) != 3 for group in groups[1 : None if text.count(mark) > 1 else -1]):
+        return None
+    if text.count(mark) > 1 or (mark != decimal and tail == 3 and last > 0 and text[0] != "0"):
+        return int(digits), 1
+    return int(digits), 10**tail

@@ -1,0 +1,128 @@
+"""Texts in which dimensions stand -> the fields of one record, with the characters that each number came from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pipeline.collection.cells import Cells
+from pipeline.collection.dimensions import Choice, Dimensions, Part, choose, parse
+from pipeline.collection.mapping import ColumnMap, Texts
+from pipeline.collection.record import TEXT_LIMIT
+from pipeline.records import Origin, Problem, Provenance
+
+FIELDS: Mapping[str, tuple[str, ...]] = {
+    "height": ("height_m",),
+    "width": ("width_m",),
+    "depth": ("depth_m",),
+    "diameter": ("width_m", "depth_m"),
+    "base_width": ("base_width_m",),
+    "base_depth": ("base_depth_m",),
+    "mass": ("mass_kg",),
+}
+"""What a text says -> the fields that it fills, in the order in which they are filled."""
+
+AGREE_ABSOLUTE, AGREE_RELATIVE = 0.003, 0.03
+"""Two numbers for one thing contradict each other where they differ by more than both: 3 mm (or 3 g) and 3 %."""
+
+_PART = "weight of a part"
+"""How the reason of a weight begins that is not the whole object's."""
+
+_WORTH_A_WORD = {
+    "contradiction": "measure it again, and correct the text in the museum's database",
+    "conversion": "measure it again, and correct the text in the museum's database",
+    "missing_unit": 'write the unit into the text, or say it in the mapping, [dimensions] unit = "..."',
+    "ambiguous": "write which number is which, such as H 10 x W 5 cm",
+    "truncated": "shorten it in the museum's database",
+}
+"""Notes on a text that a person should mend, and how."""
+
+
+def fill(values: dict[str, Any], cells: Cells, mapping: Texts, texts: Sequence[str], decimal: str) -> None:
+    """Fill what no column gives from the texts of a row; where both speak, say whether they agree.
+
+    values : of the record so far; changed in place, as are the cells' provenance and problems
+    texts  : of the mapping's columns, in its order; the first that says something counts
+    """
+    column = ColumnMap(columns=mapping.columns, separator="; ")
+    # Lines are how such texts are written, and no fault of theirs.
+    lines = ["; ".join(filter(None, (line.strip() for line in text.splitlines()))) for text in texts]
+    values["dimensions"] = cells.text("dimensions", column, lines, limit=TEXT_LIMIT)
+    given = {field for field in FIELDS_FILLED if values.get(field) is not None}
+    for text in texts:
+        if text.strip():
+            _fill_from(values, given, cells, parse(text, default_unit=mapping.unit, decimal=decimal), mapping)
+
+
+FIELDS_FILLED = tuple(dict.fromkeys(field for fields in FIELDS.values() for field in fields))
+
+
+def _fill_from(values: dict[str, Any], given: set[str], cells: Cells, read: Dimensions, mapping: Texts) -> None:
+    chosen = choose(read, hung=mapping.framed)
+    found = False
+    for what, fields in FIELDS.items():
+        choice: Choice | None = getattr(chosen, what)
+        if choice is None:
+            continue
+        found = True
+        if what == "mass" and choice.why.startswith(_PART):
+            message = f"only a part is weighed ({choice.value:.4g} kg), which is not the mass of the object"
+            cells.problems.append(Problem("mass_kg", message, "weigh the whole object"))
+            continue
+        for field in fields:
+            if field in given:
+                _compare(field, values[field], choice, cells)
+            elif values.get(field) is None and cells.plausible(
+                field, choice.value, read.text[choice.start : choice.end]
+            ):
+                values[field] = choice.value
+                cells.provenance.append(_provenance(field, what, choice, read))
+    for note in read.notes:
+        if note.kind in _WORTH_A_WORD:
+            cells.problems.append(Problem("dimensions", note.message, _WORTH_A_WORD[note.kind]))
+    if not found and any(c.isdigit() for c in read.text) and not read.parts and not read.having("left_out"):
+        message = f"no dimension could be read from {read.text[:80]!r}"
+        cells.problems.append(Problem("dimensions", message, "write it as in H 10 x W 5 x D 3 cm"))
+
+
+def _compare(field: str, value: float, choice: Choice, cells: Cells) -> None:
+    if any(p.field == field and p.message.startswith("the text says") for p in cells.problems):
+        return
+    if abs(value - choice.value) > max(AGREE_ABSOLUTE, AGREE_RELATIVE * max(value, choice.value)):
+        unit = "kg" if field == "mass_kg" else "m"
+        message = f"the text says {choice.value:.4g} {unit} ({choice.why}), its own column {value:.4g}, which is used"
+        cells.problems.append(Problem(field, message, "see which is right, and correct the other"))
+
+
+def _provenance(field: str, what: str, choice: Choice, read: Dimensions) -> Provenance:
+    part = next(p for p in read.parts if (p.start, p.end) == (choice.start, choice.end))
+    derived = what == "diameter" or field.removesuffix("_m") not in (part.dimension, f"base_{part.dimension}")
+    derived = derived and field != "mass_kg" and not part.assumed
+    origin = Origin.DERIVED if derived else Origin.MEASURED
+    why = f"its {what}, {choice.why}" if what == "diameter" else choice.why
+    return Provenance(field, origin, written(part, read), f"{why}; characters {choice.start + 1} to {choice.end}")
+
+
+def written(part: Part, read: Dimensions) -> str:
+    """Return the number of a part as it was written, with the unit that it is in."""
+    characters = read.written(part)
+    named = part.unit_text and part.unit_text.casefold() in characters.casefold()
+    return characters if named else f"{characters} {part.unit}".strip()
+
+
+def is_dimension(text: str) -> bool:
+    """Whether a text that should name an object is a dimension: a line of another cell that became a row."""
+    return any(part.unit_text for part in parse(text).parts)
+
+
+def of_cell(text: str, kind: str, decimal: str) -> tuple[float, str] | None:
+    """Return the value (SI) and the characters of a cell that holds one number with its unit; None where it does not.
+
+    kind : "m" for a length, "kg" for a mass
+    """
+    read = parse(text, decimal=decimal)
+    parts = [part for part in read.parts if part.value is not None]
+    if len(parts) != 1 or (parts[0].dimension == "weight") != (kind == "kg") or read.having("remainder"):
+        return None
+    value = parts[0].value
+    return None if value is None else (value, written(parts[0], read))

@@ -1,0 +1,112 @@
+"""The address of a museum's database: its secrets come from the environment, and go into no message."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from urllib.parse import quote, quote_plus, unquote
+
+from sqlalchemy import URL, make_url
+from sqlalchemy.exc import ArgumentError
+
+from pipeline.collection.errors import CollectionError
+
+_NAME = re.compile(r"\$\{([A-Za-z_][A-Za-z0-9_]*)\}")
+_SECRET_KEY = re.compile("pass|pwd|secret|token|key|credential|odbc_connect", re.I)
+_SAID = re.compile(r"""(?i)\b(passw(?:or)?d|pwd|secret|token)(\s*[=:]\s*)('[^']*'|"[^"]*"|[^\s;&,]+)""")
+_INSIDE = re.compile(r"(://[^:/@\s]*):[^@\s]*@")
+_MESSAGE_LIMIT = 300
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Address:
+    """Where a database is.
+
+    url   : with its secrets, for opening it only
+    shown : without them, as it was written: the password is ***, ${NAME} stays, and what follows ? is left out
+    """
+
+    url: URL
+    shown: str
+    _secrets: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return f"Address({self.shown!r})"
+
+    def clean(self, message: object) -> str:
+        """Return what a driver said as one line without any of the secrets."""
+        text = str(message)
+        for secret in self._secrets:
+            text = text.replace(secret, "***")
+        text = _INSIDE.sub(r"\1:***@", _SAID.sub(r"\1\2***", text))
+        return " ".join(text.split())[:_MESSAGE_LIMIT]
+
+
+def expand_secrets(url: str, environment: Mapping[str, str] | None = None) -> Address:
+    """Put the values of the environment (of this process, unless given) where a database's address says ${NAME}.
+
+    ${NAME} may stand for a user, a password, a host, a database, a value after the question mark, or for the whole
+    address. A value is taken literally: it needs no percent signs.
+
+    raises : CollectionError for a name that the environment lacks, or for what is no address; no value is shown
+    """
+    known = os.environ if environment is None else environment
+    values: list[str] = []
+
+    def expand(text: str) -> str:
+        def value(match: re.Match[str]) -> str:
+            if match[1] not in known:
+                raise CollectionError(
+                    f"the database's address names ${{{match[1]}}}, which the environment lacks; set it where "
+                    "Kouros is started"
+                )
+            values.append(known[match[1]])
+            return known[match[1]]
+
+        return _NAME.sub(value, text)
+
+    whole = _NAME.fullmatch(url.strip())
+    try:
+        written = make_url(expand(url.strip())) if whole else make_url(url)
+        opened = written if whole else _each(written, expand)
+    except (ArgumentError, ValueError) as problem:
+        if isinstance(problem, CollectionError):
+            raise
+        raise CollectionError(
+            "the database's address cannot be read; write it as kind://user:${PASSWORD}@host/database"
+        ) from None
+    if not whole and "${" in _NAME.sub("", url):
+        raise CollectionError(
+            "the database's address has a ${ that is no ${NAME}; use letters, digits and _ for the name"
+        )
+    shown = whole[0] if whole else _shown(written)
+    return Address(opened, shown, tuple(_forms(values, opened)))
+
+
+def _each(url: URL, expand: Callable[[str], str]) -> URL:
+    query = {
+        key: expand(value) if isinstance(value, str) else tuple(map(expand, value)) for key, value in url.query.items()
+    }
+    return url.set(
+        username=expand(url.username) if url.username else url.username,
+        password=expand(str(url.password)) if url.password else url.password,
+        host=expand(url.host) if url.host else url.host,
+        database=expand(url.database) if url.database else url.database,
+        query=query,
+    )
+
+
+def _shown(url: URL) -> str:
+    return unquote(url.set(query={}).render_as_string(hide_password=True))
+
+
+def _forms(values: list[str], url: URL) -> Iterator[str]:
+    """Every form in which a secret may come back in a message, the longest first."""
+    secrets = {*values, str(url.password or "")}
+    for key, value in url.query.items():
+        if _SECRET_KEY.search(key):
+            secrets |= {value} if isinstance(value, str) else set(value)
+    forms = {form for s in secrets for form in (s, quote(s, safe=""), quote_plus(s), repr(s)[1:-1]) if form}
+    yield from sorted(forms, key=lambda form: (-len(form), form))

@@ -1,0 +1,143 @@
+"""Open a source of records, whatever its kind, as rows of texts with the digest of what was read."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import stat
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from io import BufferedReader, TextIOWrapper
+from pathlib import Path
+
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.mapping import Mapping, Source
+from pipeline.collection.sources.delimited import read_rows
+from pipeline.collection.sources.rows import Row
+
+FILE_LIMIT = 1 << 30
+"""Bytes of a file (1 GiB)."""
+
+TIMEOUT = 600.0
+"""Seconds that a database may take, where the mapping says nothing."""
+
+_UTF8_MARK = b"\xef\xbb\xbf"
+
+
+@dataclass(frozen=True)
+class Opened:
+    """A source that is open: its name for messages, its rows (the header first), and how to tell its digest.
+
+    digest : SHA-256 of a file's bytes, or of all the rows of a database; call it when the rows are read
+    """
+
+    name: str
+    rows: Iterator[Row]
+    digest: Callable[[], str]
+
+
+def is_database(where: str | Path) -> bool:
+    """Whether a source is the URL of a database and not the path of a file."""
+    return "://" in str(where)
+
+
+@contextmanager
+def open_source(where: str | Path, mapping: Mapping) -> Iterator[Opened]:
+    """Open a museum's file or database.
+
+    where  : path of a file, or the URL of a database
+    raises : CollectionError for a source that cannot be opened, naming it (never a password) and the remedy; its rows
+             raise the same while they are read
+    """
+    if mapping.source.format == "sql":
+        yield _database(str(where), mapping)
+        return
+    if is_database(where):
+        raise CollectionError(
+            f'a database, and the mapping {mapping.name} reads {mapping.source.format}; say format = "sql" and a query '
+            "or table in its [source]"
+        )
+    path = Path(where)
+    with _open(path) as binary:
+        digest = _digest(binary, path.name)
+        yield Opened(path.name, _file_rows(binary, path.name, mapping.source), lambda: digest)
+
+
+def _file_rows(binary: BufferedReader, file: str, source: Source) -> Iterator[Row]:
+    if source.format == "xlsx":
+        from pipeline.collection.sources.xlsx import read_sheet
+
+        return read_sheet(binary, file, sheet=source.sheet, header_row=source.header_row or 1)
+    if source.format == "lido":
+        from pipeline.collection.sources.lido import read_records
+
+        return read_records(binary, file, languages=(source.language or "en",))
+    encoding = source.encoding or "utf-8"
+    _mark(binary, file, encoding)
+    # "utf-8-sig" also reads files without the mark.
+    codec = "utf-8-sig" if encoding == "utf-8" else encoding
+    stream = TextIOWrapper(binary, encoding=codec, errors="surrogateescape", newline="")
+    return read_rows(stream, file, source.delimiter or "\t", encoding)
+
+
+def _database(url: str, mapping: Mapping) -> Opened:
+    from pipeline.collection.sources.address import expand_secrets
+    from pipeline.collection.sources.sql import read_database
+
+    source = mapping.source
+    wanted = list(mapping.wanted())
+    rows = read_database(
+        url,
+        query=source.query,
+        table=source.table,
+        columns=[column for _, column, may_lack in wanted if not may_lack] if source.table else None,
+        optional=[column for _, column, may_lack in wanted if may_lack],
+        order_by=mapping.columns["object_number"].sources[0] if source.table else None,
+        timeout_seconds=source.timeout_seconds or TIMEOUT,
+    )
+    digest = hashlib.sha256()
+
+    def told() -> Iterator[Row]:
+        for row in rows:
+            digest.update(json.dumps([row.cells, sorted(row.faults.items())], ensure_ascii=True).encode())
+            yield row
+
+    return Opened(expand_secrets(url).shown, told(), digest.hexdigest)
+
+
+def _open(path: Path) -> BufferedReader:
+    try:
+        state = path.stat()
+        if not stat.S_ISREG(state.st_mode):
+            raise CollectionError(f"{path}: not a file; name the museum's export itself")
+        if state.st_size > FILE_LIMIT:
+            raise CollectionError(
+                f"{path}: {state.st_size:,} bytes, more than {FILE_LIMIT:,}; export fewer columns or objects"
+            )
+        return path.open("rb")
+    except OSError as problem:
+        raise CollectionError(
+            f"{path}: cannot be read: {problem.strerror or problem}; see whether the path is right, the share is "
+            "mounted and Kouros may read it"
+        ) from problem
+
+
+def _digest(binary: BufferedReader, file: str) -> str:
+    try:
+        digest = hashlib.file_digest(binary, "sha256").hexdigest()
+        binary.seek(0)
+    except OSError as problem:
+        raise CollectionError(
+            f"{file}: reading stopped: {problem.strerror or problem}; see whether the disk or network share is there"
+        ) from problem
+    return digest
+
+
+def _mark(binary: BufferedReader, file: str, encoding: str) -> None:
+    mark = binary.read(len(_UTF8_MARK))
+    binary.seek(0)
+    if mark == _UTF8_MARK and encoding != "utf-8":
+        raise CollectionError(
+            f'{file}: begins with the mark of UTF-8, and the mapping says {encoding}; say encoding = "utf-8" there'
+        )

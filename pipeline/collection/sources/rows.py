@@ -1,0 +1,55 @@
+"""What every source gives: rows of texts, and how a typed value becomes the text that a file would hold."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import date, datetime, time
+from decimal import Decimal
+from math import isfinite
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A row as it stands in its source: its number (1 = first data row), its first line, its cells as texts.
+
+    line   : of the file or the sheet; of a query's result, the same as the number
+    fault  : why the row cannot be used, with the remedy; ("", "") where it can
+    faults : by cell (0 = first), why that cell alone cannot be used, with the remedy; the cell is an empty text then
+    """
+
+    number: int
+    line: int
+    cells: list[str]
+    fault: tuple[str, str] = ("", "")
+    faults: Mapping[int, tuple[str, str]] = field(default_factory=dict)
+
+
+def as_text(value: object) -> str:
+    """Return the text of a typed value (of a spreadsheet or a database): the same for the same number in every source.
+
+    None is an empty text; numbers are written with all their digits and no more: 79.0 as 79, decimals exactly; flags
+    are true and false; dates are ISO 8601.
+
+    raises : TypeError for what is no text, number, flag, date or time; ValueError for a number that is not finite
+    """
+    if value is None:
+        return ""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        if not isfinite(value):
+            raise ValueError(f"{value} is no number that was measured")
+        return str(int(value)) if value.is_integer() and abs(value) < 1e16 else repr(value)
+    if isinstance(value, Decimal):
+        if not value.is_finite():
+            raise ValueError(f"{value} is no number that was measured")
+        plain = value.normalize()
+        return format(plain, "f") if -20 < plain.adjusted() < 20 else str(plain)
+    if isinstance(value, datetime | date | time):
+        return value.isoformat()
+    raise TypeError(f"a value of the kind {type(value).__name__}")

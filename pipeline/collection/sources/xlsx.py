@@ -1,0 +1,240 @@
+"""The rows of a sheet of an .xlsx workbook: typed cells as texts, and a fault for what was never typed in."""
+
+from __future__ import annotations
+
+import re
+import warnings
+import zipfile
+import zlib
+from collections.abc import Iterator
+from contextlib import ExitStack
+from datetime import datetime, time
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.sources.rows import Row, as_text
+from pipeline.collection.sources.workbook import SAVE_AGAIN, Range, Survey, check_archive, check_kind, survey
+
+_DAMAGE = (
+    ArithmeticError,
+    AttributeError,
+    EOFError,
+    LookupError,
+    NotImplementedError,
+    OSError,
+    RuntimeError,
+    SyntaxError,  # what XML parsers raise
+    TypeError,
+    ValueError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What reading a damaged or hostile workbook ends in."""
+
+# Line ends and tabs, as the file format writes them in a text.
+_ESCAPED = re.compile("_x00(09|0[aA]|0[dD])_")
+_UNUSABLE = re.compile("[\x00\ud800-\udfff]")
+_ZEROS = re.compile("0{2,20}")
+
+
+def read_sheet(
+    source: str | Path | BinaryIO, file: str, *, sheet: str | None = None, header_row: int = 1
+) -> Iterator[Row]:
+    """Yield the header (number 0) and then every row of a sheet that is not blank; a row's line is its number there.
+
+    source     : the workbook's path, or its bytes in a stream that can be taken back (seek)
+    file       : its name in messages
+    sheet      : the sheet's name; may be left out where only one sheet is visible
+    header_row : the row (from 1) that names the columns; what stands above it is left out
+
+    Each row has as many cells as the header has names: missing ones are empty, and a row with anything beyond has a
+    fault. Whole numbers are written without a decimal point; a format of zeros only ("0000") keeps its leading zeros, a
+    date without a time is a date; no other format counts (50 % is 0.5). Formulas are never computed, and the value that
+    was once saved beside them is never trusted: such cells have a fault, and so have error values, times without a
+    date's meaning (durations), and cells that are hidden behind a merged one. Hidden rows are read like all others.
+    A header cell that holds any of these is an error of the whole sheet.
+
+    raises : CollectionError for a file that is missing, no workbook, protected, damaged or beyond the limits of
+             `workbook`, and for a sheet that is not there or has no header
+    """
+    with ExitStack() as stack:
+        stream = stack.enter_context(_open(Path(source), file)) if isinstance(source, str | Path) else source
+        try:
+            stream.seek(0)
+            check_kind(stream, file)
+            archive = stack.enter_context(zipfile.ZipFile(stream))
+            check_archive(archive, file)
+            page = _page(_load(stream, file), file, sheet)
+            with archive.open(page._worksheet_path) as part:
+                found = survey(part, file, page.title)
+        except CollectionError:
+            raise
+        except _DAMAGE as problem:
+            raise _damaged(file, problem) from problem
+        page.reset_dimensions()  # what a sheet says of its own size is often wrong
+        if found.last_row and found.last_row < header_row:
+            raise CollectionError(f"{file}: {page.title!r} ends in row {found.last_row}; say which row is the header")
+        if found.last_row:
+            yield from _rows(page, file, header_row, found)
+
+
+def _open(path: Path, file: str) -> BinaryIO:
+    try:
+        return path.open("rb")
+    except OSError as problem:
+        raise CollectionError(
+            f"{file}: cannot be read: {problem.strerror or problem}; see whether the path is right, the share is "
+            "mounted and Kouros may read it"
+        ) from problem
+
+
+def _load(stream: BinaryIO, file: str) -> Any:
+    import openpyxl
+
+    if not openpyxl.DEFUSEDXML:
+        raise CollectionError(
+            f"{file}: the guard against hostile XML is switched off; install defusedxml and unset OPENPYXL_DEFUSEDXML"
+        )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # on styles and extensions, which do not matter here
+        return openpyxl.load_workbook(stream, read_only=True, keep_links=False, data_only=False)
+
+
+def _page(book: Any, file: str, sheet: str | None) -> Any:
+    there = ", ".join(repr(page.title) for page in book.worksheets[:50]) or "none"
+    if sheet is None:
+        visible = [page for page in book.worksheets if page.sheet_state == "visible"]
+        if len(visible) == 1:
+            return visible[0]
+        raise CollectionError(f"{file}: {len(visible)} visible sheets; say which one to read. Its sheets are {there}")
+    for page in book.worksheets:
+        if page.title == sheet:
+            return page
+    raise CollectionError(f"{file}: has no sheet {sheet!r}; name one of its sheets: {there}")
+
+
+def _damaged(file: str, problem: BaseException, row: int = 0) -> CollectionError:
+    where = f", row {row}" if row else ""
+    problem = problem.__cause__ or problem  # openpyxl wraps what it meets
+    said = (str(problem).splitlines() or [type(problem).__name__])[0][:200]
+    return CollectionError(f"{file}{where}: the workbook is damaged: {said}; {SAVE_AGAIN}")
+
+
+class _Ranges:
+    """Cells that belong to ranges, found row by row from top to bottom."""
+
+    def __init__(self, ranges: list[Range], file: str, width: int, *, but_first: bool) -> None:
+        self._waiting = sorted((there for there in ranges if there[1] <= width), reverse=True)
+        self._open: list[Range] = []
+        self._file = file
+        self._width = width
+        self._but_first = but_first
+
+    def columns(self, row: int) -> dict[int, str]:
+        """Index of the column (from 0) -> the range's name, of the row's cells that are in a range."""
+        while self._waiting and self._waiting[-1][0] <= row:
+            self._open.append(self._waiting.pop())
+        self._open = [there for there in self._open if there[2] >= row]
+        if len(self._open) > self._width:
+            raise CollectionError(f"{self._file}, row {row}: merged cells or array formulas overlap; {SAVE_AGAIN}")
+        return {
+            column - 1: _name(there)
+            for there in self._open
+            for column in range(there[1], min(there[3], self._width) + 1)
+            if not (self._but_first and (row, column) == there[:2])
+        }
+
+
+def _name(there: Range) -> str:
+    from openpyxl.utils import get_column_letter as letter
+
+    return f"{letter(there[1])}{there[0]}:{letter(there[3])}{there[2]}"
+
+
+def _rows(page: Any, file: str, header_row: int, found: Survey) -> Iterator[Row]:
+    last, width = found.last_row, found.last_column
+    filled = _Ranges(found.computed, file, width, but_first=False)
+    hidden = _Ranges(found.merged, file, width, but_first=True)
+    rows = page.iter_rows(min_row=header_row, max_row=last, max_col=width)
+    names = 0
+    number = 0
+    for line in range(header_row, last + 1):
+        cells, faults = [""] * width, dict[int, tuple[str, str]]()
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # a date that cannot be becomes an error value, which gets a fault
+                for place, cell in enumerate(next(rows)):
+                    if cell.value is not None:
+                        _take(cell, place, cells, faults)
+        except (*_DAMAGE, StopIteration) as problem:
+            raise _damaged(file, problem, line) from problem
+        for place, where in filled.columns(line).items():
+            cells[place], faults[place] = "", _formula(f"belongs to the formula of {where}")
+        used = max((place + 1 for place in range(width) if place in faults or cells[place].strip()), default=0)
+        for place, where in hidden.columns(line).items():
+            cells[place], faults[place] = "", _hidden(where)
+        if line == header_row:
+            names = _header_width(file, line, cells, faults)
+            yield Row(0, line, cells[:names])
+        elif used:
+            number += 1
+            fault = ("", "")
+            if used > names:
+                fault = (
+                    f"{used} cells, the header has {names}",
+                    "give every column that holds anything a name, and see whether cells were shifted",
+                )
+            yield Row(number, line, cells[:names], fault, {at: why for at, why in faults.items() if at < names})
+
+
+def _header_width(file: str, line: int, cells: list[str], faults: dict[int, tuple[str, str]]) -> int:
+    if faults:
+        place = min(faults)
+        raise CollectionError(
+            f"{file}, row {line}: the header cannot be read: cell {place + 1} {faults[place][0]}; {faults[place][1]}"
+        )
+    width = max((place + 1 for place, cell in enumerate(cells) if cell.strip()), default=0)
+    if not width:
+        raise CollectionError(f"{file}, row {line}: the header is empty; say which row holds the columns' names")
+    return width
+
+
+def _take(cell: Any, place: int, cells: list[str], faults: dict[int, tuple[str, str]]) -> None:
+    """Put the text of a cell into its place, or say why there is none."""
+    value = cell.value
+    if cell.data_type == "f":
+        faults[place] = _formula("holds a formula")
+    elif cell.data_type == "e":
+        faults[place] = (f"holds the error {str(value)[:20]}", "mend the cell, or empty it")
+    elif isinstance(value, str):
+        text = _ESCAPED.sub(lambda match: chr(int(match[1], 16)), value)
+        if _UNUSABLE.search(text):
+            faults[place] = ("holds a character that is none", "type the cell again")
+        else:
+            cells[place] = text
+    else:
+        try:
+            cells[place] = as_text(_as_shown(cell, value))
+        except (TypeError, ValueError) as problem:
+            faults[place] = (f"cannot be read: {problem}", "write it as a number, a date or a text")
+
+
+def _as_shown(cell: Any, value: Any) -> Any:
+    """A date without its midnight, a number with the leading zeros of its format."""
+    from openpyxl.styles.numbers import is_datetime
+
+    if isinstance(value, datetime):
+        return value.date() if value.time() == time() and is_datetime(cell.number_format) == "date" else value
+    if isinstance(value, int) and not isinstance(value, bool) and value >= 0:
+        zeros = cell.number_format or ""
+        return str(value).zfill(len(zeros)) if _ZEROS.fullmatch(zeros) else value
+    return value
+
+
+def _formula(what: str) -> tuple[str, str]:
+    return what, "copy the column and paste it as values; formulas are not computed here"
+
+
+def _hidden(where: str) -> tuple[str, str]:
+    return f"is one of the merged cells {where}", "unmerge them, and fill in every row and column"

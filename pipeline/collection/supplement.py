@@ -1,0 +1,102 @@
+"""What people measured for Kouros's own sheets: kept apart, and laid over the museum's records at every import."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from sqlalchemy import JSON, Column, Connection, Index, Integer, Table, Text, insert, select, update
+
+from pipeline.collection.database import METADATA
+from pipeline.collection.record import KINDS, to_items, to_records
+from pipeline.records import ITEM_FIELDS, Item, Problem
+
+SUPPLEMENT = Table(
+    "supplement",
+    METADATA,
+    Column("object_number", Text(), primary_key=True),
+    Column("since", Integer(), primary_key=True, autoincrement=False),
+    Column("until", Integer(), nullable=True),
+    Column("source", Text(), nullable=False),
+    Column("record", JSON(), nullable=False),
+    Index(None, "until"),
+)
+"""One row for each state of an object's own sheet; since and until are versions, as in the table item.
+
+record : the fields that were filled in, JSON-ready, with their provenance
+"""
+
+_MUSEUMS = frozenset(
+    {"object_number", "gallery", "title", "object_name", "classification", "medium", "dimensions", "on_display"}
+)
+"""Fields that a sheet shows and does not change: the museum's database is where they are mended."""
+
+_SHEET = "sheet "
+"""How the provenance of a number from a sheet begins."""
+
+FILLED = tuple(name for name in ITEM_FIELDS if name not in _MUSEUMS and KINDS[name] != "list")
+"""Fields that a sheet may fill in."""
+
+
+def filled_in(item: Item) -> dict[str, Any]:
+    """Return what a row of a sheet fills in, JSON-ready, with its provenance; empty where it fills in nothing."""
+    (record,) = to_records([item])
+    fields = {name: record[name] for name in FILLED if record[name] not in (None, "")}
+    if not fields:
+        return {}
+    return fields | {"provenance": [of for of in record["provenance"] if of["field"] in fields]}
+
+
+def current(connection: Connection, version: int | None = None) -> dict[str, tuple[str, dict[str, Any]]]:
+    """Return the sheets by object number, each with its source: those of now, or those of an earlier version."""
+    wanted = select(SUPPLEMENT)
+    if version is None:
+        wanted = wanted.where(SUPPLEMENT.c.until.is_(None))
+    else:
+        lasts = SUPPLEMENT.c.until.is_(None) | (SUPPLEMENT.c.until > version)
+        wanted = wanted.where(SUPPLEMENT.c.since <= version, lasts)
+    return {row.object_number: (row.source, row.record) for row in connection.execute(wanted)}
+
+
+def store(connection: Connection, sheets: Mapping[str, tuple[str, dict[str, Any]]], version: int) -> None:
+    """Make the sheets of now what they are given as, from this version on."""
+    before = current(connection)
+    ended = [number for number in before if before[number] != sheets.get(number)]
+    for number in ended:
+        mine = (SUPPLEMENT.c.object_number == number) & SUPPLEMENT.c.until.is_(None)
+        connection.execute(update(SUPPLEMENT).where(mine).values(until=version))
+    fresh = [
+        {"object_number": number, "since": version, "until": None, "source": source, "record": record}
+        for number, (source, record) in sheets.items()
+        if before.get(number) != (source, record)
+    ]
+    if fresh:
+        connection.execute(insert(SUPPLEMENT), fresh)
+
+
+def laid_over(items: Sequence[Item], sheets: Mapping[str, tuple[str, dict[str, Any]]]) -> list[Item]:
+    """Return the items with what their sheets fill in; where the museum says something else, a problem says so."""
+    return [_laid_over(item, *sheets[item.object_number]) if item.object_number in sheets else item for item in items]
+
+
+def _laid_over(item: Item, source: str, record: Mapping[str, Any]) -> Item:
+    (before,) = to_records([item])
+    fields = {name: value for name, value in record.items() if name in KINDS and name != "provenance"}
+    problems = [problem for problem in item.problems if problem.field not in fields]
+    ours = {of.field for of in item.provenance if of.note.startswith(_SHEET)}
+    for name, value in fields.items():
+        theirs = before[name]
+        if theirs not in (None, "", value) and name not in ours:
+            problems.append(
+                Problem(
+                    name,
+                    f"the museum's record says {theirs}, the sheet {source} says {value}, which is used",
+                    "see which is right: mend the museum's record, or fill in a new sheet",
+                )
+            )
+    kept = [of for of in before["provenance"] if of["field"] not in fields]
+    noted = [of | {"note": f"{_SHEET}{source}{'; ' if of['note'] else ''}{of['note']}"} for of in record["provenance"]]
+    provenance = sorted([*kept, *noted], key=lambda of: of["field"])
+    (merged,) = to_items([before | fields | {"provenance": provenance, "problems": []}])
+    return replace(merged, problems=tuple(problems))

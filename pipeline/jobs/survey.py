@@ -1,0 +1,107 @@
+"""What to measure first, as a workbook to print, fill in and import again."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from pipeline.assess import assess
+from pipeline.classify import classify
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.inventory import Difference, add_sheet, read_inventory
+from pipeline.collection.mapping import Mapping, load_mapping
+from pipeline.collection.reading import Reading, read_items
+from pipeline.execute import Threads
+from pipeline.jobs.levels import storeys
+from pipeline.jobs.workspace import KEPT, Workspace, site_folder
+from pipeline.motions.site import read_site
+from pipeline.quantities import LENGTHS
+from pipeline.records import Progress, Wish
+from pipeline.report.survey_sheet import HEADER_ROW, column_name, sheet_title, write_survey
+from pipeline.survey import measurables, wishes
+
+LENGTH_UNITS = ("cm", "mm", "m", "in", "ft")
+
+
+@dataclass(frozen=True)
+class Surveyed:
+    """What a survey asks for, and where its workbook is."""
+
+    path: Path
+    wishes: tuple[Wish, ...]
+    objects: int
+    quantities: int
+    waste: int
+
+
+def survey(
+    workspace: Workspace, progress: Progress, *, galleries: tuple[str, ...] = (), path: Path | None = None
+) -> Surveyed:
+    """Assess the objects on display, and write what is worth measuring to a workbook.
+
+    galleries : only these; none named means all
+    path      : of the workbook; None for survey-<date>.xlsx beside the settings
+    raises    : as a run does, where motions or settings are wrong
+    """
+    settings = workspace.settings
+    items = [
+        item
+        for item in read_inventory(workspace.engine)
+        if item.on_display and (not galleries or item.gallery in galleries)
+    ]
+    if not items:
+        raise CollectionError("nothing on display to survey: import the collection, or name another gallery")
+    site = read_site(site_folder(settings, settings.site.folder), kept=settings.path(KEPT))
+    executor = Threads(settings.analysis.workers or None)
+    fidelity, step = settings.analysis.fidelity, settings.analysis.azimuth_step
+    if fidelity == "chart":
+        # Each trial is asked once: a chart that is not there would not pay.
+        fidelity = "auto"
+    found: list[Wish] = []
+    for storey in storeys(settings, site, items):
+        scenes = [classify(items[index], workspace.rules) for index in storey.members]
+        shaking = storey.shaking
+        _, findings = assess(scenes, shaking, executor, progress, fidelity=fidelity, azimuth_step=step, outcomes=False)
+        found += wishes(scenes, findings, shaking, executor, progress, fidelity=fidelity, azimuth_step=step)
+    found.sort(key=lambda w: (-(w.settles + w.unlocks), -w.unlocks, w.gallery, w.object_number, w.field))
+    target = path or settings.path(f"survey-{datetime.now():%Y-%m-%d}.xlsx")
+    counts = write_survey(target, found, measurables(), length=settings.report.length)
+    return Surveyed(target, tuple(found), **counts)
+
+
+def read_sheet(path: Path) -> Reading:
+    """Read a sheet that was filled in: a survey's workbook, or a CSV with the columns of the preset "kouros".
+
+    raises : CollectionError for a file that cannot be read, or a workbook without the survey's sheet
+    """
+    if path.suffix.lower() != ".xlsx":
+        return read_items(path, load_mapping("kouros"))
+    fault: CollectionError | None = None
+    for length in LENGTH_UNITS:
+        try:
+            return read_items(path, sheet_mapping(length))
+        except CollectionError as problem:
+            if f"has no sheet {sheet_title(length)!r}" not in str(problem):
+                raise
+            fault = fault or problem
+    raise CollectionError(f"{path.name}: no sheet of a survey, such as {sheet_title('cm')!r}; {fault}")
+
+
+def sheet_mapping(length: str) -> Mapping:
+    """Return the mapping that reads a survey's sheet whose lengths are in this unit."""
+    whole = load_mapping("kouros").model_dump(exclude_none=True, exclude_defaults=True)
+    whole["source"] = {"format": "xlsx", "sheet": sheet_title(length), "header_row": HEADER_ROW}
+    columns = {}
+    for field, column in whole["columns"].items():
+        unit = {"unit": length} if field.endswith("_m") and length in LENGTHS else {}
+        columns[field] = column | {"column": column_name(field, length)} | unit
+    return Mapping.model_validate(whole | {"columns": columns})
+
+
+def add_measurements(workspace: Workspace, path: Path) -> tuple[Reading, Difference, list[str]]:
+    """Lay a filled-in sheet over the inventory.
+
+    returns : what was read, what changed, and the objects of the sheet that the inventory does not have
+    """
+    reading = read_sheet(path)
+    changes, unknown = add_sheet(workspace.engine, reading)
+    return reading, changes, unknown

@@ -1,0 +1,36 @@
+"""What is worth measuring: a quantity of one object that is missing or assumed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """A quantity of one object that nobody recorded, and what recording it would do.
+
+    field   : of the object record, such as friction
+    low, best, high : what is assumed instead, in ``unit``; None where nothing can be assumed
+    reason  : what is assumed and by which source, or that it is not recorded
+    open    : verdicts that are undetermined now and that it takes part in
+    settles : how many of them it would settle, the mean over its being measured as low, best and high
+    unlocks : models that cannot be run without it
+    """
+
+    object_number: str
+    gallery: str
+    title: str
+    field: str
+    unit: str
+    low: float | None
+    best: float | None
+    high: float | None
+    reason: str
+    open: int
+    settles: float
+    unlocks: int
+
+    @property
+    def waste(self) -> bool:
+        """Whether measuring it alone would settle nothing, wherever in its range it lies."""
+        return not self.settles and not self.unlocks

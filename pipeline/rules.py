@@ -1,0 +1,352 @@
+"""Which class an object's record names: the rows of tables/rules.csv, read from the top; the first that holds decides.
+
+What a row asks of a record, cell by cell (several entries of a cell are parted by `|`; an empty cell asks nothing):
+
+aat            : one of these Getty AAT identifiers is recorded: then classification and words are not asked for
+classification : the museum's classification, or a part of its object name, is one of these, in singular or plural
+words          : the naming word is one of these; `*statuette` also takes words that end so (Bronzestatuette)
+medium         : material or medium has one of these words; what an object stands on (a base) does not count
+shape          : all of these measures hold (see SHAPES)
+
+The naming word is the last known word of the object name or, if it knows none, of the title, each read up to its first
+"of", "with", comma and the like: a vase with a bust is a vase, a lantern vase a vase, a cup and saucer a cup.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from pathlib import Path
+from unicodedata import combining, normalize
+
+from pipeline.records import Item
+from pipeline.tables import Row, TableError, read_table, table
+
+FLAT = 0.12
+"""Depth over the larger face dimension below which a thing is a sheet, not a body."""
+THIN = 0.2
+"""Smallest over largest recorded dimension below which a thing lies rather than stands."""
+TALL = 2.0
+"""Height over the larger plan dimension from which a sculpture is taken as a standing figure."""
+LOW = 0.5
+"""Height over the larger plan dimension below which a turned thing is a bowl."""
+SMALL = 0.4
+"""Height [m] below which a sculpture is handled as a figurine."""
+LARGE = 0.6
+"""Largest dimension [m] from which a textile is hung and a figure is a statue."""
+TINY = 0.2
+"""Largest dimension [m] below which a find or a plaque lies in a case."""
+
+
+def _plan(item: Item) -> float:
+    return max(item.width_m or 0.0, item.depth_m or 0.0)
+
+
+def _sizes(item: Item) -> list[float]:
+    return [size for size in (item.height_m, item.width_m, item.depth_m) if size is not None]
+
+
+def _flat(item: Item) -> bool:
+    return (item.depth_m or 0.0) <= FLAT * max(item.height_m or 0.0, item.width_m or 0.0)
+
+
+def _thin(item: Item) -> bool:
+    sizes = _sizes(item)
+    return len(sizes) == 3 and min(sizes) < THIN * max(sizes)
+
+
+def _tall(item: Item) -> bool:
+    return item.height_m is not None and 0.0 < TALL * _plan(item) <= item.height_m
+
+
+def _low(item: Item) -> bool:
+    return item.height_m is not None and item.height_m < LOW * _plan(item)
+
+
+SHAPES: Mapping[str, Callable[[Item], bool]] = {
+    "flat": _flat,
+    "thin": _thin,
+    "tall": _tall,
+    "low": _low,
+    "small": lambda item: item.height_m is not None and item.height_m < SMALL,
+    "not-small": lambda item: item.height_m is not None and item.height_m >= SMALL,
+    "large": lambda item: max(_sizes(item), default=0.0) >= LARGE,
+    "not-large": lambda item: max(_sizes(item), default=0.0) < LARGE,
+    "tiny": lambda item: max(_sizes(item), default=TINY) < TINY,
+}
+"""The measures that a row may ask for.  A record without the dimensions is no small, tall, large or tiny thing, but
+a flat one."""
+
+_IDENTIFIER = re.compile(r"(?<!\d)300\d{6}(?!\d)")
+_WORD = re.compile(r"[^\W\d_]+")
+_BREAK = re.compile(
+    r"[,:;|()\[\]/\"]|\s(?:of|with|for|in|from|by|and|on|showing|depicting|mit|von|aus|und|avec|de|du|des|et|di|da|con|y|e|met|van|en)\s"
+)
+"""Where the name of a thing ends and its description begins."""
+_SUPPORT = re.compile(
+    r"\b(?:on|in|with|and|recessed in|auf|sur|su|sobre|op)\s[^,;]{0,40}?\b(?:base|plinth|socle|pedestal)\b"
+)
+"""What a medium says of the base."""
+_STEM = 2
+"""Letters that must precede an ending such as *statuette."""
+
+
+@lru_cache(maxsize=4096)
+def fold(text: str) -> str:
+    """Return a text without capitals and accents, so that Büste, buste and BUSTE are the same word."""
+    if not text.isascii():
+        text = "".join(c for c in normalize("NFKD", text) if not combining(c))
+    return text.casefold()
+
+
+@lru_cache(maxsize=65536)
+def _stuff(material: str, medium: str) -> str:
+    """Return what a thing is made of, folded, without what is said of its base."""
+    return _SUPPORT.sub(" ", fold(f"{material} {medium}"))
+
+
+def identifiers(text: str) -> frozenset[str]:
+    """Return the Getty AAT identifiers in a text, as bare numbers: 300132254, aat:300132254 and addresses alike."""
+    return frozenset(_IDENTIFIER.findall(text))
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One row of rules.csv, ready to match; ``words`` without endings, ``endings`` without their asterisk."""
+
+    position: int
+    name: str
+    object_class: str
+    aat: frozenset[str]
+    kinds: frozenset[str]
+    words: frozenset[str]
+    endings: tuple[str, ...]
+    medium: re.Pattern[str] | None
+    shapes: tuple[Callable[[Item], bool], ...]
+    why: str
+
+    @property
+    def named(self) -> bool:
+        """Whether the row asks for a naming word."""
+        return bool(self.words or self.endings)
+
+    def fits(self, item: Item) -> bool:
+        """Say whether the object's medium and measures are those of the row."""
+        if self.medium is not None and not self.medium.search(_stuff(item.material, item.medium)):
+            return False
+        return all(shape(item) for shape in self.shapes)
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """The rules in order, and where to find those of a word; ``wordless`` are those that ask for no naming word.
+
+    aat     : every identifier that some rule names
+    by_last : the known words and phrases by their last word
+    """
+
+    rules: tuple[Rule, ...]
+    by_word: Mapping[str, tuple[Rule, ...]]
+    by_ending: Mapping[str, tuple[Rule, ...]]
+    wordless: tuple[Rule, ...]
+    aat: frozenset[str]
+    by_last: Mapping[str, tuple[str, ...]]
+
+
+@dataclass(frozen=True)
+class Decision:
+    """The rule that decided, and what in the record made it hold ("" where the row asks for no name)."""
+
+    rule: Rule
+    evidence: str = ""
+
+    @property
+    def words(self) -> str:
+        """The decision in words: the rule's name, its reason, and the evidence."""
+        said = f" ({self.evidence})" if self.evidence else ""
+        return f"{self.rule.name}: {self.rule.why}{said}"
+
+
+def read_rules(rows: tuple[Row, ...], classes: frozenset[str], file: str = "rules.csv") -> Table:
+    """Return rows of a table of rules, ready to match.
+
+    raises : TableError naming file, line, rule, column and remedy, for an unknown class or shape, a name used twice,
+             an identifier that is none of the AAT's, a word that cannot match, and a last row with conditions
+    """
+    if not rows:
+        raise TableError(f"{file}: has no rows; the last row must be a rule without conditions")
+    out: list[Rule] = []
+    seen: dict[str, int] = {}
+    for line, row in enumerate(rows, start=2):
+        where = f"{file}, line {line}, rule {row['rule']!r}"
+        if not row["rule"].strip() or ":" in row["rule"]:
+            raise TableError(f"{where}: column 'rule' must be a name without a colon")
+        if row["rule"] in seen:
+            raise TableError(f"{where}: column 'rule': line {seen[row['rule']]} has this name; give each row its own")
+        seen[row["rule"]] = line
+        out.append(_rule(row, len(out), classes, where))
+    if any(rows[-1][column].strip() for column in ("aat", "classification", "words", "medium", "shape")):
+        raise TableError(
+            f"{file}, line {len(rows) + 1}: the last row must have no conditions, so that it takes the rest"
+        )
+    words: dict[str, list[Rule]] = {}
+    endings: dict[str, list[Rule]] = {}
+    for rule in out:
+        for word in sorted(rule.words):
+            words.setdefault(word, []).append(rule)
+        for ending in rule.endings:
+            endings.setdefault(ending, []).append(rule)
+    by_last: dict[str, list[str]] = {}
+    for word in words:
+        by_last.setdefault(word.rpartition(" ")[2], []).append(word)
+    return Table(
+        tuple(out),
+        {word: tuple(found) for word, found in words.items()},
+        {ending: tuple(endings[ending]) for ending in sorted(endings, key=len, reverse=True)},
+        tuple(r for r in out if not r.named and (r.kinds or r.medium or r.shapes or r is out[-1])),
+        frozenset().union(*(rule.aat for rule in out)),
+        {last: tuple(phrases) for last, phrases in by_last.items()},
+    )
+
+
+def _rule(row: Row, position: int, classes: frozenset[str], where: str) -> Rule:
+    if row["class"] not in classes:
+        raise TableError(
+            f"{where}: column 'class': classes.csv has no class {row['class']!r}; "
+            f"use one of {', '.join(sorted(classes))}"
+        )
+    shapes = row["shape"].split()
+    for name in shapes:
+        if name not in SHAPES:
+            raise TableError(f"{where}: column 'shape': there is no shape {name!r}; use some of {', '.join(SHAPES)}")
+    aat = _entries(row["aat"])
+    for entry in aat:
+        if _IDENTIFIER.fullmatch(entry) is None:
+            raise TableError(
+                f"{where}: column 'aat': {entry!r} is no AAT identifier; write nine digits, as 300132254, parted by |"
+            )
+    words: list[str] = []
+    endings: list[str] = []
+    for entry in _entries(row["words"]):
+        word = " ".join(_WORD.findall(fold(entry)))
+        if not word or "*" in entry[1:]:
+            raise TableError(f"{where}: column 'words': {entry!r} has no word; write words, or an ending as *vase")
+        (endings if entry.startswith("*") else words).append(word)
+    medium = [re.escape(fold(entry)) for entry in _entries(row["medium"])]
+    return Rule(
+        position,
+        row["rule"],
+        row["class"],
+        frozenset(aat),
+        frozenset(_singular(fold(kind)) for kind in _entries(row["classification"])),
+        frozenset(words),
+        tuple(endings),
+        re.compile(rf"\b(?:{'|'.join(medium)})s?\b") if medium else None,
+        tuple(SHAPES[name] for name in shapes),
+        row["why"],
+    )
+
+
+def _entries(cell: str) -> list[str]:
+    return [entry.strip() for entry in cell.split("|") if entry.strip()]
+
+
+@cache
+def rules() -> Table:
+    """Return Kouros's own table of rules.
+
+    raises : TableError, as read_rules
+    """
+    return read_rules(table("rules"), frozenset(row["class"] for row in table("classes")))
+
+
+def with_own(path: Path) -> Table:
+    """Return a museum's own rules, followed by Kouros's; a row of the same name takes the place of Kouros's.
+
+    path   : a CSV file with the columns of tables/rules.csv
+    raises : TableError naming file, line, rule, column and remedy; FileNotFoundError
+    """
+    own, ours = read_table(path), table("rules")
+    missing = [column for column in ours[0] if own and column not in own[0]]
+    if missing:
+        raise TableError(f"{path.name}: there is no column {missing[0]!r}; its columns must be {', '.join(ours[0])}")
+    names = {row["rule"] for row in own}
+    both = (*own, *(row for row in ours if row["rule"] not in names))
+    return read_rules(both, frozenset(row["class"] for row in table("classes")), path.name)
+
+
+def rule_for(item: Item, among: Table | None = None) -> Decision:
+    """Return the first rule whose conditions hold for the object, of Kouros's table or another."""
+    of = among or rules()
+    if item.aat:
+        recorded = identifiers(item.aat) & of.aat
+        for rule in of.rules if recorded else ():
+            shared = rule.aat & recorded
+            if shared and rule.fits(item):
+                return Decision(rule, f"AAT {min(shared)}")
+    kinds = _kinds(item.classification) | _kinds(item.object_name)
+    named = _named(item, kinds, of)
+    for rule in of.wordless:
+        if named is not None and named.rule.position < rule.position:
+            return named
+        if (not rule.kinds or rule.kinds & kinds) and rule.fits(item):
+            return Decision(rule)
+    raise TableError("rules.csv: no rule holds; the last row must have no conditions")
+
+
+def _named(item: Item, kinds: frozenset[str], of: Table) -> Decision | None:
+    """Return the first rule of the first naming word that has one which fits."""
+    for word in _candidates(item, of):
+        for rule in of.by_word.get(word) or of.by_ending.get(word[1:], ()):
+            if (not rule.kinds or rule.kinds & kinds) and rule.fits(item):
+                return Decision(rule, f"named {word!r}")
+    return None
+
+
+def _candidates(item: Item, of: Table) -> Iterator[str]:
+    """Yield the known words and *endings of object name and title, the likeliest name of the thing first."""
+    for text in (item.object_name, item.title):
+        for part in _BREAK.split(fold(text)) if text else ():
+            found = _WORD.findall(part)
+            for end in range(len(found), 0, -1):
+                for before, word in _known(of, found[end - 1]):
+                    if not before or before == tuple(found[max(0, end - 1 - len(before)) : end - 1]):
+                        yield word
+
+
+@lru_cache(maxsize=65536)
+def _known(of: Table, word: str) -> tuple[tuple[tuple[str, ...], str], ...]:
+    """Return the known words that a word may end: what must stand before it and the whole, the longest phrase first."""
+    forms = _forms(word)
+    whole = [(tuple(phrase.split(" ")[:-1]), phrase) for form in forms for phrase in of.by_last.get(form, ())]
+    ends = [
+        ((), f"*{ending}")
+        for form in forms
+        for ending in of.by_ending
+        if form.endswith(ending) and len(form) >= len(ending) + _STEM
+    ]
+    return (*sorted(whole, key=lambda pair: -len(pair[0])), *ends)
+
+
+def _forms(word: str) -> tuple[str, ...]:
+    """Return a word as it stands, then as the singulars that its ending allows in the languages of the table."""
+    forms = [word]
+    if len(word) > 3:
+        if word.endswith("ies"):
+            forms.append(word[:-3] + "y")
+        forms.extend(word[: -len(end)] for end in ("s", "es", "n", "en", "x") if word.endswith(end))
+    return tuple(forms)
+
+
+def _singular(kind: str) -> str:
+    return kind[:-1] if kind.endswith("s") and not kind.endswith("ss") else kind
+
+
+@lru_cache(maxsize=4096)
+def _kinds(text: str) -> frozenset[str]:
+    """Return a classification or object name, whole and in its parts, in the singular."""
+    folded = fold(text).strip()
+    parts = (folded, *re.split(r"[|;,/-]", folded))
+    return frozenset(_singular(part.strip()) for part in parts if part.strip())
