@@ -7,14 +7,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pipeline.collection.database import Database, open_database
 from pipeline.resources import resource
 from pipeline.rules import Table, with_own
 from pipeline.settings import Settings
-from pipeline.store import migrate
 
 if TYPE_CHECKING:
     from pipeline.charting import Shelf
+    from pipeline.collection.database import Database
 
 KEPT = ".kouros-kept"
 """Folder beside the settings in which processed motions, charts and measurements are kept between nights."""
@@ -40,7 +39,7 @@ class Workspace:
     """Open settings: the database is at the newest schema, the folders are known."""
 
     settings: Settings
-    engine: Database
+    engine: "Database"
 
     @cached_property
     def rules(self) -> Table | None:
@@ -69,6 +68,9 @@ def site_folder(settings: Settings, name: str) -> Path:
 
 def open_workspace(settings: Settings) -> Workspace:
     """Open the database, bringing its tables to the newest schema."""
+    from pipeline.collection.database import open_database
+    from pipeline.store import migrate
+
     engine = open_database(settings.database)
     migrate.upgrade(engine)
     return Workspace(settings, engine)
