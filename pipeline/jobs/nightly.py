@@ -230,7 +230,17 @@ def _assess_storey(
         charts=shelf,
     )
     scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
-    advice = advise(scenes, findings, levels, executor, progress)
+    advice = advise(
+        scenes,
+        findings,
+        levels,
+        executor,
+        progress,
+        means=workspace.means,
+        fidelity=settings.analysis.fidelity,
+        azimuth_step=settings.analysis.azimuth_step,
+        charts=shelf,
+    )
     for index, scene, found, advised in zip(storey.members, scenes, findings, advice, strict=True):
         assessments[index] = Assessment(scene, tuple(found), tuple(advised))
 

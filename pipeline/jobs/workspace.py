@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pipeline.collection.database import Database, open_database
+from pipeline.mitigate import Means, means
 from pipeline.resources import resource
 from pipeline.rules import Table, with_own
 from pipeline.settings import Settings
@@ -48,13 +49,28 @@ class Workspace:
 
         raises : UsageError for a file that is not there, TableError for one that cannot be used
         """
-        own = self.settings.collection.rules
-        if not own:
+        path = self._own(self.settings.collection.rules, "[collection] rules names the file of your own rules")
+        return None if path is None else with_own(path)
+
+    @cached_property
+    def means(self) -> Means:
+        """The measures and isolators that the museum has.
+
+        raises : UsageError for a file that is not there, TableError for one that cannot be used
+        """
+        wanted = self.settings.mitigation
+        return means(
+            self._own(wanted.measures, "[mitigation] measures names the file of your own measures"),
+            self._own(wanted.catalogue, "[mitigation] catalogue names the file of your own isolators"),
+        )
+
+    def _own(self, name: str, remedy: str) -> Path | None:
+        if not name:
             return None
-        path = self.settings.path(own)
+        path = self.settings.path(name)
         if not path.is_file():
-            raise UsageError(f"{path} is not there; [collection] rules names the file of your own rules")
-        return with_own(path)
+            raise UsageError(f"{path} is not there; {remedy}")
+        return path
 
     @property
     def reports(self) -> Path:
