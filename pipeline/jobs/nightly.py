@@ -14,6 +14,7 @@ from pipeline.assess import assess
 from pipeline.charting import Shelf
 from pipeline.charts import chart_keys, charts, picture_version
 from pipeline.classify import classify
+from pipeline.climb import Effort
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
@@ -30,6 +31,7 @@ from pipeline.jobs.workspace import (
 )
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import advise
+from pipeline.models import model_named
 from pipeline.motions.site import Level, Site, read_site
 from pipeline.records import Assessment, Chart, Executor, Item, Motion, Progress, RunRecord, Verdict
 from pipeline.report import Units, publish, render
@@ -39,6 +41,10 @@ from pipeline.store.runs import compare_runs, save_run
 
 if TYPE_CHECKING:
     from pipeline.store.changes import RunChanges
+
+
+EFFORTS = "efforts"
+"""Key of a run's settings: what the verdicts of each model took."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +65,7 @@ class Summary:
 
     objects       : all that were looked at; act + open + safe + cannot is the same number
     missing       : why objects could not be assessed, with how many of each
+    efforts       : what the verdicts of each model took, see `pipeline.climb.Effort`
     report        : the report's index, None for a dry run
     """
 
@@ -77,6 +84,7 @@ class Summary:
     measures: Mapping[str, int]
     missing: Mapping[str, int]
     first: Sequence[str]
+    efforts: Sequence[Mapping[str, Any]] = ()
     report: Path | None = None
     latest: Path | None = None
     changes: "RunChanges | None" = field(default=None, repr=False)
@@ -96,7 +104,7 @@ def run(
         workspace = open_workspace(settings)
         _refresh(workspace, progress, dry_run=dry_run)
         inventory = read_inventory(workspace.engine)
-        items = _choose(inventory, chosen)
+        items = named(inventory, galleries=chosen.galleries, objects=chosen.objects)
         site = _read_site(workspace, progress)
         record = assess_items(workspace, items, inventory, site, started, progress)
         record = replace(record, settings={**record.settings, SELECTION: bool(chosen)})
@@ -127,16 +135,19 @@ def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None
     progress.step("collection", 1, 1)
 
 
-def _choose(items: list[Item], selection: Selection) -> list[Item]:
+def named(items: Sequence[Item], *, galleries: Sequence[str] = (), objects: Sequence[str] = ()) -> list[Item]:
+    """Return the items of these galleries and with these numbers; nothing named means all.
+
+    raises : EmptyCollectionError where there are none; UsageError for an unknown name, with close ones
+    """
     if not items:
         raise EmptyCollectionError("the inventory is empty: import the museum's export first (`kouros import FILE`)")
-    _known("gallery", selection.galleries, {item.gallery for item in items})
-    _known("object", selection.objects, {item.object_number for item in items})
+    _known("gallery", galleries, {item.gallery for item in items})
+    _known("object", objects, {item.object_number for item in items})
     return [
         item
         for item in items
-        if (not selection.galleries or item.gallery in selection.galleries)
-        and (not selection.objects or item.object_number in selection.objects)
+        if (not galleries or item.gallery in galleries) and (not objects or item.object_number in objects)
     ]
 
 
@@ -182,10 +193,12 @@ def assess_items(
     assessments: dict[int, Assessment] = {}
     # Motions that two floors share (one record for several) are drawn once.
     motions = {one.motion.hash: one.motion for f in floors for level in f.levels for one in level.motions}
+    efforts: dict[str, Effort] = {}
     with charts_of(settings, motions) as shelf:
-        for storey in floors:
-            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments)
+        # The pictures first: the verdicts use their charts.
         drawn = _charts(workspace, list(motions.values()), executor, progress, shelf)
+        for storey in floors:
+            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments, efforts)
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
         picture = tradeoff.picture(measured)
@@ -201,7 +214,7 @@ def assess_items(
         site=site.name,
         museum=settings.museum.name or (info.museum if info else ""),
         level_notes=(*levels_said, *notes(settings, site, {item.gallery for item in inventory})),
-        settings=_stored_settings(settings, info.credit if info else "", tested),
+        settings=_stored_settings(settings, info.credit if info else "", tested, efforts),
         assessments=tuple(assessments[index] for index in range(len(items))),
         charts=drawn,
         motions=tuple(summary for storey in floors for summary in storey.summaries),
@@ -217,7 +230,10 @@ def _assess_storey(
     progress: Progress,
     shelf: Shelf,
     assessments: dict[int, Assessment],
+    efforts: dict[str, Effort],
 ) -> None:
+    # Before the long work: a table that cannot be used is told at once.
+    means = workspace.means
     scenes = [replace(classify(items[index], workspace.rules), floor=storey.name) for index in storey.members]
     settings, levels = workspace.settings, storey.shaking
     plan, findings = assess(
@@ -228,6 +244,7 @@ def _assess_storey(
         fidelity=settings.analysis.fidelity,
         azimuth_step=settings.analysis.azimuth_step,
         charts=shelf,
+        efforts=efforts,
     )
     scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
     advice = advise(
@@ -236,7 +253,7 @@ def _assess_storey(
         levels,
         executor,
         progress,
-        means=workspace.means,
+        means=means,
         fidelity=settings.analysis.fidelity,
         azimuth_step=settings.analysis.azimuth_step,
         charts=shelf,
@@ -245,7 +262,9 @@ def _assess_storey(
         assessments[index] = Assessment(scene, tuple(found), tuple(advised))
 
 
-def _stored_settings(settings: Settings, credit: str, tested: selftest.SelfTest | None) -> dict[str, Any]:
+def _stored_settings(
+    settings: Settings, credit: str, tested: selftest.SelfTest | None, efforts: Mapping[str, Effort]
+) -> dict[str, Any]:
     # Never the database's address: it may hold a password.
     return {
         KERNELS: KERNEL_VERSION,
@@ -255,6 +274,7 @@ def _stored_settings(settings: Settings, credit: str, tested: selftest.SelfTest 
         "length": settings.report.length,
         "site": settings.site.folder,
         "floors": settings.floors.model_dump(),
+        EFFORTS: [{"title": model_named(name).title, **effort.plain()} for name, effort in efforts.items()],
         "numerics": None if tested is None else tested.plain(),
     }
 
@@ -319,6 +339,7 @@ def summarise(record: RunRecord) -> Summary:
         measures=dict(Counter(advised.title for advised in advice).most_common()),
         missing=dict(missing.most_common()),
         first=_first(record),
+        efforts=record.settings.get(EFFORTS, ()),
     )
 
 

@@ -1,11 +1,12 @@
 """From what fails to what helps: the least intrusive measure of the table that passes when its models are run again."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from pipeline.assess import LevelMotions
 from pipeline.charting import SHELF, Shelf
 from pipeline.charts import chart_key
+from pipeline.climb import AUTO
 from pipeline.mitigate.bench import Bench, Fineness, Trial, checks, passes, why_not
 from pipeline.mitigate.means import Means, Measure, own_means
 from pipeline.mitigate.measures import DISPLACEMENTS, MEASURES
@@ -13,6 +14,7 @@ from pipeline.mitigate.offers import Need, Offer, Proposal, Way
 from pipeline.mitigate.shared import SHARED, case_of, company
 from pipeline.records import Check, Executor, Finding, Mark, Progress, Recommendation, Scene, Verdict
 from pipeline.tables import TableError
+from pipeline.verdicts import LevelMotions
 
 ROOM = ("clearance", "rubber_pads", "restrain")
 """Measures worth advising where only the assumed room leaves the verdict open."""
@@ -29,7 +31,7 @@ def advise(
     progress: Progress,
     *,
     means: Means | None = None,
-    fidelity: str = "history",
+    fidelity: str = AUTO,
     azimuth_step: float = 10.0,
     charts: Shelf = SHELF,
 ) -> list[list[Recommendation]]:
@@ -210,7 +212,9 @@ def _said(failing: Sequence[Trial], offer: Offer, results: Mapping[int, Sequence
 
 def _sentence(sentence: str, words: Mapping[str, str]) -> str:
     """Put words into a sentence, whose numbers are filled in later: a brace in them is no placeholder."""
-    for name, text in words.items():
-        escaped = text.replace("{", "{{").replace("}", "}}")
-        sentence = sentence.replace(f"{{{name}}}", escaped)
-    return sentence
+
+    def said(found: re.Match[str]) -> str:
+        text = words.get(found[1])
+        return found[0] if text is None else text.replace("{", "{{").replace("}", "}}")
+
+    return re.sub(r"{(\w+)}", said, sentence)

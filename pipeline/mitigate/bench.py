@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.assess import LevelMotions, assess, capacity_of
+from pipeline.assess import assess
 from pipeline.charting import SHELF, Shelf
 from pipeline.mitigate.means import Isolator, Means
 from pipeline.models import model_named
@@ -15,6 +15,7 @@ from pipeline.models.common import largest_push, lift_ratios
 from pipeline.quantities import Array, G
 from pipeline.records import Check, Executor, Finding, Motion, Scene, Verdict
 from pipeline.response import prepare, respond, transmit
+from pipeline.verdicts import LevelMotions, capacity_of
 
 PASSED = 0.03
 """Error that the sampling of what an isolator passes on may bring to an oscillator of 20 Hz on it.
@@ -205,6 +206,8 @@ def why_not(scene: Scene, findings: Sequence[Finding]) -> str:
     if not worst:
         return "none of its models can be run then"
     times, finding = max(worst, key=lambda pair: pair[0])
+    if finding.fidelity == "bound" and finding.error:
+        return f"{finding.title.lower()} may still be more than is allowed"
     if times == float("inf"):
         return f"nothing would be left of what {finding.title.lower()} is allowed"
     best = finding.utilisation or 0.0

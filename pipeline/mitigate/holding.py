@@ -6,11 +6,11 @@ from math import pi
 
 import numpy as np
 
-from pipeline.assess import judge
 from pipeline.mitigate.bench import Bench
 from pipeline.models.stress import FLEXIBLE_STRESS
 from pipeline.records import Check, Estimate, Finding, Origin, Scene, Verdict
 from pipeline.tables import Range, spread, table
+from pipeline.verdicts import judge
 
 WAX = "museum wax"
 

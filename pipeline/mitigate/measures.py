@@ -5,7 +5,6 @@ from dataclasses import replace
 from functools import partial
 from math import ceil, inf, isfinite
 
-from pipeline.assess import judge
 from pipeline.classify import material_of
 from pipeline.mitigate.bench import Bench, Trial
 from pipeline.mitigate.changes import changed, held, knows_section
@@ -16,6 +15,7 @@ from pipeline.models.stress import STRESS
 from pipeline.quantities import G
 from pipeline.records import Check, Finding, Scene, Support, Verdict
 from pipeline.tables import number, table
+from pipeline.verdicts import judge
 
 Propose = Callable[[Need, Bench, Measure], Proposal]
 

@@ -88,7 +88,7 @@ def company(unit: Sequence[Need], need: Need, unknown: Sequence[str]) -> str:
 
     unknown : numbers of objects in the case that could not be assessed
     """
-    if len(unit) == 1 and not unknown:
+    if case_of(need.scene) is None:
         return "it"
     others = [other.number for other in unit if other is not need]
     with_ = f", with {listed(others)} in it," if others else ""

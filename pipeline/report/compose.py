@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from pipeline.records import Assessment, Recommendation, RunRecord
 from pipeline.report.describe import Describer
@@ -14,6 +15,7 @@ from pipeline.report.units import Units
 from pipeline.report.views import (
     STATES,
     Counts,
+    EffortView,
     GalleryView,
     MuseumView,
     ObjectView,
@@ -63,7 +65,20 @@ def compose(record: RunRecord, units: Units) -> MuseumView:
         first=tuple([o for o in order if o.state is State.ACT][:8]),
         motions=tuple(motion_view(m, record.charts, units) for m in record.motions),
         level_notes=tuple(clean(n) for n in record.level_notes),
+        efforts=tuple(_effort(e) for e in record.settings.get("efforts") or ()),
         self_test=self_test_view(record),
+    )
+
+
+def _effort(effort: Mapping[str, Any]) -> EffortView:
+    analyses, needing = int(effort["analyses"]), int(effort["needing_history"])
+    return EffortView(
+        clean(str(effort["title"])),
+        analyses,
+        int(effort["certificate"]),
+        int(effort["chart"]),
+        int(effort["history"]),
+        f"{100.0 * needing / max(analyses, 1):.0f} %",
     )
 
 
