@@ -232,6 +232,8 @@ def _assess_storey(
     assessments: dict[int, Assessment],
     efforts: dict[str, Effort],
 ) -> None:
+    # Before the long work: a table that cannot be used is told at once.
+    means = workspace.means
     scenes = [replace(classify(items[index], workspace.rules), floor=storey.name) for index in storey.members]
     settings, levels = workspace.settings, storey.shaking
     plan, findings = assess(
@@ -245,7 +247,17 @@ def _assess_storey(
         efforts=efforts,
     )
     scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
-    advice = advise(scenes, findings, levels, executor, progress)
+    advice = advise(
+        scenes,
+        findings,
+        levels,
+        executor,
+        progress,
+        means=means,
+        fidelity=settings.analysis.fidelity,
+        azimuth_step=settings.analysis.azimuth_step,
+        charts=shelf,
+    )
     for index, scene, found, advised in zip(storey.members, scenes, findings, advice, strict=True):
         assessments[index] = Assessment(scene, tuple(found), tuple(advised))
 

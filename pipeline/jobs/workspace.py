@@ -14,6 +14,7 @@ from pipeline.settings import Settings
 if TYPE_CHECKING:
     from pipeline.charting import Shelf
     from pipeline.collection.database import Database
+    from pipeline.mitigate import Means
 
 KEPT = ".kouros-kept"
 """Folder beside the settings in which processed motions, charts and measurements are kept between nights."""
@@ -47,13 +48,30 @@ class Workspace:
 
         raises : UsageError for a file that is not there, TableError for one that cannot be used
         """
-        own = self.settings.collection.rules
-        if not own:
+        path = self._own(self.settings.collection.rules, "[collection] rules names the file of your own rules")
+        return None if path is None else with_own(path)
+
+    @cached_property
+    def means(self) -> "Means":
+        """The measures and isolators that the museum has.
+
+        raises : UsageError for a file that is not there, TableError for one that cannot be used
+        """
+        wanted = self.settings.mitigation
+        from pipeline.mitigate import means
+
+        return means(
+            self._own(wanted.measures, "[mitigation] measures names the file of your own measures"),
+            self._own(wanted.catalogue, "[mitigation] catalogue names the file of your own isolators"),
+        )
+
+    def _own(self, name: str, remedy: str) -> Path | None:
+        if not name:
             return None
-        path = self.settings.path(own)
+        path = self.settings.path(name)
         if not path.is_file():
-            raise UsageError(f"{path} is not there; [collection] rules names the file of your own rules")
-        return with_own(path)
+            raise UsageError(f"{path} is not there; {remedy}")
+        return path
 
     @property
     def reports(self) -> Path:

@@ -60,7 +60,11 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One model run again on the changed chain, as evidence that a recommendation works."""
+    """One model run again on the changed chain, as evidence that a recommendation works.
+
+    demand : after the measure
+    before : the demand of the same model without it; None where the model had nothing to say then
+    """
 
     model: str
     title: str
@@ -69,6 +73,7 @@ class Check:
     capacity: float
     utilisation: float
     passes: bool
+    before: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -79,6 +79,7 @@ class CheckView:
     capacity: str
     utilisation: str
     passes: bool
+    before: str = ""
 
 
 @dataclass(frozen=True, slots=True)
