@@ -5,12 +5,12 @@ from datetime import datetime
 from pathlib import Path
 
 from pipeline.assess import assess, integrated_at
-from pipeline.classify import classify
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.inventory import Difference, add_sheet, read_inventory
 from pipeline.collection.mapping import Mapping, load_mapping
 from pipeline.collection.reading import Reading, read_items
 from pipeline.execute import Threads
+from pipeline.jobs.deciding import decided, place
 from pipeline.jobs.levels import storeys
 from pipeline.jobs.workspace import KEPT, Workspace, site_folder
 from pipeline.motions.site import read_site
@@ -55,8 +55,9 @@ def survey(
     # Each trial is asked once: a chart would not pay.
     fidelity, step = integrated_at(settings.analysis.fidelity), settings.analysis.azimuth_step
     found: list[Wish] = []
+    decisions = decided(workspace)
     for storey in storeys(settings, site, items):
-        scenes = [classify(items[index], workspace.rules) for index in storey.members]
+        scenes = [place(workspace, items[index], decisions).scene for index in storey.members]
         shaking = storey.shaking
         _, findings = assess(scenes, shaking, executor, progress, fidelity=fidelity, azimuth_step=step, outcomes=False)
         found += wishes(scenes, findings, shaking, executor, progress, fidelity=fidelity, azimuth_step=step)
