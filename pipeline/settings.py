@@ -73,7 +73,7 @@ class Floors(RootModel[dict[str, tuple[str, ...]]]):
 class Analysis(_Part):
     """How finely to look."""
 
-    fidelity: Literal["chart", "history", "reference"] = "history"
+    fidelity: Literal["auto", "chart", "history", "reference"] = "auto"
     azimuth_step: float = Field(default=10.0, gt=0.0, le=90.0, description="degrees between directions (RotD100)")
     workers: int = Field(default=0, ge=0, le=256, description="threads; 0: as many as there are cores")
 
@@ -177,9 +177,9 @@ folder = {site}
 # "2" = ["Hall of Sculpture", "Gallery 12"]
 
 [analysis]
-# fidelity = "reference" integrates eight times finer; "chart" looks sliding and swinging up in charts of each motion
-# and integrates what they cannot decide.
-fidelity = "history"
+# "auto" climbs from bounds over charts to histories only as far as each verdict needs, with the verdicts of "history",
+# which integrates everything; "reference" does so eight times finer, and "chart" looks up whatever is on a chart.
+fidelity = "auto"
 # Degrees between the directions tried for an object whose orientation is not recorded.
 azimuth_step = 10.0
 # Threads; 0 means as many as there are cores.

@@ -9,6 +9,7 @@ import click
 
 from pipeline.cli.console import listed, summary_lines, tradeoff_lines
 from pipeline.cli.deciding import decide
+from pipeline.cli.explaining import print_explanation
 from pipeline.cli.importing import import_
 from pipeline.cli.motions import motions
 from pipeline.cli.options import Options, as_json
@@ -138,8 +139,9 @@ def _check_numerics(options: Options, as_json: bool) -> None:
 @click.option("--gallery", "galleries", multiple=True, help="Only this gallery; may be repeated.")
 @click.option("--object", "objects", multiple=True, help="Only this object number; may be repeated.")
 @click.option("--site", help="Another site's folder, or 'demo'.")
-@click.option("--fidelity", type=click.Choice(["chart", "history", "reference"]), help="How finely to look.")
+@click.option("--fidelity", type=click.Choice(["auto", "chart", "history", "reference"]), help="How finely to look.")
 @click.option("--dry-run", is_flag=True, help="Assess and summarise; store and publish nothing.")
+@click.option("--explain", metavar="OBJECT", help="Print the whole chain of reasoning for one object instead.")
 @as_json
 @click.pass_obj
 def run(
@@ -149,13 +151,17 @@ def run(
     site: str | None,
     fidelity: str | None,
     dry_run: bool,
+    explain: str | None,
     as_json: bool,
 ) -> None:
     """Run the nightly job: read, assess, recommend, store, publish the report.
 
     A run of a part of the collection is stored and has its report, but does not become the latest one.
 
+    With --explain nothing is stored: it prints class, numbers, every step of each model and the advice for an object.
+
     Example: kouros run --gallery "Hall of Sculpture"
+    Example: kouros run --explain 1922.9
     """
     from pipeline.jobs.nightly import Selection
     from pipeline.jobs.nightly import run as job
@@ -165,6 +171,11 @@ def run(
         settings = settings.model_copy(update={"site": settings.site.model_copy(update={"folder": site})})
     if fidelity is not None:
         settings = settings.model_copy(update={"analysis": settings.analysis.model_copy(update={"fidelity": fidelity})})
+    if explain is not None:
+        if galleries or objects:
+            raise click.UsageError("--explain is about one object: leave out --gallery and --object")
+        print_explanation(settings, explain, options, as_json)
+        return
     with options.console() as console:
         summary = job(settings, console, Selection(galleries, objects), dry_run=dry_run)
     _print_summary(summary, as_json)

@@ -1,7 +1,7 @@
 """What a person sees: progress bars on a terminal, plain lines elsewhere, one screen at the end."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -84,6 +84,7 @@ def summary_lines(summary: "Summary") -> list[str]:
         lines.append(f"  {'':>{width}}    {sum(n for _, n in reasons[5:]):>4}  for other reasons, named in the report")
     lines += ["", "  Recommended, each run again and passing:"]
     lines += [count(number, title) for title, number in summary.measures.items()]
+    lines += effort_lines(summary.efforts)
     if summary.first:
         lines += ["", "  First:", *(f"    {text}" for text in summary.first)]
     lines += _decision_lines(summary)
@@ -116,6 +117,17 @@ def _decision_lines(summary: "Summary") -> list[str]:
 def printable(text: str) -> str:
     """Return text in one line without the characters by which it could steer a terminal."""
     return "".join(c if c.isprintable() else "\ufffd" for c in text)
+
+
+def effort_lines(efforts: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return by what the verdicts of each model were decided, and how many needed a history at all."""
+    if not efforts:
+        return []
+    lines = ["", f"  {'Decided by':<30}{'bound':>9}{'chart':>9}{'history':>9}{'any history for':>18}"]
+    for e in efforts:
+        share = e["needing_history"] / max(e["analyses"], 1)
+        lines.append(f"    {e['title']:<28}{e['certificate']:>9,}{e['chart']:>9,}{e['history']:>9,}{share:>17.0%}")
+    return lines
 
 
 def _short(text: str, most: int = 84) -> str:

@@ -13,6 +13,7 @@ from pipeline import __version__
 from pipeline.assess import assess
 from pipeline.charting import Shelf
 from pipeline.charts import chart_keys, charts, picture_version
+from pipeline.climb import Effort
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
@@ -32,6 +33,7 @@ from pipeline.jobs.workspace import (
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import advise
 from pipeline.mitigate.installed import assess_above
+from pipeline.models import model_named
 from pipeline.motions.site import Level, Site, read_site
 from pipeline.records import (
     Assessment,
@@ -49,6 +51,9 @@ from pipeline.report import Units, publish, render
 from pipeline.settings import Settings
 from pipeline.store.reuse import CODE, KERNELS, LEVELS, PICTURES, RULES, SELECTION, stored_charts, whole_runs
 from pipeline.store.runs import compare_runs, save_run
+
+EFFORTS = "efforts"
+"""Key of a run's settings: what the verdicts of each model took."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +76,7 @@ class Summary:
     missing       : why objects could not be assessed, with how many of each
     decisions     : how many of each kind are in force
     doubted       : those of them that must be looked at again, with the reasons
+    efforts       : what the verdicts of each model took, see `pipeline.climb.Effort`
     report        : the report's index, None for a dry run
     """
 
@@ -91,6 +97,7 @@ class Summary:
     first: Sequence[str]
     decisions: Mapping[str, int] = field(default_factory=dict)
     doubted: Sequence[str] = ()
+    efforts: Sequence[Mapping[str, Any]] = ()
     report: Path | None = None
     latest: Path | None = None
     changes: RunChanges | None = field(default=None, repr=False)
@@ -110,7 +117,7 @@ def run(
         workspace = open_workspace(settings)
         _refresh(workspace, progress, dry_run=dry_run)
         inventory = read_inventory(workspace.engine)
-        items = _choose(inventory, chosen)
+        items = named(inventory, galleries=chosen.galleries, objects=chosen.objects)
         site = _read_site(workspace, progress)
         decisions = decided(workspace)
         record = assess_items(workspace, items, inventory, site, started, progress, decisions)
@@ -147,16 +154,19 @@ def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None
     progress.step("collection", 1, 1)
 
 
-def _choose(items: list[Item], selection: Selection) -> list[Item]:
+def named(items: Sequence[Item], *, galleries: Sequence[str] = (), objects: Sequence[str] = ()) -> list[Item]:
+    """Return the items of these galleries and with these numbers; nothing named means all.
+
+    raises : EmptyCollectionError where there are none; UsageError for an unknown name, with close ones
+    """
     if not items:
         raise EmptyCollectionError("the inventory is empty: import the museum's export first (`kouros import FILE`)")
-    _known("gallery", selection.galleries, {item.gallery for item in items})
-    _known("object", selection.objects, {item.object_number for item in items})
+    _known("gallery", galleries, {item.gallery for item in items})
+    _known("object", objects, {item.object_number for item in items})
     return [
         item
         for item in items
-        if (not selection.galleries or item.gallery in selection.galleries)
-        and (not selection.objects or item.object_number in selection.objects)
+        if (not galleries or item.gallery in galleries) and (not objects or item.object_number in objects)
     ]
 
 
@@ -204,10 +214,12 @@ def assess_items(
     assessments: dict[int, Assessment] = {}
     # Motions that two floors share (one record for several) are drawn once.
     motions = {one.motion.hash: one.motion for f in floors for level in f.levels for one in level.motions}
+    efforts: dict[str, Effort] = {}
     with charts_of(settings, motions) as shelf:
-        for storey in floors:
-            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments, decisions)
+        # The pictures first: the verdicts use their charts.
         drawn = _charts(workspace, list(motions.values()), executor, progress, shelf)
+        for storey in floors:
+            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments, decisions, efforts)
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
         picture = tradeoff.picture(measured)
@@ -223,7 +235,7 @@ def assess_items(
         site=site.name,
         museum=settings.museum.name or (info.museum if info else ""),
         level_notes=(*levels_said, *notes(settings, site, {item.gallery for item in inventory})),
-        settings=_stored_settings(settings, site, info.credit if info else "", tested),
+        settings=_stored_settings(settings, site, info.credit if info else "", tested, efforts),
         assessments=tuple(assessments[index] for index in range(len(items))),
         charts=drawn,
         motions=tuple(summary for storey in floors for summary in storey.summaries),
@@ -240,6 +252,7 @@ def _assess_storey(
     shelf: Shelf,
     assessments: dict[int, Assessment],
     decisions: Decided,
+    efforts: dict[str, Effort],
 ) -> None:
     objects = [place(workspace, items[index], decisions) for index in storey.members]
     scenes = [replace(one.scene, floor=storey.name) for one in objects]
@@ -253,6 +266,7 @@ def _assess_storey(
         fidelity=settings.analysis.fidelity,
         azimuth_step=step,
         charts=shelf,
+        efforts=efforts,
     )
     above = assess_above(objects, levels, executor, progress, fidelity=_integrating(settings), azimuth_step=step)
     for at, (on_top, left_out) in enumerate(above):
@@ -270,7 +284,9 @@ def _integrating(settings: Settings) -> str:
     return "reference" if settings.analysis.fidelity == "reference" else "history"
 
 
-def _stored_settings(settings: Settings, site: Site, credit: str, tested: selftest.SelfTest | None) -> dict[str, Any]:
+def _stored_settings(
+    settings: Settings, site: Site, credit: str, tested: selftest.SelfTest | None, efforts: Mapping[str, Effort]
+) -> dict[str, Any]:
     # Never the database's address: it may hold a password.
     return {
         KERNELS: KERNEL_VERSION,
@@ -283,6 +299,7 @@ def _stored_settings(settings: Settings, site: Site, credit: str, tested: selfte
         "length": settings.report.length,
         "site": settings.site.folder,
         "floors": settings.floors.model_dump(),
+        EFFORTS: [{"title": model_named(name).title, **effort.plain()} for name, effort in efforts.items()],
         "numerics": None if tested is None else tested.plain(),
     }
 
@@ -354,6 +371,7 @@ def summarise(record: RunRecord) -> Summary:
             for d in (s.decision,)
             if s.doubts
         ],
+        efforts=record.settings.get(EFFORTS, ()),
     )
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from pipeline.assess import assess, integrated_at
+from pipeline.assess import assess
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.inventory import Difference, add_sheet, read_inventory
 from pipeline.collection.mapping import Mapping, load_mapping
@@ -52,8 +52,10 @@ def survey(
         raise CollectionError("nothing on display to survey: import the collection, or name another gallery")
     site = read_site(site_folder(settings, settings.site.folder), kept=settings.path(KEPT))
     executor = Threads(settings.analysis.workers or None)
-    # Each trial is asked once: a chart would not pay.
-    fidelity, step = integrated_at(settings.analysis.fidelity), settings.analysis.azimuth_step
+    fidelity, step = settings.analysis.fidelity, settings.analysis.azimuth_step
+    if fidelity == "chart":
+        # Each trial is asked once: a chart that is not there would not pay.
+        fidelity = "auto"
     found: list[Wish] = []
     decisions = decided(workspace)
     for storey in storeys(settings, site, items):

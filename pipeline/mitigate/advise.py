@@ -2,11 +2,11 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-from pipeline.assess import LevelMotions
 from pipeline.charts import chart_key
 from pipeline.mitigate import measures as m
 from pipeline.records import Executor, Finding, Mark, Progress, Recommendation, Scene, Verdict
 from pipeline.tables import Row, TableError
+from pipeline.verdicts import LevelMotions
 
 Measure = Callable[[Scene, Sequence[Finding], m.Site, Row], m.Tried]
 

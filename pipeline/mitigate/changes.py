@@ -63,19 +63,15 @@ def _ballasted(scene: Scene, parameters: Mapping[str, float]) -> Scene:
 
 
 def _widened(scene: Scene, parameters: Mapping[str, float]) -> Scene:
-    """Fix it to a footing plate: the base is wider, the room less by the overhang, and its section bears the push."""
+    """Fix it to a footing plate: the base is wider, there is room around it, and its section bears the push."""
     half = 0.5 * parameters["width"]
     found: dict[str, Estimate] = {}
     for name in HALVES:
         before = scene.parameters.get(name)
         if before is not None:
             found[name] = _exactly(half, "m", "half of the footing plate") if before.high < half else before
-    room, old = scene.parameters["clearance"], scene.parameters["half_width"]
-    ends = [max(0.0, c - max(0.0, half - b)) for c, b in ((room.value, old.value), (room.low, old.low))]
-    high = max(0.0, room.high - max(0.0, half - old.high))
-    found["clearance"] = Estimate(ends[0], "m", room.origin, ends[1], high, "clearance less the plate's overhang")
     own = MODELS_OF[Support.FREESTANDING]
-    return replace(_with(scene, **found), models=(*own, *MODELS_OF[Support.FASTENED]))
+    return replace(_cleared(_with(scene, **found), parameters), models=(*own, *MODELS_OF[Support.FASTENED]))
 
 
 def _strengthened(scene: Scene, parameters: Mapping[str, float]) -> Scene:

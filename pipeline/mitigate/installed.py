@@ -30,7 +30,7 @@ PARAMETERS: Mapping[str, tuple[Quantity, ...]] = {
         Quantity("mass", "kg", "mass of the ballast", 0.0, 1e5, exclusive=True),
         Quantity("height", "m", "height of its centre above the base", 0.0, 100.0),
     ),
-    "wide_base": (Quantity("width", "m", "width of the footing plate", 0.0, 100.0, exclusive=True),),
+    "wide_base": (Quantity("width", "m", "width of the footing plate", 0.0, 100.0, exclusive=True), _CLEARANCE),
     "friction_isolator": (_FRICTION, _CLEARANCE),
     "horizontal_isolator": (
         _FREQUENCY,

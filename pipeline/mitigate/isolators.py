@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 from typing import Any
 
-from pipeline.assess import LevelMotions
 from pipeline.models.common import largest_push, lift_ratios
 from pipeline.models.horizontal_isolator import HORIZONTAL_ISOLATOR
 from pipeline.records import Executor, Motion
 from pipeline.response import prepare, respond, transmit
 from pipeline.tables import number, table
+from pipeline.verdicts import LevelMotions
 
 PASSED = 0.03
 """Error that the sampling of what an isolator passes on may bring to an oscillator of 20 Hz on it.

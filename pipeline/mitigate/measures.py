@@ -7,7 +7,6 @@ from math import ceil
 
 import numpy as np
 
-from pipeline.assess import LevelMotions, judge
 from pipeline.classify import MODELS_OF
 from pipeline.mitigate.isolators import Isolator, horizontal_isolators, on_pad, rotational_pads
 from pipeline.models import model_named
@@ -17,6 +16,7 @@ from pipeline.quantities import G
 from pipeline.records import Check, Estimate, Executor, Finding, Motion, Origin, Scene, Support, Verdict
 from pipeline.response import respond
 from pipeline.tables import Row, number, table
+from pipeline.verdicts import LevelMotions, judge
 
 DISPLACEMENTS = frozenset({"sliding", "swing", "swing_3d", "friction_isolator"})
 """Models whose failure is a collision: room settles it."""

@@ -18,7 +18,7 @@ NOTES = {
     flags.CONTACT_LOST: "contact lost (vertical acceleration below -g); flight and landing are not modelled",
     flags.CUT: "still moving when the tail was cut",
     flags.EVENT_CAP: "more impacts than are followed in one sample interval",
-    SENSITIVE: "sensitive: 1 % of the motion's amplitude changes the outcome, or any change is magnified 1,000 times",
+    SENSITIVE: "sensitive: 1 % of amplitude may change the outcome, or any change is magnified 1,000 times",
     NO_TILT: "no tilt reproduces an acceleration of 1 g or more",
     NO_HISTORY: "a closed-form screen, not a response",
     BOUND: "a guaranteed upper bound, not a response",

@@ -77,5 +77,6 @@ ROTATIONAL_ISOLATOR = Model(
     capacity="rotation_limit",
     applies=_applies,
     sentence="Its pad lets it turn by {demand}; {capacity} is allowed.",
+    at_most="Its pad lets it turn by at most {demand}; {capacity} is allowed.",
     fails="turns too far on its pad",
 )

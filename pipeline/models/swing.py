@@ -1,12 +1,13 @@
 """Generic models 4 and 5: swinging in two and in three dimensions (Agbabian et al. 1991, sec. 2.4 and Figure 5)."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from pipeline.kernels.pendulum import pendulum_batch
 from pipeline.kernels.spherical import spherical_batch
-from pipeline.models.common import NO_HISTORY, broadcast, needs, shaken
+from pipeline.models.common import NO_HISTORY, ROUNDING, broadcast, needs, shaken
 from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.quantities import Array, Quantity
 from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Support
@@ -14,13 +15,22 @@ from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Suppo
 CHANDELIER = 1.4
 """The paper's factor on the undamped two-dimensional result for an object that swings in all directions."""
 
+CHANCE = 1e-9
+"""Share of a peak, at the coarsest step, up to which the peaks at two steps may agree by chance; its error is larger in
+most swings.  It falls with the fourth power of the step."""
+
 LENGTH = Quantity("length", "m", "from the point of suspension to the centre of gravity", 0.0, exclusive=True)
-LENGTH_AXIS = ChartAxis("length", low=0.1, high=20.0)
+LENGTH_AXIS = ChartAxis("length", low=0.1, high=20.0, nodes=400)
 
 
 def _swept(angle: Array) -> Array:
     # |L sin theta| over the whole swing: a pendulum that passed the horizontal has been as far out as it is long.
     return np.where(angle >= 0.5 * np.pi, 1.0, np.sin(np.minimum(angle, 0.5 * np.pi)))
+
+
+def _least(refine: int) -> float:
+    # The smallest relative error that is told: of chance and of rounding.
+    return CHANCE / refine**4 + ROUNDING
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
@@ -35,7 +45,7 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
     return {
         "displacement": displacement,
         "rotation": fine[:, 0],
-        "error": np.abs(displacement - length * _swept(coarse[:, 0])) + 1e-12 * displacement,
+        "error": np.abs(displacement - length * _swept(coarse[:, 0])) + _least(refine) * displacement,
         "note": fine[:, 1],
     }
 
@@ -52,7 +62,7 @@ def _run_3d(motion: Excitation, parameters: Mapping[str, Array], refine: int, es
     displacement = length * fine[:, 0]
     return {
         "displacement": displacement,
-        "error": length * np.abs(fine[:, 0] - coarse[:, 0]) + 1e-12 * displacement,
+        "error": length * np.abs(fine[:, 0] - coarse[:, 0]) + _least(refine) * displacement,
         "note": fine[:, 1],
     }
 
@@ -114,6 +124,8 @@ SWING = Model(
     ),
     directions=1,
     run=_run,
+    # In the plane of its wall, that is along its width.
+    axes=({},),
     trace=_trace,
     chart=LENGTH_AXIS,
     mark=lambda parameters, demand: ("swing", parameters["length"], demand),
@@ -137,7 +149,7 @@ SWING_3D = Model(
     screen=_screen_3d,
     say_screen=_say_3d,
     trace=_trace_3d,
-    chart=LENGTH_AXIS,
+    chart=replace(LENGTH_AXIS, nodes=1200),
     mark=lambda parameters, demand: ("swing", parameters["length"], demand),
     demand="displacement",
     capacity="clearance",

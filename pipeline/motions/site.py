@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -28,6 +29,7 @@ from pipeline.motions.reading import read_record
 from pipeline.motions.record import Record
 from pipeline.quantities import Array
 from pipeline.records import Motion, MotionSummary
+from pipeline.supports import TRANSMITTED, refined
 from pipeline.supports.floor import carried
 
 PICTURE_POINTS = 600
@@ -163,7 +165,10 @@ def carry(motion: Motion, table: FloorTable) -> Motion:
     """
     if table.height_ratio is None:
         raise ValueError(f"floor {table.name!r} has records of its own")
-    return carried(motion, table.height_ratio, table.period_s, table.damping, table.stiffness_ratio, table.modes)
+    passed = partial(
+        carried, motion, table.height_ratio, table.period_s, table.damping, table.stiffness_ratio, table.modes
+    )
+    return passed(1) if table.modes is None else refined(passed, TRANSMITTED)
 
 
 def read_motion(path: str | Path) -> list[Motion]:

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from pipeline.records import Assessment, Recommendation, RunChanges, RunRecord
 from pipeline.report.decided import decisions_view
@@ -16,6 +17,7 @@ from pipeline.report.units import Units
 from pipeline.report.views import (
     STATES,
     Counts,
+    EffortView,
     GalleryView,
     MuseumView,
     ObjectView,
@@ -67,9 +69,22 @@ def compose(record: RunRecord, units: Units, changes: RunChanges | None = None) 
         first=tuple([o for o in order if o.state is State.ACT and not o.settled][:8]),
         motions=tuple(motion_view(m, record.charts, units) for m in record.motions),
         level_notes=tuple(clean(n) for n in record.level_notes),
+        efforts=tuple(_effort(e) for e in record.settings.get("efforts") or ()),
         self_test=self_test_view(record),
         decisions=decisions_view(order, describer.decided.strangers(record.assessments)),
         since=None if changes is None else since_view(changes, by_number, units),
+    )
+
+
+def _effort(effort: Mapping[str, Any]) -> EffortView:
+    analyses, needing = int(effort["analyses"]), int(effort["needing_history"])
+    return EffortView(
+        clean(str(effort["title"])),
+        analyses,
+        int(effort["certificate"]),
+        int(effort["chart"]),
+        int(effort["history"]),
+        f"{100.0 * needing / max(analyses, 1):.0f} %",
     )
 
 

@@ -155,10 +155,13 @@ class Describer:
 
     def _sums(self, f: Finding, utilisation: str) -> str:
         span = self._span(f.low, f.high, f.unit)
-        error = self._error(f)
+        error = "" if f.fidelity == "bound" else self._error(f)
         origin = f" ({f.capacity_origin.value})" if f.capacity_origin else ""
+        demand = self._units.text(f.demand, f.unit)
+        if f.fidelity == "bound" and f.error:
+            demand = f"at most {demand}"
         return (
-            f"Demand {self._units.text(f.demand, f.unit)}{f' ({span} with what is uncertain)' if span else ''}, "
+            f"Demand {demand}{f' ({span} with what is uncertain)' if span else ''}, "
             f"capacity {self._units.text(f.capacity, f.unit)}{origin}, utilisation {utilisation}. "
             f"Decided by {_DECIDED.get(f.decided_by) or clean(f.decided_by)}"
             f"{f', error {error}' if error else ''}."

@@ -331,6 +331,18 @@ class SelfTestView:
 
 
 @dataclass(frozen=True, slots=True)
+class EffortView:
+    """By what the verdicts of one model were decided; ``any`` is the share of analyses for which a history was run."""
+
+    title: str
+    analyses: int
+    certificate: int
+    chart: int
+    history: int
+    any: str
+
+
+@dataclass(frozen=True, slots=True)
 class MuseumView:
     """The index: all galleries, ranked, with totals over all objects; ``credit`` is the source's own line.
 
@@ -351,6 +363,7 @@ class MuseumView:
     first: tuple[ObjectView, ...]
     motions: tuple[MotionView, ...]
     level_notes: tuple[str, ...] = field(default=())
+    efforts: tuple[EffortView, ...] = ()
     self_test: SelfTestView | None = None
     decisions: DecisionsView = DecisionsView()
     since: SinceView | None = None

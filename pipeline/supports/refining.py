@@ -13,6 +13,9 @@ BANK = (2.0, 5.0, 10.0, 20.0)
 
 BANK_DAMPING = 0.05
 
+TRANSMITTED = 1e-3
+"""Error that what stands on a support may get from the sampling of what the support passes on."""
+
 MOST_REFINED = 64
 """Most samples of the output for each of the input."""
 

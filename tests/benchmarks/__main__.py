@@ -1,12 +1,12 @@
 """Kouros beside its peers, beside C, and by itself: `python -m tests.benchmarks [peers] [native] [models] [charts]
-[night]`.
+[auto] [night]`.
 
 Machines are noisy: read the ratios of one run, not the times.
 """
 
 import sys
 
-from tests.benchmarks import charts, general, models, multibody, native, night, opensees, spectra
+from tests.benchmarks import auto, charts, general, models, multibody, native, night, opensees, spectra
 from tests.benchmarks.common import HEADING, OBJECTS
 
 
@@ -33,6 +33,7 @@ PARTS = {
     "native": native.native,
     "models": models.costs,
     "charts": charts.lookups,
+    "auto": auto.auto,
     "night": night.night,
 }
 
