@@ -105,7 +105,7 @@ def _decision_lines(summary: "Summary") -> list[str]:
     if not summary.decisions:
         return []
     words = {"accept": "risks accepted", "installed": "measures installed", "class": "classes", "verdict": "verdicts"}
-    told = ", ".join(f"{number:,} {words[kind]}" for kind, number in summary.decisions.items())
+    told = ", ".join(f"{words[kind]} {number:,}" for kind, number in summary.decisions.items())
     lines = ["", f"  Decided by people: {told}"]
     shown = summary.doubted[:5]
     lines += [f"    to be looked at again: {_short(printable(text), 160)}" for text in shown]

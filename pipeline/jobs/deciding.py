@@ -149,11 +149,9 @@ def _class(words: Sequence[str]) -> str:
 
 def _withdrawn(workspace: Workspace, wish: Wish) -> int:
     word = _one(wish.words, "the id of the decision")
-    log = read_decisions(workspace.engine, wish.object_number)
-    ended = {row.withdraws for row in log}
-    open_ = {str(row.id): row.id for row in log if row.kind is not DecisionKind.WITHDRAW and row.id not in ended}
+    open_ = {str(row.id): row.id for row in listed(workspace, wish.object_number)}
     if word not in open_:
-        there = f"its decisions are {', '.join(open_)}" if open_ else "it has none that could be withdrawn"
+        there = f"those in force are {', '.join(open_)}" if open_ else "it has none in force"
         raise UsageError(f"object {wish.object_number!r} has no decision {word!r} to withdraw; {there}")
     return open_[word]
 

@@ -59,10 +59,11 @@ def _doubts(decision: Decision, at: Now) -> Iterable[str]:
         yield "the object is no longer in the inventory"
         return
     if digest != decision.digest:
-        fields = sorted(at.changed(decision.object_number, decision.digest))
+        fields = list(at.changed(decision.object_number, decision.digest))
         # Where a number was read from may change without the number.
-        if fields != ["provenance"]:
-            yield f"its record has changed{': ' if fields else ''}{', '.join(fields)}"
+        told = [name for name in fields if name != "provenance"]
+        if told or not fields:
+            yield f"its record has changed{': ' if told else ''}{', '.join(told)}"
     assessment = at.assessments.get(decision.object_number)
     if assessment is None or decision.kind is DecisionKind.CLASS:
         return

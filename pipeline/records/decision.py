@@ -117,12 +117,14 @@ class Standing:
 def in_force(log: Iterable[Decision]) -> tuple[Decision, ...]:
     """Return the decisions of a log that are neither withdrawn nor replaced by a later one of the same matter.
 
+    A decision that was replaced stays so: the withdrawal of the later one does not bring it back.
     log : in the order of the ids
     """
     rows = list(log)
     withdrawn = {row.withdraws for row in rows}
-    latest: dict[tuple[str, ...], Decision] = {}
-    for row in rows:
-        if row.kind is not DecisionKind.WITHDRAW and row.id not in withdrawn:
-            latest[row.object_number, row.kind, row.measure, row.model, row.level] = row
-    return tuple(sorted(latest.values(), key=lambda row: row.id))
+    latest = {
+        (row.object_number, row.kind, row.measure, row.model, row.level): row
+        for row in rows
+        if row.kind is not DecisionKind.WITHDRAW
+    }
+    return tuple(sorted((row for row in latest.values() if row.id not in withdrawn), key=lambda row: row.id))

@@ -59,9 +59,11 @@ class Decided:
 
     def _what(self, decision: Decision) -> str:
         if decision.kind is DecisionKind.INSTALLED:
-            values = decision.parameters.items()
-            given = ", ".join(f"{words(name)} {self._units.text(v, decision.units[name])}" for name, v in values)
-            parts = (words(decision.measure), given, decision.product)
+            # "clearance 35 cm" and not "clearance, clearance 35 cm".
+            values = {name: self._units.text(v, decision.units[name]) for name, v in decision.parameters.items()}
+            own = values.pop(decision.measure, "")
+            given = ", ".join(f"{words(name)} {text}" for name, text in values.items())
+            parts = (f"{words(decision.measure)} {own}".strip(), given, decision.product)
         elif decision.kind is DecisionKind.CLASS:
             parts = (words(decision.object_class), "", "")
         else:

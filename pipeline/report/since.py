@@ -13,12 +13,12 @@ MOST = 12
 """Lines of one kind that the page shows; `kouros diff --json` has all."""
 
 _WHY = {
-    CauseKind.INPUT: "its record",
-    CauseKind.DECISION: "a decision",
-    CauseKind.FLOOR: "the floor it stands on",
-    CauseKind.MOTION: "the motion",
-    CauseKind.SETTINGS: "the settings",
-    CauseKind.VERSION: "the version of Kouros",
+    CauseKind.INPUT: "record of the object",
+    CauseKind.DECISION: "decision",
+    CauseKind.FLOOR: "floor",
+    CauseKind.MOTION: "motion",
+    CauseKind.SETTINGS: "settings",
+    CauseKind.VERSION: "version of Kouros",
 }
 _UNITS = {"m": "m", "kg": "kg", "hz": "Hz", "pa": "Pa"}
 
@@ -47,16 +47,16 @@ def since_view(changes: RunChanges, objects: Mapping[str, ObjectView], units: Un
 def _counts(changes: RunChanges) -> list[tuple[str, int]]:
     return [
         ("verdicts worse", len(changes.worsened)),
-        ("fixed", len(changes.fixed)),
-        ("other verdicts changed", len(changes.others)),
+        ("verdicts fixed", len(changes.fixed)),
+        ("verdicts otherwise changed", len(changes.others)),
         ("objects new", len(changes.added)),
-        ("gone", len(changes.removed)),
-        ("moved", len(changes.moved)),
-        ("with a changed record", len(changes.inputs)),
-        ("motions changed", len(changes.motions)),
-        ("decisions made or ended", len(changes.decisions)),
-        ("settings changed", len(changes.settings)),
-        ("versions changed", len(changes.versions)),
+        ("objects gone", len(changes.removed)),
+        ("objects moved", len(changes.moved)),
+        ("objects otherwise changed", len(changes.inputs)),
+        ("motions", len(changes.motions)),
+        ("decisions", len(changes.decisions)),
+        ("settings", len(changes.settings)),
+        ("versions", len(changes.versions)),
     ]
 
 
@@ -90,7 +90,7 @@ def _lists(
         ("New", [_change(p.object_number, p.gallery, objects) for p in changes.added]),
         ("Gone", [_change(p.object_number, f"was in {p.gallery}", objects) for p in changes.removed]),
         ("Moved", [_change(m.object_number, f"{m.before} → {m.after}", objects) for m in changes.moved]),
-        ("Changed records", [_change(i.object_number, _fields(i, units), objects) for i in changes.inputs]),
+        ("Otherwise changed", [_change(i.object_number, _fields(i, units), objects) for i in changes.inputs]),
         ("Motions", [_change("", f"{m.name}, level {m.level}{_floor(m.floor)}", objects) for m in changes.motions]),
         (
             "Decisions",

@@ -35,10 +35,8 @@ class Causes:
                 self._decisions.setdefault(change.decision.object_number, []).append(change)
         self._motions = motions
         settings, versions = list(settings), list(versions)
-        self._settings = [
-            Cause(CauseKind.SETTINGS, f"{s.name}: {_said(s.before)} -> {_said(s.after)}") for s in settings
-        ]
-        self._versions = [Cause(CauseKind.VERSION, f"{v.name} {_said(v.before)} -> {_said(v.after)}") for v in versions]
+        self._settings = [Cause(CauseKind.SETTINGS, _said(change)) for change in settings]
+        self._versions = [Cause(CauseKind.VERSION, _said(change)) for change in versions]
         self._shaken: dict[tuple[str, str, str], tuple[Cause, ...]] = {}
 
     def of(self, object_number: str, level: str, floor_before: str, floor_after: str) -> tuple[Cause, ...]:
