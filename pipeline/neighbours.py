@@ -95,9 +95,13 @@ def _place(index: int, scene: Scene, findings: Sequence[Finding], level: str) ->
         return None
     half_width, half_depth = 0.5 * (width or depth or 0.0), 0.5 * (depth or width or 0.0)
     sides = None if item.orientation_deg is None else (half_width, half_depth, item.orientation_deg)
+    most = float(worst.high or 0.0)
+    if scene.support is Support.ISOLATED:
+        # What stands on an isolator may move on it besides.
+        most = sum(f.high or 0.0 for f in moves)
     at = np.array([item.position_x_m, item.position_y_m])
     reach = float(np.hypot(half_width, half_depth))
-    return Place(index, scene, worst.model, at, reach, sides, float(worst.high or 0.0))
+    return Place(index, scene, worst.model, at, reach, sides, most)
 
 
 def _period(place: Place) -> float:
@@ -151,7 +155,7 @@ def _judge(gallery: str, first: Place, second: Place, level: LevelMotions, shake
     loose = [place for place in (first, second) if not _traceable(place)]
     if loose:
         who = " and ".join(place.scene.item.object_number for place in loose)
-        why = f"along which wall it hangs is not recorded (orientation_deg): {who}; only the sum of both is known"
+        why = f"only the sum of both is known: where {who} moves is not (orientation_deg, or it stands on an isolator)"
         return replace(known, verdict=Verdict.UNDETERMINED, note=why)
     each = [_closing(first, second, direction, motion, level.x_azimuth, shaken) for motion in level.motions]
     best, low, high, radial = (level.combined([one[i] for one in each]) for i in range(4))
@@ -170,7 +174,9 @@ def _judge(gallery: str, first: Place, second: Place, level: LevelMotions, shake
 
 
 def _traceable(place: Place) -> bool:
-    # A one-directional history needs its direction.
+    # A one-directional history needs its direction, and an isolator passes another motion on.
+    if place.scene.support is Support.ISOLATED:
+        return False
     return model_named(place.model).directions != 1 or place.scene.item.orientation_deg is not None
 
 

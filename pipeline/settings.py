@@ -79,6 +79,15 @@ class Analysis(_Part):
     workers: int = Field(default=0, ge=0, le=256, description="threads; 0: as many as there are cores")
 
 
+class Mitigation(_Part):
+    """What the museum can do about what fails."""
+
+    measures: str = Field(default="", description="a CSV file whose rows replace Kouros's measures of the same name")
+    catalogue: str = Field(
+        default="", description="a CSV file of your own isolators, in place of Kouros's generic ones"
+    )
+
+
 class Charts(_Part):
     """How long response charts are kept, and how much room they may take."""
 
@@ -102,6 +111,7 @@ class Settings(_Part):
     site: SiteFolder = SiteFolder()
     floors: Floors = Floors({})
     analysis: Analysis = Analysis()
+    mitigation: Mitigation = Mitigation()
     charts: Charts = Charts()
     report: Report = Report()
     home: Path = Field(default=Path(), exclude=True)
@@ -187,6 +197,12 @@ azimuth_step = 10.0
 fragility = true
 # Threads; 0 means as many as there are cores.
 workers = 0
+
+[mitigation]
+# A CSV file with columns of Kouros's measures.csv: rows of the same name replace Kouros's words, order and limits.
+measures = ""
+# A CSV file with the columns of Kouros's isolators.csv: the isolators that you have or can buy.
+catalogue = ""
 
 [charts]
 # Response charts are kept until their motion was unused for so many days, and in this much room.

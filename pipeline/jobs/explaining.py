@@ -3,13 +3,15 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isnan
+from typing import Any
 
+from pipeline.assess import assess
 from pipeline.charting import Shelf
-from pipeline.classify import classify
 from pipeline.climb import AUTO, Climb, examine
 from pipeline.collection.inventory import read_inventory
 from pipeline.execute import Threads
 from pipeline.findings import findings
+from pipeline.jobs.deciding import decided, place
 from pipeline.jobs.levels import storeys
 from pipeline.jobs.nightly import named
 from pipeline.jobs.workspace import KEPT, Workspace, charts_of, site_folder
@@ -17,7 +19,7 @@ from pipeline.mitigate import advise
 from pipeline.motions.site import read_site
 from pipeline.plan import Work, plan
 from pipeline.quantities import Array
-from pipeline.records import Estimate, Executor, Finding, Progress, Recommendation, Scene
+from pipeline.records import Estimate, Executor, Finding, Item, Progress, Recommendation, Scene
 from pipeline.settings import Settings
 from pipeline.verdicts import LevelMotions
 
@@ -69,29 +71,42 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
     inventory = read_inventory(workspace.engine)
     items = named(inventory, objects=(number,))
     site = read_site(site_folder(settings, settings.site.folder), kept=settings.path(KEPT))
-    executor = Threads(settings.analysis.workers or None)
+    executor, decisions = Threads(settings.analysis.workers or None), decided(workspace)
     out = []
     for storey in storeys(settings, site, items):
         levels = storey.shaking
         with charts_of(settings, [m.hash for level in levels for m in level.motions]) as shelf:
             for index in storey.members:
-                scene = replace(classify(items[index], workspace.rules), floor=storey.name)
-                out.append(_explain(scene, levels, settings, executor, progress, shelf))
+                scene = replace(place(workspace, items[index], decisions).scene, floor=storey.name)
+                # What is advised for a case depends on all that stand in it.
+                others = [place(workspace, other, decisions).scene for other in _neighbours(items[index], inventory)]
+                out.append(_explain(scene, others, levels, workspace, executor, progress, shelf))
     return out
+
+
+def _neighbours(item: Item, inventory: Sequence[Item]) -> list[Item]:
+    where = (item.gallery, item.case)
+    return [other for other in inventory if item.case and other != item and (other.gallery, other.case) == where]
 
 
 def _explain(
     scene: Scene,
+    others: Sequence[Scene],
     levels: Sequence[LevelMotions],
-    settings: Settings,
+    workspace: Workspace,
     executor: Executor,
     progress: Progress,
     shelf: Shelf,
 ) -> Explanation:
+    settings = workspace.settings
     todo = plan([scene], levels[0].x_azimuth)
     scene = replace(scene, skipped=todo.skipped[0])
     reasonings = [_reason(work, scene, level, settings, executor, shelf) for level in levels for work in todo.work]
-    advice = advise([scene], [[r.finding for r in reasonings]], levels, executor, progress)
+    how = settings.analysis
+    fineness: dict[str, Any] = {"fidelity": how.fidelity, "azimuth_step": how.azimuth_step, "charts": shelf}
+    around = assess(others, levels, executor, progress, **fineness)[1] if others else []
+    found = [[r.finding for r in reasonings], *around]
+    advice = advise([scene, *others], found, levels, executor, progress, means=workspace.means, **fineness)
     return Explanation(scene, tuple(reasonings), tuple(advice[0]))
 
 

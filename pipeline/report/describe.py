@@ -15,6 +15,7 @@ from pipeline.records import (
     Recommendation,
     RunRecord,
 )
+from pipeline.report.decided import Decided
 from pipeline.report.errors import ReportError
 from pipeline.report.judging import fragility_views
 from pipeline.report.ranking import finding_order, finding_state, state_of
@@ -74,6 +75,7 @@ class Describer:
 
     def __init__(self, record: RunRecord, units: Units) -> None:
         self._record, self._units = record, units
+        self.decided = Decided(record.decisions, units)
         self._motions = {m.hash: m for m in record.motions}
         self._links: dict[tuple[str, str], MotionLink] = {}
         # Two records of one number in one gallery would share an id; the later ones are told apart by their place.
@@ -125,6 +127,8 @@ class Describer:
             problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
             fragilities=fragility_views(assessment, self._units, drawn=state in (State.ACT, State.OPEN)),
             skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
+            decisions=self.decided.of(assessment),
+            settled=self.decided.covered(assessment),
         )
 
     def _finding(self, f: Finding) -> FindingView:
@@ -212,6 +216,7 @@ class Describer:
             self._units.text(c.capacity, c.unit),
             percent(c.utilisation),
             c.passes,
+            "–" if c.before is None else self._units.text(c.before, c.unit),
         )
 
     def _number(self, name: str, e: Estimate) -> NumberView:

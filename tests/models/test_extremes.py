@@ -25,7 +25,7 @@ from pipeline.models import MODELS as REGISTRY
 from pipeline.quantities import G
 
 LIMIT = 60.0
-"""Seconds after which a case hangs, the first one's compilation excepted; on an idle machine all take well below ten."""
+"""Seconds after which a case hangs, compilation excepted; on an idle machine all take well below ten."""
 START = 60.0
 """Seconds that a process may take to start and compile."""
 

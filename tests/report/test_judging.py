@@ -15,8 +15,8 @@ from pipeline.report.units import Units
 from . import builder
 
 CURVE = Fragility(
-    "1", "rocking", "Rocking", 0.3 * G, 0.2 * G, 0.5 * G, "", 0.5, 0.4, True, 0.2, 0.25, 1, False, 1 / 900.0, 1 / 2000.0,
-    1 / 500.0, "", "objects on shelves", 0.4 * G,
+    "1", "rocking", "Rocking", 0.3 * G, 0.2 * G, 0.5 * G, "", 0.5, 0.4, True, 0.2, 0.25, 1, False,
+    1 / 900.0, 1 / 2000.0, 1 / 500.0, "", "objects on shelves", 0.4 * G,
 )  # fmt: skip
 PAIR = Spacing("A", "design", "1", "<b>2</b>", 0.05, 0.03, 0.0, 0.04, 0.03, 0.2, Verdict.PASS, "history", "quake")
 

@@ -22,6 +22,7 @@ from pipeline.records import (
     RunRecord,
     Scene,
     Spacing,
+    Standing,
     Support,
     Verdict,
 )
@@ -92,6 +93,7 @@ RUNS = st.builds(
     ).map(tuple),
     charts=values_of(Mapping[str, Chart]),
     motions=values_of(tuple[MotionSummary, ...]),
+    decisions=values_of(tuple[Standing, ...]),
     demonstration=st.booleans(),
     spacings=values_of(tuple[Spacing, ...]),
 )
