@@ -125,7 +125,7 @@ class Describer:
             assumptions=tuple(dict.fromkeys(clean(text) for text in named)),
             missing=tuple(words(clean(m)) for m in scene.missing),
             problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
-            fragilities=fragility_views(assessment, self._units, drawn=state in (State.ACT, State.OPEN)),
+            fragilities=fragility_views(assessment, drawn=state is State.ACT),
             skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
             decisions=self.decided.of(assessment),
             settled=self.decided.covered(assessment),

@@ -18,7 +18,7 @@ from pipeline.report.units import Units, significant
 _WIDE, _HIGH, _FLOOR = 220.0, 72.0, 58.0
 _MOST = 2.0 * G
 """Right end of the picture's axis, m/s2."""
-_POINTS = 25
+_POINTS = 17
 
 _TOLD = (0.25 * G, 0.5 * G, G)
 """Where the picture's text alternative tells the probability."""
@@ -67,34 +67,38 @@ class RoomView:
 
 @dataclass(frozen=True, slots=True)
 class ShakingView:
-    """From what shaking on the free objects of a gallery fail, beside what others published."""
+    """From what shaking on the free objects of a gallery fail, beside what others published.
+
+    note : why nothing is said of how often that comes; "" where it is said of some
+    """
 
     objects: str
     median: str
     rows: tuple[tuple[str, str, str], ...]
+    note: str
 
 
-def fragility_views(assessment: Assessment, units: Units, *, drawn: bool) -> tuple[FragilityView, ...]:
+def fragility_views(assessment: Assessment, *, drawn: bool) -> tuple[FragilityView, ...]:
     """Return the curves of an object, what fails first to begin with; only that one is drawn."""
     number = clean(assessment.scene.item.object_number)
-    return tuple(_view(f, units, number if drawn and i == 0 else "") for i, f in enumerate(assessment.fragilities))
+    return tuple(_view(f, number if drawn and i == 0 else "") for i, f in enumerate(assessment.fragilities))
 
 
-def _view(f: Fragility, units: Units, draw: str) -> FragilityView:
-    at = units.text(f.median, "m/s2")
+def _view(f: Fragility, draw: str) -> FragilityView:
+    at = in_g(f.median)
     if f.bound:
         sentence = f"stands up to {at} at least" if f.bound == ABOVE else f"fails already at {at} or less"
     else:
-        sentence = f"fails from about {at} ({units.pair(f.low, f.high, 'm/s2')})"
+        sentence = f"fails from about {at} ({in_g(f.low)} to {in_g(f.high)})"
     again = "; stronger shaking of the same kind may pass: the weakest that fails counts" if f.returns else ""
-    beside = "" if f.published_median is None else f"{f.published}: {units.text(f.published_median, 'm/s2')}"
+    beside = "" if f.published_median is None else f"{f.published}: {in_g(f.published_median)}"
     return FragilityView(
         clean(f.title),
         sentence + again,
         _sources(f),
         _rate(f),
         clean(beside),
-        _picture(f, units, draw) if draw else Markup(""),
+        _picture(f, draw) if draw else Markup(""),
     )
 
 
@@ -102,15 +106,20 @@ def _sources(f: Fragility) -> str:
     motions = "1 motion" if f.motions == 1 else f"{f.motions} motions"
     record = f"stated, since {motions} cannot tell" if f.stated else f"of {motions}"
     return (
-        f"Dispersion {f.dispersion:.2f}: from record to record {f.record:.2f} ({record}), from its uncertain measures "
-        f"{f.inputs:.2f}, of the model {f.modelling:.2f} (stated)."
+        f"Dispersion {f.dispersion:.2f}: records {f.record:.2f} ({record}), measures {f.inputs:.2f}, model "
+        f"{f.modelling:.2f}."
     )
 
 
 def _rate(f: Fragility) -> str:
     if f.annual_rate is None or f.rate_low is None or f.rate_high is None:
-        return clean(f.note)
+        return ""
     return f"about once in {years(f.annual_rate)} years ({years(f.rate_high)} to {years(f.rate_low)})"
+
+
+def in_g(acceleration: float) -> str:
+    """Write an acceleration in g with two digits: more would be a boast."""
+    return f"{significant(acceleration / G, 2)}\u202fg"
 
 
 def years(rate: float) -> str:
@@ -123,14 +132,14 @@ def years(rate: float) -> str:
     return count(int(rounded)) if rounded >= 100.0 else significant(period, 2)
 
 
-def _picture(f: Fragility, units: Units, number: str) -> Markup:
+def _picture(f: Fragility, number: str) -> Markup:
     """Return the probability of failing against the peak acceleration of the floor, 0 to 2 g."""
     steps = [_MOST * i / (_POINTS - 1) for i in range(_POINTS)]
     curve = path([(_across(a), _FLOOR - 52.0 * f.probability(a)) for a in steps])
     beside = f"M{_across(f.published_median):.0f} 6V{_FLOOR:.0f}" if f.published_median is not None else ""
     title = f"{clean(number)}: {clean(f.title)}"
-    told = "Probability of failure against peak acceleration of the floor: "
-    told += ", ".join(f"{f.probability(a):.0%} at {units.text(a, 'm/s2')}" for a in _TOLD)
+    told = "Probability of failure at a peak acceleration of the floor: "
+    told += ", ".join(f"{f.probability(a):.0%} at {in_g(a)}" for a in _TOLD)
     ticks = "".join(
         f'<text class="tx" x="{_across(g * G):.0f}" y="71">{text}</text>'
         for g, text in ((0.0, "0"), (1.0, "1"), (2.0, "2 g"))
@@ -147,7 +156,7 @@ def _across(acceleration: float) -> float:
     return 10.0 + 200.0 * min(acceleration / _MOST, 1.0)
 
 
-def shaking_view(members: Sequence[Assessment], units: Units) -> ShakingView | None:
+def shaking_view(members: Sequence[Assessment]) -> ShakingView | None:
     """Return the median of the free objects' medians beside the published ones; None where there is none.
 
     Where half of them stand at all that was tried, the median is said to be at least that.
@@ -157,9 +166,10 @@ def shaking_view(members: Sequence[Assessment], units: Units) -> ShakingView | N
         return None
     middle = median(inf if f.bound == ABOVE else f.median for f in free)
     least = max(f.median for f in free)
-    text = units.text(middle, "m/s2") if isfinite(middle) else f"above {units.text(least, 'm/s2')}"
-    rows = tuple((p.what, units.text(p.median, "m/s2"), p.source) for p in all_published())
-    return ShakingView(count(len(free)), text, rows)
+    text = in_g(middle) if isfinite(middle) else f"above {in_g(least)}"
+    rows = tuple((p.what, in_g(p.median), p.source) for p in all_published())
+    note = "" if any(f.annual_rate is not None for f in free) else free[0].note
+    return ShakingView(count(len(free)), text, rows, clean(note))
 
 
 def spacing_views(spacings: Sequence[Spacing], units: Units) -> tuple[SpacingView, ...]:
