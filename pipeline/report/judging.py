@@ -134,7 +134,8 @@ def years(rate: float) -> str:
 
 def _picture(f: Fragility, number: str) -> Markup:
     """Return the probability of failing against the peak acceleration of the floor, 0 to 2 g."""
-    steps = [_MOST * i / (_POINTS - 1) for i in range(_POINTS)]
+    # Closer together where curves are steep.
+    steps = [_MOST * (i / (_POINTS - 1)) ** 2 for i in range(_POINTS)]
     curve = path([(_across(a), _FLOOR - 52.0 * f.probability(a)) for a in steps])
     beside = f"M{_across(f.published_median):.0f} 6V{_FLOOR:.0f}" if f.published_median is not None else ""
     title = f"{clean(number)}: {clean(f.title)}"
@@ -146,14 +147,14 @@ def _picture(f: Fragility, number: str) -> Markup:
     )
     return Markup(
         '<svg class="chart curve" viewBox="0 0 {wide} {high}" role="img"><title>{title}</title><desc>{told}.</desc>'
-        '<path class="ax" d="M10 6V{floor}H210"/><path class="gr" d="M10 32H210"/>'
+        '<path class="ax" d="M10 6V{floor}H200"/><path class="gr" d="M10 32H200"/>'
     ).format(wide=int(_WIDE), high=int(_HIGH), floor=int(_FLOOR), title=title, told=told) + Markup(  # noqa: S704
         (f'<path class="gd" d="{beside}"/>' if beside else "") + f'<path class="cu" d="{curve}"/>{ticks}</svg>'
     )
 
 
 def _across(acceleration: float) -> float:
-    return 10.0 + 200.0 * min(acceleration / _MOST, 1.0)
+    return 10.0 + 190.0 * min(acceleration / _MOST, 1.0)
 
 
 def shaking_view(members: Sequence[Assessment]) -> ShakingView | None:
