@@ -325,18 +325,29 @@ def rectangle_modulus(along: float, across: float, wall: float) -> float:
     return (across * along**3 - inner_across * inner_along**3) / (6.0 * along)
 
 
-def classify(item: Item, rules: Table | None = None) -> Scene:
+def object_classes() -> Mapping[str, str]:
+    """Return the classes that an object may be of, each with its title."""
+    return {name: row["title"] for name, row in _classes().items()}
+
+
+def classify(item: Item, rules: Table | None = None, decided: tuple[str, str] | None = None) -> Scene:
     """Return the scene of one object: class, support, models to try, estimates, and the fields that are missing.
 
-    rules : the table that decides the class; None for Kouros's own
+    rules   : the table that decides the class; None for Kouros's own
+    decided : the class that a person gave it, and their words, in place of the rules
+    raises  : KeyError for a decided class that is no row of classes.csv
     """
-    decision = rule_for(item, rules)
-    row = _classes()[decision.rule.object_class]
+    if decided is None:
+        decision = rule_for(item, rules)
+        object_class, words = decision.rule.object_class, decision.words
+    else:
+        object_class, words = decided
+    row = _classes()[object_class]
     support = item.support or Support(row["support"])
     models = tuple(m for m in row["models"].split("|") if m and m != "none")
     if not models and item.support is None:
         why = f"no generic model applies: it {row['why']}"
-        return Scene(item, row["class"], decision.words, support, (), {}, (), (why,))
+        return Scene(item, row["class"], words, support, (), {}, (), (why,))
     if item.support is not None and item.support is not Support(row["support"]):
         models = MODELS_OF[item.support]
     elif item.frequency_hz is not None and "stress" in models:
@@ -351,7 +362,7 @@ def classify(item: Item, rules: Table | None = None) -> Scene:
     return Scene(
         item,
         row["class"],
-        decision.words,
+        words,
         support,
         models,
         builder.found,

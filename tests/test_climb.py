@@ -174,14 +174,15 @@ def test_who_decides_is_said_and_how_well(motions: tuple[Motion, ...], shelf: Sh
     bound, chart, history = (of_model(run([scene], level, "auto", shelf)[0], "sliding")[0] for scene in scenes)
     assert (bound.decided_by, bound.fidelity) == ("certificate", "bound")
     assert "at most" in bound.sentence
-    # The bound holds for the response; a thousandth more is for the history that might be run instead.
-    assert bound.demand == pytest.approx(float(table["high"].iloc[0]), rel=1.1e-3)
-    assert bound.low == pytest.approx(float(table["low"].iloc[0]), rel=1.1e-3)
+    # The bound holds for the response; two thousandths more are for the history that might be run instead.
+    assert bound.demand == pytest.approx(float(table["high"].iloc[0]), rel=2.1e-3)
+    assert bound.low == pytest.approx(float(table["low"].iloc[0]), rel=2.1e-3)
     assert bound.error == pytest.approx(bound.demand - bound.low)
     assert (chart.decided_by, chart.fidelity) == ("chart", "chart")
     assert chart.error is not None
     assert chart.demand is not None
-    assert 0.0 < abs(chart.demand - truth) <= chart.error <= DECIDES * truth
+    # The error is that of reading between the nodes, and what the histories at the nodes say of themselves.
+    assert 0.0 < abs(chart.demand - truth) <= chart.error <= 2.0 * DECIDES * truth
     assert "at most" not in chart.sentence
     assert (history.decided_by, history.fidelity, history.demand) == ("history", "history", truth)
 

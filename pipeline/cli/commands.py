@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from pipeline.cli.console import listed, summary_lines, tradeoff_lines
+from pipeline.cli.deciding import decide
 from pipeline.cli.explaining import print_explanation
 from pipeline.cli.importing import import_
 from pipeline.cli.motions import motions
@@ -201,27 +202,14 @@ def report(options: Options, run_id: str | None) -> None:
 @as_json
 @click.pass_obj
 def diff(options: Options, old: str | None, new: str | None, as_json: bool) -> None:
-    """Say what changed between two runs: objects, inputs, motions, verdicts.  Without RUNs: the last two.
+    """Say what changed between two runs, and why each verdict did.  Without RUNs: the last two.
 
     Example: kouros diff
     """
+    from pipeline.cli.differing import print_changes
     from pipeline.jobs.reporting import compare
 
-    changes = compare(options.settings(), old, new)
-    if as_json:
-        click.echo(json.dumps(asdict(changes), indent=2))
-        return
-    click.echo(f"from {changes.old} to {changes.new}")
-    for title, places in (("new", changes.added), ("gone", changes.removed)):
-        listed(title, [f"{p.object_number} ({p.gallery})" for p in places])
-    listed("changed", [f"{i.object_number} ({i.gallery}): {', '.join(i.fields)}" for i in changes.inputs])
-    listed("motion", [f"{m.level} {m.name}" for m in changes.motions])
-    verdicts = [
-        f"{v.object_number} ({v.gallery}) {v.model}, {v.level}: {v.before} -> {v.after}" for v in changes.verdicts
-    ]
-    listed("verdict", verdicts)
-    if not changes:
-        click.echo("nothing changed")
+    print_changes(compare(options.settings(), old, new), as_json)
 
 
 @click.command()
@@ -334,4 +322,4 @@ def tradeoff(
     click.echo("\n".join(tradeoff_lines(found, wanted)))
 
 
-ALL = (demo, init, import_, survey, check, run, report, diff, motions, models, respond, tradeoff)
+ALL = (demo, init, import_, survey, check, run, report, decide, diff, motions, models, respond, tradeoff)

@@ -7,11 +7,11 @@ from typing import Any
 
 from pipeline.assess import assess
 from pipeline.charting import Shelf
-from pipeline.classify import classify
 from pipeline.climb import AUTO, Climb, examine
 from pipeline.collection.inventory import read_inventory
 from pipeline.execute import Threads
 from pipeline.findings import findings
+from pipeline.jobs.deciding import decided, place
 from pipeline.jobs.levels import storeys
 from pipeline.jobs.nightly import named
 from pipeline.jobs.workspace import KEPT, Workspace, charts_of, site_folder
@@ -71,15 +71,15 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
     inventory = read_inventory(workspace.engine)
     items = named(inventory, objects=(number,))
     site = read_site(site_folder(settings, settings.site.folder), kept=settings.path(KEPT))
-    executor = Threads(settings.analysis.workers or None)
+    executor, decisions = Threads(settings.analysis.workers or None), decided(workspace)
     out = []
     for storey in storeys(settings, site, items):
         levels = storey.shaking
         with charts_of(settings, [m.hash for level in levels for m in level.motions]) as shelf:
             for index in storey.members:
-                scene = replace(classify(items[index], workspace.rules), floor=storey.name)
+                scene = replace(place(workspace, items[index], decisions).scene, floor=storey.name)
                 # What is advised for a case depends on all that stand in it.
-                others = [classify(other, workspace.rules) for other in _neighbours(items[index], inventory)]
+                others = [place(workspace, other, decisions).scene for other in _neighbours(items[index], inventory)]
                 out.append(_explain(scene, others, levels, workspace, executor, progress, shelf))
     return out
 

@@ -7,19 +7,20 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pipeline import __version__
 from pipeline.assess import assess
 from pipeline.charting import Shelf
 from pipeline.charts import chart_keys, charts, picture_version
-from pipeline.classify import classify
 from pipeline.climb import Effort
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
+from pipeline.jobs.deciding import Decided, decided, place, stand
 from pipeline.jobs.importing import import_collection, source_of
 from pipeline.jobs.levels import Storey, notes, storeys
+from pipeline.jobs.versions import code_digest, rules_digest
 from pipeline.jobs.workspace import (
     KEPT,
     UsageError,
@@ -31,17 +32,25 @@ from pipeline.jobs.workspace import (
 )
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import advise
+from pipeline.mitigate.installed import assess_above
 from pipeline.models import model_named
 from pipeline.motions.site import Level, Site, read_site
-from pipeline.records import Assessment, Chart, Executor, Item, Motion, Progress, RunRecord, Verdict
+from pipeline.records import (
+    Assessment,
+    Chart,
+    Executor,
+    Item,
+    Motion,
+    Progress,
+    RunChanges,
+    RunRecord,
+    Standing,
+    Verdict,
+)
 from pipeline.report import Units, publish, render
 from pipeline.settings import Settings
-from pipeline.store.reuse import KERNELS, PICTURES, SELECTION, stored_charts, whole_runs
+from pipeline.store.reuse import CODE, KERNELS, LEVELS, PICTURES, RULES, SELECTION, stored_charts, whole_runs
 from pipeline.store.runs import compare_runs, save_run
-
-if TYPE_CHECKING:
-    from pipeline.store.changes import RunChanges
-
 
 EFFORTS = "efforts"
 """Key of a run's settings: what the verdicts of each model took."""
@@ -65,6 +74,8 @@ class Summary:
 
     objects       : all that were looked at; act + open + safe + cannot is the same number
     missing       : why objects could not be assessed, with how many of each
+    decisions     : how many of each kind are in force
+    doubted       : those of them that must be looked at again, with the reasons
     efforts       : what the verdicts of each model took, see `pipeline.climb.Effort`
     report        : the report's index, None for a dry run
     """
@@ -84,10 +95,12 @@ class Summary:
     measures: Mapping[str, int]
     missing: Mapping[str, int]
     first: Sequence[str]
+    decisions: Mapping[str, int] = field(default_factory=dict)
+    doubted: Sequence[str] = ()
     efforts: Sequence[Mapping[str, Any]] = ()
     report: Path | None = None
     latest: Path | None = None
-    changes: "RunChanges | None" = field(default=None, repr=False)
+    changes: RunChanges | None = field(default=None, repr=False)
 
 
 def run(
@@ -106,20 +119,26 @@ def run(
         inventory = read_inventory(workspace.engine)
         items = named(inventory, galleries=chosen.galleries, objects=chosen.objects)
         site = _read_site(workspace, progress)
-        record = assess_items(workspace, items, inventory, site, started, progress)
-        record = replace(record, settings={**record.settings, SELECTION: bool(chosen)})
+        decisions = decided(workspace)
+        record = assess_items(workspace, items, inventory, site, started, progress, decisions)
+        record = replace(
+            record,
+            settings={**record.settings, SELECTION: bool(chosen)},
+            decisions=stand(workspace, record, decisions, whole=not chosen),
+        )
         summary = summarise(record)
         if dry_run:
             return summary
         # A part is not compared: what was left out of it has not changed.
         before = [] if chosen else whole_runs(workspace.engine)[:1]
         save_run(workspace.engine, record)
+        changes = compare_runs(workspace.engine, before[0], record.run_id) if before else None
         progress.step("report", 0, 1)
-        index = render(record, workspace.reports / record.run_id, units=Units(length=settings.report.length))
+        units = Units(length=settings.report.length)
+        index = render(record, workspace.reports / record.run_id, units=units, changes=changes)
         # A part of the collection is worth a report, but not the name of the museum's latest one.
         latest = None if chosen else publish(index.parent, workspace.reports)
         progress.step("report", 1, 1)
-        changes = compare_runs(workspace.engine, before[0], record.run_id) if before else None
         return replace(summary, report=index, latest=latest, changes=changes)
 
 
@@ -180,10 +199,12 @@ def assess_items(
     site: Site,
     started: datetime,
     progress: Progress,
+    decisions: Decided,
 ) -> RunRecord:
     """Run everything that the objects require under the site's motions, floor by floor, judge it and advise.
 
     inventory : all objects, the others included: which galleries there are
+    decisions : those in force: classes and installed measures change what is run
     started   : when the run began, which names it
     raises    : SettingsError for a floor that the site does not have, MotionError for a floor's record
     """
@@ -198,7 +219,7 @@ def assess_items(
         # The pictures first: the verdicts use their charts.
         drawn = _charts(workspace, list(motions.values()), executor, progress, shelf)
         for storey in floors:
-            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments, efforts)
+            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments, decisions, efforts)
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
         picture = tradeoff.picture(measured)
@@ -214,7 +235,7 @@ def assess_items(
         site=site.name,
         museum=settings.museum.name or (info.museum if info else ""),
         level_notes=(*levels_said, *notes(settings, site, {item.gallery for item in inventory})),
-        settings=_stored_settings(settings, info.credit if info else "", tested, efforts),
+        settings=_stored_settings(settings, site, info.credit if info else "", tested, efforts),
         assessments=tuple(assessments[index] for index in range(len(items))),
         charts=drawn,
         motions=tuple(summary for storey in floors for summary in storey.summaries),
@@ -230,23 +251,31 @@ def _assess_storey(
     progress: Progress,
     shelf: Shelf,
     assessments: dict[int, Assessment],
+    decisions: Decided,
     efforts: dict[str, Effort],
 ) -> None:
     # Before the long work: a table that cannot be used is told at once.
     means = workspace.means
-    scenes = [replace(classify(items[index], workspace.rules), floor=storey.name) for index in storey.members]
+    objects = [place(workspace, items[index], decisions) for index in storey.members]
+    scenes = [replace(one.scene, floor=storey.name) for one in objects]
     settings, levels = workspace.settings, storey.shaking
+    step = settings.analysis.azimuth_step
     plan, findings = assess(
         scenes,
         levels,
         executor,
         progress,
         fidelity=settings.analysis.fidelity,
-        azimuth_step=settings.analysis.azimuth_step,
+        azimuth_step=step,
         charts=shelf,
         efforts=efforts,
     )
-    scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
+    above = assess_above(objects, levels, executor, progress, fidelity=_integrating(settings), azimuth_step=step)
+    for at, (on_top, left_out) in enumerate(above):
+        findings[at] += on_top
+        done = {finding.title for finding in findings[at]}
+        skipped = {title: why for title, why in {**plan.skipped[at], **left_out}.items() if title not in done}
+        scenes[at] = replace(scenes[at], skipped=skipped)
     advice = advise(
         scenes,
         findings,
@@ -255,20 +284,28 @@ def _assess_storey(
         progress,
         means=means,
         fidelity=settings.analysis.fidelity,
-        azimuth_step=settings.analysis.azimuth_step,
+        azimuth_step=step,
         charts=shelf,
     )
     for index, scene, found, advised in zip(storey.members, scenes, findings, advice, strict=True):
         assessments[index] = Assessment(scene, tuple(found), tuple(advised))
 
 
+def _integrating(settings: Settings) -> str:
+    # Few objects stand on isolators, each on its own: neither charts nor bounds of what these pass on would pay.
+    return "reference" if settings.analysis.fidelity == "reference" else "history"
+
+
 def _stored_settings(
-    settings: Settings, credit: str, tested: selftest.SelfTest | None, efforts: Mapping[str, Effort]
+    settings: Settings, site: Site, credit: str, tested: selftest.SelfTest | None, efforts: Mapping[str, Effort]
 ) -> dict[str, Any]:
     # Never the database's address: it may hold a password.
     return {
         KERNELS: KERNEL_VERSION,
         PICTURES: picture_version(),
+        CODE: code_digest(),
+        RULES: rules_digest(settings),
+        LEVELS: {level.name: level.combine for level in site.levels},
         "credit": credit,
         "analysis": settings.analysis.model_dump(),
         "length": settings.report.length,
@@ -339,15 +376,33 @@ def summarise(record: RunRecord) -> Summary:
         measures=dict(Counter(advised.title for advised in advice).most_common()),
         missing=dict(missing.most_common()),
         first=_first(record),
+        decisions=dict(Counter(s.decision.kind.value for s in record.decisions)),
+        doubted=[
+            f"{d.object_number}: {d.matter}, {d.who}, {d.date}: {'; '.join(s.doubts)}"
+            for s in record.decisions
+            for d in (s.decision,)
+            if s.doubts
+        ],
         efforts=record.settings.get(EFFORTS, ()),
     )
 
 
 def _first(record: RunRecord, most: int = 5) -> list[str]:
-    """Name the objects on display that fail worst: those that fall or break, by how far they are beyond."""
+    """Name the objects on display that fail worst: those that fall or break, by how far they are beyond.
+
+    What is accepted, and not in doubt, is not among them.
+    """
+    settled: dict[str, list[Standing]] = {}
+    for standing in record.decisions:
+        settled.setdefault(standing.decision.object_number, []).append(standing)
     failing = []
     for assessment in record.assessments:
-        worst = [f for f in assessment.findings if f.verdict is Verdict.FAIL]
+        mine = settled.get(assessment.scene.item.object_number, ())
+        worst = [
+            f
+            for f in assessment.findings
+            if f.verdict is Verdict.FAIL and not any(s.covers(f.model, f.level) for s in mine)
+        ]
         if worst and assessment.scene.item.on_display:
             finding = max(worst, key=lambda f: (f.outcome in ("overturns", "breaks"), f.utilisation or 0.0))
             failing.append(

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from pipeline.kernels import samples
 from pipeline.kernels.pendulum import pendulum_batch
 from pipeline.kernels.spherical import spherical_batch
 from pipeline.models.common import NO_HISTORY, ROUNDING, broadcast, needs, shaken
@@ -35,7 +36,7 @@ def _least(refine: int) -> float:
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     length, zeta = broadcast(parameters, "length"), broadcast(parameters, "damping")
-    x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
+    x, z = samples(motion.x), samples(motion.z)
     tail = -1.0 if motion.tail is None else float(motion.tail)
     coarse, fine = np.full((length.size, 2), np.nan), np.empty((length.size, 2))
     runs = ((refine, coarse), (2 * refine, fine)) if estimate else ((refine, fine),)
@@ -52,8 +53,8 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
 
 def _run_3d(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     length, zeta = broadcast(parameters, "length"), broadcast(parameters, "damping")
-    x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
-    y = np.zeros_like(x) if motion.y is None else np.ascontiguousarray(motion.y)
+    x, z = samples(motion.x), samples(motion.z)
+    y = np.zeros_like(x) if motion.y is None else samples(motion.y)
     tail = -1.0 if motion.tail is None else float(motion.tail)
     coarse, fine = np.full((length.size, 2), np.nan), np.empty((length.size, 2))
     runs = ((refine, coarse), (2 * refine, fine)) if estimate else ((refine, fine),)
@@ -88,7 +89,7 @@ def _say_3d(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     history = np.zeros((motion.x.size, 1))
     length, zeta = np.array([parameters["length"]]), np.array([parameters["damping"]])
-    x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
+    x, z = samples(motion.x), samples(motion.z)
     pendulum_batch(x, z, motion.dt, shaken(motion), length, zeta, 0.0, 4, np.empty((1, 2)), history)
     return {"rotation": history[:, 0], "u_x": parameters["length"] * np.sin(history[:, 0])}
 
@@ -96,8 +97,8 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
 def _trace_3d(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     history = np.zeros((motion.x.size, 2))
     length, zeta = np.array([parameters["length"]]), np.array([parameters["damping"]])
-    x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
-    y = np.zeros_like(x) if motion.y is None else np.ascontiguousarray(motion.y)
+    x, z = samples(motion.x), samples(motion.z)
+    y = np.zeros_like(x) if motion.y is None else samples(motion.y)
     spherical_batch(x, y, z, motion.dt, shaken(motion), length, zeta, 0.0, 4, np.empty((1, 2)), history)
     return {"u_x": parameters["length"] * history[:, 0], "u_y": parameters["length"] * history[:, 1]}
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
-from pipeline.records.motion import MotionSummary
-from pipeline.records.picture import Chart, Mark
+from pipeline.records.picture import Mark
 from pipeline.records.scene import Origin, Scene
 
 
@@ -113,21 +111,3 @@ class Assessment:
     def assessed(self) -> bool:
         """Whether at least one verdict could be reached."""
         return bool(self.findings) and not self.scene.missing
-
-
-@dataclass(frozen=True, slots=True)
-class RunRecord:
-    """A whole run, as the store gives it back: all that the reports need, and nothing is computed again."""
-
-    run_id: str
-    started: str
-    finished: str
-    version: str
-    site: str
-    museum: str
-    level_notes: tuple[str, ...]
-    settings: Mapping[str, Any]
-    assessments: tuple[Assessment, ...]
-    charts: Mapping[str, Chart]
-    motions: tuple[MotionSummary, ...]
-    demonstration: bool = False

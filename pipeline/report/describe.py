@@ -15,6 +15,7 @@ from pipeline.records import (
     Recommendation,
     RunRecord,
 )
+from pipeline.report.decided import Decided
 from pipeline.report.errors import ReportError
 from pipeline.report.ranking import finding_order, finding_state, state_of
 from pipeline.report.svg import Spot
@@ -73,6 +74,7 @@ class Describer:
 
     def __init__(self, record: RunRecord, units: Units) -> None:
         self._record, self._units = record, units
+        self.decided = Decided(record.decisions, units)
         self._motions = {m.hash: m for m in record.motions}
         self._links: dict[tuple[str, str], MotionLink] = {}
         # Two records of one number in one gallery would share an id; the later ones are told apart by their place.
@@ -123,6 +125,8 @@ class Describer:
             missing=tuple(words(clean(m)) for m in scene.missing),
             problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
             skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
+            decisions=self.decided.of(assessment),
+            settled=self.decided.covered(assessment),
         )
 
     def _finding(self, f: Finding) -> FindingView:

@@ -11,7 +11,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from pipeline.records import RunRecord
+from pipeline.records import RunChanges, RunRecord
 from pipeline.report.compose import STORED_PAGE, compose
 from pipeline.report.errors import ReportError
 from pipeline.report.exports import export
@@ -24,11 +24,12 @@ from pipeline.report.views import FigureView, State
 from pipeline.resources import resource
 
 
-def render(record: RunRecord, folder: Path, *, units: Units | None = None) -> Path:
+def render(record: RunRecord, folder: Path, *, units: Units | None = None, changes: RunChanges | None = None) -> Path:
     """Write a whole report: pages and exports.  The same record gives the same bytes.
 
     folder  : a new folder; it appears only when everything in it is written
     units   : the reader's units; centimetres where None
+    changes : since the run before, for the index; None where there was none
     returns : the path of index.html
     raises  : ReportError if the folder exists, or if the record cannot be shown (see ``compose``)
     """
@@ -39,7 +40,7 @@ def render(record: RunRecord, folder: Path, *, units: Units | None = None) -> Pa
     partial.mkdir(parents=True)
     chosen = units or Units()
     try:
-        for name, text in _pages(record, chosen):
+        for name, text in _pages(record, chosen, changes):
             (partial / name).write_text(text, encoding="utf-8", newline="\n")
         export(record, partial, chosen)
         partial.rename(folder)
@@ -49,8 +50,8 @@ def render(record: RunRecord, folder: Path, *, units: Units | None = None) -> Pa
     return folder / "index.html"
 
 
-def _pages(record: RunRecord, units: Units) -> list[tuple[str, str]]:
-    museum = compose(record, units)
+def _pages(record: RunRecord, units: Units, changes: RunChanges | None) -> list[tuple[str, str]]:
+    museum = compose(record, units, changes)
     env = environment()
     shared = {"museum": museum, "units": units, "stored_page": STORED_PAGE, "State": State}
     shown = (*(m.charts for m in museum.motions), *(g.charts for g in museum.galleries))

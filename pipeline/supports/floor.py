@@ -7,6 +7,7 @@ from math import ceil
 
 import numpy as np
 
+from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_history
 from pipeline.quantities import Array
 from pipeline.records import Motion
@@ -191,7 +192,7 @@ def floor_motion(
         w = 2.0 * np.pi / (period * float(ratio))
         for row in range(2):
             history = np.zeros((base.samples, 2))
-            oscillator_history(np.ascontiguousarray(ground[row]), motion.dt, w, damping, 1.0, history)
+            oscillator_history(samples(ground[row]), motion.dt, w, damping, 1.0, history)
             out[row] += share * (history[:, 1] - ground[row])
     step = (
         f"floor at z/h {height_ratio:g} of a shear-flexural beam (Miranda and Taghavi 2005): alpha0 {alpha0:g}, period "
