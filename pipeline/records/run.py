@@ -9,7 +9,7 @@ from typing import Any
 from pipeline.records.decision import Standing
 from pipeline.records.motion import MotionSummary
 from pipeline.records.picture import Chart
-from pipeline.records.result import Assessment
+from pipeline.records.result import Assessment, Spacing
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,6 +17,7 @@ class RunRecord:
     """A whole run, as the store gives it back: all that the reports need, and nothing is computed again.
 
     decisions : those in force about its objects, and about objects that the inventory has no more
+    spacings  : of the neighbours in the galleries whose places are known
     """
 
     run_id: str
@@ -32,3 +33,4 @@ class RunRecord:
     motions: tuple[MotionSummary, ...]
     demonstration: bool = False
     decisions: tuple[Standing, ...] = ()
+    spacings: tuple[Spacing, ...] = ()

@@ -17,6 +17,7 @@ from pipeline.records import (
 )
 from pipeline.report.decided import Decided
 from pipeline.report.errors import ReportError
+from pipeline.report.judging import fragility_views
 from pipeline.report.ranking import finding_order, finding_state, state_of
 from pipeline.report.svg import Spot
 from pipeline.report.text import clean, digest, plain, short, words
@@ -124,6 +125,7 @@ class Describer:
             assumptions=tuple(dict.fromkeys(clean(text) for text in named)),
             missing=tuple(words(clean(m)) for m in scene.missing),
             problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
+            fragilities=fragility_views(assessment, self._units, drawn=state in (State.ACT, State.OPEN)),
             skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
             decisions=self.decided.of(assessment),
             settled=self.decided.covered(assessment),

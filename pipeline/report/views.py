@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from pipeline.report.judging import FragilityView, RoomView, ShakingView, SpacingView
 from pipeline.report.svg import Spot
 
 
@@ -156,6 +157,7 @@ class ObjectView:
     missing: tuple[str, ...]
     problems: tuple[tuple[str, str, str], ...]
     skipped: tuple[str, ...]
+    fragilities: tuple[FragilityView, ...] = ()
     decisions: tuple[DecisionView, ...] = ()
     settled: bool = False
 
@@ -272,6 +274,9 @@ class GalleryView:
     charts: tuple[str, ...]
     motions: tuple[MotionLink, ...]
     several_levels: bool
+    spacings: tuple[SpacingView, ...] = ()
+    rooms: tuple[RoomView, ...] = ()
+    shaking: ShakingView | None = None
     decisions: DecisionsView = DecisionsView()
 
     def standing(self, state: State) -> tuple[ObjectView, ...]:

@@ -26,13 +26,24 @@ from sqlalchemy.types import TypeDecorator, TypeEngine
 from pipeline.collection.database import METADATA
 from pipeline.collection.inventory import IMPORT_BATCH, ITEM
 from pipeline.collection.supplement import SUPPLEMENT
-from pipeline.records import Chart, Decision, Finding, MotionSummary, Recommendation, Scene, Standing
+from pipeline.records import (
+    Chart,
+    Decision,
+    Finding,
+    Fragility,
+    MotionSummary,
+    Recommendation,
+    Scene,
+    Spacing,
+    Standing,
+)
 from pipeline.store import codec
 
 # The inventory's tables are handed on so that METADATA is whole wherever this module is imported.
 __all__ = [
     "DECISION",
     "FINDING",
+    "FRAGILITY",
     "IMPORT_BATCH",
     "ITEM",
     "METADATA",
@@ -42,6 +53,7 @@ __all__ = [
     "RUN_DECISION",
     "RUN_MOTION",
     "RUN_SCENE",
+    "SPACING",
     "SUPPLEMENT",
 ]
 
@@ -278,6 +290,26 @@ RECOMMENDATION = Table(
     Index(None, "run_id", "object_number"),
 )
 """One row a recommendation."""
+
+FRAGILITY = Table(
+    "fragility",
+    METADATA,
+    _of_run(),
+    _position(),
+    *_columns(Fragility),
+    Index(None, "run_id", "object_number"),
+)
+"""One row a fragility curve."""
+
+SPACING = Table(
+    "spacing",
+    METADATA,
+    _of_run(),
+    _position(),
+    *_columns(Spacing),
+    Index(None, "run_id", "gallery"),
+)
+"""One row a pair of neighbours under one level."""
 
 DECISION = Table(
     "decision",
