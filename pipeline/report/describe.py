@@ -216,7 +216,7 @@ class Describer:
             self._units.text(c.capacity, c.unit),
             percent(c.utilisation),
             c.passes,
-            "–" if c.before is None else self._units.text(c.before, c.unit),
+            "" if c.before is None else self._units.text(c.before, c.unit),
         )
 
     def _number(self, name: str, e: Estimate) -> NumberView:
