@@ -18,7 +18,7 @@ from pipeline.report.units import Units, significant
 _WIDE, _HIGH, _FLOOR = 220.0, 72.0, 58.0
 _MOST = 2.0 * G
 """Right end of the picture's axis, m/s2."""
-_POINTS = 17
+_POINTS = 13
 
 _TOLD = (0.25 * G, 0.5 * G, G)
 """Where the picture's text alternative tells the probability."""
@@ -91,7 +91,7 @@ def _view(f: Fragility, draw: str) -> FragilityView:
     else:
         sentence = f"fails from about {at} ({in_g(f.low)} to {in_g(f.high)})"
     again = "; stronger shaking of the same kind may pass: the weakest that fails counts" if f.returns else ""
-    beside = "" if f.published_median is None else f"{f.published}: {in_g(f.published_median)}"
+    beside = "" if f.published_median is None else in_g(f.published_median)
     return FragilityView(
         clean(f.title),
         sentence + again,
@@ -104,7 +104,8 @@ def _view(f: Fragility, draw: str) -> FragilityView:
 
 def _sources(f: Fragility) -> str:
     motions = "1 motion" if f.motions == 1 else f"{f.motions} motions"
-    record = f"stated, since {motions} cannot tell" if f.stated else f"of {motions}"
+    # That few motions cannot tell it is said once a gallery.
+    record = "stated" if f.stated else f"of {motions}"
     return (
         f"Dispersion {f.dispersion:.2f}: records {f.record:.2f} ({record}), measures {f.inputs:.2f}, model "
         f"{f.modelling:.2f}."
@@ -136,20 +137,17 @@ def _picture(f: Fragility, number: str) -> Markup:
     """Return the probability of failing against the peak acceleration of the floor, 0 to 2 g."""
     # Closer together where curves are steep.
     steps = [_MOST * (i / (_POINTS - 1)) ** 2 for i in range(_POINTS)]
-    curve = path([(_across(a), _FLOOR - 52.0 * f.probability(a)) for a in steps])
+    curve = path([(round(_across(a)), round(_FLOOR - 52.0 * f.probability(a))) for a in steps])
     beside = f"M{_across(f.published_median):.0f} 6V{_FLOOR:.0f}" if f.published_median is not None else ""
     title = f"{clean(number)}: {clean(f.title)}"
     told = "Probability of failure at a peak acceleration of the floor: "
     told += ", ".join(f"{f.probability(a):.0%} at {in_g(a)}" for a in _TOLD)
-    ticks = "".join(
-        f'<text class="tx" x="{_across(g * G):.0f}" y="71">{text}</text>'
-        for g, text in ((0.0, "0"), (1.0, "1"), (2.0, "2 g"))
-    )
     return Markup(
         '<svg class="chart curve" viewBox="0 0 {wide} {high}" role="img"><title>{title}</title><desc>{told}.</desc>'
-        '<path class="ax" d="M10 6V{floor}H200"/><path class="gr" d="M10 32H200"/>'
+        '<path class="ax" d="M10 6V{floor}H200"/>'
     ).format(wide=int(_WIDE), high=int(_HIGH), floor=int(_FLOOR), title=title, told=told) + Markup(  # noqa: S704
-        (f'<path class="gd" d="{beside}"/>' if beside else "") + f'<path class="cu" d="{curve}"/>{ticks}</svg>'
+        (f'<path class="gd" d="{beside}"/>' if beside else "")
+        + f'<path class="cu" d="{curve}"/><text class="ty" x="216" y="71">2 g</text></svg>'
     )
 
 
