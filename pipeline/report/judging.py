@@ -147,7 +147,7 @@ def _picture(f: Fragility, number: str) -> Markup:
         '<path class="ax" d="M10 6V{floor}H200"/>'
     ).format(wide=int(_WIDE), high=int(_HIGH), floor=int(_FLOOR), title=title, told=told) + Markup(  # noqa: S704
         (f'<path class="gd" d="{beside}"/>' if beside else "")
-        + f'<path class="cu" d="{curve}"/><text class="ty" x="216" y="71">2 g</text></svg>'
+        + f'<path class="cu" d="{curve}"/><text class="ty" x="216" y="68">2 g</text></svg>'
     )
 
 
