@@ -7,10 +7,11 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from difflib import get_close_matches
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from pipeline import __version__
-from pipeline.assess import assess
+from pipeline.assess import assess, integrated_at
 from pipeline.charting import Shelf
 from pipeline.charts import chart_keys, charts, picture_version
 from pipeline.classify import classify
@@ -19,6 +20,7 @@ from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
 from pipeline.jobs.importing import import_collection, source_of
 from pipeline.jobs.levels import Storey, notes, storeys
+from pipeline.jobs.reporting import manner
 from pipeline.jobs.workspace import (
     KEPT,
     UsageError,
@@ -31,14 +33,19 @@ from pipeline.jobs.workspace import (
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import advise
 from pipeline.motions.site import Level, Site, read_site
-from pipeline.records import Assessment, Chart, Executor, Item, Motion, Progress, RunRecord, Verdict
-from pipeline.report import Units, publish, render
+from pipeline.records import Assessment, Chart, Executor, Item, Motion, Progress, RunRecord, Verdict, Wish
+from pipeline.report import publish, render
 from pipeline.settings import Settings
 from pipeline.store.reuse import KERNELS, PICTURES, SELECTION, stored_charts, whole_runs
 from pipeline.store.runs import compare_runs, save_run
+from pipeline.survey import in_order, wishes
 
 if TYPE_CHECKING:
     from pipeline.store.changes import RunChanges
+
+
+SURVEY_SECONDS = "survey_seconds"
+"""The setting of a run that says what its survey cost."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +65,8 @@ class Summary:
     """What a run did, for one screen and for programs.
 
     objects       : all that were looked at; act + open + safe + cannot is the same number
+    worth         : how many measurements would settle a verdict, None where that was not asked
+    survey_seconds: what asking cost
     missing       : why objects could not be assessed, with how many of each
     report        : the report's index, None for a dry run
     """
@@ -77,6 +86,8 @@ class Summary:
     measures: Mapping[str, int]
     missing: Mapping[str, int]
     first: Sequence[str]
+    worth: int | None = None
+    survey_seconds: float = 0.0
     report: Path | None = None
     latest: Path | None = None
     changes: "RunChanges | None" = field(default=None, repr=False)
@@ -93,6 +104,7 @@ def run(
     chosen = selection or Selection()
     with locked(settings):
         started = datetime.now(UTC)
+        manner(settings)  # A catalogue that is missing is said before the night's work, not after it.
         workspace = open_workspace(settings)
         _refresh(workspace, progress, dry_run=dry_run)
         inventory = read_inventory(workspace.engine)
@@ -107,7 +119,7 @@ def run(
         before = [] if chosen else whole_runs(workspace.engine)[:1]
         save_run(workspace.engine, record)
         progress.step("report", 0, 1)
-        index = render(record, workspace.reports / record.run_id, units=Units(length=settings.report.length))
+        index = render(record, workspace.reports / record.run_id, **manner(settings))
         # A part of the collection is worth a report, but not the name of the museum's latest one.
         latest = None if chosen else publish(index.parent, workspace.reports)
         progress.step("report", 1, 1)
@@ -180,11 +192,12 @@ def assess_items(
     executor = Threads(settings.analysis.workers or None)
     floors = storeys(settings, site, items)
     assessments: dict[int, Assessment] = {}
+    asked = _Asked() if settings.report.survey else None
     # Motions that two floors share (one record for several) are drawn once.
     motions = {one.motion.hash: one.motion for f in floors for level in f.levels for one in level.motions}
     with charts_of(settings, motions) as shelf:
         for storey in floors:
-            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments)
+            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments, asked)
         drawn = _charts(workspace, list(motions.values()), executor, progress, shelf)
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
@@ -201,12 +214,22 @@ def assess_items(
         site=site.name,
         museum=settings.museum.name or (info.museum if info else ""),
         level_notes=(*levels_said, *notes(settings, site, {item.gallery for item in inventory})),
-        settings=_stored_settings(settings, info.credit if info else "", tested),
+        settings=_stored_settings(settings, info.credit if info else "", tested)
+        | ({} if asked is None else {SURVEY_SECONDS: round(asked.seconds, 3)}),
         assessments=tuple(assessments[index] for index in range(len(items))),
         charts=drawn,
         motions=tuple(summary for storey in floors for summary in storey.summaries),
         demonstration=settings.demonstration,
+        wishes=None if asked is None else tuple(in_order(asked.found)),
     )
+
+
+@dataclass
+class _Asked:
+    """What is worth measuring, storey by storey, and the seconds that finding out took."""
+
+    found: list[Wish] = field(default_factory=list)
+    seconds: float = 0.0
 
 
 def _assess_storey(
@@ -217,6 +240,7 @@ def _assess_storey(
     progress: Progress,
     shelf: Shelf,
     assessments: dict[int, Assessment],
+    asked: _Asked | None,
 ) -> None:
     scenes = [replace(classify(items[index], workspace.rules), floor=storey.name) for index in storey.members]
     settings, levels = workspace.settings, storey.shaking
@@ -233,6 +257,12 @@ def _assess_storey(
     advice = advise(scenes, findings, levels, executor, progress)
     for index, scene, found, advised in zip(storey.members, scenes, findings, advice, strict=True):
         assessments[index] = Assessment(scene, tuple(found), tuple(advised))
+    if asked is not None:
+        began = perf_counter()
+        # Each trial is asked once: a chart would not pay.
+        fidelity, step = integrated_at(settings.analysis.fidelity), settings.analysis.azimuth_step
+        asked.found += wishes(scenes, findings, levels, executor, progress, fidelity=fidelity, azimuth_step=step)
+        asked.seconds += perf_counter() - began
 
 
 def _stored_settings(settings: Settings, credit: str, tested: selftest.SelfTest | None) -> dict[str, Any]:
@@ -309,6 +339,8 @@ def summarise(record: RunRecord) -> Summary:
         measures=dict(Counter(advised.title for advised in advice).most_common()),
         missing=dict(missing.most_common()),
         first=_first(record),
+        worth=None if record.wishes is None else sum(not wish.waste for wish in record.wishes),
+        survey_seconds=float(record.settings.get(SURVEY_SECONDS, 0.0)),
     )
 
 

@@ -1,10 +1,10 @@
 """Looking at runs that are over: render one again, compare two."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 from pipeline.jobs.workspace import UsageError, locked, open_workspace
-from pipeline.report import Units, publish, render
+from pipeline.report import Language, Units, language, publish, render
 from pipeline.settings import Settings
 from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import compare_runs, load_run
@@ -22,10 +22,27 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
         workspace = open_workspace(settings)
         newest = whole_runs(workspace.engine)[:1]
         record = load_run(workspace.engine, run_id or (newest[0] if newest else None))
-        index = render(record, _free(workspace.reports / record.run_id), units=Units(length=settings.report.length))
+        index = render(record, _free(workspace.reports / record.run_id), **manner(settings))
         if [record.run_id] == newest:
             publish(index.parent, workspace.reports)
         return index
+
+
+class Manner(TypedDict):
+    """How a report is written: what `render` is told."""
+
+    units: Units
+    language: Language
+
+
+def manner(settings: Settings) -> Manner:
+    """Return the units and the language that the settings ask for.
+
+    raises : ReportError for a language without a catalogue, or with a damaged one
+    """
+    asked = settings.report
+    folder = settings.path(asked.catalogues) if asked.catalogues else None
+    return {"units": Units(length=asked.length), "language": language(asked.language, folder)}
 
 
 def _free(folder: Path) -> Path:

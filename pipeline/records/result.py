@@ -10,6 +10,7 @@ from typing import Any
 from pipeline.records.motion import MotionSummary
 from pipeline.records.picture import Chart, Mark
 from pipeline.records.scene import Origin, Scene
+from pipeline.records.wish import Wish
 
 
 class Verdict(StrEnum):
@@ -112,7 +113,10 @@ class Assessment:
 
 @dataclass(frozen=True, slots=True)
 class RunRecord:
-    """A whole run, as the store gives it back: all that the reports need, and nothing is computed again."""
+    """A whole run, as the store gives it back: all that the reports need, and nothing is computed again.
+
+    wishes : what is worth measuring, what settles most first; None where the run did not ask
+    """
 
     run_id: str
     started: str
@@ -126,3 +130,4 @@ class RunRecord:
     charts: Mapping[str, Chart]
     motions: tuple[MotionSummary, ...]
     demonstration: bool = False
+    wishes: tuple[Wish, ...] | None = None

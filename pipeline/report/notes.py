@@ -67,7 +67,7 @@ class PageNotes:
     def numbers(self, numbers: Sequence[NumberView]) -> Markup:
         """Return the numbers that an object was run with in one line, grouped by where they come from."""
         groups = (
-            f"{escape(origin.capitalize())}: "
+            f"{escape(origin[:1].upper() + origin[1:])}: "
             + "; ".join([escape(n.text) + self.assumed.tag(n.note, n.source) for n in members])
             for origin, members in groupby(numbers, key=lambda n: n.origin)
         )

@@ -20,11 +20,12 @@ from pipeline.records import (
     RunRecord,
     Scene,
     Verdict,
+    Wish,
 )
 from pipeline.store import codec
 from pipeline.store.changes import RunChanges, changes
 from pipeline.store.codec import StoreError
-from pipeline.store.tables import FINDING, RECOMMENDATION, RUN, RUN_CHART, RUN_MOTION, RUN_SCENE
+from pipeline.store.tables import FINDING, RECOMMENDATION, RUN, RUN_CHART, RUN_MOTION, RUN_SCENE, RUN_WISH
 
 __all__ = [
     "RunChanges",
@@ -43,6 +44,9 @@ _CHUNK = 2_000
 
 FINISHED, UNFINISHED = "finished", "unfinished"
 
+_WISHES = "wishes"
+"""Counted only where the run asked what is worth measuring: nothing asked is not the same as nothing found."""
+
 _RUN_FIELDS = ("run_id", "started", "finished", "version", "site", "museum", "level_notes", "settings", "demonstration")
 
 
@@ -51,7 +55,8 @@ class RunSummary:
     """A run as a list shows it.
 
     status : "finished", or "unfinished" for a run without a time of finishing
-    counts : objects, assessed, findings, pass, fail, undetermined, recommendations, charts, motions
+    counts : objects, assessed, findings, pass, fail, undetermined, recommendations, charts, motions,
+             and wishes where it asked for them
     """
 
     run_id: str
@@ -110,6 +115,7 @@ def load_run(engine: Engine, run_id: str | None = None) -> RunRecord:
             ),
             charts=_charts(connection, run_id),
             motions=tuple(_records(connection, RUN_MOTION, MotionSummary, run_id)),
+            wishes=tuple(_records(connection, RUN_WISH, Wish, run_id)) if _WISHES in head["counts"] else None,
         )
     if _counts(record) != head["counts"]:
         raise StoreError(
@@ -182,6 +188,8 @@ def _check(record: RunRecord) -> None:
                 raise StoreError(f"{where} has a {kind} of object {found.object_number!a}; keep each with its object")
     for motion in record.motions:
         _check_types(f"{run}, motion {motion.name!a}", MotionSummary, motion)
+    for wish in record.wishes or ():
+        _check_types(f"{run}, {wish.field} of object {wish.object_number!a}", Wish, wish)
     for key, chart in record.charts.items():
         _check_types(f"{run}, chart {key!a}", dict[str, Chart], {key: chart})
     head = {name: getattr(record, name) for name in _RUN_FIELDS if name not in {"settings", "level_notes"}}
@@ -219,6 +227,7 @@ def _tables(record: RunRecord) -> Iterator[tuple[Table, Iterable[dict[str, Any]]
     yield RUN_MOTION, _rows(of_run, MotionSummary, record.motions)
     charts = enumerate(record.charts.items())
     yield RUN_CHART, ({**of_run, "position": i, "key": key, "chart": chart} for i, (key, chart) in charts)
+    yield RUN_WISH, _rows(of_run, Wish, record.wishes or ())
     scenes = (assessment.scene for assessment in everything)
     yield RUN_SCENE, (row | _item_columns(row) for row in _rows(of_run, Scene, scenes))
     yield FINDING, _rows(of_run, Finding, (finding for one in everything for finding in one.findings))
@@ -257,6 +266,7 @@ def _counts(record: RunRecord) -> dict[str, int]:
         "recommendations": sum(len(assessment.recommendations) for assessment in record.assessments),
         "charts": len(record.charts),
         "motions": len(record.motions),
+        **({} if record.wishes is None else {_WISHES: len(record.wishes)}),
     }
 
 

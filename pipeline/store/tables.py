@@ -14,7 +14,7 @@ from sqlalchemy.types import TypeDecorator, TypeEngine
 from pipeline.collection.database import METADATA
 from pipeline.collection.inventory import IMPORT_BATCH, ITEM
 from pipeline.collection.supplement import SUPPLEMENT
-from pipeline.records import Chart, Finding, MotionSummary, Recommendation, Scene
+from pipeline.records import Chart, Finding, MotionSummary, Recommendation, Scene, Wish
 from pipeline.store import codec
 
 # The inventory's tables are handed on so that METADATA is whole wherever this module is imported.
@@ -28,6 +28,7 @@ __all__ = [
     "RUN_CHART",
     "RUN_MOTION",
     "RUN_SCENE",
+    "RUN_WISH",
     "SUPPLEMENT",
 ]
 
@@ -264,3 +265,13 @@ RECOMMENDATION = Table(
     Index(None, "run_id", "object_number"),
 )
 """One row a recommendation."""
+
+RUN_WISH = Table(
+    "run_wish",
+    METADATA,
+    _of_run(),
+    _position(),
+    *_columns(Wish),
+    Index(None, "run_id", "object_number"),
+)
+"""One row a quantity that is worth measuring on an object, or that was asked for and would settle nothing."""
