@@ -1,7 +1,7 @@
 """One object in words and in the reader's units."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import isfinite, isnan
 
 from pipeline.records import (
@@ -233,8 +233,30 @@ class Describer:
             level=clean(r.level),
             sentence=clean(self._units.fill(said(r.sentence), values, where)),
             checks=tuple(self._check(c, before.get(c.model)) for c in r.checks),
+            ended=self._ended(r, before),
             rejected=tuple(clean(text) for text in r.rejected),
             source=clean(r.source),
+        )
+
+    def _ended(self, r: Recommendation, before: Mapping[str, Finding]) -> tuple[CheckView, ...]:
+        """Return the failures that the measure takes away: every model that still applies was run again."""
+        if not r.checks:
+            return ()
+        left = {c.model for c in r.checks}
+        gone = [f for name, f in before.items() if name not in left and finding_state(f) is State.ACT]
+        return tuple(
+            CheckView(
+                title=said(clean(f.title)),
+                before=self._units.text(f.demand, f.unit),
+                demand="–",
+                capacity=self._units.text(f.capacity, f.unit),
+                utilisation_before=percent(f.utilisation),
+                utilisation="–",
+                bar_before=bar(f.utilisation),
+                bar=None,
+                passes=True,
+            )
+            for f in gone
         )
 
     def _check(self, c: Check, f: Finding | None) -> CheckView:

@@ -7,7 +7,7 @@ from pipeline.report.language import _, said
 from pipeline.report.text import clean, count, words
 from pipeline.report.units import Units, significant
 from pipeline.report.views import ObjectView, SurveyView, WishView
-from pipeline.survey import measurables
+from pipeline.survey import ENDS, measurables
 
 SURVEY_SECONDS = "survey_seconds"
 """The setting of a run that says what its survey cost."""
@@ -78,7 +78,13 @@ def _effect(wish: Wish) -> str:
         return _("without it nothing can be said")
     if wish.waste:
         return _("alone it settles nothing")
-    return _("settles %(settles)s of %(open)s open verdicts") % {
+    if wish.open == 1:
+        # The mean over three trials that either settle the verdict or do not: a whole number of them.
+        return _("settles it in %(number)s of %(trials)s trials") % {
+            "number": round(wish.settles * len(ENDS)),
+            "trials": len(ENDS),
+        }
+    return _("settles %(settles)s of %(open)s open verdicts on average") % {
         "settles": significant(wish.settles, 2),
         "open": wish.open,
     }

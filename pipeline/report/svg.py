@@ -205,7 +205,7 @@ class Drawing:
         return (
             f'<svg class="chart" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-labelledby="{ident}t {ident}d">'
             f'<title id="{ident}t">{escape(title)}</title><desc id="{ident}d">{escape(read)}</desc>'
-            f'<use href="#{self.ident}" width="{WIDTH}" height="{HEIGHT}"/>'
+            f'<use href="#{self.ident}"/>'
             f"{self._zone_labels(taken)}{marks}</svg>"
         )
 

@@ -91,13 +91,14 @@ class CheckView:
 
 @dataclass(frozen=True, slots=True)
 class MeasureView:
-    """One recommendation in words."""
+    """One recommendation in words; ``ended`` are the failures that can no longer happen with it."""
 
     measure: str
     title: str
     level: str
     sentence: str
     checks: tuple[CheckView, ...]
+    ended: tuple[CheckView, ...]
     rejected: tuple[str, ...]
     source: str
 

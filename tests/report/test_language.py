@@ -1,0 +1,191 @@
+"""Every phrase is looked up: a catalogue that answers in brackets leaves no English outside them, but for the data."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass, replace
+from enum import Enum
+from gettext import GNUTranslations
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import pytest
+from babel.messages.catalog import Catalog
+from babel.messages.extract import extract_from_dir
+from babel.messages.mofile import write_mo
+from lxml import etree
+
+from pipeline.records import RunRecord
+from pipeline.report import Language, ReportError, language, render
+from pipeline.report.language import said, speaking
+from pipeline.resources import resource
+
+from . import builder
+
+OPEN, CLOSE = "⟦", "⟧"
+PLACEHOLDER = re.compile(r"%\(\w+\)s|<[^>]*>|&\w+;|%%")
+LETTERS = str.maketrans(
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ", "абцдефгхийклмнопярстувщхузАБЦДЕФГХИЙКЛМНОПЯРСТУВЩХУЗ"
+)
+UNITS = {"cm", "g", "mm", "m", "in", "ft", "s", "Hz", "kg", "N", "MPa", "PGA", "PGV", "PGD", "SI"}
+FILES = re.compile(r"\w+\.(csv|jsonl|parquet|xlsx|html|toml)|kouros check --numerics")
+MARKED = ("bdi", "code", "eq")
+"""Elements and classes that hold data: what the museum wrote, hashes, equations."""
+
+
+def phrases() -> Iterator[tuple[str, tuple[str, ...]]]:
+    """All phrases that the pages ask for, as babel finds them: the phrase and its plural."""
+    places = {"templates": [("**.html", "jinja2.ext:babel_extract")], "report": [("**.py", "python")]}
+    roots = {"templates": resource("templates"), "report": Path(__file__).parents[2] / "pipeline" / "report"}
+    for place, methods in places.items():
+        options = {pattern: {"trimmed": "false", "silent": "false"} for pattern, _method in methods}
+        keywords = {"_": None, "gettext": None, "ngettext": (1, 2)}
+        for found in extract_from_dir(roots[place], methods, options, keywords=keywords):
+            message = found[2]
+            yield (message, ()) if isinstance(message, str) else (message[0], tuple(message[1:]))
+
+
+def pseudo(phrase: str) -> str:
+    """Return the phrase in brackets and in letters of another script; its placeholders and tags stay."""
+    kept = PLACEHOLDER.findall(phrase)
+    parts = [part.translate(LETTERS) for part in PLACEHOLDER.split(phrase)]
+    return OPEN + "".join(a + b for a, b in zip(parts, [*kept, ""], strict=True)) + CLOSE
+
+
+def catalogue() -> Catalog:
+    made = Catalog(locale="en", fuzzy=False)
+    for phrase, plural in phrases():
+        key: Any = (phrase, *plural) if plural else phrase
+        made.add(key, tuple(map(pseudo, key)) if plural else pseudo(phrase))
+    return made
+
+
+@pytest.fixture(scope="module")
+def compiled() -> GNUTranslations:
+    file = BytesIO()
+    write_mo(file, catalogue())
+    file.seek(0)
+    return GNUTranslations(file)
+
+
+def foreign(value: Any) -> Any:
+    """Return the records with every text of theirs in letters of another script, so that data is known from phrases."""
+    if isinstance(value, Enum) or value is None:
+        return value
+    if isinstance(value, str):
+        return "".join(
+            part if part.startswith("{") and part in ("{demand}", "{capacity}", "{low}", "{high}") or _named(part)
+            else part.translate(LETTERS)
+            for part in re.split(r"(\{\w+\})", value)
+        )  # fmt: skip
+    if is_dataclass(value) and not isinstance(value, type):
+        return replace(value, **{f.name: _field(f.name, getattr(value, f.name)) for f in fields(value)})
+    if isinstance(value, tuple):
+        return tuple(foreign(part) for part in value)
+    return value
+
+
+KEPT = {"unit", "units", "model", "models", "motion_hash", "hash", "chart", "key", "settings", "decided_by", "fidelity"}
+KEPT |= {"measure", "field", "measures", "series", "source", "scale", "tone", "started", "finished", "run_id", "missing"}
+
+
+def _named(part: str) -> bool:
+    return bool(re.fullmatch(r"\{\w+\}", part))
+
+
+def _field(name: str, value: Any) -> Any:
+    if name == "item":
+        return replace(foreign(value), problems=())
+    if name == "mark" and value is not None:
+        return replace(value, label=foreign(value.label))
+    if name in ("parameters", "skipped") and isinstance(value, Mapping):
+        return {k: foreign(v) for k, v in value.items()}
+    if name == "charts":
+        return {k: foreign(v) for k, v in value.items()}
+    return value if name in KEPT else foreign(value)
+
+
+@pytest.fixture(scope="module")
+def pages(compiled: GNUTranslations, tmp_path_factory: pytest.TempPathFactory) -> dict[str, etree._Element]:
+    record: RunRecord = foreign(builder.record())
+    index = render(record, tmp_path_factory.mktemp("pseudo") / "one", language=Language("it", compiled))
+    return {p.name: etree.parse(str(p)).getroot() for p in sorted(index.parent.glob("*.html"))}
+
+
+def _texts(page: etree._Element) -> Iterator[str]:
+    """Yield each text that a reader or a screen reader meets, and the attributes that are read aloud."""
+    for element in page.iter():
+        tag = str(element.tag)
+        inside = [element, *element.iterancestors()]
+        hidden = any(str(e.tag) in ("style", "script", *MARKED) or set((e.get("class") or "").split()) & {*MARKED} for e in inside)
+        for name in ("title", "aria-label", "data-words"):
+            if element.get(name) and tag != "html":
+                yield element.get(name) or ""
+        if not hidden:
+            yield element.text or ""
+        above = inside[1:]
+        if not any(str(e.tag) in ("style", "script", *MARKED) or set((e.get("class") or "").split()) & {*MARKED} for e in above):
+            yield element.tail or ""
+
+
+def test_no_english_is_left(pages: dict[str, etree._Element]) -> None:
+    left: dict[str, str] = {}
+    for name, page in pages.items():
+        for text in _texts(page):
+            bare = FILES.sub("", text)
+            for word in re.findall(r"[A-Za-z][A-Za-z]+", bare):
+                if word not in UNITS:
+                    left.setdefault(word, f"{name}: {text.strip()[:120]}")
+    assert left == {}
+
+
+def test_every_page_says_its_language_and_is_translated(pages: dict[str, etree._Element]) -> None:
+    for page in pages.values():
+        assert (page.get("lang"), page.get("dir")) == ("it", "ltr")
+        assert OPEN in " ".join(_texts(page))
+    assert Language("he").direction == "rtl"
+
+
+def test_babel_finds_phrases_in_templates_and_in_code() -> None:
+    found = {phrase for phrase, _plural in phrases()}
+    assert {"What to do first", "a guaranteed bound, without integration", "%(low)s to %(high)s"} <= found
+    assert len(found) > 250
+
+
+def _write(folder: Path, made: Catalog, code: str = "it") -> Path:
+    file = folder / code / "LC_MESSAGES" / "kouros.mo"
+    file.parent.mkdir(parents=True)
+    with file.open("wb") as out:
+        write_mo(out, made)
+    return folder
+
+
+def test_a_catalogue_is_read_from_its_folder(tmp_path: Path) -> None:
+    chosen = language("it", _write(tmp_path, catalogue()))
+    with speaking(chosen):
+        assert said("freestanding") == pseudo("freestanding")
+        # A text of the run that no catalogue knows as a whole is looked up sentence by sentence.
+        assert said("freestanding. hung") == "freestanding. " + pseudo("hung")
+    assert said("freestanding") == "freestanding"
+
+
+@pytest.mark.parametrize("code", ["it", "xx-YY"])
+def test_a_language_without_a_catalogue_is_refused(tmp_path: Path, code: str) -> None:
+    with pytest.raises(ReportError, match=r"kouros\.mo; compile the catalogue"):
+        language(code, tmp_path)
+    with pytest.raises(ReportError, match="catalogues names no folder"):
+        language(code, None)
+    assert language("en-GB", None).code == "en-GB"
+
+
+def test_a_damaged_catalogue_and_a_wrong_placeholder_are_named(tmp_path: Path) -> None:
+    made = Catalog(locale="it")
+    made.add("%(low)s to %(high)s", "da %(lo)s")
+    with pytest.raises(ReportError, match=r"asks for lo: use only"):
+        language("it", _write(tmp_path / "a", made))
+    _write(tmp_path / "b", Catalog(locale="it"))
+    (tmp_path / "b" / "it" / "LC_MESSAGES" / "kouros.mo").write_bytes(b"no catalogue")
+    with pytest.raises(ReportError, match="is damaged"):
+        language("it", tmp_path / "b")
