@@ -136,9 +136,10 @@ def _draw(places: Sequence[_Place], units: Units) -> str:
         "depth": units.text(up, "m"),
         **{state.value: count(number) for state, number in tally.items()},
     }
+    heading = escape(_("Plan of the gallery, to scale"))
     return (
         f'<svg class="plan" viewBox="0 0 {WIDTH:.0f} {height:.0f}" role="group" aria-labelledby="plant pland">'
-        f'<title id="plant">{escape(_("Plan of the gallery, to scale"))}</title><desc id="pland">{escape(told)}</desc>'
+        f'<title id="plant">{heading}</title><desc id="pland">{escape(told)}</desc>'
         f"<defs>{PLAN_PATTERNS}</defs>{rings}{shapes}{_bar(scale, height, units)}{_north(height)}</svg>"
     )
 
@@ -196,8 +197,8 @@ def _bar(scale: float, height: float, units: Units) -> str:
 
 
 def _north(height: float) -> str:
-    x, y = WIDTH - _MARGIN, height - 14
+    x, y, told = WIDTH - _MARGIN, height - 14, escape(_("North"))
     return (
         f'<path class="pz" d="M{x:.0f} {y - 26:.0f}L{x + 7:.0f} {y:.0f}L{x:.0f} {y - 6:.0f}L{x - 7:.0f} {y:.0f}Z"/>'
-        f'<text class="pl e" x="{x - 12:.0f}" y="{y:.0f}">{escape(_("North"))}</text>'
+        f'<text class="pl e" x="{x - 12:.0f}" y="{y:.0f}">{told}</text>'
     )

@@ -63,10 +63,11 @@ def _figure(chart: Chart) -> float:
 def _name(key: str) -> str:
     head, _bar, rest = key.partition("_")
     if head in ("pga", "pgv", "pgd"):
-        return f"{head.upper()} {_(rest.replace('_', ' '))}".strip()
+        return f"{head.upper()} {words(rest)}".strip()
     if key == "duration_5_95":
         return _("Significant duration (5 to 95 %)")
-    return words(plain(key)).capitalize()
+    told = words(plain(key))
+    return told[:1].upper() + told[1:]
 
 
 def _unit(key: str) -> str:

@@ -199,7 +199,7 @@ class Drawing:
         elif not subject:
             told = self._contents
         axes = {"x": plain(self.axis_label("x")), "y": plain(self.axis_label("y"))}
-        read = f"{_('Horizontal: %(x)s. Vertical: %(y)s.') % axes} {told}".rstrip()
+        read = (_("Horizontal: %(x)s. Vertical: %(y)s.") % axes + " " + told).rstrip()
         marks = "".join(self._spot(s, self._label_line(s, shown)) for s in shown)
         taken = [(self.x.at(s.x * self._fx), self.y.at(s.y * self._fy)) for s in shown]
         return (

@@ -68,7 +68,7 @@ def trace(motion: MotionSummary, units: Units, ident: str) -> str:
         "peak": units.text(peak / factor, "m/s2"),
     }
     heading = _("%(motion)s: accelerogram") % {"motion": plain(motion.name)}
-    across, up = escape(_("Time (s)")), f"{escape(_('Acceleration'))} ({symbol})"
+    across, up = escape(_("Time (s)")), escape(_("Acceleration")) + f" ({symbol})"
     return (
         f'<svg class="chart wide" viewBox="0 0 {WIDTH} {height}" role="img" aria-labelledby="{ident}t {ident}d">'
         f'<title id="{ident}t">{escape(heading)}</title>'

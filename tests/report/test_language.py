@@ -14,37 +14,53 @@ from typing import Any
 import pytest
 from babel.messages.catalog import Catalog
 from babel.messages.extract import extract_from_dir
+from babel.messages.frontend import parse_mapping_cfg
 from babel.messages.mofile import write_mo
 from lxml import etree
 
 from pipeline.records import RunRecord
 from pipeline.report import Language, ReportError, language, render
 from pipeline.report.language import said, speaking
-from pipeline.resources import resource
 
 from . import builder
 
 OPEN, CLOSE = "⟦", "⟧"
-PLACEHOLDER = re.compile(r"%\(\w+\)s|<[^>]*>|&\w+;|%%")
+PLACEHOLDER = re.compile(r"%\(\w+\)s|\{\w+\}|<[^>]*>|&\w+;|%%")
 LETTERS = str.maketrans(
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ", "абцдефгхийклмнопярстувщхузАБЦДЕФГХИЙКЛМНОПЯРСТУВЩХУЗ"
 )
-UNITS = {"cm", "g", "mm", "m", "in", "ft", "s", "Hz", "kg", "N", "MPa", "PGA", "PGV", "PGD", "SI"}
+UNITS = {"cm", "g", "mm", "m", "in", "ft", "s", "Hz", "kg", "N", "MPa", "PGA", "PGV", "PGD", "SI", "UTC"}
 FILES = re.compile(r"\w+\.(csv|jsonl|parquet|xlsx|html|toml)|kouros check --numerics")
 MARKED = ("bdi", "code", "eq")
 """Elements and classes that hold data: what the museum wrote, hashes, equations."""
 
 
+NAMES = (
+    *("force", "frequency", "stroke", "acceleration", "clearance", "length", "base width", "base depth", "half width"),
+    *(
+        "friction static",
+        "height of the centre of gravity",
+        "swing",
+        "flexible stress",
+        "significant duration",
+        "arias intensity",
+    ),
+)
+"""Names of fields, parameters and models in the builder's record: the pages look up the plain words of any name."""
+
+
 def phrases() -> Iterator[tuple[str, tuple[str, ...]]]:
-    """All phrases that the pages ask for, as babel finds them: the phrase and its plural."""
-    places = {"templates": [("**.html", "jinja2.ext:babel_extract")], "report": [("**.py", "python")]}
-    roots = {"templates": resource("templates"), "report": Path(__file__).parents[2] / "pipeline" / "report"}
-    for place, methods in places.items():
-        options = {pattern: {"trimmed": "false", "silent": "false"} for pattern, _method in methods}
-        keywords = {"_": None, "gettext": None, "ngettext": (1, 2)}
-        for found in extract_from_dir(roots[place], methods, options, keywords=keywords):
-            message = found[2]
-            yield (message, ()) if isinstance(message, str) else (message[0], tuple(message[1:]))
+    """All phrases that a translation needs, as babel finds them by the file that the museum's translator uses."""
+    root = Path(__file__).parents[2]
+    with (root / "templates" / "babel.cfg").open(encoding="utf-8") as file:
+        methods, options = parse_mapping_cfg(file)
+    for found in extract_from_dir(root, methods, options, directory_filter=_ours):
+        message = found[2]
+        yield (message, ()) if isinstance(message, str) else (message[0], tuple(message[1:]))
+
+
+def _ours(folder: str) -> bool:
+    return Path(folder).name in ("templates", "pipeline", "report", "tables")
 
 
 def pseudo(phrase: str) -> str:
@@ -59,6 +75,8 @@ def catalogue() -> Catalog:
     for phrase, plural in phrases():
         key: Any = (phrase, *plural) if plural else phrase
         made.add(key, tuple(map(pseudo, key)) if plural else pseudo(phrase))
+    for name in NAMES:
+        made.add(name, pseudo(name))
     return made
 
 
@@ -75,11 +93,8 @@ def foreign(value: Any) -> Any:
     if isinstance(value, Enum) or value is None:
         return value
     if isinstance(value, str):
-        return "".join(
-            part if part.startswith("{") and part in ("{demand}", "{capacity}", "{low}", "{high}") or _named(part)
-            else part.translate(LETTERS)
-            for part in re.split(r"(\{\w+\})", value)
-        )  # fmt: skip
+        parts = re.split(r"(\{\w+\})", value)  # placeholders stay, for the numbers to go there
+        return "".join(part if part.startswith("{") else part.translate(LETTERS) for part in parts)
     if is_dataclass(value) and not isinstance(value, type):
         return replace(value, **{f.name: _field(f.name, getattr(value, f.name)) for f in fields(value)})
     if isinstance(value, tuple):
@@ -87,15 +102,15 @@ def foreign(value: Any) -> Any:
     return value
 
 
-KEPT = {"unit", "units", "model", "models", "motion_hash", "hash", "chart", "key", "settings", "decided_by", "fidelity"}
-KEPT |= {"measure", "field", "measures", "series", "source", "scale", "tone", "started", "finished", "run_id", "missing"}
-
-
-def _named(part: str) -> bool:
-    return bool(re.fullmatch(r"\{\w+\}", part))
+KEPT = {"unit", "units", "model", "models", "motion_hash", "hash", "chart", "key", "decided_by", "fidelity"}
+KEPT |= {"measure", "field", "measures", "series", "scale", "tone", "started", "finished", "run_id", "missing"}
 
 
 def _field(name: str, value: Any) -> Any:
+    if name == "settings":
+        told = value["numerics"]
+        cases = [case | {"what": foreign(case["what"]), "truth": foreign(case["truth"])} for case in told["cases"]]
+        return {**value, "numerics": told | {"cases": cases, "machine": foreign(told["machine"])}}
     if name == "item":
         return replace(foreign(value), problems=())
     if name == "mark" and value is not None:
@@ -119,14 +134,19 @@ def _texts(page: etree._Element) -> Iterator[str]:
     for element in page.iter():
         tag = str(element.tag)
         inside = [element, *element.iterancestors()]
-        hidden = any(str(e.tag) in ("style", "script", *MARKED) or set((e.get("class") or "").split()) & {*MARKED} for e in inside)
+        hidden = any(
+            str(e.tag) in ("style", "script", *MARKED) or set((e.get("class") or "").split()) & {*MARKED}
+            for e in inside
+        )
         for name in ("title", "aria-label", "data-words"):
             if element.get(name) and tag != "html":
                 yield element.get(name) or ""
         if not hidden:
             yield element.text or ""
         above = inside[1:]
-        if not any(str(e.tag) in ("style", "script", *MARKED) or set((e.get("class") or "").split()) & {*MARKED} for e in above):
+        if not any(
+            str(e.tag) in ("style", "script", *MARKED) or set((e.get("class") or "").split()) & {*MARKED} for e in above
+        ):
             yield element.tail or ""
 
 
