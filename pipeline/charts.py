@@ -12,7 +12,7 @@ from pipeline.models.common import largest_push, largest_speed
 from pipeline.models.rocking import VELOCITY_SCREEN
 from pipeline.quantities import Array, G
 from pipeline.records import Axis, Chart, Curve, Executor, Motion, Zone
-from pipeline.response import respond, response_chart, trace
+from pipeline.response import DECIDES, respond, response_chart, trace
 
 SPECTRUM_FREQUENCIES = tuple(float(v) for v in np.round(np.geomspace(0.2, 50.0, 96), 4))
 PATH_FRICTION = 0.05
@@ -88,8 +88,8 @@ def _rounded(value: float) -> float:
 
 
 def sliding_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, float]) -> ResponseChart:
-    """Return the chart of sliding against friction."""
-    return response_chart("sliding", motion, tolerance=PICTURED, charts=shelf, **fixed)
+    """Return the chart of sliding against friction: the very one that verdicts are found by."""
+    return response_chart("sliding", motion, tolerance=DECIDES, charts=shelf, **fixed)
 
 
 def swing_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, float]) -> ResponseChart:

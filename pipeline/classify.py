@@ -37,6 +37,10 @@ def _measured(value: float | None, unit: str) -> Estimate | None:
     return None if value is None else Estimate.measured(value, unit)
 
 
+def _half(side: Estimate) -> Estimate:
+    return replace(side, value=0.5 * side.value, low=0.5 * side.low, high=0.5 * side.high)
+
+
 def _times(row: Row, kind: str, base: float, unit: str, what: str, of: str) -> Estimate:
     """Return a share of a recorded dimension, as the row of the class assumes it."""
     share = _range(row["class"], kind)
@@ -135,6 +139,10 @@ class _Builder:
             source = narrow.source or width.source or depth.source
             half = Estimate(0.5 * narrow.value, "m", origin, 0.5 * low, 0.5 * high, note, source)
             self._keep("half_width", half)
+            if item.orientation_deg is not None:
+                # Along its own axes each half counts in its direction; where nothing is known of them, the narrow one.
+                self._keep("half_base_width", _half(width))
+                self._keep("half_base_depth", _half(depth))
         cg = _measured(item.cg_height_m, "m")
         if cg is None and item.height_m is not None:
             cg = _times(self.row, "cg", item.height_m, "m", "height of the centre of gravity", "height")
@@ -251,6 +259,12 @@ class _Builder:
         self._keep(
             "section_modulus", Estimate(modulus, "m3", size.origin, modulus_low, modulus_high, base, size.source)
         )
+        if item.orientation_deg is not None and shape == "rectangle" and size.value != deep.value:
+            # Both sides of the section were measured: it bends the less, the longer the side along the push.
+            sides = (("section_modulus_width", size, deep), ("section_modulus_depth", deep, size))
+            for name, along, across in sides:
+                value = count * rectangle_modulus(along.value, across.value, wall)
+                self._keep(name, Estimate(value, "m3", size.origin, value, value, base, size.source))
 
     def _section_size(
         self, width: Estimate | None, depth: Estimate | None
@@ -296,27 +310,44 @@ def section_properties(shape: str, width: float, depth: float, count: int, wall:
         modulus = pi * (width**4 - inner**4) / (32.0 * width)
     elif shape in ("rectangle", "legs"):
         narrow, wide = min(width, depth), max(width, depth)
-        inner_narrow = max(narrow - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
-        inner_wide = max(wide - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
-        area = narrow * wide - inner_narrow * inner_wide
-        modulus = (wide * narrow**3 - inner_wide * inner_narrow**3) / (6.0 * narrow)
+        inner = max(narrow - 2.0 * wall, 0.0) * max(wide - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
+        area = narrow * wide - inner
+        modulus = rectangle_modulus(narrow, wide, wall)
     else:
         raise ValueError(f"section_shape {shape!r} is not known; use round, rectangle, or legs with section_count")
     return count * area, count * modulus
 
 
-def classify(item: Item, rules: Table | None = None) -> Scene:
+def rectangle_modulus(along: float, across: float, wall: float) -> float:
+    """Return the section modulus [m3] of a rectangle, hollow where wall > 0, for a push along one side [m]."""
+    inner_along = max(along - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
+    inner_across = max(across - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
+    return (across * along**3 - inner_across * inner_along**3) / (6.0 * along)
+
+
+def object_classes() -> Mapping[str, str]:
+    """Return the classes that an object may be of, each with its title."""
+    return {name: row["title"] for name, row in _classes().items()}
+
+
+def classify(item: Item, rules: Table | None = None, decided: tuple[str, str] | None = None) -> Scene:
     """Return the scene of one object: class, support, models to try, estimates, and the fields that are missing.
 
-    rules : the table that decides the class; None for Kouros's own
+    rules   : the table that decides the class; None for Kouros's own
+    decided : the class that a person gave it, and their words, in place of the rules
+    raises  : KeyError for a decided class that is no row of classes.csv
     """
-    decision = rule_for(item, rules)
-    row = _classes()[decision.rule.object_class]
+    if decided is None:
+        decision = rule_for(item, rules)
+        object_class, words = decision.rule.object_class, decision.words
+    else:
+        object_class, words = decided
+    row = _classes()[object_class]
     support = item.support or Support(row["support"])
     models = tuple(m for m in row["models"].split("|") if m and m != "none")
     if not models and item.support is None:
         why = f"no generic model applies: it {row['why']}"
-        return Scene(item, row["class"], decision.words, support, (), {}, (), (why,))
+        return Scene(item, row["class"], words, support, (), {}, (), (why,))
     if item.support is not None and item.support is not Support(row["support"]):
         models = MODELS_OF[item.support]
     elif item.frequency_hz is not None and "stress" in models:
@@ -331,7 +362,7 @@ def classify(item: Item, rules: Table | None = None) -> Scene:
     return Scene(
         item,
         row["class"],
-        decision.words,
+        words,
         support,
         models,
         builder.found,

@@ -19,9 +19,10 @@ from pipeline.charting import (
     tabulate,
 )
 from pipeline.models import MODELS, model_named
-from pipeline.models.common import BOUND, words
+from pipeline.models.common import BOUND, SENSITIVE, words
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Columns, Excitation, Model, Motion
+from pipeline.supports import TRANSMITTED, refined, support_named
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,14 +33,17 @@ FIDELITIES = ("screen", "bound", "chart", "history", "reference")
 TOLERANCE = 1e-3
 """Relative error that a chart's interpolation is granted."""
 
+DECIDES = 1e-2
+"""The same where charts only have to tell a verdict: what lies closer to its capacity is integrated.
+
+Of real objects with measured parameters less than 1 % do, sliding or swinging in every direction.
+"""
+
 REFINE = {"history": 2, "reference": 16}
 """How much finer than the coarsest step, which only ever looks for the worst direction, each fidelity integrates."""
 
 SCAN_LIMIT = 16
 """Refinement up to which a worst direction that a finer step does not confirm is looked for again."""
-
-TRANSMITTED = 1e-3
-"""Error that what stands on a support may get from the sampling of what the support passes on."""
 
 AZIMUTH_STEP = 10.0
 """Degrees between the directions of which the worst counts when the orientation is unknown (RotD100)."""
@@ -219,13 +223,15 @@ def look_up(
     azimuth_step: float = AZIMUTH_STEP,
     tolerance: float = TOLERANCE,
     charts: Shelf = SHELF,
+    least: int = 0,
 ) -> Tabulated:
     """Look prepared parameters up in charts, building those that are missing; what is on none of them is left open.
 
+    least  : how many sets must ask for a chart that is not on the shelf before it is built
     raises : as ``run_chart``
     """
     run, settings = _charted(model, motion, values, angle, tail, azimuth_step, tolerance)
-    return tabulate(model, motion, values, run, settings, charts)
+    return tabulate(model, motion, values, run, settings, charts, least)
 
 
 def response_chart(
@@ -324,8 +330,10 @@ def _worst_direction(
     first, demand = model.gives[0].name, model.demand
     where = np.zeros(size)
     most, push = np.full(size, -np.inf), np.full(size, -np.inf)
+    scans: dict[float, Columns] = {}
     for direction in np.arange(0.0, turn - 1e-9, azimuth_step):
         columns = model.run(motion.excitation(float(direction), tail), values, scan, False)
+        scans[float(direction)] = columns
         # Where the first output ties (nothing moved in either direction), the demand decides.
         larger = (columns[first] > most) | ((columns[first] == most) & (columns[demand] > push))
         most[larger], push[larger] = columns[first][larger], columns[demand][larger]
@@ -339,14 +347,43 @@ def _worst_direction(
             best.setdefault(name, np.empty(size))[rows] = column
     # A worst direction that the finer integration does not confirm (a block that fell, and then did not) says nothing:
     # look again with half the step, so that no direction in which it does fall is missed.
-    unsure = best[first] < 0.999 * most
-    if unsure.any() and refine < SCAN_LIMIT:
+    unsure = (best[first] < 0.999 * most) & (refine < SCAN_LIMIT)
+    _doubt_directions(model, motion, values, tail, scans, where, best, ~unsure)
+    if unsure.any():
         again = {name: v[unsure] for name, v in values.items()}
         columns, directions = _worst_direction(model, motion, again, 2 * refine, tail, azimuth_step)
         where[unsure] = directions
         for name, column in columns.items():
             best[name][unsure] = column
     return best, where
+
+
+def _doubt_directions(
+    model: Model,
+    motion: Motion,
+    values: Mapping[str, Array],
+    tail: float | None,
+    scans: Mapping[float, Columns],
+    where: Array,
+    best: Columns,
+    rows: NDArray[np.bool_],
+) -> None:
+    # Whether 1 % of the amplitude changes the outcome of the worst of all directions: a yes in one that stays a yes
+    # settles it, whatever the others do; a no can become a yes in any.  `best` is the row of the direction `where`.
+    if model.flips is None:
+        return
+    outcome = next(q.name for q in model.gives if q.unit == "bool")
+    note = best["note"].astype(np.int64)
+    told = (note & SENSITIVE) > 0
+    for direction, columns in scans.items():
+        yes = best[outcome] > 0.0
+        asked = rows & (where != direction) & ((columns[outcome] > 0.0) == yes) & (told == yes)
+        if not asked.any():
+            continue
+        some = {name: value[asked] for name, value in values.items()}
+        found = {name: column[asked] for name, column in columns.items()}
+        told[asked] = model.flips(motion.excitation(direction, tail), some, found)
+    best["note"] = np.where(told, note | SENSITIVE, note & ~SENSITIVE).astype(np.float64)
 
 
 def trace(model: str, motion: Motion, *, angle: float = 0.0, **parameters: Any) -> "pd.DataFrame":
@@ -377,16 +414,14 @@ def transmit(
     error      : largest error of the displacement of an oscillator of 2 to 20 Hz and 5 % damping on the support, as a
                  share of its peak; what is reached stands in the last of the motion's steps
     raises     : ValueError for an unknown support or parameter, and for an error that is not above 0
-    A floor's step follows from its modes, whatever is asked.
+    A floor by its factor is exact on the samples of its input, so that no error is asked of it.
     """
-    from pipeline.supports import refined, support_named
-
     row = support_named(support)
     values = _single(row, parameters, "transmit passes a motion through one support")
     if values.get("directions", 2.0) != 2.0:
         raise ValueError("transmit passes both horizontal directions on; leave directions out")
     _some_error(error)
-    if refine is not None or not row.refines:
+    if refine is not None or not row.refines(values):
         return row.transmit(motion, values, 1 if refine is None else refine)
     return refined(lambda samples: row.transmit(motion, values, samples), error)
 

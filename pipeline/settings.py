@@ -73,9 +73,18 @@ class Floors(RootModel[dict[str, tuple[str, ...]]]):
 class Analysis(_Part):
     """How finely to look."""
 
-    fidelity: Literal["chart", "history", "reference"] = "history"
+    fidelity: Literal["auto", "chart", "history", "reference"] = "auto"
     azimuth_step: float = Field(default=10.0, gt=0.0, le=90.0, description="degrees between directions (RotD100)")
     workers: int = Field(default=0, ge=0, le=256, description="threads; 0: as many as there are cores")
+
+
+class Mitigation(_Part):
+    """What the museum can do about what fails."""
+
+    measures: str = Field(default="", description="a CSV file whose rows replace Kouros's measures of the same name")
+    catalogue: str = Field(
+        default="", description="a CSV file of your own isolators, in place of Kouros's generic ones"
+    )
 
 
 class Charts(_Part):
@@ -104,6 +113,7 @@ class Settings(_Part):
     site: SiteFolder = SiteFolder()
     floors: Floors = Floors({})
     analysis: Analysis = Analysis()
+    mitigation: Mitigation = Mitigation()
     charts: Charts = Charts()
     report: Report = Report()
     home: Path = Field(default=Path(), exclude=True)
@@ -180,13 +190,19 @@ folder = {site}
 # "2" = ["Hall of Sculpture", "Gallery 12"]
 
 [analysis]
-# fidelity = "reference" integrates eight times finer; "chart" looks sliding and swinging up in charts of each motion
-# and integrates what they cannot decide.
-fidelity = "history"
+# "auto" climbs from bounds over charts to histories only as far as each verdict needs, with the verdicts of "history",
+# which integrates everything; "reference" does so eight times finer, and "chart" looks up whatever is on a chart.
+fidelity = "auto"
 # Degrees between the directions tried for an object whose orientation is not recorded.
 azimuth_step = 10.0
 # Threads; 0 means as many as there are cores.
 workers = 0
+
+[mitigation]
+# A CSV file with columns of Kouros's measures.csv: rows of the same name replace Kouros's words, order and limits.
+measures = ""
+# A CSV file with the columns of Kouros's isolators.csv: the isolators that you have or can buy.
+catalogue = ""
 
 [charts]
 # Response charts are kept until their motion was unused for so many days, and in this much room.

@@ -9,10 +9,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
-from pipeline.assess import LevelMotions, assess
+from pipeline.assess import assess
 from pipeline.models import MODELS
 from pipeline.records import Estimate, Executor, Finding, Origin, Progress, Scene, Verdict, Wish
 from pipeline.tables import number, table
+from pipeline.verdicts import LevelMotions
 
 BATCH = 1000
 """Objects looked at together: bounds the memory."""
@@ -147,7 +148,7 @@ def _trials(scene: Scene, findings: Sequence[Finding]) -> list[_Trial]:
 def _inputs(name: str) -> set[str]:
     model = next(m for m in MODELS if m.name == name)
     capacity = {model.capacity} if isinstance(model.capacity, str) else set()
-    return {quantity.name for quantity in model.needs} | capacity
+    return set(model.inputs) | capacity
 
 
 def _missing(scene: Scene) -> list[_Trial]:

@@ -33,8 +33,9 @@ def motion() -> Motion:
     return read_motion(resource("site_motions", "demo"))[0]
 
 
-def run(scenes: list[Scene], *motions: Motion, combine: str = "max") -> list[list[Finding]]:
-    return assess(scenes, [LevelMotions("design", combine, motions)], Threads(2), Silent())[1]
+def run(scenes: list[Scene], *motions: Motion, combine: str = "max", x_azimuth: float = 90.0) -> list[list[Finding]]:
+    level = LevelMotions("design", combine, motions, x_azimuth)
+    return assess(scenes, [level], Threads(2), Silent(), fidelity="history")[1]
 
 
 def span(value: float, low: float, high: float) -> Estimate:
@@ -143,6 +144,52 @@ def test_rocking_itself_is_the_failure_unless_the_museum_says_otherwise(motion: 
     assert (rocks.verdict, rocks.outcome) == (Verdict.FAIL, "rocks")
     assert stands.verdict is Verdict.PASS
     assert (falls.verdict, falls.outcome) == (Verdict.FAIL, "overturns")
+
+
+@pytest.mark.parametrize("x_azimuth", [90.0, 120.0])
+def test_an_object_of_known_orientation_is_shaken_along_its_own_axes(motion: Motion, x_azimuth: float) -> None:
+    """Its width points 30 degrees clockwise from north: half its width counts along it, half its depth across it."""
+    slab = replace(
+        VASE, support=Support.FREESTANDING, orientation_deg=30.0, base_width_m=0.3, base_depth_m=0.1, cg_height_m=0.2,
+        friction=0.2, clearance_m=0.1,
+    )  # fmt: skip
+    scenes = [classify(replace(slab, orientation_deg=turned)) for turned in (30.0, 210.0, None)]
+    found = [{f.model: f for f in each} for each in run(scenes, motion, x_azimuth=x_azimuth)]
+    width = x_azimuth - 30.0
+    one, other = (
+        respond("rocking", motion, angle=angle, half_width=half, cg_height=0.2).iloc[0]
+        for angle, half in ((width, 0.15), (width + 90.0, 0.05))
+    )
+    demand = max(one["uplift_ratio"], other["uplift_ratio"])
+    assert found[0]["rocking"].demand == pytest.approx(demand, rel=1e-12)
+    assert other["uplift_ratio"] == demand
+    assert found[0]["rocking"].outcome == ("overturns" if other["overturned"] else "rocks")
+    # Half a turn is the same object; without an orientation every direction counts, with the narrow side.
+    assert found[1]["rocking"].demand == pytest.approx(demand, rel=1e-12)
+    assert found[2]["rocking"].demand > demand
+    # Sliding is in two directions, whichever way it is turned.
+    assert found[0]["sliding"].demand == found[2]["sliding"].demand
+
+
+def test_a_section_of_known_orientation_bends_about_its_own_axes(motion: Motion) -> None:
+    """M / S - N / A with S = depth x width^2 / 6 under A_max along the width, and the other way round."""
+    held = replace(
+        VASE, support=Support.FASTENED, orientation_deg=75.0, mass_kg=20.0, section_width_m=0.08, section_depth_m=0.03,
+        allowable_stress_pa=1e7, cg_height_m=0.2,
+    )  # fmt: skip
+    (found,) = run([classify(held)], motion)
+    tension = [
+        20.0 * np.abs(motion.along(angle)).max() * 0.2 / (across * along**2 / 6.0) - 20.0 * G / (0.08 * 0.03)
+        for angle, along, across in ((15.0, 0.08, 0.03), (105.0, 0.03, 0.08))
+    ]
+    assert {f.model: f.demand for f in found}["stress"] == pytest.approx(max(tension), rel=1e-12)
+
+
+def test_a_painting_on_a_known_wall_swings_along_it(motion: Motion) -> None:
+    wall = replace(PAINTING, orientation_deg=40.0, damping=0.05, suspension_length_m=0.5)
+    (finding,) = run([classify(wall)], motion)[0]
+    table = respond("swing", motion, angle=50.0, length=0.5, damping=0.05)
+    assert finding.demand == pytest.approx(float(table["displacement"].iloc[0]), rel=1e-12)
 
 
 def test_levels_take_the_worst_motion_or_the_mean(motion: Motion) -> None:

@@ -113,7 +113,7 @@ def test_the_command_takes_it(tmp_path: Path) -> None:
     record = load_run(open_database(settings.database))
     assert {f.decided_by for a in record.assessments for f in a.findings if f.model == "sliding"} == {"chart"}
     file = tmp_path / "kouros.toml"
-    file.write_text(file.read_text(encoding="utf-8").replace('fidelity = "history"', 'fidelity = "chart"'))
+    file.write_text(file.read_text(encoding="utf-8").replace('fidelity = "auto"', 'fidelity = "chart"'))
     assert load_settings(file).analysis.fidelity == "chart"
 
 

@@ -62,12 +62,19 @@ class Tabulated:
 
 
 def tabulate(
-    model: Model, motion: Motion, values: Mapping[str, Array], run: Run, settings: Settings, shelf: Shelf
+    model: Model,
+    motion: Motion,
+    values: Mapping[str, Array],
+    run: Run,
+    settings: Settings,
+    shelf: Shelf,
+    least: int = 0,
 ) -> Tabulated:
     """Look rows up in the charts of a model under a motion, building those that the shelf does not have.
 
     values : the model's parameters, (n,) each
     run    : the model under the motion, with the settings, for parameters of its own
+    least  : how many sets must ask for a chart that the shelf does not have before it is built
     raises : ValueError for a model that is never tabulated
     """
     axis = axis_of(model)
@@ -81,7 +88,10 @@ def tabulate(
         possible &= np.isnan(values[name])
     fixed = {q.name: values[q.name] for q in model.needs if q.name != axis.name}
     for rows in _groups(fixed, np.flatnonzero(possible)):
-        chart = chart_of(model, motion, {n: float(v[rows[0]]) for n, v in fixed.items()}, run, settings, shelf)
+        alike = {n: float(v[rows[0]]) for n, v in fixed.items()}
+        if rows.size < least and not shelf.has(_identity(model, motion, alike, settings), axis):
+            continue
+        chart = chart_of(model, motion, alike, run, settings, shelf)
         inside = rows[chart.covers(along[rows])]
         looked = chart.look(along[inside])
         good = looked.resolved
@@ -123,8 +133,14 @@ def chart_of(
     raises : as `tabulate`
     """
     axis = axis_of(model)
+    key = _identity(model, motion, fixed, settings)
+    excitation = motion.excitation(None if settings.both else settings.angle, settings.tail)
+    return shelf.get(key, axis, partial(ResponseChart.build, model, excitation, fixed, run, settings.tolerance))
+
+
+def _identity(model: Model, motion: Motion, fixed: Mapping[str, float], settings: Settings) -> str:
     worst = settings.angle is None and not settings.both
-    key = chart_identity(
+    return chart_identity(
         motion.hash,
         model=model.name,
         angle="both" if settings.both else settings.angle,
@@ -134,5 +150,3 @@ def chart_of(
         tolerance=settings.tolerance,
         fixed=dict(fixed),
     )
-    excitation = motion.excitation(None if settings.both else settings.angle, settings.tail)
-    return shelf.get(key, axis, partial(ResponseChart.build, model, excitation, fixed, run, settings.tolerance))

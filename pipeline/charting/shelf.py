@@ -50,6 +50,18 @@ class Shelf:
                 raise
         return chart.result()
 
+    def has(self, key: str, axis: ChartAxis) -> bool:
+        """Say whether the chart of that identity need not be built."""
+        with self._lock:
+            if key in self._charts:
+                return True
+        # What is found is kept in memory, so that it is read once.
+        found = None if self._folder is None else recall(self._folder, key, axis)
+        if found is None:
+            return False
+        self.get(key, axis, lambda: found)
+        return True
+
     def tidy(self, *, days: float, most_bytes: int, using: Collection[str] = ()) -> None:
         """Remove from the folder what `prune` removes; what is in memory stays."""
         if self._folder is not None:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from pipeline.cli.console import listed, summary_lines, tradeoff_lines
+from pipeline.cli.deciding import decide
+from pipeline.cli.explaining import print_explanation
 from pipeline.cli.importing import import_
 from pipeline.cli.motions import motions
 from pipeline.cli.options import Options, as_json
@@ -137,8 +139,9 @@ def _check_numerics(options: Options, as_json: bool) -> None:
 @click.option("--gallery", "galleries", multiple=True, help="Only this gallery; may be repeated.")
 @click.option("--object", "objects", multiple=True, help="Only this object number; may be repeated.")
 @click.option("--site", help="Another site's folder, or 'demo'.")
-@click.option("--fidelity", type=click.Choice(["chart", "history", "reference"]), help="How finely to look.")
+@click.option("--fidelity", type=click.Choice(["auto", "chart", "history", "reference"]), help="How finely to look.")
 @click.option("--dry-run", is_flag=True, help="Assess and summarise; store and publish nothing.")
+@click.option("--explain", metavar="OBJECT", help="Print the whole chain of reasoning for one object instead.")
 @as_json
 @click.pass_obj
 def run(
@@ -148,13 +151,17 @@ def run(
     site: str | None,
     fidelity: str | None,
     dry_run: bool,
+    explain: str | None,
     as_json: bool,
 ) -> None:
     """Run the nightly job: read, assess, recommend, store, publish the report.
 
     A run of a part of the collection is stored and has its report, but does not become the latest one.
 
+    With --explain nothing is stored: it prints class, numbers, every step of each model and the advice for an object.
+
     Example: kouros run --gallery "Hall of Sculpture"
+    Example: kouros run --explain 1922.9
     """
     from pipeline.jobs.nightly import Selection
     from pipeline.jobs.nightly import run as job
@@ -164,6 +171,11 @@ def run(
         settings = settings.model_copy(update={"site": settings.site.model_copy(update={"folder": site})})
     if fidelity is not None:
         settings = settings.model_copy(update={"analysis": settings.analysis.model_copy(update={"fidelity": fidelity})})
+    if explain is not None:
+        if galleries or objects:
+            raise click.UsageError("--explain is about one object: leave out --gallery and --object")
+        print_explanation(settings, explain, options, as_json)
+        return
     with options.console() as console:
         summary = job(settings, console, Selection(galleries, objects), dry_run=dry_run)
     _print_summary(summary, as_json)
@@ -190,27 +202,14 @@ def report(options: Options, run_id: str | None) -> None:
 @as_json
 @click.pass_obj
 def diff(options: Options, old: str | None, new: str | None, as_json: bool) -> None:
-    """Say what changed between two runs: objects, inputs, motions, verdicts.  Without RUNs: the last two.
+    """Say what changed between two runs, and why each verdict did.  Without RUNs: the last two.
 
     Example: kouros diff
     """
+    from pipeline.cli.differing import print_changes
     from pipeline.jobs.reporting import compare
 
-    changes = compare(options.settings(), old, new)
-    if as_json:
-        click.echo(json.dumps(asdict(changes), indent=2))
-        return
-    click.echo(f"from {changes.old} to {changes.new}")
-    for title, places in (("new", changes.added), ("gone", changes.removed)):
-        listed(title, [f"{p.object_number} ({p.gallery})" for p in places])
-    listed("changed", [f"{i.object_number} ({i.gallery}): {', '.join(i.fields)}" for i in changes.inputs])
-    listed("motion", [f"{m.level} {m.name}" for m in changes.motions])
-    verdicts = [
-        f"{v.object_number} ({v.gallery}) {v.model}, {v.level}: {v.before} -> {v.after}" for v in changes.verdicts
-    ]
-    listed("verdict", verdicts)
-    if not changes:
-        click.echo("nothing changed")
+    print_changes(compare(options.settings(), old, new), as_json)
 
 
 @click.command()
@@ -323,4 +322,4 @@ def tradeoff(
     click.echo("\n".join(tradeoff_lines(found, wanted)))
 
 
-ALL = (demo, init, import_, survey, check, run, report, diff, motions, models, respond, tradeoff)
+ALL = (demo, init, import_, survey, check, run, report, decide, diff, motions, models, respond, tradeoff)

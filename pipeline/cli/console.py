@@ -1,7 +1,7 @@
 """What a person sees: progress bars on a terminal, plain lines elsewhere, one screen at the end."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -87,18 +87,49 @@ def summary_lines(summary: "Summary") -> list[str]:
     if summary.worth is not None:
         told = f"measurements would settle a verdict; finding them took {summary.survey_seconds:.1f} s"
         lines += ["", count(summary.worth, told)]
+    lines += effort_lines(summary.efforts)
     if summary.first:
         lines += ["", "  First:", *(f"    {text}" for text in summary.first)]
+    lines += _decision_lines(summary)
     if summary.changes is not None:
         changes = summary.changes
         lines += [
             "",
             f"  Since the last run: {len(changes.added)} objects new, {len(changes.removed)} gone, "
-            f"{len(changes.inputs)} changed, {len(changes.verdicts)} verdicts changed, "
-            f"{len(changes.motions)} motions changed",
+            f"{len(changes.moved)} moved, {len(changes.inputs)} changed; {len(changes.worsened)} verdicts worse, "
+            f"{len(changes.fixed)} fixed, {len(changes.others)} other; {len(changes.motions)} motions changed",
         ]
     if summary.report is not None:
         lines += ["", f"Report: {summary.report}"]
+    return lines
+
+
+def _decision_lines(summary: "Summary") -> list[str]:
+    if not summary.decisions:
+        return []
+    words = {"accept": "risks accepted", "installed": "measures installed", "class": "classes", "verdict": "verdicts"}
+    told = ", ".join(f"{words[kind]} {number:,}" for kind, number in summary.decisions.items())
+    lines = ["", f"  Decided by people: {told}"]
+    shown = summary.doubted[:5]
+    lines += [f"    to be looked at again: {_short(printable(text), 160)}" for text in shown]
+    if len(summary.doubted) > len(shown):
+        lines.append(f"    and {len(summary.doubted) - len(shown):,} more, named in the report")
+    return lines
+
+
+def printable(text: str) -> str:
+    """Return text in one line without the characters by which it could steer a terminal."""
+    return "".join(c if c.isprintable() else "\ufffd" for c in text)
+
+
+def effort_lines(efforts: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return by what the verdicts of each model were decided, and how many needed a history at all."""
+    if not efforts:
+        return []
+    lines = ["", f"  {'Decided by':<30}{'bound':>9}{'chart':>9}{'history':>9}{'any history for':>18}"]
+    for e in efforts:
+        share = e["needing_history"] / max(e["analyses"], 1)
+        lines.append(f"    {e['title']:<28}{e['certificate']:>9,}{e['chart']:>9,}{e['history']:>9,}{share:>17.0%}")
     return lines
 
 

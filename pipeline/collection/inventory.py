@@ -279,6 +279,28 @@ def read_inventory(engine: Engine) -> list[Item]:
     return sorted(items, key=lambda item: item.object_number)
 
 
+def items_named(engine: Engine, numbers: Sequence[str]) -> dict[str, Item]:
+    """Return those of the items that there are, by object number."""
+    with engine.connect() as connection:
+        return dict(_named(connection, numbers))
+
+
+def object_numbers(engine: Engine) -> list[str]:
+    """Return all object numbers, sorted."""
+    with engine.connect() as connection:
+        return sorted(connection.execute(select(ITEM.c.object_number).where(ITEM.c.until.is_(None))).scalars())
+
+
+def fields_since(engine: Engine, number: str, digest: str) -> tuple[str, ...]:
+    """Return the fields in which an object's record is not what it was at a digest; none where that is not known."""
+    mine = ITEM.c.object_number == number
+    last = select(ITEM).where(mine, ITEM.c.digest == digest).order_by(ITEM.c.since.desc()).limit(1)
+    with engine.connect() as connection:
+        then = list(_read(connection.execute(last).mappings()))
+        now = dict(_named(connection, [number]))
+    return tuple(_fields_changed(then[0], now[number])) if then and number in now else ()
+
+
 def latest_import(engine: Engine) -> ImportInfo | None:
     """Return the newest version, or None where nothing was imported yet."""
     newest = select(func.max(IMPORT_BATCH.c.id)).scalar_subquery()

@@ -106,7 +106,8 @@ def _provenance(field: str, what: str, choice: Choice, read: Dimensions) -> Prov
 def written(part: Part, read: Dimensions) -> str:
     """Return the number of a part as it was written, with the unit that it is in."""
     characters = read.written(part)
-    return characters if part.unit_text and part.unit_text in characters else f"{characters} {part.unit}".strip()
+    named = part.unit_text and part.unit_text.casefold() in characters.casefold()
+    return characters if named else f"{characters} {part.unit}".strip()
 
 
 def is_dimension(text: str) -> bool:

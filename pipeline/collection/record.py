@@ -50,7 +50,7 @@ _MEANINGS = {
     "case": "Display case or plinth it stands in or on.",
     "position_x_m": "Position in the gallery, towards x (east).",
     "position_y_m": "Position in the gallery, towards y (north).",
-    "orientation_deg": "Direction of the object's width, from x towards y.",
+    "orientation_deg": "Direction of the object's width, clockwise from north.",
     "support": "How the object is held.",
     "isolator": "Name of the isolator it stands on, if any.",
     "height_m": "Height.",

@@ -27,7 +27,8 @@ def respond_on_site(
     parameters : "name=value" or "name=value,value,..." in SI
     through    : the supports from the ground up, each "name:parameter=value,parameter=value"
     angle      : degrees, or "worst"
-    settings   : of the workspace in which charts and processed motions are kept; None keeps none
+    settings   : of the workspace in which charts and processed motions are kept; None keeps motions in the user's
+                 cache, and no charts
     returns    : the table of `respond` with the parameters and the motion in front
     raises     : UsageError for words that are not name=value, ValueError as `respond`
     """
@@ -52,11 +53,12 @@ def respond_on_site(
 
 
 def _motions(site: str, settings: Settings | None) -> Sequence[Motion]:
+    from pipeline.kernels import user_cache
     from pipeline.motions.site import read_motion, read_site
 
     folder = site_folder(Settings(), site)
     if settings is None:
-        return read_motion(folder)
+        return read_motion(folder, kept=user_cache("motions"))
     # Processed once for the nights and for this.
     kept = read_site(folder, kept=settings.path(KEPT))
     return [one.motion for level in kept.levels for one in level.motions]

@@ -52,7 +52,11 @@ def _each(settings: Settings, workspace: Workspace | None) -> list[Diagnosis]:
         ("lock", lambda: _lock(settings)),
     ]
     if workspace is not None:
-        looks += [("inventory", lambda: _inventory(workspace)), ("clock", lambda: _clock(workspace))]
+        looks += [
+            ("measures", lambda: _means(workspace)),
+            ("inventory", lambda: _inventory(workspace)),
+            ("clock", lambda: _clock(workspace)),
+        ]
     out = []
     for what, look in looks:
         try:
@@ -105,6 +109,11 @@ def _disk(settings: Settings) -> tuple[str, str]:
     free = shutil.disk_usage(folder).free
     text = f"{free / 1e9:.1f} GB free at {folder}"
     return ("ok", text) if free >= SPACE else ("warning", f"{text}; make room")
+
+
+def _means(workspace: Workspace) -> tuple[str, str]:
+    have = workspace.means
+    return "ok", f"{len(have.measures)} measures, {len(have.isolators)} isolators"
 
 
 def _kernels() -> tuple[str, str]:

@@ -4,28 +4,32 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from pipeline.assess import LevelMotions
 from pipeline.motions.manifest import GROUND_FLOOR, FloorTable
 from pipeline.motions.site import Level, Site, levels_at, summaries
 from pipeline.records import Item, MotionSummary
 from pipeline.settings import Floors, Settings, SettingsError
+from pipeline.verdicts import EAST, LevelMotions
 
 
 @dataclass(frozen=True)
 class Storey:
     """A floor that objects stand on, with its levels of shaking and the places of its objects in the list of all.
 
-    name : "" for the ground
+    name      : "" for the ground
+    x_azimuth : degrees clockwise from north of the x axis of the motions
     """
 
     name: str
     levels: tuple[Level, ...]
     members: tuple[int, ...]
+    x_azimuth: float = EAST
 
     @property
     def shaking(self) -> list[LevelMotions]:
         """The levels as objects are run under them."""
-        return [LevelMotions(v.name, v.combine, tuple(m.motion for m in v.motions)) for v in self.levels]
+        return [
+            LevelMotions(v.name, v.combine, tuple(m.motion for m in v.motions), self.x_azimuth) for v in self.levels
+        ]
 
     @property
     def summaries(self) -> tuple[MotionSummary, ...]:
@@ -43,7 +47,11 @@ def storeys(settings: Settings, site: Site, items: Sequence[Item]) -> list[Store
     for index, item in enumerate(items):
         places.setdefault(settings.floors.of(item.gallery) or GROUND_FLOOR, []).append(index)
     order = [name for name in (GROUND_FLOOR, *site.floors) if name in places]
-    return [Storey("" if name == GROUND_FLOOR else name, levels_at(site, name), tuple(places[name])) for name in order]
+    x_azimuth = site.manifest.site.x_azimuth
+    return [
+        Storey("" if name == GROUND_FLOOR else name, levels_at(site, name), tuple(places[name]), x_azimuth)
+        for name in order
+    ]
 
 
 def known(settings: Settings, site: Site) -> None:

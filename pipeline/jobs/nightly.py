@@ -8,19 +8,21 @@ from datetime import UTC, datetime
 from difflib import get_close_matches
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pipeline import __version__
-from pipeline.assess import assess, integrated_at
+from pipeline.assess import assess
 from pipeline.charting import Shelf
 from pipeline.charts import chart_keys, charts, picture_version
-from pipeline.classify import classify
+from pipeline.climb import Effort
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
+from pipeline.jobs.deciding import Decided, decided, place, stand
 from pipeline.jobs.importing import import_collection, source_of
 from pipeline.jobs.levels import Storey, notes, storeys
 from pipeline.jobs.reporting import manner
+from pipeline.jobs.versions import code_digest, rules_digest
 from pipeline.jobs.workspace import (
     KEPT,
     UsageError,
@@ -32,16 +34,30 @@ from pipeline.jobs.workspace import (
 )
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import advise
+from pipeline.mitigate.installed import assess_above
+from pipeline.models import model_named
 from pipeline.motions.site import Level, Site, read_site
-from pipeline.records import Assessment, Chart, Executor, Item, Motion, Progress, RunRecord, Verdict, Wish
+from pipeline.records import (
+    Assessment,
+    Chart,
+    Executor,
+    Item,
+    Motion,
+    Progress,
+    RunChanges,
+    RunRecord,
+    Standing,
+    Verdict,
+    Wish,
+)
 from pipeline.report import publish, render
 from pipeline.settings import Settings
-from pipeline.store.reuse import KERNELS, PICTURES, SELECTION, stored_charts, whole_runs
+from pipeline.store.reuse import CODE, KERNELS, LEVELS, PICTURES, RULES, SELECTION, stored_charts, whole_runs
 from pipeline.store.runs import compare_runs, save_run
 from pipeline.survey import in_order, wishes
 
-if TYPE_CHECKING:
-    from pipeline.store.changes import RunChanges
+EFFORTS = "efforts"
+"""Key of a run's settings: what the verdicts of each model took."""
 
 
 SURVEY_SECONDS = "survey_seconds"
@@ -68,6 +84,9 @@ class Summary:
     worth         : how many measurements would settle a verdict, None where that was not asked
     survey_seconds: what asking cost
     missing       : why objects could not be assessed, with how many of each
+    decisions     : how many of each kind are in force
+    doubted       : those of them that must be looked at again, with the reasons
+    efforts       : what the verdicts of each model took, see `pipeline.climb.Effort`
     report        : the report's index, None for a dry run
     """
 
@@ -88,9 +107,12 @@ class Summary:
     first: Sequence[str]
     worth: int | None = None
     survey_seconds: float = 0.0
+    decisions: Mapping[str, int] = field(default_factory=dict)
+    doubted: Sequence[str] = ()
+    efforts: Sequence[Mapping[str, Any]] = ()
     report: Path | None = None
     latest: Path | None = None
-    changes: "RunChanges | None" = field(default=None, repr=False)
+    changes: RunChanges | None = field(default=None, repr=False)
 
 
 def run(
@@ -108,22 +130,27 @@ def run(
         workspace = open_workspace(settings)
         _refresh(workspace, progress, dry_run=dry_run)
         inventory = read_inventory(workspace.engine)
-        items = _choose(inventory, chosen)
+        items = named(inventory, galleries=chosen.galleries, objects=chosen.objects)
         site = _read_site(workspace, progress)
-        record = assess_items(workspace, items, inventory, site, started, progress)
-        record = replace(record, settings={**record.settings, SELECTION: bool(chosen)})
+        decisions = decided(workspace)
+        record = assess_items(workspace, items, inventory, site, started, progress, decisions)
+        record = replace(
+            record,
+            settings={**record.settings, SELECTION: bool(chosen)},
+            decisions=stand(workspace, record, decisions, whole=not chosen),
+        )
         summary = summarise(record)
         if dry_run:
             return summary
         # A part is not compared: what was left out of it has not changed.
         before = [] if chosen else whole_runs(workspace.engine)[:1]
         save_run(workspace.engine, record)
+        changes = compare_runs(workspace.engine, before[0], record.run_id) if before else None
         progress.step("report", 0, 1)
-        index = render(record, workspace.reports / record.run_id, **manner(settings))
+        index = render(record, workspace.reports / record.run_id, changes=changes, **manner(settings))
         # A part of the collection is worth a report, but not the name of the museum's latest one.
         latest = None if chosen else publish(index.parent, workspace.reports)
         progress.step("report", 1, 1)
-        changes = compare_runs(workspace.engine, before[0], record.run_id) if before else None
         return replace(summary, report=index, latest=latest, changes=changes)
 
 
@@ -139,16 +166,19 @@ def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None
     progress.step("collection", 1, 1)
 
 
-def _choose(items: list[Item], selection: Selection) -> list[Item]:
+def named(items: Sequence[Item], *, galleries: Sequence[str] = (), objects: Sequence[str] = ()) -> list[Item]:
+    """Return the items of these galleries and with these numbers; nothing named means all.
+
+    raises : EmptyCollectionError where there are none; UsageError for an unknown name, with close ones
+    """
     if not items:
         raise EmptyCollectionError("the inventory is empty: import the museum's export first (`kouros import FILE`)")
-    _known("gallery", selection.galleries, {item.gallery for item in items})
-    _known("object", selection.objects, {item.object_number for item in items})
+    _known("gallery", galleries, {item.gallery for item in items})
+    _known("object", objects, {item.object_number for item in items})
     return [
         item
         for item in items
-        if (not selection.galleries or item.gallery in selection.galleries)
-        and (not selection.objects or item.object_number in selection.objects)
+        if (not galleries or item.gallery in galleries) and (not objects or item.object_number in objects)
     ]
 
 
@@ -181,10 +211,12 @@ def assess_items(
     site: Site,
     started: datetime,
     progress: Progress,
+    decisions: Decided,
 ) -> RunRecord:
     """Run everything that the objects require under the site's motions, floor by floor, judge it and advise.
 
     inventory : all objects, the others included: which galleries there are
+    decisions : those in force: classes and installed measures change what is run
     started   : when the run began, which names it
     raises    : SettingsError for a floor that the site does not have, MotionError for a floor's record
     """
@@ -195,10 +227,12 @@ def assess_items(
     asked = _Asked() if settings.report.survey else None
     # Motions that two floors share (one record for several) are drawn once.
     motions = {one.motion.hash: one.motion for f in floors for level in f.levels for one in level.motions}
+    efforts: dict[str, Effort] = {}
     with charts_of(settings, motions) as shelf:
-        for storey in floors:
-            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments, asked)
+        # The pictures first: the verdicts use their charts.
         drawn = _charts(workspace, list(motions.values()), executor, progress, shelf)
+        for storey in floors:
+            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments, decisions, efforts, asked)
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
         picture = tradeoff.picture(measured)
@@ -214,7 +248,7 @@ def assess_items(
         site=site.name,
         museum=settings.museum.name or (info.museum if info else ""),
         level_notes=(*levels_said, *notes(settings, site, {item.gallery for item in inventory})),
-        settings=_stored_settings(settings, info.credit if info else "", tested)
+        settings=_stored_settings(settings, site, info.credit if info else "", tested, efforts)
         | ({} if asked is None else {SURVEY_SECONDS: round(asked.seconds, 3)}),
         assessments=tuple(assessments[index] for index in range(len(items))),
         charts=drawn,
@@ -240,41 +274,74 @@ def _assess_storey(
     progress: Progress,
     shelf: Shelf,
     assessments: dict[int, Assessment],
+    decisions: Decided,
+    efforts: dict[str, Effort],
     asked: _Asked | None,
 ) -> None:
-    scenes = [replace(classify(items[index], workspace.rules), floor=storey.name) for index in storey.members]
+    # Before the long work: a table that cannot be used is told at once.
+    means = workspace.means
+    objects = [place(workspace, items[index], decisions) for index in storey.members]
+    scenes = [replace(one.scene, floor=storey.name) for one in objects]
     settings, levels = workspace.settings, storey.shaking
+    step = settings.analysis.azimuth_step
     plan, findings = assess(
         scenes,
         levels,
         executor,
         progress,
         fidelity=settings.analysis.fidelity,
-        azimuth_step=settings.analysis.azimuth_step,
+        azimuth_step=step,
+        charts=shelf,
+        efforts=efforts,
+    )
+    above = assess_above(objects, levels, executor, progress, fidelity=_integrating(settings), azimuth_step=step)
+    for at, (on_top, left_out) in enumerate(above):
+        findings[at] += on_top
+        done = {finding.title for finding in findings[at]}
+        skipped = {title: why for title, why in {**plan.skipped[at], **left_out}.items() if title not in done}
+        scenes[at] = replace(scenes[at], skipped=skipped)
+    advice = advise(
+        scenes,
+        findings,
+        levels,
+        executor,
+        progress,
+        means=means,
+        fidelity=settings.analysis.fidelity,
+        azimuth_step=step,
         charts=shelf,
     )
-    scenes = [replace(scene, skipped=skipped) for scene, skipped in zip(scenes, plan.skipped, strict=True)]
-    advice = advise(scenes, findings, levels, executor, progress)
     for index, scene, found, advised in zip(storey.members, scenes, findings, advice, strict=True):
         assessments[index] = Assessment(scene, tuple(found), tuple(advised))
     if asked is not None:
         began = perf_counter()
         # Each trial is asked once: a chart would not pay.
-        fidelity, step = integrated_at(settings.analysis.fidelity), settings.analysis.azimuth_step
+        fidelity = _integrating(settings)
         asked.found += wishes(scenes, findings, levels, executor, progress, fidelity=fidelity, azimuth_step=step)
         asked.seconds += perf_counter() - began
 
 
-def _stored_settings(settings: Settings, credit: str, tested: selftest.SelfTest | None) -> dict[str, Any]:
+def _integrating(settings: Settings) -> str:
+    # Few objects stand on isolators, each on its own: neither charts nor bounds of what these pass on would pay.
+    return "reference" if settings.analysis.fidelity == "reference" else "history"
+
+
+def _stored_settings(
+    settings: Settings, site: Site, credit: str, tested: selftest.SelfTest | None, efforts: Mapping[str, Effort]
+) -> dict[str, Any]:
     # Never the database's address: it may hold a password.
     return {
         KERNELS: KERNEL_VERSION,
         PICTURES: picture_version(),
+        CODE: code_digest(),
+        RULES: rules_digest(settings),
+        LEVELS: {level.name: level.combine for level in site.levels},
         "credit": credit,
         "analysis": settings.analysis.model_dump(),
         "length": settings.report.length,
         "site": settings.site.folder,
         "floors": settings.floors.model_dump(),
+        EFFORTS: [{"title": model_named(name).title, **effort.plain()} for name, effort in efforts.items()],
         "numerics": None if tested is None else tested.plain(),
     }
 
@@ -341,14 +408,33 @@ def summarise(record: RunRecord) -> Summary:
         first=_first(record),
         worth=None if record.wishes is None else sum(not wish.waste for wish in record.wishes),
         survey_seconds=float(record.settings.get(SURVEY_SECONDS, 0.0)),
+        decisions=dict(Counter(s.decision.kind.value for s in record.decisions)),
+        doubted=[
+            f"{d.object_number}: {d.matter}, {d.who}, {d.date}: {'; '.join(s.doubts)}"
+            for s in record.decisions
+            for d in (s.decision,)
+            if s.doubts
+        ],
+        efforts=record.settings.get(EFFORTS, ()),
     )
 
 
 def _first(record: RunRecord, most: int = 5) -> list[str]:
-    """Name the objects on display that fail worst: those that fall or break, by how far they are beyond."""
+    """Name the objects on display that fail worst: those that fall or break, by how far they are beyond.
+
+    What is accepted, and not in doubt, is not among them.
+    """
+    settled: dict[str, list[Standing]] = {}
+    for standing in record.decisions:
+        settled.setdefault(standing.decision.object_number, []).append(standing)
     failing = []
     for assessment in record.assessments:
-        worst = [f for f in assessment.findings if f.verdict is Verdict.FAIL]
+        mine = settled.get(assessment.scene.item.object_number, ())
+        worst = [
+            f
+            for f in assessment.findings
+            if f.verdict is Verdict.FAIL and not any(s.covers(f.model, f.level) for s in mine)
+        ]
         if worst and assessment.scene.item.on_display:
             finding = max(worst, key=lambda f: (f.outcome in ("overturns", "breaks"), f.utilisation or 0.0))
             failing.append(

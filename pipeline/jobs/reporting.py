@@ -1,16 +1,14 @@
 """Looking at runs that are over: render one again, compare two."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, TypedDict
+from typing import TypedDict
 
 from pipeline.jobs.workspace import UsageError, locked, open_workspace
+from pipeline.records import RunChanges
 from pipeline.report import Language, Units, language, publish, render
 from pipeline.settings import Settings
 from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import compare_runs, load_run
-
-if TYPE_CHECKING:
-    from pipeline.store.changes import RunChanges
 
 
 def render_again(settings: Settings, run_id: str | None) -> Path:
@@ -20,10 +18,14 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
     """
     with locked(settings):
         workspace = open_workspace(settings)
-        newest = whole_runs(workspace.engine)[:1]
-        record = load_run(workspace.engine, run_id or (newest[0] if newest else None))
-        index = render(record, _free(workspace.reports / record.run_id), **manner(settings))
-        if [record.run_id] == newest:
+        whole = whole_runs(workspace.engine)
+        record = load_run(workspace.engine, run_id or (whole[0] if whole else None))
+        # As on the night itself: against the whole run before it, and a part of the collection against none.
+        at = whole.index(record.run_id) if record.run_id in whole else len(whole)
+        before = whole[at + 1 : at + 2]
+        changes = compare_runs(workspace.engine, before[0], record.run_id) if before else None
+        index = render(record, _free(workspace.reports / record.run_id), changes=changes, **manner(settings))
+        if [record.run_id] == whole[:1]:
             publish(index.parent, workspace.reports)
         return index
 
@@ -55,7 +57,7 @@ def _free(folder: Path) -> Path:
     return candidate
 
 
-def compare(settings: Settings, old: str | None, new: str | None) -> "RunChanges":
+def compare(settings: Settings, old: str | None, new: str | None) -> RunChanges:
     """Return what changed between two runs; the last two of the whole collection where none is named.
 
     raises : UsageError where there are not two runs yet

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from pipeline.assess import assess, integrated_at
-from pipeline.classify import classify
+from pipeline.assess import assess
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.inventory import Difference, add_sheet, read_inventory
 from pipeline.collection.mapping import Mapping, load_mapping
 from pipeline.collection.reading import Reading, read_items
 from pipeline.execute import Threads
+from pipeline.jobs.deciding import decided, place
 from pipeline.jobs.levels import storeys
 from pipeline.jobs.workspace import KEPT, Workspace, site_folder
 from pipeline.motions.site import read_site
@@ -52,11 +52,14 @@ def survey(
         raise CollectionError("nothing on display to survey: import the collection, or name another gallery")
     site = read_site(site_folder(settings, settings.site.folder), kept=settings.path(KEPT))
     executor = Threads(settings.analysis.workers or None)
-    # Each trial is asked once: a chart would not pay.
-    fidelity, step = integrated_at(settings.analysis.fidelity), settings.analysis.azimuth_step
+    fidelity, step = settings.analysis.fidelity, settings.analysis.azimuth_step
+    if fidelity == "chart":
+        # Each trial is asked once: a chart that is not there would not pay.
+        fidelity = "auto"
     found: list[Wish] = []
+    decisions = decided(workspace)
     for storey in storeys(settings, site, items):
-        scenes = [classify(items[index], workspace.rules) for index in storey.members]
+        scenes = [place(workspace, items[index], decisions).scene for index in storey.members]
         shaking = storey.shaking
         _, findings = assess(scenes, shaking, executor, progress, fidelity=fidelity, azimuth_step=step, outcomes=False)
         found += wishes(scenes, findings, shaking, executor, progress, fidelity=fidelity, azimuth_step=step)

@@ -6,21 +6,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from pipeline.collection.database import open_database
+from pipeline.jobs.deciding import decided
 from pipeline.jobs.nightly import assess_items
 from pipeline.jobs.workspace import KEPT, open_workspace
 from pipeline.motions.manifest import GROUND_FLOOR
 from pipeline.motions.site import Level, Site, read_site
-from pipeline.records import Progress, RunRecord
+from pipeline.records import Progress, RunRecord, VerdictChange
 from pipeline.settings import Settings
 from pipeline.store import migrate
 from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import compare_runs, load_run, save_run
-
-if TYPE_CHECKING:
-    from pipeline.store.changes import VerdictChange
 
 
 @dataclass(frozen=True)
@@ -50,7 +47,7 @@ class Swap:
     new: str
     pairs: Sequence[Pair]
     basis: str
-    verdicts: "Sequence[VerdictChange]"
+    verdicts: Sequence[VerdictChange]
     moved: Mapping[str, int]
 
 
@@ -106,7 +103,7 @@ def _pairs(before: Sequence[Level], after: Sequence[Level]) -> list[Pair]:
 
 def _verdicts(
     before: Site, after: Site, settings: Settings | None, progress: Progress
-) -> "tuple[str, Sequence[VerdictChange]]":
+) -> tuple[str, Sequence[VerdictChange]]:
     if settings is None:
         return "no kouros.toml here, so there is no run whose verdicts could change", ()
     workspace = open_workspace(settings)
@@ -115,18 +112,18 @@ def _verdicts(
         return "there is no run yet whose verdicts could change; make one with `kouros run`", ()
     last = load_run(workspace.engine, runs[0])
     items = [assessment.scene.item for assessment in last.assessments]
-    started = datetime.now(UTC)
+    started, decisions = datetime.now(UTC), decided(workspace)
     if _made_on(last, before):
         basis = f"the verdicts of the last run, {last.run_id}"
     else:
         basis = f"the objects of the last run, {last.run_id}, which was made on other motions: both sites were run now"
-        last = assess_items(workspace, items, items, before, started, progress)
-    other = assess_items(workspace, items, items, after, started, progress)
+        last = assess_items(workspace, items, items, before, started, progress, decisions)
+    other = assess_items(workspace, items, items, after, started, progress, decisions)
     with tempfile.TemporaryDirectory() as folder:
         engine = open_database(str(Path(folder) / "swap.sqlite"))
         migrate.upgrade(engine)
         for name, record in (("before", last), ("after", other)):
-            save_run(engine, replace(record, run_id=name))
+            save_run(engine, replace(record, run_id=name, decisions=()))
         changes = compare_runs(engine, "before", "after")
         engine.dispose()
     return basis, changes.verdicts

@@ -182,7 +182,7 @@ def _drawn(
 ) -> tuple[dict[str, Array], str]:
     for work in plan(scenes).work if scenes else ():
         if work.model is model:
-            rows = np.unique(list(work.best))
+            rows = np.unique(work.spans.rows[work.spans.starts])
             picked = rng.choice(rows, min(objects, rows.size), replace=False)
             return {
                 name: np.ascontiguousarray(column[picked]) for name, column in work.values.items()

@@ -7,14 +7,14 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pipeline.collection.database import Database, open_database
 from pipeline.resources import resource
 from pipeline.rules import Table, with_own
 from pipeline.settings import Settings
-from pipeline.store import migrate
 
 if TYPE_CHECKING:
     from pipeline.charting import Shelf
+    from pipeline.collection.database import Database
+    from pipeline.mitigate import Means
 
 KEPT = ".kouros-kept"
 """Folder beside the settings in which processed motions, charts and measurements are kept between nights."""
@@ -40,7 +40,7 @@ class Workspace:
     """Open settings: the database is at the newest schema, the folders are known."""
 
     settings: Settings
-    engine: Database
+    engine: "Database"
 
     @cached_property
     def rules(self) -> Table | None:
@@ -48,13 +48,30 @@ class Workspace:
 
         raises : UsageError for a file that is not there, TableError for one that cannot be used
         """
-        own = self.settings.collection.rules
-        if not own:
+        path = self._own(self.settings.collection.rules, "[collection] rules names the file of your own rules")
+        return None if path is None else with_own(path)
+
+    @cached_property
+    def means(self) -> "Means":
+        """The measures and isolators that the museum has.
+
+        raises : UsageError for a file that is not there, TableError for one that cannot be used
+        """
+        wanted = self.settings.mitigation
+        from pipeline.mitigate import means
+
+        return means(
+            self._own(wanted.measures, "[mitigation] measures names the file of your own measures"),
+            self._own(wanted.catalogue, "[mitigation] catalogue names the file of your own isolators"),
+        )
+
+    def _own(self, name: str, remedy: str) -> Path | None:
+        if not name:
             return None
-        path = self.settings.path(own)
+        path = self.settings.path(name)
         if not path.is_file():
-            raise UsageError(f"{path} is not there; [collection] rules names the file of your own rules")
-        return with_own(path)
+            raise UsageError(f"{path} is not there; {remedy}")
+        return path
 
     @property
     def reports(self) -> Path:
@@ -69,6 +86,9 @@ def site_folder(settings: Settings, name: str) -> Path:
 
 def open_workspace(settings: Settings) -> Workspace:
     """Open the database, bringing its tables to the newest schema."""
+    from pipeline.collection.database import open_database
+    from pipeline.store import migrate
+
     engine = open_database(settings.database)
     migrate.upgrade(engine)
     return Workspace(settings, engine)

@@ -15,8 +15,18 @@ from typing import Any
 import numba
 import numpy as np
 
+from pipeline.quantities import Array
+
 FIRST = np.int64(0)
 """An index to begin with: for a literal number or truth value as an argument numba compiles the callee once more."""
+
+
+def samples(values: Array) -> Array:
+    """Return samples of a motion as the kernels take them: contiguous and writable, a copy where they are not.
+
+    For an array that may not be written numba compiles each kernel once more: half of the time of a first rocking body.
+    """
+    return np.require(values, np.float64, ["C", "W"])
 
 
 def kernel_version() -> str:
@@ -28,22 +38,21 @@ def kernel_version() -> str:
     return digest.hexdigest()[:12]
 
 
-def _cache_folder(version: str) -> Path:
-    # numba serves an edited kernel stale when a cached driver imports it, so every state of the sources gets its own
-    # folder.
+def user_cache(name: str) -> Path:
+    """Return a folder of this name in the user's cache, made where it is missing; a temporary one if none can be."""
     home = os.environ.get("KOUROS_CACHE") or os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     for base in (
         Path(home) / "kouros",
         Path(tempfile.gettempdir()) / f"kouros-{os.getuid() if os.name == 'posix' else 0}",
     ):
-        folder = base / f"kernels-{version}"
+        folder = base / name
         try:
             folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         except OSError:
             continue
         if os.access(folder, os.W_OK):
             return folder
-    return Path(tempfile.mkdtemp(prefix="kouros-kernels-"))
+    return Path(tempfile.mkdtemp(prefix=f"kouros-{name}-"))
 
 
 KERNEL_VERSION = kernel_version()
@@ -51,7 +60,9 @@ KERNEL_VERSION = kernel_version()
 
 _CONFIG: Any = numba.config
 if "NUMBA_CACHE_DIR" not in os.environ:
-    _CONFIG.CACHE_DIR = str(_cache_folder(KERNEL_VERSION))
+    # numba serves an edited kernel stale when a cached driver imports it, so every state of the sources gets its own
+    # folder.
+    _CONFIG.CACHE_DIR = str(user_cache(f"kernels-{KERNEL_VERSION}"))
 
 
 def cache_folder() -> str:

@@ -37,6 +37,9 @@ STEP = 0.2
 CAP = 300.0
 """Seconds after the record at which a body that still rocks is cut off."""
 
+NEAR = 0.05
+"""Ratio below which a body that has calmed down counts as far from overturning."""
+
 
 @inlined
 def _step(
@@ -253,6 +256,13 @@ def _peak(
 
 
 @inner
+def _calm(state: Array, body: Array) -> bool:
+    # Whether, left alone, the body stays below NEAR: its speed would lift it from the ground by no more than that.
+    alpha, c = (body[0], body[2]) if state[0] > 0.0 else (body[1], body[3])
+    return state[1] <= NEAR * alpha and state[2] * state[2] <= 2.0 * NEAR * alpha * alpha * c * G
+
+
+@inner
 def _follow(
     x: Array,
     z: Array,
@@ -263,6 +273,7 @@ def _follow(
     body: Array,
     initial: float,
     tail: float,
+    until: float,
     refine: int,
     state: Array,
     out: Array,
@@ -286,6 +297,8 @@ def _follow(
     recording = history.shape[0] > 0
     i = FIRST
     while i < n - 1:
+        if i * dt >= until and _calm(state, body):
+            return
         if state[0] == 0.0 and not recording:
             ahead = next_above(ratio, maxima, i, weakest)
             if ahead >= n:
@@ -315,6 +328,8 @@ def _follow(
                 if i + 1 < history.shape[0]:
                     history[i + 1 :, 0] = state[0] * OVERTURNED
                 return
+        if state[1] > NEAR * (body[0] if state[0] > 0.0 else body[1]):
+            out[6] = (i + 1) * dt
         i += 1
     if n - 1 < history.shape[0]:
         history[n - 1, 0] = state[0] * state[1]
@@ -323,11 +338,16 @@ def _follow(
     h = 0.8 * STEP / math.sqrt(max(body[2], body[3]) * G) / refine
     t = 0.0
     while state[0] != 0.0 and t < stop:
+        clock = (n - 1) * dt + t
+        if clock >= until and _calm(state, body):
+            return
         now = min(h, stop - t)
-        _stretch(state, 0.0, 0.0, G, 0.0, now, (n - 1) * dt + t, parts, body, out)
+        _stretch(state, 0.0, 0.0, G, 0.0, now, clock, parts, body, out)
         if out[1] > 0.0:
             return
         t += now
+        if state[1] > NEAR * (body[0] if state[0] > 0.0 else body[1]):
+            out[6] = clock + now
     if state[0] != 0.0 and tail < 0.0:
         out[5] = float(int(out[5]) | CUT)
 
@@ -343,6 +363,7 @@ def rocking_one(
     body: Array,
     initial: float,
     tail: float,
+    until: float,
     refine: int,
     out: Array,
     history: Array,
@@ -353,14 +374,15 @@ def rocking_one(
     ratio, maxima  : from kernels.quiet, of this very motion
     body           : alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]; 1 is the edge towards +axis
     initial        : rad, released from rest
-    out            : (6,) receives max ratio, overturned (0, 1), time of overturning, time of uplift [s] (-1: never),
-                     impacts, flags
+    until          : s, after which a body that has calmed down is no longer followed; infinite: it always is
+    out            : (7,) receives max ratio, overturned (0, 1), time of overturning, time of uplift [s] (-1: never),
+                     impacts, flags, the last time above NEAR [s] (to a sample or a step)
     history        : (m, 1) receives theta at the samples, as long as it is
     """
     out[:] = 0.0
     out[2] = -1.0
     out[3] = -1.0
-    _follow(x, z, ratio, maxima, dt, peak, body, initial, tail, refine, np.zeros(5), out, history)
+    _follow(x, z, ratio, maxima, dt, peak, body, initial, tail, until, refine, np.zeros(5), out, history)
 
 
 @kernel
@@ -374,10 +396,11 @@ def rocking_batch(
     bodies: Array,
     initial: Array,
     tail: float,
+    until: Array,
     refine: int,
     results: Array,
 ) -> None:
-    """Fill results (m, 6) as in rocking_one for m bodies, bodies (m, 6)."""
+    """Fill results (m, 7) as in rocking_one for m bodies, bodies (m, 6), until (m,)."""
     nothing = np.empty((0, 1))
     for k in range(bodies.shape[0]):
-        rocking_one(x, z, ratio, maxima, dt, peak, bodies[k], initial[k], tail, refine, results[k], nothing)
+        rocking_one(x, z, ratio, maxima, dt, peak, bodies[k], initial[k], tail, until[k], refine, results[k], nothing)

@@ -1,22 +1,23 @@
-"""The measures: each changes the chain of a scene and runs its models again.  Limits and words: tables/measures.csv."""
+"""The measures on one object: what each proposes for it.  Limits and words: tables/measures.csv."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cache, cached_property
-from math import ceil
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from math import ceil, inf, isfinite
 
-import numpy as np
-
-from pipeline.assess import LevelMotions, judge
-from pipeline.classify import MODELS_OF
-from pipeline.mitigate.isolators import Isolator, horizontal_isolators, on_pad, rotational_pads
-from pipeline.models import model_named
-from pipeline.models.common import largest_push, lift_ratios
-from pipeline.models.stress import section_stresses
+from pipeline.classify import material_of
+from pipeline.mitigate.bench import Bench, Trial
+from pipeline.mitigate.changes import changed, held, knows_section
+from pipeline.mitigate.holding import footing, force_and_moment, strengths, wax_area, wax_checks
+from pipeline.mitigate.means import Measure
+from pipeline.mitigate.offers import Need, Numbers, Offer, Proposal, refused
+from pipeline.models.stress import STRESS
 from pipeline.quantities import G
-from pipeline.records import Check, Estimate, Executor, Finding, Motion, Origin, Scene, Support, Verdict
-from pipeline.response import respond
-from pipeline.tables import Row, number, table
+from pipeline.records import Check, Finding, Scene, Support, Verdict
+from pipeline.tables import number, table
+from pipeline.verdicts import judge
+
+Propose = Callable[[Need, Bench, Measure], Proposal]
 
 DISPLACEMENTS = frozenset({"sliding", "swing", "swing_3d", "friction_isolator"})
 """Models whose failure is a collision: room settles it."""
@@ -24,315 +25,326 @@ DISPLACEMENTS = frozenset({"sliding", "swing", "swing_3d", "friction_isolator"})
 MARGIN = 1.1
 """Room asked for over the largest demand of the uncertain inputs: the error of the motion is not in it."""
 
+SPARE = 1.01
+"""Margin on sizes that are found in closed form and then run: 1 %, so that rounding never decides."""
 
-@dataclass(frozen=True)
-class Tried:
-    """A measure on one scene: what to build, the evidence, and where it lies on a chart; or why it is not enough."""
-
-    parameters: Mapping[str, float]
-    units: Mapping[str, str]
-    checks: tuple[Check, ...]
-    reason: str = ""
-    mark: tuple[str, float, float] | None = None
-
-    @property
-    def passes(self) -> bool:
-        """Whether every model that was run again passes."""
-        return not self.reason and all(check.passes for check in self.checks)
+FREE = refused("it does not stand free")
+UNKNOWN_SECTION = refused("its mass or critical section is not known, so the stress of a held base cannot be checked")
 
 
-def _not(reason: str) -> Tried:
-    return Tried({}, {}, (), reason)
+def up(value: float, step: float = 0.01) -> float:
+    """Round up to the next whole step, a centimetre where nothing else is said."""
+    return round(step * ceil(value / step - 1e-9), 12) if isfinite(value) else value
 
 
-class Site:
-    """One level of shaking with what all objects share: peaks, lift ratios, isolators; each computed once.
+def on_floor(need: Need, measure: Measure, numbers: Numbers) -> Scene:
+    """Return the scene of an object on its floor with the measure in place."""
+    return changed(need.scene, measure.name, {name: value for name, (value, _) in numbers.items()})
 
-    What is said of the level is combined from its motions as its findings are: the largest, or the mean.
+
+def keep_clear(need: Need, bench: Bench, measure: Measure) -> Proposal:  # noqa: ARG001
+    """Give it the room that it needs.
+
+    Room changes no demand, so nothing is run again: the demands of its findings are held against the new room.  All
+    others must pass as they stand: an object that may rock is not helped by room, even where only its sliding is known
+    to need some.
     """
-
-    def __init__(self, level: LevelMotions, executor: Executor) -> None:
-        self.level = level
-        self._executor = executor
-        self._slides: dict[tuple[str, float], float] = {}
-        self._swings: dict[tuple[str, float, float], float] = {}
-
-    @cached_property
-    def push(self) -> float:
-        """A_max [m/s2], resultant."""
-        return self.level.combined([largest_push(m.excitation(None)) for m in self.level.motions])
-
-    @cached_property
-    def lift(self) -> float:
-        """The largest |a_h| / N."""
-        return self.level.combined([max(lift_ratios(m.excitation(None))) for m in self.level.motions])
-
-    @cached_property
-    def isolators(self) -> list[Isolator]:
-        """The horizontal isolators of the catalogue under these motions, gentlest first."""
-        return horizontal_isolators(self.level, self._executor)
-
-    def slide(self, friction: float, motions: Sequence[Motion] | None = None) -> float:
-        """Return the sliding displacement [m] at a friction, under the motions of the level or those given."""
-        under = self.level.motions if motions is None else motions
-        key = (under[0].hash, friction)
-        if key not in self._slides:
-            runs = [respond("sliding", m, friction_static=friction)["displacement"].iloc[0] for m in under]
-            self._slides[key] = self.level.combined(runs)
-        return self._slides[key]
-
-    def swing(self, model: str, length: float, damping: float) -> float:
-        """Return the swing [m] in the worst direction."""
-        key = (model, length, damping)
-        if key not in self._swings:
-            runs = [
-                respond(model, m, angle=None, length=length, damping=damping)["displacement"].iloc[0]
-                for m in self.level.motions
-            ]
-            self._swings[key] = self.level.combined(runs)
-        return self._swings[key]
-
-
-@cache
-def measures() -> tuple[Row, ...]:
-    """Return the rows of measures.csv, least intrusive first."""
-    return tuple(sorted(table("measures"), key=lambda row: number(row, "order", "measures.csv")))
-
-
-def limit(row: Row, hanging: bool = False) -> float:
-    """Return the limit of a measure [SI]; hanging objects may have a higher one."""
-    column = "limit_high" if hanging and row["limit_high"] else "limit"
-    return number(row, column, f"measures.csv, {row['measure']}")
-
-
-def _check(model: str, title: str, demand: float, unit: str, capacity: Estimate, high: float | None = None) -> Check:
-    verdict = judge(demand, demand, demand if high is None else high, capacity)
-    return Check(model, title, demand, unit, verdict.capacity, verdict.utilisation, verdict.verdict is Verdict.PASS)
-
-
-def _exactly(value: float, unit: str) -> Estimate:
-    return Estimate(value, unit, Origin.DERIVED, value, value)
-
-
-def _rocking(scene: Scene, lift: float) -> Check:
-    slope = scene.parameters["half_width"].value / scene.parameters["cg_height"].value
-    worst = scene.parameters["half_width"].low / scene.parameters["cg_height"].high
-    return _check("rocking", "Rocking", lift / slope, "-", _exactly(1.0, "-"), lift / worst)
-
-
-def _stress(scene: Scene, push: float) -> Check:
-    best, high = _tension(scene, push)
-    return _check("stress", "Stress", best, "Pa", scene.parameters["allowable_stress"], high)
-
-
-def _tension(scene: Scene, push: float) -> tuple[float, float]:
-    # The tension of the critical section: best estimate, and the highest that its uncertain measures give.
-    p = scene.parameters
-
-    def tension(mass: float, lever: float, modulus: float) -> float:
-        given = {"mass": mass, "lever": lever, "area": p["area"].value, "section_modulus": modulus}
-        return float(section_stresses(np.array([push]), {k: np.array([v]) for k, v in given.items()})["tension"][0])
-
-    best = tension(p["mass"].value, p["lever"].value, p["section_modulus"].value)
-    # The same rule as for findings: one uncertain input at a time at its end.
-    high = max(
-        tension(p["mass"].high, p["lever"].value, p["section_modulus"].value),
-        tension(p["mass"].value, p["lever"].high, p["section_modulus"].value),
-        tension(p["mass"].value, p["lever"].value, p["section_modulus"].low),
-    )
-    return best, high
-
-
-def _knows_section(scene: Scene) -> bool:
-    return all(name in scene.parameters for name in ("mass", "lever", "area", "section_modulus", "allowable_stress"))
-
-
-def _up(value: float) -> float:
-    """Round a length up to the next whole centimetre."""
-    return ceil(100.0 * value - 1e-9) / 100.0
-
-
-def keep_clear(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) -> Tried:  # noqa: ARG001
-    """Give it the room that it needs."""
-    moving = [f for f in findings if f.model in DISPLACEMENTS and f.high is not None]
-    if any(f.verdict is Verdict.FAIL and f.model not in DISPLACEMENTS for f in findings):
-        return _not("room does not help: it fails otherwise than by moving")
+    moving = [f for f in need.findings if f.model in DISPLACEMENTS and f.high is not None]
+    others = [f for f in need.findings if f.model not in DISPLACEMENTS and f.verdict is not Verdict.PASS]
+    if others:
+        may = "it fails" if any(f.verdict is Verdict.FAIL for f in others) else "it may fail"
+        return refused(f"room does not help: {may} otherwise than by moving")
     if not moving:
-        return _not("it does not move")
-    demand, high = max(f.demand or 0.0 for f in moving), max(f.high or 0.0 for f in moving)
-    room = _up(MARGIN * high)
-    hanging = scene.support in (Support.HUNG, Support.SUSPENDED)
-    if room > limit(row, hanging):
-        return _not(
-            f"it would need {100 * room:.0f} cm of room, more than the {100 * limit(row, hanging):.0f} cm allowed"
-        )
-    checks = tuple(_check(f.model, f.title, f.demand or 0.0, f.unit, _exactly(room, "m"), f.high) for f in moving)
-    return Tried({"clearance": room, "movement": demand}, {"clearance": "m", "movement": "m"}, checks)
+        return refused("it does not move")
+    most = max(f.high or 0.0 for f in moving)
+    room = up(MARGIN * most)
+    allowed = measure.limit_high if need.scene.support in (Support.HUNG, Support.SUSPENDED) else measure.limit
+    if room > allowed:
+        return refused(f"it would need {100 * room:.0f} cm of room, more than the {100 * allowed:.0f} cm allowed")
+    numbers = {"clearance": (room, "m"), "movement": (max(f.demand or 0.0 for f in moving), "m")}
+    capacity = on_floor(need, measure, numbers).parameters["clearance"]
+    checks = []
+    for f in need.findings:
+        demand, used, limit = f.demand or 0.0, f.utilisation or 0.0, f.capacity or 0.0
+        passes = f.verdict is Verdict.PASS
+        if f.model in DISPLACEMENTS:
+            judged = judge(demand, f.low or 0.0, f.high or 0.0, capacity)
+            passes, used, limit = judged.verdict is Verdict.PASS, judged.utilisation, judged.capacity
+        checks.append(Check(f.model, f.title, demand, f.unit, limit, used, passes, f.demand))
+    return Proposal((Offer(numbers, checks=tuple(checks)),))
 
 
-def rubber_pads(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) -> Tried:  # noqa: ARG001
+def rubber_pads(need: Need, bench: Bench, measure: Measure) -> Proposal:  # noqa: ARG001
     """Damp the swing of a painting by rubber pads behind its lower corners."""
-    if scene.support is not Support.HUNG:
-        return _not("it does not hang on a wall")
-    damping = limit(row)
-    length = scene.parameters["length"]
-    if scene.parameters["damping"].value >= damping:
-        return _not("it has as much damping already")
-    swings = [site.swing("swing", value, damping) for value in (length.value, length.low, length.high)]
-    check = _check("swing", "Swinging", swings[0], "m", scene.parameters["clearance"], max(swings))
-    if not check.passes:
-        return _not(f"with damping {damping:g} it still swings {100 * max(swings):.0f} cm")
-    mark = ("swing", length.value, swings[0])
-    return Tried({"damping": damping, "movement": swings[0]}, {"damping": "-", "movement": "m"}, (check,), mark=mark)
+    if need.scene.support is not Support.HUNG:
+        return refused("it does not hang on a wall")
+    if need.scene.parameters["damping"].value >= measure.limit:
+        return refused("it has as much damping already")
+    numbers = {"damping": (measure.limit, "-")}
+    return _one(need, measure, numbers, finish=_movement, mark_of="swing")
 
 
-def grip_pad(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) -> Tried:
+def surface(need: Need, bench: Bench, measure: Measure) -> Proposal:  # noqa: ARG001
+    """Put it on the least rough surface of Table 3 that is rougher than its own and holds its base well enough."""
+    refusal = _needs_grip(need)
+    if refusal:
+        return refusal
+    item = need.scene.item
+    material = (item.base_material or material_of(item)["friction_as"]).strip().lower()
+    least = need.scene.parameters["friction_static"].low
+    pairs = [
+        (number(row, "low", "friction.csv"), row["surface_material"])
+        for row in table("friction")
+        if row["object_material"].lower() == material
+    ]
+    rougher = sorted(pair for pair in pairs if least < pair[0] <= measure.limit)
+    offers = []
+    for friction, name in rougher:
+        numbers = {"friction": (friction, "-")}
+        trial = Trial(on_floor(need, measure, numbers))
+        words = {"surface": name.lower()}
+        offers.append(Offer(numbers, (trial,), words=words, finish=_movement, mark_of="sliding"))
+    if not offers:
+        return refused("Table 3 has no rougher surface for the material of its base")
+    return Proposal(tuple(offers))
+
+
+def grip_pad(need: Need, bench: Bench, measure: Measure) -> Proposal:  # noqa: ARG001
     """Put it on a rougher surface; it must not rock there."""
-    if scene.support is not Support.FREESTANDING:
-        return _not("it does not stand free")
-    if any(f.model == "rocking" and f.verdict is not Verdict.PASS for f in findings):
-        return _not("it may rock: a surface that holds it does not keep it upright")
-    friction = limit(row)
-    moved = site.slide(friction)
-    checks = (
-        _rocking(scene, site.lift),
-        _check("sliding", "Sliding", moved, "m", scene.parameters["clearance"]),
-    )
-    if not all(check.passes for check in checks):
-        return _not(f"on a friction of {friction:g} it still moves {100 * moved:.0f} cm")
-    mark = ("sliding", friction, moved)
-    return Tried({"friction": friction, "movement": moved}, {"friction": "-", "movement": "m"}, checks, mark=mark)
+    refusal = _needs_grip(need)
+    if refusal:
+        return refusal
+    return _one(need, measure, {"friction": (measure.limit, "-")}, finish=_movement, mark_of="sliding")
 
 
-def fasten(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) -> Tried:  # noqa: ARG001
+def _needs_grip(need: Need) -> Proposal | None:
+    if need.scene.support is not Support.FREESTANDING:
+        return FREE
+    if any(f.model == "rocking" and f.verdict is not Verdict.PASS for f in need.findings):
+        return refused("it may rock: a surface that holds it does not keep it upright")
+    return None
+
+
+def wax(need: Need, bench: Bench, measure: Measure) -> Proposal:
+    """Hold it by museum wax: it neither rocks nor slides while the wax holds, and its section bears the push."""
+    scene = need.scene
+    if scene.support is not Support.FREESTANDING or "half_width" not in scene.parameters:
+        return FREE
+    if not knows_section(scene):
+        return UNKNOWN_SECTION
+    held_up_to = strengths("museum wax")["acceleration"].low
+    if bench.push > held_up_to:
+        return refused(f"wax is known to hold up to {held_up_to / G:.2g} g; the shaking is {bench.push / G:.2g} g")
+    area, room = up(wax_area(scene, bench), 1e-5), measure.limit * footing(scene)
+    if area > room:
+        return refused(f"it would need {1e4 * area:.3g} cm2 of wax; its footing has room for {1e4 * room:.3g} cm2")
+    numbers = {"area": (area, "m2")}
+    finish = partial(_holds, scene, bench)
+    return _one(need, measure, numbers, finish=finish, checks=wax_checks(scene, bench, area))
+
+
+def ballast(need: Need, bench: Bench, measure: Measure) -> Proposal:
+    """Lower its centre of gravity by ballast: as much as the push asks for, run again with all that is uncertain."""
+    scene = need.scene
+    if scene.support is not Support.FREESTANDING or not {"half_width", "cg_height", "mass"} <= set(scene.parameters):
+        return FREE
+    if not _rocks(need):
+        return refused("it does not rock: a lower centre of gravity does not help")
+    if measure.classes and scene.object_class not in measure.classes:
+        return refused("objects of its kind have no room for ballast")
+    mass, cg, half = (scene.parameters[name] for name in ("mass", "cg_height", "half_width"))
+    at = measure.limit_high * cg.value
+    # One uncertain input at a time, as the trial sees it: (own mass, own height, the height that may be left).
+    corners = ((mass.value, cg.value, half.low / bench.lift), (mass.high, cg.high, half.value / bench.lift))
+    if any(left <= at for _, _, left in corners):
+        return refused("no ballast brings its centre of gravity low enough")
+    needed = SPARE * max(own * (height - left) / (left - at) for own, height, left in corners)
+    share = needed / mass.value
+    if share > measure.limit:
+        return refused(f"it would need {100 * share:.0f} % of its mass; {100 * measure.limit:.0f} % is allowed")
+    numbers = {"mass": (max(needed, 0.0), "kg"), "height": (at, "m")}
+    lowered = on_floor(need, measure, numbers)
+    numbers["cg_height"] = (lowered.parameters["cg_height"].value, "m")
+    return Proposal((Offer(numbers, (Trial(lowered),), mark_of="rocking"),))
+
+
+def wide_base(need: Need, bench: Bench, measure: Measure) -> Proposal:
+    """Fix it to a footing plate so wide that it does not rock, with the room that it slides in around the plate.
+
+    Its critical section bears the push, as that of a clamped object does.
+    """
+    scene = need.scene
+    if scene.support is not Support.FREESTANDING or not {"half_width", "cg_height"} <= set(scene.parameters):
+        return FREE
+    if not _rocks(need):
+        return refused("it does not rock: a wider base does not help")
+    if not knows_section(scene):
+        return UNKNOWN_SECTION
+    half = scene.parameters["half_width"]
+    width = up(SPARE * 2.0 * bench.lift * scene.parameters["cg_height"].high)
+    allowed = 2.0 * measure.limit * half.value
+    if width > allowed:
+        return refused(f"it would need a plate {100 * width:.0f} cm wide; {100 * allowed:.0f} cm is allowed")
+    room = up(MARGIN * max((f.high or 0.0 for f in need.findings if f.model in DISPLACEMENTS), default=0.0))
+    if room > measure.limit_high:
+        least = f"the {100 * measure.limit_high:.0f} cm allowed"
+        return refused(f"it would need {100 * room:.0f} cm of room around its plate, more than {least}")
+    numbers = {"width": (width, "m"), "clearance": (room, "m")}
+    return _one(need, measure, numbers, finish=partial(_holds, scene, bench), mark_of="rocking")
+
+
+def fasten(need: Need, bench: Bench, measure: Measure) -> Proposal:
     """Clamp it at its base: it neither rocks nor slides, and its critical section must bear the push."""
-    if scene.support is not Support.FREESTANDING:
-        return _not("it does not stand free")
-    if not _knows_section(scene):
-        return _not("its mass or critical section is not known, so the stress of a clamped base cannot be checked")
-    check = _stress(scene, site.push)
-    if not check.passes:
-        worst = _tension(scene, site.push)[1] / scene.parameters["allowable_stress"].low
-        sure = f", {check.utilisation:.2g} times by the best estimates" if worst > 1.05 * check.utilisation else ""
-        return _not(f"clamped, its critical section may reach {worst:.2g} times what is allowed{sure}")
-    force = scene.parameters["mass"].high * site.push
-    moment = force * scene.parameters["cg_height"].high
-    parameters = {"force": force, "moment": moment}
-    return Tried(parameters, {"force": "N", "moment": "N m"}, (check,))
+    if need.scene.support is not Support.FREESTANDING:
+        return FREE
+    if not knows_section(need.scene):
+        return UNKNOWN_SECTION
+    return _one(need, measure, {}, finish=partial(_holds, need.scene, bench))
 
 
-def restrain(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) -> Tried:  # noqa: ARG001
+def restrain(need: Need, bench: Bench, measure: Measure) -> Proposal:  # noqa: ARG001
     """Fix a hung object to the wall as well: nothing is left that swings; the fixings bear the push."""
+    scene = need.scene
     if scene.support is not Support.HUNG:
-        return _not("it does not hang on a wall")
+        return refused("it does not hang on a wall")
     mass = scene.parameters.get("mass")
     if mass is None:
-        return _not("its mass is not known, so the force on the fixings cannot be given")
-    remaining = replace(scene, support=Support.FASTENED, models=MODELS_OF[Support.FASTENED])
-    swing = model_named("swing")
-    still = swing.applies(remaining)
-    if not still:
-        return _not("it would still swing")
-    force = mass.high * site.push
-    check = _check("swing", "Swinging", 0.0, "m", scene.parameters["clearance"])
-    return Tried({"force": force}, {"force": "N"}, (check,))
+        return refused("its mass is not known, so the force on the fixings cannot be given")
+    (swing,) = (f for f in need.findings if f.model == "swing")
+    check = Check("swing", swing.title, 0.0, swing.unit, swing.capacity or 0.0, 0.0, True, swing.demand)
+    trials = (Trial(held(scene)),) if knows_section(scene) else ()
+    return Proposal((Offer({"force": (mass.high * bench.push, "N")}, trials, checks=(check,)),))
 
 
-def low_friction_pad(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) -> Tried:  # noqa: ARG001
+def low_friction_pad(need: Need, bench: Bench, measure: Measure) -> Proposal:
     """Let it slide; first it must not rock, whatever the friction (paper, 2.6)."""
+    scene = need.scene
     if scene.support not in (Support.FREESTANDING, Support.FASTENED):
-        return _not("it does not stand")
-    if "half_width" not in scene.parameters or "cg_height" not in scene.parameters:
-        return _not("whether it rocks is not known")
-    upright = _rocking(scene, site.lift)
-    if not upright.passes:
-        return _not("it may rock: a low friction never excuses that")
-    friction = limit(row)
-    moved = site.slide(friction)
-    room = _up(MARGIN * moved)
-    checks = [upright, _check("friction_isolator", "Friction isolator", moved, "m", _exactly(room, "m"))]
-    if _knows_section(scene):
-        # It passes on at most friction times the largest normal acceleration.
-        down = max(float(np.max(np.maximum(0.0, G + m.acceleration[2]))) for m in site.level.motions)
-        checks.append(_stress(scene, min(site.push, friction * down)))
-    if not all(check.passes for check in checks):
-        return _not("sliding on a low friction it still breaks")
-    parameters = {"friction": friction, "clearance": room, "movement": moved}
-    units = {"friction": "-", "clearance": "m", "movement": "m"}
-    return Tried(parameters, units, tuple(checks), mark=("sliding", friction, moved))
-
-
-def horizontal_isolator(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) -> Tried:  # noqa: ARG001
-    """Put it on a horizontal isolator: the shortest stroke of the catalogue that keeps it standing and whole.
-
-    It is fastened to the isolator where its section bears that, else it stands free on it and must not rock there.
-    """
-    if scene.support not in (Support.FREESTANDING, Support.FASTENED):
-        return _not("it does not stand")
-    if not _knows_section(scene) and "half_width" not in scene.parameters:
-        return _not("neither its base nor its critical section is known")
-    longest = limit(row)
-    best: Tried | None = None
-    shortest = np.inf
-    for isolator in site.isolators:
-        if _up(isolator.stroke * MARGIN) > longest or isolator.stroke >= shortest:
+        return refused("it does not stand")
+    if not {"half_width", "cg_height"} <= set(scene.parameters):
+        return refused("whether it rocks is not known")
+    half, cg = scene.parameters["half_width"], scene.parameters["cg_height"]
+    if bench.lift > min(half.low / cg.value, half.value / cg.high):
+        return refused("it may rock: a low friction never excuses that")
+    upright = replace(scene, support=Support.FREESTANDING, models=("rocking",))
+    offers = []
+    for carried in bench.carried("friction_isolator"):
+        pad = carried.isolator
+        room = up(MARGIN * carried.stroke)
+        if room > min(measure.limit, pad.stroke):
             continue
-        stroke = _check("horizontal_isolator", "Isolator stroke", isolator.stroke, "m", _exactly(longest, "m"))
-        checks = _on_isolator(scene, isolator, site)
-        if stroke.passes and checks:
-            shortest = isolator.stroke
-            parameters = {
-                "frequency": isolator.frequency,
-                "friction": isolator.friction,
-                "stroke": _up(isolator.stroke * MARGIN),
-                "acceleration": isolator.acceleration,
-            }
-            units = {"frequency": "Hz", "friction": "-", "stroke": "m", "acceleration": "m/s2"}
-            mark = ("isolator", isolator.frequency, isolator.acceleration)
-            best = Tried(parameters, units, (stroke, *checks), mark=mark)
-    return best or _not("no isolator of the catalogue passes on little enough within its stroke")
+        numbers = {"friction": (pad.friction, "-"), "clearance": (room, "m"), "movement": (carried.stroke, "m")}
+        trials = [Trial(upright), Trial(on_floor(need, measure, numbers))]
+        if knows_section(scene):
+            trials.append(Trial(held(scene), carried))
+        mark = ("sliding", pad.friction, carried.stroke)
+        offers.append(Offer(numbers, tuple(trials), mark=mark))
+    if not offers:
+        return refused("no low-friction pad keeps to the room that there is")
+    return Proposal(tuple(offers))
 
 
-def _on_isolator(scene: Scene, isolator: Isolator, site: Site) -> tuple[Check, ...]:
-    # The models of the object itself, on what comes out of the isolator; nothing where neither way of standing passes.
-    if _knows_section(scene):
-        held = _stress(scene, isolator.acceleration)
-        if held.passes:
-            return (held,)
-    if "half_width" not in scene.parameters or "friction_static" not in scene.parameters:
-        return ()
-    upright = _rocking(scene, isolator.lift)
-    friction, room = scene.parameters["friction_static"], scene.parameters["clearance"]
-    if not upright.passes:
-        return ()
-    moved = [site.slide(value, isolator.passed) for value in (friction.value, friction.low)]
-    slides = _check("sliding", "Sliding", moved[0], "m", room, max(moved))
-    return (upright, slides) if slides.passes else ()
+def rotational_isolator(need: Need, bench: Bench, measure: Measure) -> Proposal:
+    """Mount it on an elastomeric pad that lets it turn a little and spares its base.
 
-
-def rotational_isolator(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) -> Tried:  # noqa: ARG001
-    """Mount it on an elastomeric pad that lets it turn a little and spares its base."""
+    The stress is that of a rigid body under the acceleration of its centre of gravity on the pad.
+    """
+    scene = need.scene
     if scene.support not in (Support.FREESTANDING, Support.FASTENED):
-        return _not("it does not stand")
-    if not _knows_section(scene) or "cg_height" not in scene.parameters:
-        return _not("its mass or critical section is not known")
-    cg = scene.parameters["cg_height"].value
-    half = scene.parameters.get("half_width")
-    width = half.value if half is not None else 0.5 * cg
-    # A uniform body about the middle of its base: I = m h^2 + m (b^2 + h^2) / 3.
-    ratio = 1.0 + (width**2 + cg**2) / (3.0 * cg**2)
-    for pad in rotational_pads():
-        rotation, acceleration = on_pad(site.level, pad, cg, ratio)
-        checks = (
-            _check("rotational_isolator", "Turn on its pad", rotation, "rad", _exactly(limit(row), "rad")),
-            _stress(scene, acceleration),
-        )
-        if all(check.passes for check in checks):
-            parameters = {"frequency": pad.frequency, "rotation": rotation, "acceleration": acceleration}
-            return Tried(parameters, {"frequency": "Hz", "rotation": "rad", "acceleration": "m/s2"}, checks)
-    return _not("on none of the pads does it turn and bend little enough")
+        return refused("it does not stand")
+    if not knows_section(scene) or "cg_height" not in scene.parameters:
+        return UNKNOWN_SECTION
+    if STRESS.applies(held(scene)):
+        return refused("it is flexible itself: no model has a flexible object on a pad that turns")
+    cg = scene.parameters["cg_height"]
+    offers = []
+    for pad in bench.means.of("rotational_isolator"):
+        numbers: dict[str, tuple[float, str]] = {
+            "frequency": (pad.frequency, "Hz"),
+            "damping": (pad.damping, "-"),
+            "rotation_limit": (measure.limit, "rad"),
+        }
+        turning = on_floor(need, measure, numbers)
+        ratio = turning.parameters["inertia_ratio"].value
+        rotation, share = bench.on_pad(pad, (cg.low, cg.value, cg.high), ratio)
+        numbers |= {"rotation": (rotation, "rad"), "acceleration": (share * bench.push, "m/s2")}
+        amplified = replace(cg, value=share, low=share, high=share, unit="-", note="on its pad")
+        bent = held(scene)
+        bent = replace(bent, models=("stress",), parameters={**bent.parameters, "amplification": amplified})
+        offers.append(Offer(numbers, (Trial(turning), Trial(bent))))
+    if not offers:
+        return refused("the catalogue has no rotational isolator")
+    return Proposal(tuple(offers), "on none of the pads does it turn and bend little enough")
 
 
-def remove(scene: Scene, findings: Sequence[Finding], site: Site, row: Row) -> Tried:  # noqa: ARG001
+def strengthen(need: Need, bench: Bench, measure: Measure) -> Proposal:
+    """Make its critical section thicker, as much as the push asks for, and hold it at its base."""
+    scene = need.scene
+    if scene.support not in (Support.FREESTANDING, Support.FASTENED):
+        return refused("it does not stand")
+    if not knows_section(scene):
+        return UNKNOWN_SECTION
+    mass, area, modulus, allowed = (
+        scene.parameters[name] for name in ("mass", "area", "section_modulus", "allowable_stress")
+    )
+    (now,) = bench.run([Trial(held(scene))])
+    # Held as it is, its tension and self-weight make up the bending, which falls with the cube of the size.
+    tension = max(f.high or 0.0 for f in now)
+    weight = mass.high * G / area.value
+    times = up(SPARE * (max(tension + weight, 0.0) / allowed.low) ** (1.0 / 3.0)) if allowed.low > 0.0 else inf
+    if times <= 1.0:
+        return refused("its critical section is strong enough as it is")
+    if times > measure.limit:
+        return refused(f"its section would have to be {times:.2g} times as large; {measure.limit:g} is allowed")
+    numbers = {"enlargement": (times, "-"), "section_modulus": (times**3 * modulus.value, "m3")}
+    return _one(need, measure, numbers, finish=partial(_holds, scene, bench))
+
+
+def remove(need: Need, bench: Bench, measure: Measure) -> Proposal:  # noqa: ARG001
     """Take it off display."""
-    return Tried({}, {}, ())
+    return Proposal((Offer({}),))
+
+
+def _rocks(need: Need) -> bool:
+    return any(f.model == "rocking" and f.verdict is not Verdict.PASS for f in need.findings)
+
+
+def _movement(findings: Sequence[Finding]) -> Numbers:
+    moves = [f for f in findings if f.model in DISPLACEMENTS]
+    return {"movement": (max((f.high or 0.0 for f in moves), default=0.0), "m")}
+
+
+def _holds(scene: Scene, bench: Bench, findings: Sequence[Finding]) -> Numbers:
+    force, moment = force_and_moment(scene, bench, findings)
+    return {"force": (force, "N"), "moment": (moment, "N m")}
+
+
+def _one(
+    need: Need,
+    measure: Measure,
+    numbers: Numbers,
+    *,
+    finish: Callable[[Sequence[Finding]], Numbers],
+    checks: tuple[Check, ...] = (),
+    mark_of: str = "",
+) -> Proposal:
+    trial = Trial(on_floor(need, measure, numbers))
+    return Proposal((Offer(numbers, (trial,), checks=checks, finish=finish, mark_of=mark_of),))
+
+
+MEASURES: Mapping[str, Propose] = {
+    "clearance": keep_clear,
+    "rubber_pads": rubber_pads,
+    "surface": surface,
+    "grip_pad": grip_pad,
+    "wax": wax,
+    "ballast": ballast,
+    "wide_base": wide_base,
+    "fasten": fasten,
+    "restrain": restrain,
+    "friction_isolator": low_friction_pad,
+    "rotational_isolator": rotational_isolator,
+    "strengthen": strengthen,
+    "remove": remove,
+}
+"""What each row of measures.csv that acts on one object proposes."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.kernels import flags
+from pipeline.kernels import flags, samples
 from pipeline.kernels.quiet import block_maxima, demand_ratio
 from pipeline.quantities import Array, G
 from pipeline.records import Excitation, Scene, Support
@@ -18,7 +18,7 @@ NOTES = {
     flags.CONTACT_LOST: "contact lost (vertical acceleration below -g); flight and landing are not modelled",
     flags.CUT: "still moving when the tail was cut",
     flags.EVENT_CAP: "more impacts than are followed in one sample interval",
-    SENSITIVE: "sensitive: 1 % of the motion's amplitude changes the outcome, or any change is magnified 1,000 times",
+    SENSITIVE: "sensitive: 1 % of amplitude may change the outcome, or any change is magnified 1,000 times",
     NO_TILT: "no tilt reproduces an acceleration of 1 g or more",
     NO_HISTORY: "a closed-form screen, not a response",
     BOUND: "a guaranteed upper bound, not a response",
@@ -44,9 +44,9 @@ class Quiet:
     """An excitation with the arrays that let resting objects skip ahead, prepared once for all objects."""
 
     def __init__(self, motion: Excitation) -> None:
-        self.x = np.ascontiguousarray(motion.x)
-        self.y = np.zeros_like(self.x) if motion.y is None else np.ascontiguousarray(motion.y)
-        self.z = np.ascontiguousarray(motion.z)
+        self.x = samples(motion.x)
+        self.y = np.zeros_like(self.x) if motion.y is None else samples(motion.y)
+        self.z = samples(motion.z)
         self.dt = motion.dt
         self.push = np.hypot(self.x, self.y)
         self.peak = float(self.push.max())

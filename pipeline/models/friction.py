@@ -30,7 +30,8 @@ def stick_slip(
     """Run n bodies on dry friction, with a spring and a dashpot where w > 0.
 
     w [rad/s], zeta, mu_s, mu_k [-] : (n,)
-    returns : displacement, residual, path [m], acceleration [m/s2], error [m], note; (n,) each
+    returns : displacement, residual, path [m], acceleration [m/s2], error of the displacement [m] and of the
+              acceleration [m/s2], note; (n,) each
     """
     quiet = Quiet(motion)
     arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta, mu_s, mu_k)]
@@ -40,6 +41,7 @@ def stick_slip(
             quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.pushes, quiet.dt, *arrays, quiet.tail, results
         )
         error = ROUNDING * np.maximum(results[:, 0], results[:, 2])
+        felt = ROUNDING * results[:, 3]
     else:
         coarse = np.full_like(results, np.nan)
         tolerance, longest = _steps(w, refine)
@@ -61,9 +63,10 @@ def stick_slip(
                 most,
                 out,
             )
-        # The difference of two peaks may vanish by chance; where the body ends, and hardly that of both at once.
+        # The difference of two peaks may vanish by chance, that of two ends or paths too: hardly all three at once.
         apart = np.abs(results - coarse)
-        error = 2.0 * (apart[:, 0] + apart[:, 1]) + ROUNDING * results[:, 2]
+        error = 2.0 * apart[:, :3].sum(axis=1) + ROUNDING * results[:, 2]
+        felt = 2.0 * apart[:, 3] + ROUNDING * results[:, 3]
     note = results[:, 4]
     if estimate:
         # Whether it moves at all: just above its friction, a thousandth of a displacement is a millionth of the motion.
@@ -74,6 +77,7 @@ def stick_slip(
         "path_length": results[:, 2],
         "acceleration": results[:, 3],
         "error": error,
+        "acceleration_error": felt,
         "note": note,
     }
 

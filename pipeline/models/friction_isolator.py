@@ -15,8 +15,9 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
     mu_s = parameters["friction_static"]
     free = np.zeros_like(mu_s)
     out = stick_slip(motion, free, free, mu_s, kinetic(parameters), refine, estimate)
-    # The error of the first output: friction passes on exactly mu N while slipping and the base's own while at rest.
-    out["error"] = 1e-12 * out["acceleration"]
+    # The error of the first output: friction passes on exactly mu N while slipping and the base's own while at rest,
+    # but when it slips and rests is not known exactly.
+    out["error"] = out.pop("acceleration_error")
     del out["path_length"]
     return out
 
@@ -58,5 +59,6 @@ FRICTION_ISOLATOR = Model(
     capacity="clearance",
     applies=_applies,
     sentence="On its low-friction pad it slides up to {demand}; there is room for {capacity}.",
+    at_most="On its low-friction pad it slides at most {demand} (at most {high}); there is room for {capacity}.",
     fails="slides",
 )

@@ -16,7 +16,7 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
     w = 2.0 * np.pi * parameters["frequency"]
     out = stick_slip(motion, w, parameters["damping"], mu, mu, refine, estimate)
     # The kernel's error is of the displacement; the acceleration follows it through the spring and the dashpot.
-    out["error"] = out["error"] * w * (w + 2.0 * parameters["damping"] * w) + 1e-12 * out["acceleration"]
+    out["error"] = out["error"] * w * (w + 2.0 * parameters["damping"] * w) + out.pop("acceleration_error")
     del out["path_length"]
     return out
 
@@ -50,7 +50,7 @@ HORIZONTAL_ISOLATOR = Model(
     directions=0,
     run=_run,
     trace=_trace,
-    chart=ChartAxis("frequency", 0.1, 10.0),
+    chart=ChartAxis("frequency", 0.1, 10.0, nodes=330),
     demand="displacement",
     capacity="stroke",
     applies=_applies,

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
 from pipeline.models.common import ROUNDING, after_record
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
@@ -22,7 +23,7 @@ def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[
     max_u, max_y = np.empty(w.size), np.empty(w.size)
     tail = -1.0 if motion.tail is None else float(motion.tail)
     arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta, share)]
-    oscillator_batch(np.ascontiguousarray(motion.x), motion.dt, *arrays, tail, max_u, max_y)
+    oscillator_batch(samples(motion.x), motion.dt, *arrays, tail, max_u, max_y)
     return max_u, max_y
 
 
@@ -76,7 +77,7 @@ def _run(
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     history = np.zeros((motion.x.size + after_record(motion), 2))
     w = 2.0 * np.pi * parameters["frequency"]
-    oscillator_history(np.ascontiguousarray(motion.x), motion.dt, w, parameters["damping"], 1.0, history)
+    oscillator_history(samples(motion.x), motion.dt, w, parameters["damping"], 1.0, history)
     # history holds a + u'' with the sign of the base's acceleration.
     return {"u_x": history[:, 0], "a_x": history[:, 1]}
 

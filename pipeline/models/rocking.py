@@ -4,9 +4,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.kernels import flags
-from pipeline.kernels.rocking import OVERTURNED, STEP, rocking_batch, rocking_one
+from pipeline.kernels.rocking import NEAR, OVERTURNED, STEP, rocking_one
 from pipeline.models.common import (
     ILL,
     NO_HISTORY,
@@ -22,6 +23,7 @@ from pipeline.models.common import (
     needs,
     unless_free,
 )
+from pipeline.models.flips import FELL, FELL_AT, FLAGS, IMPACTS, LAST_NEAR, LIFTED_AT, RATIO, flips, integrate
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Bounds, Columns, Excitation, Model, Scene
 
@@ -39,18 +41,6 @@ ONSET = 5.0
 
 LOCAL = 0.03
 """Relative error of a hop within one step, as a share of (fastest rate x step)^4, at a condition of 1."""
-
-NEIGHBOURS = (-0.01, 0.01, -0.003, 0.003)
-"""Relative changes of amplitude at which the outcome is asked again; the inner ones of wild bodies only."""
-
-TALL = 0.15
-"""Largest ratio of a body that 1 % more does not throw over: 4 of 205 that flipped were below."""
-
-WILD = 20.0
-"""Change of the ratio per relative change of amplitude from which a body is wild."""
-
-LATE = 1e-4
-"""Change of the time of overturning between two steps, times p, from which a body that fell is wild."""
 
 
 def bodies(parameters: Mapping[str, Array]) -> Array:
@@ -81,71 +71,68 @@ def uplift_ratios(motion: Excitation, body: Array) -> Array:
     return np.maximum(to_positive / np.tan(body[:, 0]), to_negative / np.tan(body[:, 1]))
 
 
-def _pass(motion: Excitation, body: Array, initial: Array, steps: int) -> Array:
-    quiet = Quiet(motion)
-    results = np.empty((body.shape[0], 6))
-    rocking_batch(
-        quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.dt, quiet.peak, body, initial, quiet.tail, steps, results
-    )
-    return results
-
-
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     body = bodies(parameters)
     initial = broadcast(parameters, "initial_rotation")
     uplift = uplift_ratios(motion, body)
-    fine = _pass(motion, body, initial, 2 * refine if estimate else refine)
-    note = fine[:, 5].astype(np.int64) | np.where(np.isinf(uplift), flags.CONTACT_LOST, 0)
+    fine = integrate(motion, body, initial, 2 * refine if estimate else refine)
+    note = fine[:, FLAGS].astype(np.int64) | np.where(np.isinf(uplift), flags.CONTACT_LOST, 0)
     error = np.full(uplift.size, np.nan)
     if estimate:
-        coarse = _pass(motion, body, initial, refine)
+        coarse = integrate(motion, body, initial, refine)
         error, sensitive = _doubt(motion, body, initial, refine, uplift, coarse, fine)
         note |= np.where(sensitive, SENSITIVE, 0)
-    return {
-        "rotation_ratio": fine[:, 0],
-        "overturned": fine[:, 1],
-        "overturning_time": np.where(fine[:, 2] < 0.0, np.nan, fine[:, 2]),
-        "uplift_time": np.where(fine[:, 3] < 0.0, np.nan, fine[:, 3]),
-        "impacts": fine[:, 4],
+    # Only `_flips`, which goes on from a run without an estimate, wants to know how long a body was near.
+    hidden = {} if estimate else {"near_until": fine[:, LAST_NEAR]}
+    return hidden | {
+        "rotation_ratio": fine[:, RATIO],
+        "overturned": fine[:, FELL],
+        "overturning_time": np.where(fine[:, FELL_AT] < 0.0, np.nan, fine[:, FELL_AT]),
+        "uplift_time": np.where(fine[:, LIFTED_AT] < 0.0, np.nan, fine[:, LIFTED_AT]),
+        "impacts": fine[:, IMPACTS],
         "uplift_ratio": uplift,
         "error": error,
         "note": note.astype(np.float64),
     }
 
 
+def _flips(motion: Excitation, parameters: Mapping[str, Array], columns: Columns) -> NDArray[np.bool_]:
+    body = bodies(parameters)
+    found = np.zeros((body.shape[0], 7))
+    found[:, RATIO], found[:, FELL], found[:, LAST_NEAR] = (
+        columns[name] for name in ("rotation_ratio", "overturned", "near_until")
+    )
+    found[:, FELL_AT], found[:, LIFTED_AT] = (
+        np.nan_to_num(columns[name], nan=-1.0) for name in ("overturning_time", "uplift_time")
+    )
+    return flips(motion, body, broadcast(parameters, "initial_rotation"), columns["uplift_ratio"], found)
+
+
 def _doubt(
     motion: Excitation, body: Array, initial: Array, refine: int, uplift: Array, coarse: Array, fine: Array
-) -> tuple[Array, Array]:
+) -> tuple[Array, NDArray[np.bool_]]:
     # The error of the ratio, and which bodies are sensitive: to the step, to a part in a thousand of the motion's
     # amplitude (condition), or to 1 % of it (outcome).  Only those that could be are integrated again.
-    ratio, fallen = fine[:, 0], fine[:, 1] > 0.0
-    error = np.abs(ratio - coarse[:, 0])
-    sensitive = (coarse[:, 1] != fine[:, 1]) | (error > APART * ratio)
+    ratio, fallen = fine[:, RATIO], fine[:, FELL] > 0.0
+    error = np.abs(ratio - coarse[:, RATIO])
+    sensitive = (coarse[:, FELL] != fine[:, FELL]) | (error > APART * ratio)
     # A chaotic sequence of impacts magnifies the error of integration as it does a change of the motion.
     doubtful = ~fallen & ~sensitive & (error > DOUBTFUL * ratio)
     condition = np.divide(ONSET, uplift - 1.0, out=np.ones_like(uplift), where=(uplift > 1.0) & ~fallen)
-    magnified = _again(motion, body, initial, refine, doubtful, 1.0 + NUDGE)[:, 0]
-    measured = np.abs(magnified - coarse[doubtful, 0]) / (NUDGE * ratio[doubtful])
-    condition[doubtful] = np.maximum(condition[doubtful], measured)
-    sensitive[doubtful] |= measured > ILL
+    if doubtful.any():
+        more = replace(motion, x=(1.0 + NUDGE) * motion.x, z=(1.0 + NUDGE) * motion.z)
+        # What has calmed down has been at its largest ratio, if that was above what counts as near.
+        until = np.where(ratio > NEAR, fine[:, LAST_NEAR], np.inf)[doubtful]
+        nudged = integrate(more, body[doubtful], initial[doubtful], refine, until)[:, RATIO]
+        measured = np.abs(nudged - coarse[doubtful, RATIO]) / (NUDGE * ratio[doubtful])
+        condition[doubtful] = np.maximum(condition[doubtful], measured)
+        sensitive[doubtful] |= measured > ILL
     # The hop of a body that barely lifts can lie within one step, which both integrations then take alike.
     local = LOCAL * (STEP / (2 * refine)) ** 4
     error += np.where(fallen, ROUNDING, np.minimum(1.0, local * np.maximum(1.0, condition))) * ratio
-    # Overturning is not monotone: the wilder the body, the closer the amplitudes that are tried.
-    late = np.abs(fine[:, 2] - coarse[:, 2]) * np.sqrt(G * body[:, 2])
-    wild = np.where(fallen, late > LATE, condition * ratio > WILD)
-    for change in NEIGHBOURS:
-        tried = ~sensitive & (fallen | (ratio > TALL)) & (wild | (abs(change) == max(NEIGHBOURS)))
-        again = _again(motion, body, initial, 1, tried, 1.0 + change)
-        sensitive[tried] |= again[:, 1] != fine[tried, 1]
+    left = ~sensitive
+    sensitive[left] = flips(motion, body[left], initial[left], uplift[left], fine[left])
     return error, sensitive
-
-
-def _again(motion: Excitation, body: Array, initial: Array, steps: int, rows: Array, times: float) -> Array:
-    if not rows.any():
-        return np.empty((0, 6))
-    scaled = replace(motion, x=times * motion.x, z=times * motion.z)
-    return _pass(scaled, body[rows], initial[rows], steps)
 
 
 def _screen(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
@@ -192,8 +179,9 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
         body,
         parameters["initial_rotation"],
         0.0,
+        np.inf,
         4,
-        np.empty(6),
+        np.empty(7),
         history,
     )
     return {"rotation": history[:, 0]}
@@ -278,6 +266,7 @@ ROCKING = Model(
         Quantity("uplift_ratio", "-", "largest |a_h| / (max(0, g + a_z) b/h)"),
     ),
     directions=1,
+    axes=({"half_width": "half_base_width"}, {"half_width": "half_base_depth"}),
     run=_run,
     screen=_screen,
     say_screen=_say,
@@ -286,6 +275,7 @@ ROCKING = Model(
     certificate=_certificate,
     exact=True,
     rests=1.0,
+    flips=_flips,
     outcome=_outcome,
     otherwise=_overturning,
     mark=lambda parameters, _: ("stability", 2.0 * parameters["cg_height"], 2.0 * parameters["half_width"]),

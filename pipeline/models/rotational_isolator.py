@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_history
 from pipeline.models.common import ROUNDING, after_record, needs
 from pipeline.models.horizontal_isolator import DAMPING
@@ -39,7 +40,7 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     history = np.zeros((motion.x.size + after_record(motion), 2))
     w = 2.0 * np.pi * parameters["frequency"]
     share = 1.0 / parameters["inertia_ratio"]
-    oscillator_history(np.ascontiguousarray(motion.x), motion.dt, w, parameters["damping"], share, history)
+    oscillator_history(samples(motion.x), motion.dt, w, parameters["damping"], share, history)
     # u_x: of the centre of gravity, whose absolute acceleration a_x is.
     u = history[:, 0] * share
     return {"rotation": u / parameters["cg_height"], "u_x": u, "a_x": history[:, 1]}
@@ -77,5 +78,6 @@ ROTATIONAL_ISOLATOR = Model(
     capacity="rotation_limit",
     applies=_applies,
     sentence="Its pad lets it turn by {demand}; {capacity} is allowed.",
+    at_most="Its pad lets it turn by at most {demand}; {capacity} is allowed.",
     fails="turns too far on its pad",
 )

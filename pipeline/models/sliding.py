@@ -19,6 +19,7 @@ FRICTION_AXIS = ChartAxis(
     "friction_static",
     low=0.01,
     high=1.5,
+    nodes=250,
     absent=("friction_kinetic",),
     # From here on it rests: it moves only where |a_h| exceeds mu (g + a_z).
     settled=lambda motion: max(lift_ratios(motion)),
@@ -29,7 +30,7 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
     mu_s = parameters["friction_static"]
     free = np.zeros_like(mu_s)
     out = stick_slip(motion, free, free, mu_s, kinetic(parameters), refine, estimate)
-    del out["acceleration"]
+    del out["acceleration"], out["acceleration_error"]
     return out
 
 
@@ -84,6 +85,10 @@ SLIDING = Model(
     sentence=(
         "It slides up to {demand} from where it stands (its friction may be lower or higher: {low} to {high}); there "
         "is room for {capacity}."
+    ),
+    at_most=(
+        "It slides at most {demand} from where it stands (at most {high}, its friction being uncertain); there is room "
+        "for {capacity}."
     ),
     fails="slides",
 )

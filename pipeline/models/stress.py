@@ -30,6 +30,9 @@ _STRESSES = (
 )
 
 
+_AXES = ({"section_modulus": "section_modulus_width"}, {"section_modulus": "section_modulus_depth"})
+
+
 def section_stresses(push: Array, parameters: Mapping[str, Array]) -> Columns:
     """Return the stresses and the equivalent tilt under a horizontal acceleration push [m/s2] (n,).
 
@@ -139,6 +142,7 @@ STRESS = Model(
     needs=(*_SECTION, Quantity("amplification", "-", "of A_max", 0.0, optional=True, default=1.0)),
     gives=_STRESSES,
     directions=1,
+    axes=_AXES,
     run=_run,
     screen=_screen,
     say_screen=_say,
@@ -166,6 +170,7 @@ FLEXIBLE_STRESS = Model(
         Quantity("pseudo_acceleration", "m/s2", "peak of the damped oscillator that takes A_max's place"),
     ),
     directions=1,
+    axes=_AXES,
     run=_run_flexible,
     bound=_bound_flexible,
     say_screen=_say,
@@ -175,5 +180,9 @@ FLEXIBLE_STRESS = Model(
     capacity="allowable_stress",
     applies=lambda scene: _holds(scene, flexible=True),
     sentence=_SENTENCE,
+    at_most=(
+        "Held at its base, its critical section reaches at most {demand} (at most {high}, its measures being "
+        "uncertain); {capacity} is allowed."
+    ),
     fails="breaks",
 )

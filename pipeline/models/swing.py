@@ -1,12 +1,14 @@
 """Generic models 4 and 5: swinging in two and in three dimensions (Agbabian et al. 1991, sec. 2.4 and Figure 5)."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
+from pipeline.kernels import samples
 from pipeline.kernels.pendulum import pendulum_batch
 from pipeline.kernels.spherical import spherical_batch
-from pipeline.models.common import NO_HISTORY, broadcast, needs, shaken
+from pipeline.models.common import NO_HISTORY, ROUNDING, broadcast, needs, shaken
 from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.quantities import Array, Quantity
 from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Support
@@ -14,8 +16,12 @@ from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Suppo
 CHANDELIER = 1.4
 """The paper's factor on the undamped two-dimensional result for an object that swings in all directions."""
 
+CHANCE = 1e-9
+"""Share of a peak, at the coarsest step, up to which the peaks at two steps may agree by chance; its error is larger in
+most swings.  It falls with the fourth power of the step."""
+
 LENGTH = Quantity("length", "m", "from the point of suspension to the centre of gravity", 0.0, exclusive=True)
-LENGTH_AXIS = ChartAxis("length", low=0.1, high=20.0)
+LENGTH_AXIS = ChartAxis("length", low=0.1, high=20.0, nodes=400)
 
 
 def _swept(angle: Array) -> Array:
@@ -23,9 +29,14 @@ def _swept(angle: Array) -> Array:
     return np.where(angle >= 0.5 * np.pi, 1.0, np.sin(np.minimum(angle, 0.5 * np.pi)))
 
 
+def _least(refine: int) -> float:
+    # The smallest relative error that is told: of chance and of rounding.
+    return CHANCE / refine**4 + ROUNDING
+
+
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     length, zeta = broadcast(parameters, "length"), broadcast(parameters, "damping")
-    x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
+    x, z = samples(motion.x), samples(motion.z)
     tail = -1.0 if motion.tail is None else float(motion.tail)
     coarse, fine = np.full((length.size, 2), np.nan), np.empty((length.size, 2))
     runs = ((refine, coarse), (2 * refine, fine)) if estimate else ((refine, fine),)
@@ -35,15 +46,15 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
     return {
         "displacement": displacement,
         "rotation": fine[:, 0],
-        "error": np.abs(displacement - length * _swept(coarse[:, 0])) + 1e-12 * displacement,
+        "error": np.abs(displacement - length * _swept(coarse[:, 0])) + _least(refine) * displacement,
         "note": fine[:, 1],
     }
 
 
 def _run_3d(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     length, zeta = broadcast(parameters, "length"), broadcast(parameters, "damping")
-    x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
-    y = np.zeros_like(x) if motion.y is None else np.ascontiguousarray(motion.y)
+    x, z = samples(motion.x), samples(motion.z)
+    y = np.zeros_like(x) if motion.y is None else samples(motion.y)
     tail = -1.0 if motion.tail is None else float(motion.tail)
     coarse, fine = np.full((length.size, 2), np.nan), np.empty((length.size, 2))
     runs = ((refine, coarse), (2 * refine, fine)) if estimate else ((refine, fine),)
@@ -52,7 +63,7 @@ def _run_3d(motion: Excitation, parameters: Mapping[str, Array], refine: int, es
     displacement = length * fine[:, 0]
     return {
         "displacement": displacement,
-        "error": length * np.abs(fine[:, 0] - coarse[:, 0]) + 1e-12 * displacement,
+        "error": length * np.abs(fine[:, 0] - coarse[:, 0]) + _least(refine) * displacement,
         "note": fine[:, 1],
     }
 
@@ -78,7 +89,7 @@ def _say_3d(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     history = np.zeros((motion.x.size, 1))
     length, zeta = np.array([parameters["length"]]), np.array([parameters["damping"]])
-    x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
+    x, z = samples(motion.x), samples(motion.z)
     pendulum_batch(x, z, motion.dt, shaken(motion), length, zeta, 0.0, 4, np.empty((1, 2)), history)
     return {"rotation": history[:, 0], "u_x": parameters["length"] * np.sin(history[:, 0])}
 
@@ -86,8 +97,8 @@ def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
 def _trace_3d(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     history = np.zeros((motion.x.size, 2))
     length, zeta = np.array([parameters["length"]]), np.array([parameters["damping"]])
-    x, z = np.ascontiguousarray(motion.x), np.ascontiguousarray(motion.z)
-    y = np.zeros_like(x) if motion.y is None else np.ascontiguousarray(motion.y)
+    x, z = samples(motion.x), samples(motion.z)
+    y = np.zeros_like(x) if motion.y is None else samples(motion.y)
     spherical_batch(x, y, z, motion.dt, shaken(motion), length, zeta, 0.0, 4, np.empty((1, 2)), history)
     return {"u_x": parameters["length"] * history[:, 0], "u_y": parameters["length"] * history[:, 1]}
 
@@ -114,6 +125,8 @@ SWING = Model(
     ),
     directions=1,
     run=_run,
+    # In the plane of its wall, that is along its width.
+    axes=({},),
     trace=_trace,
     chart=LENGTH_AXIS,
     mark=lambda parameters, demand: ("swing", parameters["length"], demand),
@@ -137,7 +150,7 @@ SWING_3D = Model(
     screen=_screen_3d,
     say_screen=_say_3d,
     trace=_trace_3d,
-    chart=LENGTH_AXIS,
+    chart=replace(LENGTH_AXIS, nodes=1200),
     mark=lambda parameters, demand: ("swing", parameters["length"], demand),
     demand="displacement",
     capacity="clearance",

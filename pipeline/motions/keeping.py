@@ -18,10 +18,12 @@ Processed = tuple[Motion, dict[str, float]]
 
 @cache
 def _code() -> bytes:
-    """What this package's sources and the libraries that read and filter are, as one hash."""
+    """What the sources that motions depend on (floors too) and the libraries that read and filter are, as one hash."""
     digest = hashlib.sha256()
-    for source in sorted(Path(__file__).parent.rglob("*.py")):
-        digest.update(source.read_bytes())
+    package = Path(__file__).parents[1]
+    for folder in ("motions", "supports", "kernels"):
+        for source in sorted((package / folder).rglob("*.py")):
+            digest.update(source.read_bytes())
     for library in ("obspy", "scipy", "numpy", "pywavelets"):
         digest.update(version(library).encode())
     return digest.digest()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -28,6 +29,7 @@ from pipeline.motions.reading import read_record
 from pipeline.motions.record import Record
 from pipeline.quantities import Array
 from pipeline.records import Motion, MotionSummary
+from pipeline.supports import TRANSMITTED, refined
 from pipeline.supports.floor import carried
 
 PICTURE_POINTS = 600
@@ -163,21 +165,37 @@ def carry(motion: Motion, table: FloorTable) -> Motion:
     """
     if table.height_ratio is None:
         raise ValueError(f"floor {table.name!r} has records of its own")
-    return carried(motion, table.height_ratio, table.period_s, table.damping, table.stiffness_ratio, table.modes)
+    passed = partial(
+        carried, motion, table.height_ratio, table.period_s, table.damping, table.stiffness_ratio, table.modes
+    )
+    return passed(1) if table.modes is None else refined(passed, TRANSMITTED)
 
 
-def read_motion(path: str | Path) -> list[Motion]:
+def read_motion(path: str | Path, kept: Path | None = None) -> list[Motion]:
     """Return the processed motions of a site's folder or manifest file, in the manifest's order.
 
+    kept   : a folder in which processed motions are kept for the next time; None keeps none
     raises : MotionError, as `read_site`
     """
     file = manifest_file(path)
     manifest = load_manifest(file)
-    return [
-        prepare(file, f"level[{i}].record[{j}]", record, level.target, manifest.site.x_azimuth).motion
-        for i, level in enumerate(manifest.level)
-        for j, record in enumerate(level.record)
-    ]
+    motions = []
+    for i, level in enumerate(manifest.level):
+        for j, record in enumerate(level.record):
+            # Kept apart from what a night keeps, as it has no measures.
+            identity = _identity(record, level.target, manifest.site.x_azimuth, "without measures")
+            known = None if kept is None else recall(kept, identity)
+            if known is None:
+                key = f"level[{i}].record[{j}]"
+                known = prepare(file, key, record, level.target, manifest.site.x_azimuth).motion, {}
+                if kept is not None:
+                    keep(kept, identity, known)
+            motions.append(known[0])
+    return motions
+
+
+def _identity(record: Record, target: TargetTable | None, x_azimuth: float, *more: str) -> str:
+    return key_of(record.model_dump_json(), "" if target is None else target.model_dump_json(), str(x_azimuth), *more)
 
 
 def measured(motion: Motion, velocity: Array | None = None) -> dict[str, float]:
@@ -254,11 +272,7 @@ def thinned(motion: Motion, points: int = PICTURE_POINTS) -> dict[str, tuple[flo
 
 
 def _site_motion(site: Site, key: str, record: Record, target: TargetTable | None) -> SiteMotion:
-    identity = key_of(
-        record.model_dump_json(),
-        "" if target is None else target.model_dump_json(),
-        str(site.manifest.site.x_azimuth),
-    )
+    identity = _identity(record, target, site.manifest.site.x_azimuth)
     known = None if site.kept is None else recall(site.kept, identity)
     if known is None:
         done = prepare(site.file, key, record, target, site.manifest.site.x_azimuth)

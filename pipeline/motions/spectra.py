@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.kernels import samples
 from pipeline.kernels.linear import advance, transition
 from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
 from pipeline.kernels.rotated import first_guess, rotated_peaks
@@ -128,7 +129,7 @@ def response_history(motion: Motion, row: int, period: float, damping: float) ->
     error : rounding, about 1e-12 of the largest value
     """
     history = np.zeros((motion.samples, 2))
-    base = np.ascontiguousarray(motion.acceleration[row])
+    base = samples(motion.acceleration[row])
     oscillator_history(base, motion.dt, 2.0 * np.pi / period, damping, 1.0, history)
     return history[:, 0].copy(), history[:, 1].copy()
 
@@ -148,7 +149,7 @@ def _one_direction(motion: Motion, row: int, periods: Array, damping: Array) -> 
     w = np.tile(2.0 * np.pi / periods, damping.size)
     zeta = np.repeat(damping, periods.size)
     u, a = np.empty(w.size), np.empty(w.size)
-    base = np.ascontiguousarray(motion.acceleration[row])
+    base = samples(motion.acceleration[row])
     oscillator_batch(base, motion.dt, w, zeta, np.ones_like(w), -1.0, u, a)
     shape = (damping.size, periods.size)
     return u.reshape(shape), a.reshape(shape)

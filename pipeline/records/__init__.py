@@ -1,10 +1,24 @@
-"""The nouns that every floor shares: motions, items, scenes, models, findings, recommendations, charts."""
+"""The nouns that every floor shares: motions, items, scenes, models, findings, decisions, runs and their changes."""
 
+from pipeline.records.change import (
+    Cause,
+    CauseKind,
+    DecisionChange,
+    FieldChange,
+    InputChange,
+    MotionChange,
+    Move,
+    ObjectPlace,
+    RunChanges,
+    VerdictChange,
+)
+from pipeline.records.decision import Basis, Decision, DecisionKind, Standing, in_force
 from pipeline.records.model import Bounds, ChartAxis, Columns, Model
 from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress
-from pipeline.records.result import Assessment, Check, Finding, Recommendation, RunRecord, Verdict
+from pipeline.records.result import Assessment, Check, Finding, Recommendation, Verdict
+from pipeline.records.run import RunRecord
 from pipeline.records.scene import ITEM_FIELDS, Estimate, Item, Origin, Problem, Provenance, Scene, Support
 from pipeline.records.wish import Wish
 
@@ -12,30 +26,45 @@ __all__ = [
     "ITEM_FIELDS",
     "Assessment",
     "Axis",
+    "Basis",
     "Bounds",
+    "Cause",
+    "CauseKind",
     "Chart",
     "ChartAxis",
     "Check",
     "Columns",
     "Curve",
+    "Decision",
+    "DecisionChange",
+    "DecisionKind",
     "Estimate",
     "Excitation",
     "Executor",
+    "FieldChange",
     "Finding",
+    "InputChange",
     "Item",
     "Mark",
     "Model",
     "Motion",
+    "MotionChange",
     "MotionSummary",
+    "Move",
+    "ObjectPlace",
     "Origin",
     "Problem",
     "Progress",
     "Provenance",
     "Recommendation",
+    "RunChanges",
     "RunRecord",
     "Scene",
+    "Standing",
     "Support",
     "Verdict",
+    "VerdictChange",
     "Wish",
     "Zone",
+    "in_force",
 ]

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.quantities import Array, Quantity
 from pipeline.records.motion import Excitation
@@ -33,6 +37,7 @@ class ChartAxis:
 
     low, high : where charts are made, above zero, nodes evenly in the logarithm at first; what lies outside is
                 integrated
+    nodes     : analyses that a chart good enough to tell verdicts takes under strong shaking: fewer sets are integrated
     absent    : optional parameters; a set that has one of them is not on the chart
     settled   : (excitation) -> value from which on the response no longer changes; None: it always does
     """
@@ -40,6 +45,7 @@ class ChartAxis:
     name: str
     low: float
     high: float
+    nodes: int
     absent: tuple[str, ...] = ()
     settled: Callable[[Excitation], float] | None = None
 
@@ -55,7 +61,10 @@ class Model:
                  divides the standard step; without estimate the error is left out (NaN) and the cost is a third
     demand     : which output is set against the capacity
     capacity   : parameter of the scene that the demand is held against, or a constant
-    applies    : scene -> "" where the model applies, else the reason why not
+    applies    : scene -> "" where the model applies, else the reason why not; it may look at the support, the isolator,
+                 which parameters there are, and the frequency
+    axes       : the object's own axes that it is shaken along where they are known, width first, then depth: for each,
+                 the parameters of the scene that take the places of its own
     symmetric  : parameters -> True when the response does not change with the sign of the motion
     screen     : (excitation, parameters) -> columns by the paper's closed-form criterion; reported, never deciding
     say_screen : (one row of the screen, one set of parameters) -> the criterion in words
@@ -66,11 +75,14 @@ class Model:
                  direction, without integration; what it shows to be below the capacity is never integrated
     exact      : the certificate is the demand itself, not only a bound
     rests      : certificate up to which nothing moves, so that there is nothing to integrate; None: always integrate
+    flips      : (excitation, parameters, columns of `run` without estimate) -> (n,) where 1 % of the excitation changes
+                 the yes or no among its outputs; None: it has none
     outcome    : (one row, one set of parameters) -> what the object does, in a word and in a sentence
     otherwise  : scene -> (output, capacity, sentence) that take the place of its own for this scene, or None
     chart      : how its response is tabulated; None: never, it is always integrated
     uncharted  : why there is no chart
     mark       : (one set of parameters, demand) -> (kind of chart, x, y), or None
+    at_most    : the sentence that takes the place of its own where only a bound is known, which the demand is then
     fails      : what an object does whose demand exceeds the capacity, such as "slides"
     """
 
@@ -88,6 +100,8 @@ class Model:
     applies: Callable[[Scene], str]
     sentence: str
     fails: str
+    at_most: str = ""
+    axes: tuple[Mapping[str, str], ...] = ({}, {})
     symmetric: Callable[[Mapping[str, Array]], bool] = lambda _: True
     screen: Callable[[Excitation, Mapping[str, Array]], Columns] | None = None
     say_screen: Callable[[Mapping[str, float], Mapping[str, float]], str] = lambda _row, _parameters: ""
@@ -96,11 +110,18 @@ class Model:
     certificate: Callable[[Excitation, Mapping[str, Array]], Array] | None = None
     exact: bool = False
     rests: float | None = None
+    flips: Callable[[Excitation, Mapping[str, Array], Columns], NDArray[np.bool_]] | None = None
     outcome: Callable[[Mapping[str, float], Mapping[str, float]], tuple[str, str]] = lambda _row, _parameters: ("", "")
     otherwise: Callable[[Scene], tuple[str, float, str] | None] = lambda _scene: None
     chart: ChartAxis | None = None
     uncharted: str = ""
     mark: Callable[[Mapping[str, float], float], tuple[str, float, float] | None] = lambda _parameters, _demand: None
+
+    @cached_property
+    def inputs(self) -> tuple[str, ...]:
+        """All parameters of a scene that it may be run with."""
+        own = (other for axis in self.axes for other in axis.values())
+        return (*(q.name for q in self.needs), *own)
 
     def output(self, name: str) -> Quantity:
         """Return the output of that name.

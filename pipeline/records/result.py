@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
-from pipeline.records.motion import MotionSummary
-from pipeline.records.picture import Chart, Mark
+from pipeline.records.picture import Mark
 from pipeline.records.scene import Origin, Scene
-from pipeline.records.wish import Wish
 
 
 class Verdict(StrEnum):
@@ -61,7 +58,11 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One model run again on the changed chain, as evidence that a recommendation works."""
+    """One model run again on the changed chain, as evidence that a recommendation works.
+
+    demand : after the measure
+    before : the demand of the same model without it; None where the model had nothing to say then
+    """
 
     model: str
     title: str
@@ -70,6 +71,7 @@ class Check:
     capacity: float
     utilisation: float
     passes: bool
+    before: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,25 +111,3 @@ class Assessment:
     def assessed(self) -> bool:
         """Whether at least one verdict could be reached."""
         return bool(self.findings) and not self.scene.missing
-
-
-@dataclass(frozen=True, slots=True)
-class RunRecord:
-    """A whole run, as the store gives it back: all that the reports need, and nothing is computed again.
-
-    wishes : what is worth measuring, what settles most first; None where the run did not ask
-    """
-
-    run_id: str
-    started: str
-    finished: str
-    version: str
-    site: str
-    museum: str
-    level_notes: tuple[str, ...]
-    settings: Mapping[str, Any]
-    assessments: tuple[Assessment, ...]
-    charts: Mapping[str, Chart]
-    motions: tuple[MotionSummary, ...]
-    demonstration: bool = False
-    wishes: tuple[Wish, ...] | None = None

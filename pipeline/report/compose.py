@@ -3,8 +3,10 @@
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from math import inf, isnan
+from typing import Any
 
-from pipeline.records import Assessment, Recommendation, RunRecord, Verdict
+from pipeline.records import Assessment, Recommendation, RunChanges, RunRecord, Verdict
+from pipeline.report.decided import decisions_view
 from pipeline.report.describe import Describer, percent
 from pipeline.report.errors import ReportError
 from pipeline.report.floor_plan import plan_view
@@ -13,12 +15,14 @@ from pipeline.report.language import said
 from pipeline.report.numerics import decided_views, fidelities
 from pipeline.report.ranking import state_of, urgency
 from pipeline.report.selftest import self_test_view
+from pipeline.report.since import since_view
 from pipeline.report.survey_words import errands, survey_sentence
 from pipeline.report.text import clean, slug, words
 from pipeline.report.units import Units
 from pipeline.report.views import (
     STATES,
     Counts,
+    EffortView,
     GalleryView,
     MuseumView,
     ObjectView,
@@ -33,9 +37,10 @@ _HELPLESS = "\0"
 """Groups the objects for which nothing helps; no measure of a table can have this name."""
 
 
-def compose(record: RunRecord, units: Units) -> MuseumView:
+def compose(record: RunRecord, units: Units, changes: RunChanges | None = None) -> MuseumView:
     """Return everything that the pages show, in the order in which they show it.
 
+    changes : since the run before, None where there was none
     raises : ReportError for a sentence with an unknown placeholder, a mark on a chart that the run does not hold, or
              two galleries whose files would have one name
     """
@@ -54,6 +59,7 @@ def compose(record: RunRecord, units: Units) -> MuseumView:
     galleries.sort(key=lambda g: (not g.on_display, -g.counts.act, -g.counts.open, -g.counts.unknown, g.name))
     everything = {(o.page, o.anchor): o for g in galleries for o in g.objects}
     order = [everything[_address(a, describer)] for a in ranked]
+    by_number = {a.scene.item.object_number: o for a, o in zip(ranked, order, strict=True)}
     return MuseumView(
         museum=clean(record.museum),
         site=clean(record.site),
@@ -65,13 +71,28 @@ def compose(record: RunRecord, units: Units) -> MuseumView:
         demonstration=record.demonstration,
         counts=_total(g.counts for g in galleries),
         galleries=tuple(galleries),
-        first=tuple([o for o in order if o.state is State.ACT][:8]),
+        first=tuple([o for o in order if o.state is State.ACT and not o.settled][:8]),
         motions=tuple(motion_view(m, record.charts, units) for m in record.motions),
         level_notes=tuple(clean(n) for n in record.level_notes),
+        efforts=tuple(_effort(e) for e in record.settings.get("efforts") or ()),
         self_test=self_test_view(record),
         decided=decided_views(record),
         fidelities=fidelities(record),
         survey=survey_sentence(record),
+        decisions=decisions_view(order, describer.decided.strangers(record.assessments)),
+        since=None if changes is None else since_view(changes, by_number, units),
+    )
+
+
+def _effort(effort: Mapping[str, Any]) -> EffortView:
+    analyses, needing = int(effort["analyses"]), int(effort["needing_history"])
+    return EffortView(
+        said(clean(str(effort["title"]))),
+        analyses,
+        int(effort["certificate"]),
+        int(effort["chart"]),
+        int(effort["history"]),
+        f"{100.0 * needing / max(analyses, 1):.0f} %",
     )
 
 
@@ -102,7 +123,7 @@ def _gallery(
         page=page_of(members[0]),
         on_display=on_display,
         counts=Counts(*(by_state[state] for state in STATES)),
-        tasks=_tasks(pairs, units),
+        tasks=_tasks(pairs, describer, units),
         objects=tuple(views),
         charts=tuple(dict.fromkeys(f.chart for v in views for f in v.figures)),
         motions=tuple(dict.fromkeys(f.motion for v in views for f in v.findings)),
@@ -110,20 +131,26 @@ def _gallery(
         survey=errands(pairs, describer.wishes),
         surveyed=describer.surveyed,
         plan=plan_view(pairs, units),
+        decisions=decisions_view(views),
     )
 
 
-def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], units: Units) -> tuple[TaskView, ...]:
-    """Group the recommendations by measure; the pairs come by urgency, and so do the groups."""
+def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], describer: Describer, units: Units) -> tuple[TaskView, ...]:
+    """Group the recommendations by measure; the pairs come by urgency, and so do the groups.
+
+    What people accepted or overruled is no task, as long as nothing of that is in doubt.
+    """
     members: dict[str, list[ObjectView]] = {}
     advice: dict[str, list[Recommendation]] = {}
     for assessment, view in pairs:
         for recommendation in assessment.recommendations:
+            if describer.decided.covered(assessment, recommendation.level):
+                continue
             group = members.setdefault(recommendation.measure, [])
             if not group or group[-1] is not view:
                 group.append(view)
             advice.setdefault(recommendation.measure, []).append(recommendation)
-        if view.state is State.ACT and not assessment.recommendations:
+        if view.state is State.ACT and not assessment.recommendations and not view.settled:
             members.setdefault(_HELPLESS, []).append(view)
     size = {view.anchor: _utilisation(assessment) for assessment, view in pairs}
     worst = {key: percent(max(size[o.anchor] for o in objects)) for key, objects in members.items()}

@@ -17,6 +17,7 @@ from pipeline.records import (
     Support,
     Wish,
 )
+from pipeline.report.decided import Decided
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
 from pipeline.report.ranking import finding_order, finding_state, grave, state_of
@@ -99,6 +100,7 @@ class Describer:
 
     def __init__(self, record: RunRecord, units: Units) -> None:
         self._record, self._units = record, units
+        self.decided = Decided(record.decisions, units)
         self._motions = {m.hash: m for m in record.motions}
         self._links: dict[tuple[str, str], MotionLink] = {}
         self.surveyed = record.wishes is not None
@@ -155,6 +157,8 @@ class Describer:
             wishes=wish_views(self.wishes.get(item.object_number, ()), self._units),
             grave=any(grave(f) for f in assessment.findings),
             skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
+            decisions=self.decided.of(assessment),
+            settled=self.decided.covered(assessment),
         )
 
     def _finding(self, f: Finding) -> FindingView:
@@ -184,8 +188,10 @@ class Describer:
 
     def _sums(self, f: Finding, utilisation: str) -> str:
         span = self._span(f.low, f.high, f.unit)
-        error = self._error(f)
+        error = "" if f.fidelity == "bound" else self._error(f)
         demand, capacity = self._units.text(f.demand, f.unit), self._units.text(f.capacity, f.unit)
+        if f.fidelity == "bound" and f.error:
+            demand = _("at most %(demand)s") % {"demand": demand}
         demand += " " + _("(%(range)s with what is uncertain)") % {"range": span} if span else ""
         capacity += f" ({origin(f.capacity_origin)})" if f.capacity_origin else ""
         sums = {"demand": demand, "capacity": capacity, "utilisation": utilisation}
@@ -264,7 +270,7 @@ class Describer:
         f = f if f is not None and f.unit == c.unit else None
         return CheckView(
             title=said(clean(c.title)),
-            before="" if f is None else self._units.text(f.demand, f.unit),
+            before="" if c.before is None else self._units.text(c.before, c.unit),
             demand=self._units.text(c.demand, c.unit),
             capacity=self._units.text(c.capacity, c.unit),
             utilisation_before="" if f is None else percent(f.utilisation),

@@ -130,7 +130,9 @@ def _recommendation(run: str, r: Recommendation, units: Units) -> dict[str, Any]
         "sentence": units.fill(r.sentence, values, f"object {r.object_number}, recommendation {r.measure}"),
         "parameters": [f"{k}={v!r} {r.units.get(k, '')}".rstrip() for k, v in r.parameters.items()],
         "checks": [
-            f"{c.model}: {c.demand!r} of {c.capacity!r} {c.unit}, {'passes' if c.passes else 'fails'}" for c in r.checks
+            f"{c.model}: {'' if c.before is None else f'{c.before!r} -> '}{c.demand!r} of {c.capacity!r} {c.unit}, "
+            f"{'passes' if c.passes else 'fails'}"
+            for c in r.checks
         ],
         "rejected": list(r.rejected),
         "source": r.source,

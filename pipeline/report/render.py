@@ -12,7 +12,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from pipeline.records import RunRecord
+from pipeline.records import RunChanges, RunRecord
 from pipeline.report.compose import STORED_PAGE, compose
 from pipeline.report.errors import ReportError
 from pipeline.report.exports import export
@@ -26,12 +26,20 @@ from pipeline.report.views import FigureView, State
 from pipeline.resources import resource
 
 
-def render(record: RunRecord, folder: Path, *, units: Units | None = None, language: Language | None = None) -> Path:
+def render(
+    record: RunRecord,
+    folder: Path,
+    *,
+    units: Units | None = None,
+    language: Language | None = None,
+    changes: RunChanges | None = None,
+) -> Path:
     """Write a whole report: pages and exports.  The same record gives the same bytes.
 
     folder  : a new folder; it appears only when everything in it is written
     units   : the reader's units; centimetres where None
     language: of the pages; English where None.  The exports keep the words of the run, for programs read them.
+    changes : since the run before, for the index; None where there was none
     returns : the path of index.html
     raises  : ReportError if the folder exists, or if the record cannot be shown (see ``compose``)
     """
@@ -43,7 +51,7 @@ def render(record: RunRecord, folder: Path, *, units: Units | None = None, langu
     chosen = units or Units()
     try:
         with speaking(language or Language()):
-            pages = _pages(record, chosen, language or Language())
+            pages = _pages(record, chosen, language or Language(), changes)
         for name, text in pages:
             (partial / name).write_text(text, encoding="utf-8", newline="\n")
         export(record, partial, chosen)
@@ -54,8 +62,8 @@ def render(record: RunRecord, folder: Path, *, units: Units | None = None, langu
     return folder / "index.html"
 
 
-def _pages(record: RunRecord, units: Units, language: Language) -> list[tuple[str, str]]:
-    museum = compose(record, units)
+def _pages(record: RunRecord, units: Units, language: Language, changes: RunChanges | None) -> list[tuple[str, str]]:
+    museum = compose(record, units, changes)
     env = environment(language)
     shared: dict[str, Any] = {"museum": museum, "units": units, "stored_page": STORED_PAGE, "State": State}
     shown = (*(m.charts for m in museum.motions), *(g.charts for g in museum.galleries))

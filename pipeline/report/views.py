@@ -142,8 +142,26 @@ class FigureView:
 
 
 @dataclass(frozen=True, slots=True)
+class DecisionView:
+    """What a person decided about an object, in words; ``doubts`` say why it must be looked at again."""
+
+    kind: str
+    number: str
+    title: str
+    what: str
+    who: str
+    date: str
+    why: str
+    until: str
+    doubts: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class ObjectView:
-    """One object with everything that the report says about it; ``lead`` is its most urgent finding."""
+    """One object with everything that the report says about it; ``lead`` is its most urgent finding.
+
+    settled : whether people accepted or overruled all that does not pass, and nothing of that is in doubt
+    """
 
     number: str
     title: str
@@ -168,6 +186,8 @@ class ObjectView:
     skipped: tuple[str, ...]
     wishes: tuple[WishView, ...] = ()
     grave: bool = False
+    decisions: tuple[DecisionView, ...] = ()
+    settled: bool = False
 
     @property
     def carded(self) -> bool:
@@ -237,6 +257,66 @@ class PlanView:
 
 
 @dataclass(frozen=True, slots=True)
+class DecisionsView:
+    """The decisions of a page: how many of each kind, and each with its object (None where that is gone).
+
+    settled : how many objects are settled by them
+    doubted : those that must be looked at again;  groups : the others by kind
+    """
+
+    accepted: int = 0
+    installed: int = 0
+    classes: int = 0
+    verdicts: int = 0
+    settled: int = 0
+    doubted: tuple[tuple[DecisionView, ObjectView | None], ...] = ()
+    groups: tuple[tuple[str, tuple[tuple[DecisionView, ObjectView | None], ...]], ...] = ()
+
+    def __bool__(self) -> bool:
+        """Whether there is any."""
+        return bool(self.doubted or self.groups)
+
+
+@dataclass(frozen=True, slots=True)
+class TurnView:
+    """A verdict that turned, and why; ``view`` is the object where the report has it."""
+
+    number: str
+    view: ObjectView | None
+    gallery: str
+    model: str
+    level: str
+    before: str
+    after: str
+    causes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ChangeView:
+    """One line of what changed: the object where it is about one, and the change in words."""
+
+    number: str
+    view: ObjectView | None
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class SinceView:
+    """What changed since the run before; lists are cut, each with how many more there are.
+
+    before : when that run began;  counts, causes : how many of what, those above zero only
+    """
+
+    before: str
+    changed: bool
+    worse: tuple[tuple[TurnView, ...], int]
+    fixed: tuple[tuple[TurnView, ...], int]
+    counts: tuple[tuple[str, str], ...]
+    causes: tuple[tuple[str, str], ...]
+    lists: tuple[tuple[str, tuple[ChangeView, ...], int], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class GalleryView:
     """One gallery's page."""
 
@@ -252,6 +332,7 @@ class GalleryView:
     survey: tuple[SurveyView, ...] = ()
     surveyed: bool = False
     plan: PlanView | None = None
+    decisions: DecisionsView = DecisionsView()
 
     def standing(self, state: State) -> tuple[ObjectView, ...]:
         """Return the objects in that state, the most urgent first."""
@@ -322,6 +403,18 @@ class DecidedView:
 
 
 @dataclass(frozen=True, slots=True)
+class EffortView:
+    """By what the verdicts of one model were decided; ``any`` is the share of analyses for which a history was run."""
+
+    title: str
+    analyses: int
+    certificate: int
+    chart: int
+    history: int
+    any: str
+
+
+@dataclass(frozen=True, slots=True)
 class MuseumView:
     """The index: all galleries, ranked, with totals over all objects; ``credit`` is the source's own line.
 
@@ -329,6 +422,8 @@ class MuseumView:
     fidelities : how many verdicts were asked at which fidelity, in one line
     self_test  : None where none was run before this run
     survey     : what is worth measuring in the whole museum and what asking cost, "" where it was not asked
+    self_test : None where none was run before this run
+    since     : None where there was no run before
     """
 
     museum: str
@@ -344,7 +439,10 @@ class MuseumView:
     first: tuple[ObjectView, ...]
     motions: tuple[MotionView, ...]
     level_notes: tuple[str, ...] = field(default=())
+    efforts: tuple[EffortView, ...] = ()
     self_test: SelfTestView | None = None
     decided: tuple[DecidedView, ...] = ()
     fidelities: str = ""
     survey: str = ""
+    decisions: DecisionsView = DecisionsView()
+    since: SinceView | None = None

@@ -15,6 +15,18 @@ PICTURES = "pictures"
 """The same of the version of the kernels and of all other code that its charts depend on."""
 
 
+CODE = "code"
+"""The same of all code and tables that verdicts rest on besides the kernels."""
+
+
+RULES = "rules"
+"""Key of a run's settings under which the hash of the museum's own rules of classification is kept; "" for none."""
+
+
+LEVELS = "levels"
+"""Key of a run's settings under which it is kept how each level combines its motions."""
+
+
 SELECTION = "selection"
 """Key of a run's settings that is true for a run of a part of the collection."""
 

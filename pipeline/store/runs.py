@@ -17,15 +17,17 @@ from pipeline.records import (
     Finding,
     MotionSummary,
     Recommendation,
+    RunChanges,
     RunRecord,
     Scene,
+    Standing,
     Verdict,
     Wish,
 )
 from pipeline.store import codec
-from pipeline.store.changes import RunChanges, changes
+from pipeline.store.changes import changes
 from pipeline.store.codec import StoreError
-from pipeline.store.tables import FINDING, RECOMMENDATION, RUN, RUN_CHART, RUN_MOTION, RUN_SCENE, RUN_WISH
+from pipeline.store.tables import FINDING, RECOMMENDATION, RUN, RUN_CHART, RUN_DECISION, RUN_MOTION, RUN_SCENE, RUN_WISH
 
 __all__ = [
     "RunChanges",
@@ -116,6 +118,7 @@ def load_run(engine: Engine, run_id: str | None = None) -> RunRecord:
             charts=_charts(connection, run_id),
             motions=tuple(_records(connection, RUN_MOTION, MotionSummary, run_id)),
             wishes=tuple(_records(connection, RUN_WISH, Wish, run_id)) if _WISHES in head["counts"] else None,
+            decisions=tuple(_records(connection, RUN_DECISION, Standing, run_id)),
         )
     if _counts(record) != head["counts"]:
         raise StoreError(
@@ -190,6 +193,8 @@ def _check(record: RunRecord) -> None:
         _check_types(f"{run}, motion {motion.name!a}", MotionSummary, motion)
     for wish in record.wishes or ():
         _check_types(f"{run}, {wish.field} of object {wish.object_number!a}", Wish, wish)
+    for standing in record.decisions:
+        _check_types(f"{run}, decision {standing.decision.id}", Standing, standing)
     for key, chart in record.charts.items():
         _check_types(f"{run}, chart {key!a}", dict[str, Chart], {key: chart})
     head = {name: getattr(record, name) for name in _RUN_FIELDS if name not in {"settings", "level_notes"}}
@@ -228,6 +233,10 @@ def _tables(record: RunRecord) -> Iterator[tuple[Table, Iterable[dict[str, Any]]
     charts = enumerate(record.charts.items())
     yield RUN_CHART, ({**of_run, "position": i, "key": key, "chart": chart} for i, (key, chart) in charts)
     yield RUN_WISH, _rows(of_run, Wish, record.wishes or ())
+    standing = (
+        row | {"object_number": row["decision"].object_number} for row in _rows(of_run, Standing, record.decisions)
+    )
+    yield RUN_DECISION, standing
     scenes = (assessment.scene for assessment in everything)
     yield RUN_SCENE, (row | _item_columns(row) for row in _rows(of_run, Scene, scenes))
     yield FINDING, _rows(of_run, Finding, (finding for one in everything for finding in one.findings))

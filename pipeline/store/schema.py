@@ -1,9 +1,10 @@
-"""The published JSON Schema of a finding, derived from the record."""
+"""The published JSON Schemas of a finding and of a decision, derived from the records."""
 
+from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
-from pipeline.records import Finding, Verdict
+from pipeline.records import Decision, Finding, Verdict
 from pipeline.store import codec
 
 _MEANING = {
@@ -35,6 +36,37 @@ _MEANING = {
     "version": "version of Kouros",
 }
 
+_DECIDED = {
+    "id": "counts up; decisions are never changed",
+    "object_number": "the museum's number of the object",
+    "kind": "accepted risk, installed measure, decided class, overruled verdict, or withdrawal of an earlier decision",
+    "who": "who decided",
+    "date": "the day of the decision, ISO 8601",
+    "why": "the reason, in that person's words",
+    "recorded": "when it was written down, ISO 8601, UTC",
+    "model": "the generic model that is accepted or overruled; empty for all",
+    "level": "the level of shaking that it is about; empty for all",
+    "until": "the last day on which the risk is accepted, ISO 8601; empty for no end",
+    "measure": "the measure that is installed: a row of tables/measures.csv",
+    "parameters": "its parameters by name, in SI units",
+    "units": "the unit of each parameter",
+    "product": "maker and type of what is installed, as text",
+    "object_class": "the class that the object is said to be: a row of tables/classes.csv",
+    "verdict": "the verdict that the person gives; the computed one stays beside it",
+    "withdraws": "the id of the decision that this one ends",
+    "run": "the run that was looked at; empty where there was none",
+    "digest": "digest of the object's record at that time",
+    "basis": "the findings that were looked at",
+}
+
+
+def decision_schema() -> dict[str, Any]:
+    """Return the JSON Schema (draft 2020-12) of one decision, as `kouros decide --list --json` prints them.
+
+    raises : KeyError for a field of the record that is not described here
+    """
+    return _schema(Decision, "Kouros decision", "What a person decided about an object.", _DECIDED)
+
 
 def finding_schema() -> dict[str, Any]:
     """Return the JSON Schema (draft 2020-12) of one finding as it is exported, one a line in JSON Lines.
@@ -43,17 +75,32 @@ def finding_schema() -> dict[str, Any]:
     (the column ``run_id`` in SQL); the record itself does not carry it.
     raises : KeyError for a field of the record that is not described here
     """
-    derived = codec.adapter(Finding).json_schema(mode="serialization")
+    about = f"One demand set against one capacity; verdicts are {', '.join(Verdict)}."
+    run = {"run": {"description": "the run that found it", "type": "string"}}
+    return _schema(Finding, "Kouros finding", about, _MEANING, run)
+
+
+def _schema(
+    record: type[Any],
+    title: str,
+    about: str,
+    meaning: Mapping[str, str],
+    besides: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
+    hint: Any = record
+    derived = codec.adapter(hint).json_schema(mode="serialization")
     definitions = {name: _readable(part) for name, part in derived["$defs"].items()}
-    record = definitions.pop("Finding")
-    names = [field.name for field in fields(Finding)]
-    properties = {name: {"description": _MEANING[name]} | record["properties"][name] for name in names}
+    whole = definitions.pop(record.__name__)
+    names = [field.name for field in fields(record)]
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "Kouros finding",
-        "description": f"One demand set against one capacity; verdicts are {', '.join(Verdict)}.",
+        "title": title,
+        "description": about,
         "type": "object",
-        "properties": {"run": {"description": "the run that found it", "type": "string"}} | properties,
+        "properties": {
+            **(besides or {}),
+            **{name: {"description": meaning[name]} | whole["properties"][name] for name in names},
+        },
         "required": names,
         "additionalProperties": False,
         "$defs": definitions | {"Number": {"anyOf": [{"type": "number"}, {"enum": list(codec.NOT_FINITE)}]}},

@@ -8,17 +8,30 @@ from operator import index
 from types import NoneType
 from typing import Any, SupportsIndex, get_args, get_type_hints
 
-from sqlalchemy import BigInteger, Boolean, Column, Dialect, Double, ForeignKey, Index, Table, Text
+from sqlalchemy import (
+    BigInteger,
+    Boolean,
+    Column,
+    Dialect,
+    Double,
+    ForeignKey,
+    Index,
+    Integer,
+    Table,
+    Text,
+    UniqueConstraint,
+)
 from sqlalchemy.types import TypeDecorator, TypeEngine
 
 from pipeline.collection.database import METADATA
 from pipeline.collection.inventory import IMPORT_BATCH, ITEM
 from pipeline.collection.supplement import SUPPLEMENT
-from pipeline.records import Chart, Finding, MotionSummary, Recommendation, Scene, Wish
+from pipeline.records import Chart, Decision, Finding, MotionSummary, Recommendation, Scene, Standing, Wish
 from pipeline.store import codec
 
 # The inventory's tables are handed on so that METADATA is whole wherever this module is imported.
 __all__ = [
+    "DECISION",
     "FINDING",
     "IMPORT_BATCH",
     "ITEM",
@@ -26,6 +39,7 @@ __all__ = [
     "RECOMMENDATION",
     "RUN",
     "RUN_CHART",
+    "RUN_DECISION",
     "RUN_MOTION",
     "RUN_SCENE",
     "RUN_WISH",
@@ -275,3 +289,25 @@ RUN_WISH = Table(
     Index(None, "run_id", "object_number"),
 )
 """One row a quantity that is worth measuring on an object, or that was asked for and would settle nothing."""
+
+DECISION = Table(
+    "decision",
+    METADATA,
+    Column("id", Integer(), primary_key=True),
+    *_columns(Decision, *(field.name for field in fields(Decision) if field.name != "id")),
+    UniqueConstraint("withdraws"),
+    Index(None, "object_number"),
+    sqlite_autoincrement=True,
+)
+"""One row a decision of a person; rows are only ever added, and no run or import touches them."""
+
+RUN_DECISION = Table(
+    "run_decision",
+    METADATA,
+    _of_run(),
+    _position(),
+    Column("object_number", Words(), nullable=False),
+    *_columns(Standing),
+    Index(None, "run_id", "object_number"),
+)
+"""The decisions that were in force when a run was made, as they stood, with what was then to be doubted."""

@@ -13,9 +13,9 @@ from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Excitation, Model, Motion
 from pipeline.supports.floor import carried
 from pipeline.supports.polygon import conserving, resampled
-from pipeline.supports.refining import refined
+from pipeline.supports.refining import TRANSMITTED, refined
 
-__all__ = ["SUPPORTS", "SupportModel", "refined", "resampled", "support_named"]
+__all__ = ["SUPPORTS", "TRANSMITTED", "SupportModel", "refined", "resampled", "support_named"]
 
 
 @dataclass(frozen=True)
@@ -23,14 +23,14 @@ class SupportModel:
     """A support: its parameters, how it passes a motion on, and the model of its own demand (None: it has none).
 
     transmit : motion, parameters, and the samples of the output for each of the input
-    refines  : whether it heeds the third; one that does not chooses its own step
+    refines  : parameters -> whether more samples make the output more accurate; False: it is exact
     """
 
     name: str
     needs: tuple[Quantity, ...]
     transmit: Callable[[Motion, Mapping[str, float], int], Motion]
     model: Model | None = None
-    refines: bool = True
+    refines: Callable[[Mapping[str, float]], bool] = lambda _: True
 
 
 AFTER = (4.0, 16.0, 60.0)
@@ -91,11 +91,10 @@ def _each_way(name: str, model: Model) -> SupportModel:
     )
 
 
-def _floor(motion: Motion, values: Mapping[str, float], refine: int) -> Motion:  # noqa: ARG001
-    # It chooses its own step: a factor needs none, and modes know their own periods.
+def _floor(motion: Motion, values: Mapping[str, float], refine: int) -> Motion:
     given = {name: value for name, value in values.items() if not np.isnan(value)}
     modes = int(given.pop("modes")) if "modes" in given else None
-    return carried(motion, **given, modes=modes)
+    return carried(motion, **given, modes=modes, refine=refine)
 
 
 FLOOR = (
@@ -112,7 +111,7 @@ SUPPORTS: tuple[SupportModel, ...] = (
     _in_plane("horizontal_isolator", HORIZONTAL_ISOLATOR),
     _each_way("rotational_isolator", ROTATIONAL_ISOLATOR),
     _each_way("plinth", OSCILLATOR),
-    SupportModel("floor", FLOOR, _floor, refines=False),
+    SupportModel("floor", FLOOR, _floor, refines=lambda values: not np.isnan(values["modes"])),
 )
 
 

@@ -7,6 +7,7 @@ from math import ceil
 
 import numpy as np
 
+from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_history
 from pipeline.quantities import Array
 from pipeline.records import Motion
@@ -16,7 +17,7 @@ MODE_POINTS = 20
 """Corners of a computed floor's polygon in one period of its highest mode: a peak between two is 1.2 % low at most."""
 
 MOST_REFINED = 16
-"""Most samples of a computed floor's motion for one of the ground's."""
+"""Most samples of a computed floor's motion for one of the ground's that its modes alone ask for."""
 
 _SHEAR_LIMIT = 650.0
 _SETTLED = 0.01
@@ -29,22 +30,26 @@ def carried(
     damping: float | None = None,
     stiffness_ratio: float | None = None,
     modes: int | None = None,
+    refine: int = 1,
 ) -> Motion:
     """Return a motion of the ground as a floor feels it: by modes where damping, stiffness and modes are given, else by
     the factor of the code.
 
     height_ratio, period, damping : as `floor_motion`; stiffness_ratio : alpha0 of `beam_modes`
+    refine : samples of the output for each that it has at least: those of the ground, and by modes MODE_POINTS in a
+             period of the highest
+    error  : by the factor none; by modes see `floor_motion`, and `refined` for how finely an error asks for
     raises : ValueError for a parameter outside its range, or where the method is only half described
     """
     given = [value is not None for value in (damping, stiffness_ratio, modes)]
     if not any(given):
-        return scale_to_floor(motion, height_ratio, period)
+        return scale_to_floor(resampled(motion, refine), height_ratio, period)
     if period is None or damping is None or stiffness_ratio is None or modes is None:
         raise ValueError("a floor by its modes needs period, damping, stiffness_ratio and modes, all four")
     shortest = period * float(beam_modes(stiffness_ratio, modes).period_ratios[-1])
-    refine = min(MOST_REFINED, max(1, ceil(MODE_POINTS * motion.dt / shortest)))
+    least = min(MOST_REFINED, max(1, ceil(MODE_POINTS * motion.dt / shortest)))
     return floor_motion(
-        resampled(motion, refine), height_ratio, period, damping=damping, alpha0=stiffness_ratio, modes=modes
+        resampled(motion, least * refine), height_ratio, period, damping=damping, alpha0=stiffness_ratio, modes=modes
     )
 
 
@@ -76,7 +81,7 @@ def scale_to_floor(motion: Motion, height_ratio: float, period: float | None = N
     known = "unknown" if period is None else f"{period:g} s"
     step = (
         f"floor at z/h {height_ratio:g}, building period {known}: horizontals times {factor:.4g} (ASCE 7-22, 13.3.1.1)"
-        f", vertical unchanged"
+        f", vertical unchanged; exact"
     )
     by = np.array([factor, factor, 1.0])
     data = motion.acceleration * by[:, None]
@@ -163,8 +168,8 @@ def floor_motion(
     tail         : s that the building goes on swinging after the record; None: until its first mode has decayed to 1 %
     error        : exact in time at the samples for the ground's polygon (which goes to zero in one step after the
                    record where a tail is added); what is left out above the last mode moves with the ground.  Between
-                   the samples the floor is taken as a polygon: resolve the highest mode that matters, or resample
-                   the ground first (`resampled`).
+                   the samples the floor is taken as a polygon, whose error falls with the square of the step:
+                   resample the ground first (`resampled`), as `refined` does until an error is met.
     raises       : ValueError for a parameter outside its range
     source       : Miranda and Taghavi (2005), as `beam_modes`; both horizontals alike, the vertical as on the ground
     """
@@ -187,7 +192,7 @@ def floor_motion(
         w = 2.0 * np.pi / (period * float(ratio))
         for row in range(2):
             history = np.zeros((base.samples, 2))
-            oscillator_history(np.ascontiguousarray(ground[row]), motion.dt, w, damping, 1.0, history)
+            oscillator_history(samples(ground[row]), motion.dt, w, damping, 1.0, history)
             out[row] += share * (history[:, 1] - ground[row])
     step = (
         f"floor at z/h {height_ratio:g} of a shear-flexural beam (Miranda and Taghavi 2005): alpha0 {alpha0:g}, period "

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_history
 from pipeline.quantities import Array
 from pipeline.records import Motion
@@ -12,6 +13,9 @@ BANK = (2.0, 5.0, 10.0, 20.0)
 """Hz, oscillators that stand for what is on the support, as floor spectra do for equipment."""
 
 BANK_DAMPING = 0.05
+
+TRANSMITTED = 1e-3
+"""Error that what stands on a support may get from the sampling of what the support passes on."""
 
 MOST_REFINED = 64
 """Most samples of the output for each of the input."""
@@ -71,7 +75,7 @@ def _responses(motion: Motion) -> Array:
     out = np.empty((len(BANK), 2, motion.samples))
     history = np.empty((motion.samples, 2))
     for row in range(2):
-        base = np.ascontiguousarray(motion.acceleration[row])
+        base = samples(motion.acceleration[row])
         for k, frequency in enumerate(BANK):
             oscillator_history(base, motion.dt, 2.0 * np.pi * frequency, BANK_DAMPING, 1.0, history)
             out[k, row] = history[:, 0]

@@ -1,13 +1,13 @@
 """Kouros beside its peers, beside C, and by itself: `python -m tests.benchmarks [peers] [native] [models] [charts]
-[night]`.
+[auto] [night]`.
 
 Machines are noisy: read the ratios of one run, not the times.
 """
 
 import sys
 
-from tests.benchmarks import charts, general, models, multibody, native, night, opensees, spectra
-from tests.benchmarks.common import HEADING, OBJECTS
+from tests.benchmarks import auto, charts, general, models, multibody, native, night, opensees, spectra
+from tests.benchmarks.common import FAR, HEADING, OBJECTS, marked
 
 
 def peers() -> None:
@@ -15,7 +15,10 @@ def peers() -> None:
     print(
         f"One thread; ours is one of {OBJECTS} analyses in one call.  Errors of the peak: median / worst.  '!': below"
     )
-    print("what is wanted.  A finer setting of a peer stands where its first one is far off.")
+    print(
+        "what is wanted.  The ratio to read is that of a peer's coarsest setting with all outcomes right and a median"
+    )
+    print(f"error below {FAR:.0%}: a faster one gives another answer.")
     print(HEADING)
     for compare in (
         spectra.comparisons,
@@ -24,8 +27,8 @@ def peers() -> None:
         multibody.comparisons,
         general.by_scipy,
     ):
-        for row in compare():
-            print(row.line(), flush=True)
+        for row, counts in marked(compare()):
+            print(row.line(counts), flush=True)
 
 
 PARTS = {
@@ -33,6 +36,7 @@ PARTS = {
     "native": native.native,
     "models": models.costs,
     "charts": charts.lookups,
+    "auto": auto.auto,
     "night": night.night,
 }
 

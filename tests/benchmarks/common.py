@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
+from itertools import groupby
 from typing import TypeVar
 
 import numpy as np
@@ -22,6 +23,9 @@ OBJECTS = 512
 
 SHORT = 4_000
 """Samples of the part of the record that slow peers are given."""
+
+FAR = 0.1
+"""Median error of the peak from which a peer's answer is of no use."""
 
 SEED = 20190706
 
@@ -101,14 +105,15 @@ class Ours:
         wanted: float = 0.0,
         truth: Array | None = None,
         counted: Array | None = None,
-        note: str = "",
         output: str = "",
+        outcomes: tuple[int, int] = (0, 0),
     ) -> "Comparison":
         """Return the row that compares a peer's peaks and seconds, one a parameter set, with ours.
 
         truth   : the true peaks of the output; else what `reference` gives
         counted : which parameter sets have an error, else all
         output  : which output is compared, else the first
+        outcomes: how many overturn or do not as they should, of how many; (0, 0) where nothing can
         """
         first = output or self._model.gives[0].name
         peaks, seconds = np.array(runs).T
@@ -122,7 +127,7 @@ class Ours:
             relative(peaks, true)[use],
             relative(self.outputs()[first], true)[use],
             wanted,
-            note,
+            outcomes,
         )
 
 
@@ -130,8 +135,9 @@ class Ours:
 class Comparison:
     """A row of the table: seconds of one analysis and relative errors of the peak, theirs and ours.
 
-    wanted : the ratio of times that is asked for, or 0
-    note   : what the errors do not say, such as how many outcomes were right
+    peer     : its name and, after a comma, its setting
+    wanted   : the ratio of times that is asked for, or 0
+    outcomes : how many overturn or do not as they should, of how many
     """
 
     work: str
@@ -141,16 +147,41 @@ class Comparison:
     their_errors: Array
     our_errors: Array
     wanted: float = 0.0
-    note: str = ""
+    outcomes: tuple[int, int] = (0, 0)
 
-    def line(self) -> str:
-        """Return the row in fixed columns."""
+    @property
+    def right(self) -> bool:
+        """Whether the peer's answer can be used: all outcomes right, and a median error below FAR."""
+        return self.outcomes[0] == self.outcomes[1] and float(np.median(self.their_errors)) < FAR
+
+    def line(self, counts: str = "") -> str:
+        """Return the row in fixed columns.
+
+        counts : what is said of the row's ratio, such as that it is the one to read
+        """
         ratio = self.theirs / self.ours
         wanted = "" if self.wanted == 0.0 else f"{self.wanted:,.0f}" + (" " if ratio >= self.wanted else "!")
+        right, of = self.outcomes
+        said = filter(None, (counts, f"outcomes right: {right} of {of}" if of else ""))
         return (
             f"{self.work:<26}{self.peer:<48}{1e3 * self.theirs:>10.3f}{1e3 * self.ours:>10.4f}{ratio:>9,.0f}{wanted:>8}"
-            f"   {spread(self.their_errors):<18}{spread(self.our_errors):<18}{self.note}"
+            f"   {spread(self.their_errors):<18}{spread(self.our_errors):<18}{'; '.join(said)}"
         ).rstrip()
+
+
+def marked(rows: Sequence[Comparison]) -> list[tuple[Comparison, str]]:
+    """Return the rows with what counts: of each work and peer, the coarsest setting that can be used.
+
+    rows : the settings of a peer from the coarsest to the finest, one after the other
+    """
+    out = []
+    for _, group in groupby(rows, key=lambda row: (row.work, row.peer.partition(",")[0])):
+        settings = list(group)
+        first = next((k for k, row in enumerate(settings) if row.right), None)
+        for k, row in enumerate(settings):
+            last = k == len(settings) - 1
+            out.append((row, "<- read this" if k == first else "none can be used" if first is None and last else ""))
+    return out
 
 
 HEADING = (

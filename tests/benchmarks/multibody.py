@@ -49,8 +49,8 @@ def _rocking(mujoco: ModuleType) -> list[Comparison]:
             runs.append((float(np.abs(path[:, 2]).max()) / a, seconds))
         # A body that fell lies on its side, a quarter turn from where it stood; soft contacts let it sink in a little.
         theirs = np.array([ratio for ratio, _ in runs]) * alpha > 1.5
-        note = f"outcomes right: {np.sum(theirs == fell)} of {fell.size}"
-        rows.append(ours.beside("rocking", f"MuJoCo, {setting}", runs, 500.0, counted=~fell, note=note))
+        outcomes = int(np.sum(theirs == fell)), fell.size
+        rows.append(ours.beside("rocking", f"MuJoCo, {setting}", runs, 500.0, counted=~fell, outcomes=outcomes))
     return rows
 
 

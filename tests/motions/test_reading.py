@@ -1,6 +1,8 @@
 """Records that would falsify a verdict are refused, each with its file, component and sample."""
 
 import pickle
+import subprocess
+import sys
 
 import numpy as np
 import obspy
@@ -199,3 +201,36 @@ def test_a_filter_or_window_that_cannot_be_names_the_key(three, write_manifest):
     refused(write_manifest(processed=False, lowpass_hz=60.0), "manifest.toml", "level[0].record[0]", "lowpass_hz")
     refused(write_manifest(window_s=[0.0, 500.0]), "level[0].record[0]", "window_s")
     refused(write_manifest(scale=100.0), "level[0].record[0]", "20 g")
+
+
+def test_a_kept_motion_is_the_same_until_its_manifest_changes(three, write_manifest, tmp_path):
+    """To the bit; scaled to 0.4 g its peak is that, and what is damaged is made again."""
+    three()
+    kept = tmp_path / "kept"
+    (plain,) = read_motion(write_manifest())
+    for _ in range(2):
+        (motion,) = read_motion(write_manifest(), kept)
+        assert motion.hash == plain.hash
+        assert motion.steps == plain.steps
+    assert len(list(kept.iterdir())) == 1
+    (scaled,) = read_motion(write_manifest(scale_to_pga_g=0.4), kept)
+    assert np.abs(scaled.acceleration[:2]).max() == pytest.approx(0.4 * G, rel=1e-12)
+    for file in kept.iterdir():
+        file.write_bytes(file.read_bytes()[:-500])
+    (again,) = read_motion(write_manifest(), kept)
+    assert again.hash == plain.hash
+
+
+def test_a_kept_motion_needs_no_reader_of_records(three, write_manifest, tmp_path):
+    """Reading through obspy is most of the time of a first `kouros respond`."""
+    three()
+    site, kept = write_manifest(), tmp_path / "kept"
+    (motion,) = read_motion(site, kept)
+    script = (
+        "import sys; from pathlib import Path; from pipeline.motions import read_motion; "
+        "(m,) = read_motion(sys.argv[1], Path(sys.argv[2])); print(m.hash, 'obspy' in sys.modules)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script, str(site), str(kept)], capture_output=True, text=True, check=True, timeout=60
+    )
+    assert done.stdout.split() == [motion.hash, "False"]

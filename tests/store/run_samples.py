@@ -21,6 +21,7 @@ from pipeline.records import (
     Recommendation,
     RunRecord,
     Scene,
+    Standing,
     Support,
     Verdict,
 )
@@ -90,6 +91,7 @@ RUNS = st.builds(
     ).map(tuple),
     charts=values_of(Mapping[str, Chart]),
     motions=values_of(tuple[MotionSummary, ...]),
+    decisions=values_of(tuple[Standing, ...]),
     demonstration=st.booleans(),
 )
 

@@ -11,8 +11,19 @@ from run_samples import assessment, finding, motion, run
 from sqlalchemy import Engine, delete
 
 from pipeline.collection.database import open_database
-from pipeline.records import Assessment, RunRecord, Verdict
-from pipeline.store.changes import InputChange, MotionChange, ObjectPlace, RunChanges, VerdictChange
+from pipeline.records import (
+    Assessment,
+    Cause,
+    CauseKind,
+    InputChange,
+    MotionChange,
+    Move,
+    ObjectPlace,
+    RunChanges,
+    RunRecord,
+    Verdict,
+    VerdictChange,
+)
 from pipeline.store.codec import StoreError
 from pipeline.store.migrate import upgrade
 from pipeline.store.runs import compare_runs, save_run
@@ -46,25 +57,30 @@ def test_changes_by_hand(engine: Engine) -> None:
     )
     save_run(engine, old)
     save_run(engine, new)
-    assert compare_runs(engine, "old", "new") == RunChanges(
+    motion_changed = (Cause(CauseKind.MOTION, "dropped"), Cause(CauseKind.MOTION, "malibu"))
+    found = compare_runs(engine, "old", "new")
+    width = found.inputs[0].fields[0]
+    assert (width.name, width.before["value"], width.after["value"]) == ("parameters.half_width", 0.1, 0.2)
+    assert found == RunChanges(
         "old",
         "new",
         added=(ObjectPlace("fresh", "G3"),),
         removed=(ObjectPlace("gone", "G0"),),
-        inputs=(
-            InputChange("wider", "G1", ("parameters.half_width",)),
-            InputChange("moves", "G2", ("gallery",)),
-        ),
+        moved=(Move("moves", "G1", "G2"),),
+        inputs=(InputChange("wider", "G1", (width,)),),
         verdicts=(
-            VerdictChange("wider", "G1", "rocking", "design", FAIL, UNDETERMINED),
-            VerdictChange("wider", "G1", "sliding", "design", PASS, None),
-            VerdictChange("moves", "G2", "stress", "design", PASS, FAIL),
+            VerdictChange("wider", "G1", "rocking", "design", FAIL, UNDETERMINED, motion_changed),
+            VerdictChange("wider", "G1", "sliding", "design", PASS, None, motion_changed),
+            VerdictChange("moves", "G2", "stress", "design", PASS, FAIL, motion_changed),
         ),
         motions=(
-            MotionChange("design", "dropped", ("bb",), None),
-            MotionChange("design", "malibu", ("aa",), ("ab",)),
+            MotionChange("design", "", "dropped", ("bb",), None),
+            MotionChange("design", "", "malibu", ("aa",), ("ab",)),
         ),
+        started=old.started,
     )
+    assert [(v.fixed, v.worsened) for v in found.verdicts] == [(False, False), (False, False), (False, True)]
+    assert (found.worsened, found.fixed, len(found.others)) == (found.verdicts[2:], (), 2)
 
 
 def test_a_run_has_not_changed_against_itself_or_its_equal(engine: Engine) -> None:

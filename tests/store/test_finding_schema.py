@@ -1,4 +1,4 @@
-"""The record, the table and the published schema of a finding agree."""
+"""The record, the table and the published schema of a finding agree; those of a decision too."""
 
 import json
 import math
@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from run_samples import finding, values_of
 
-from pipeline.records import ITEM_FIELDS, Finding, Recommendation
+from pipeline.records import ITEM_FIELDS, Decision, Finding, Recommendation
 from pipeline.resources import resource
 from pipeline.store import codec
-from pipeline.store.schema import finding_schema
-from pipeline.store.tables import FINDING, METADATA, RECOMMENDATION
+from pipeline.store.schema import decision_schema, finding_schema
+from pipeline.store.tables import DECISION, FINDING, METADATA, RECOMMENDATION
 
 NAMES = {field.name for field in fields(Finding)}
 
@@ -58,3 +58,20 @@ def test_the_schema_refuses(change: dict[str, object]) -> None:
     jsonschema.validate(good, finding_schema())
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate(good | change, finding_schema())
+
+
+def test_the_decision_has_its_columns_and_its_published_schema() -> None:
+    names = {field.name for field in fields(Decision)}
+    assert {column.name for column in DECISION.columns} == names == set(decision_schema()["properties"])
+    published = json.loads(resource("schemas", "decision.schema.json").read_text(encoding="utf-8"))
+    assert published == decision_schema()
+    jsonschema.Draft202012Validator.check_schema(published)
+
+
+@settings(deadline=None, max_examples=50)
+@given(values_of(Decision))
+def test_every_decision_satisfies_the_schema(record: Decision) -> None:
+    exported = json.loads(codec.to_json(Decision, record))
+    jsonschema.validate(exported, decision_schema(), cls=jsonschema.Draft202012Validator)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(exported | {"kind": "guess"}, decision_schema())

@@ -1,13 +1,17 @@
 """A floor: the code's factor by hand, and the beam against its own equation, another method and known factors."""
 
+import re
+
 import numpy as np
 import pytest
 from scipy.linalg import eigh
+from scipy.signal import cont2discrete, dlsim
 
 from pipeline.motions.synthesis import ricker
 from pipeline.records import Motion
-from pipeline.response import transmit
+from pipeline.response import trace, transmit
 from pipeline.supports.floor import beam_modes, carried, floor_factor, floor_motion, scale_to_floor
+from pipeline.supports.refining import BANK
 
 
 def shaking(n=2000, seed=1):
@@ -166,9 +170,65 @@ def test_the_floor_is_a_support_like_others():
     by_modes = transmit("floor", motion, height_ratio=0.5, period=0.8, **modal)
     # At least twenty corners in a period of the highest mode.
     assert by_modes.dt <= 0.8 * beam_modes(5.0, 3).period_ratios[-1] / 20
-    assert np.array_equal(by_modes.acceleration, carried(motion, 0.5, 0.8, **modal).acceleration)
+    asked = transmit("floor", motion, height_ratio=0.5, period=0.8, refine=2, **modal)
+    assert np.array_equal(asked.acceleration, carried(motion, 0.5, 0.8, **modal, refine=2).acceleration)
     with pytest.raises(ValueError, match="all four"):
         transmit("floor", motion, height_ratio=0.5, damping=0.05)
+
+
+def test_a_factor_is_exact_and_says_so():
+    floor = transmit("floor", shaking(), height_ratio=0.5, period=0.8, error=1e-12)
+    assert floor.samples == shaking().samples
+    assert floor.steps[-1].endswith("vertical unchanged; exact")
+
+
+def on_the_floor(motion, height_ratio, period, damping, alpha0, modes, frequency):
+    """Displacement of an oscillator (5 %) on a floor at the ground's samples: modes and oscillator as one system.
+
+    Exact for a ground that is a polygon, by scipy's first-order hold: nothing is sampled in between.
+    """
+    beam = beam_modes(alpha0, modes)
+    w = 2 * np.pi / (period * beam.period_ratios)
+    share = beam.participation * beam.shapes(height_ratio)[:, 0]
+    n = 2 * modes
+    a, b = np.zeros((n + 2, n + 2)), np.zeros((n + 2, 1))
+    for i in range(modes):
+        a[2 * i, 2 * i + 1] = 1.0
+        a[2 * i + 1, 2 * i : 2 * i + 2] = -(w[i] ** 2), -2 * damping * w[i]
+        b[2 * i + 1] = -1.0
+        # The floor's absolute acceleration, ground + share (u'' of the mode), drives the oscillator.
+        a[n + 1, 2 * i : 2 * i + 2] = share[i] * w[i] ** 2, share[i] * 2 * damping * w[i]
+    w0 = 2 * np.pi * frequency
+    a[n, n + 1] = 1.0
+    a[n + 1, n:] = -(w0**2), -2 * 0.05 * w0
+    b[n + 1] = -(1.0 - share.sum())
+    c = np.zeros((1, n + 2))
+    c[0, n] = 1.0
+    system = cont2discrete((a, b, c, np.zeros((1, 1))), motion.dt, method="foh")
+    return np.array([dlsim(system, row)[1][:, 0] for row in motion.acceleration[:2]])
+
+
+@pytest.mark.parametrize("error", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize(("period", "modes"), [(0.15, 2), (0.7, 5)])
+def test_oscillators_on_a_floor_are_within_the_error(error, period, modes):
+    """What an oscillator of 2 to 20 Hz does on the floor, as a share of its peak, against one exact linear system.
+
+    The ground begins and ends at rest, so that the polygon's end adds nothing.
+    """
+    motion = shaking(600)
+    known = {"height_ratio": 0.8, "period": period, "damping": 0.03}
+    floor = transmit("floor", motion, error=error, stiffness_ratio=6.0, modes=modes, **known)
+    told = float(re.search(r"20 Hz on it is within ([\d.e-]+)$", floor.steps[-1])[1])
+    assert told <= error
+    every = round(motion.dt / floor.dt)
+    worst = 0.0
+    for frequency in BANK:
+        exact = on_the_floor(motion, alpha0=6.0, modes=modes, frequency=frequency, **known)
+        for row, truth in enumerate(exact):
+            found = trace("oscillator", floor, angle=90.0 * row, frequency=frequency, damping=0.05)["u_x"].to_numpy()
+            missed = np.abs(found[: every * motion.samples : every] - truth).max()
+            worst = max(worst, missed / np.abs(exact).max())
+    assert 0.0 < worst <= told
 
 
 @pytest.mark.parametrize(

@@ -48,9 +48,17 @@ TABLE_4 = [("Paint", "Wood", "0.02"), ("Paint", "Rubber pads", "0.06"), ("Cloth"
 
 
 def test_there_is_every_table() -> None:
-    assert {"friction", "damping", "materials", "isolators", "classes", "rules", "measures", "generic_models"} <= set(
-        NAMES
-    )
+    assert {
+        "friction",
+        "damping",
+        "materials",
+        "isolators",
+        "classes",
+        "rules",
+        "measures",
+        "fixings",
+        "generic_models",
+    } <= set(NAMES)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -187,7 +195,9 @@ def test_isolators_are_within_the_limits_of_their_models() -> None:
         for column in ("frequency", "damping", "friction"):
             if row[column]:
                 value = number(row, column, "isolators")
-                assert needs[column].low <= value <= needs[column].high
+                # The friction of a low-friction pad is its static one.
+                limits = needs.get(column) or needs["friction_static"]
+                assert limits.low <= value <= limits.high
 
 
 def test_horizontal_isolators_are_those_of_figure_6() -> None:
@@ -212,7 +222,9 @@ def test_measures_are_ordered_and_take_their_limits_from_the_paper() -> None:
     assert orders == sorted(set(orders))
     assert list(rows)[-1] == "remove"
     assert float(rows["grip_pad"]["limit"]) == max(float(v) for _, v, _ in TABLE_3)
-    assert float(rows["friction_isolator"]["limit"]) == min(float(v) for _, v, _ in TABLE_3)
+    assert float(rows["surface"]["limit"]) in {float(v) for _, v, _ in TABLE_3}
+    (pad,) = (float(r["friction"]) for r in table("isolators") if r["kind"] == "friction_isolator")
+    assert pad == min(float(v) for _, v, _ in TABLE_3)
     assert float(rows["rubber_pads"]["limit"]) == 0.06
 
 

@@ -44,7 +44,7 @@ def as_text(value: object) -> str:
     if isinstance(value, float):
         if not isfinite(value):
             raise ValueError(f"{value} is no number that was measured")
-        return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+        return str(int(value)) if value.is_integer() and abs(value) < 1e16 else repr(value)
     if isinstance(value, Decimal):
         if not value.is_finite():
             raise ValueError(f"{value} is no number that was measured")

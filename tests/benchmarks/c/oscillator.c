@@ -2,6 +2,7 @@
 #include "native.h"
 
 #define CHUNK 128
+#define STRIDE 4
 
 /* The largest |p| on the cubic with these ends and rates there. */
 static double cubic_top(double p0, double d0, double p1, double d1, double h)
@@ -20,89 +21,123 @@ static double cubic_top(double p0, double d0, double p1, double d1, double h)
     return top;
 }
 
+/* f^2 + (f' / w)^2 of f = u'' in the interval that begins here; pull is -f. */
+static inline double energy_of(double pull, double v, double difference, double w, double twice, double ramp)
+{
+    double jerk = ramp * difference - twice * pull + w * v;
+    return pull * pull + jerk * jerk;
+}
+
+/* How far |u|, |y| may exceed those at the samples, and w^2 |u|, |y| the largest |a|, between samples. */
+static inline void gaps(double energy, double pull, double difference, double dt, double b, double twice, double ramp,
+                        double norm, double *gap)
+{
+    double eighth = 0.125 * dt * dt, second = smaller(energy, pull + eighth * b * (1.0 + twice) * energy);
+    gap[0] = eighth * second, gap[1] = eighth * b * (twice * energy + second);
+    gap[2] = twice * ramp * difference + norm * energy, gap[3] = second;
+}
+
+static inline int beyond(double near_u, double near_y, double most, double b, const double *gap, long apart,
+                         double max_u, double max_y)
+{
+    return (near_u + gap[0] > max_u && most + gap[2 * apart] > b * max_u) ||
+           (near_y + gap[apart] > max_y && most + gap[3 * apart] > max_y);
+}
+
 /* max_u, max_y (m): largest |u| and |a + u''| within the record; w (1 + 2 zeta) dt <= 1.5, zeta < 1, m / LANES whole */
 void oscillators(const double *base, long n, double dt, const double *w, const double *zeta, long m, double *max_u,
                  double *max_y)
 {
     long parts = (n - 2) / CHUNK + 1;
-    double *begin = malloc(sizeof(double) * 6 * LANES * parts), most = 0.0, steepest = 0.0;
-    for (long i = 0; i < n; i++) most = larger(most, fabs(base[i]));
-    for (long i = 0; i + 1 < n; i++) steepest = larger(steepest, fabs(base[i + 1] - base[i]) / dt);
+    double *kept = malloc(sizeof(double) * 8 * LANES * parts), *outline = calloc(3 * parts, sizeof(double));
+    double *a = malloc(sizeof(double) * (n + 1));
+    memcpy(a, base, sizeof(double) * n);
+    a[n] = a[n - 1];
+    for (long i = 0; i < n - 1; i++) {
+        double *row = outline + 3 * (i / CHUNK);
+        row[0] = larger(row[0], larger(fabs(a[i]), fabs(a[i + 1])));
+        row[1] = larger(row[1], fabs(a[i + 1] - a[i]));
+        row[2] = larger(row[2], fabs(a[i + 2] - a[i + 1] - (a[i + 1] - a[i])));
+    }
     for (long first = 0; first < m; first += LANES) {
         double uu[LANES], uv[LANES], u0[LANES], u1[LANES], vu[LANES], vv[LANES], v0[LANES], v1[LANES];
-        double yu[LANES], yv[LANES], u[LANES], v[LANES];
+        double b[LANES], c[LANES], f[LANES], twice[LANES], ramp[LANES], norm[LANES], u[LANES], v[LANES];
+        double *high_u = max_u + first, *high_y = max_y + first;
         for (int k = 0; k < LANES; k++) {
-            double r[4], f = w[first + k], z = zeta[first + k], b = f * f, c = 2.0 * z * f;
-            transition(f, z, dt, r);
+            double r[4], z = zeta[first + k];
+            f[k] = w[first + k], b[k] = f[k] * f[k], c[k] = 2.0 * z * f[k];
+            twice[k] = 2.0 * z, ramp[k] = 1.0 / (f[k] * dt), norm[k] = pow(z + sqrt(1.0 + z * z), 2.0);
+            transition(f[k], z, dt, r);
             uu[k] = r[0], uv[k] = r[1], u0[k] = r[3] / dt - r[2], u1[k] = -r[3] / dt;
-            vu[k] = -b * r[1], vv[k] = r[0] - c * r[1], v0[k] = r[2] / dt - r[1], v1[k] = -r[2] / dt;
-            yu[k] = -b, yv[k] = -c, u[k] = v[k] = max_u[first + k] = max_y[first + k] = 0.0;
+            vu[k] = -b[k] * r[1], vv[k] = r[0] - c[k] * r[1], v0[k] = r[2] / dt - r[1], v1[k] = -r[2] / dt;
+            u[k] = v[k] = high_u[k] = high_y[k] = 0.0;
         }
         for (long part = 0; part < parts; part++) {
-            double top_u[LANES], top_v[LANES], top_y[LANES], *s = begin + 6 * LANES * part;
-            long end = (part + 1) * CHUNK < n - 1 ? (part + 1) * CHUNK : n - 1;
+            double top_u[LANES], top_y[LANES], top_e[LANES], *s = kept + 8 * LANES * part, *row = outline + 3 * part;
+            long i = part * CHUNK, end = (part + 1) * CHUNK < n - 1 ? (part + 1) * CHUNK : n - 1;
             for (int k = 0; k < LANES; k++) {
-                s[k] = u[k], s[LANES + k] = v[k], top_u[k] = fabs(u[k]), top_v[k] = fabs(v[k]);
-                top_y[k] = fabs(yu[k] * u[k] + yv[k] * v[k]);
+                double pull = a[i] + (c[k] * v[k] + b[k] * u[k]);
+                s[k] = u[k], s[LANES + k] = v[k], top_u[k] = fabs(u[k]), top_y[k] = fabs(a[i] - pull);
+                top_e[k] = energy_of(pull, v[k], a[i + 1] - a[i], f[k], twice[k], ramp[k]);
             }
-            for (long i = part * CHUNK; i < end; i++) {
-                double a = base[i], an = base[i + 1];
+            while (i < end) {
+                int steps = i + STRIDE <= end ? STRIDE : 1;
+                for (int j = 0; j < steps; j++, i++)
+                    for (int k = 0; k < LANES; k++) {
+                        double un = uu[k] * u[k] + uv[k] * v[k] + (u0[k] * a[i] + u1[k] * a[i + 1]);
+                        double vn = vu[k] * u[k] + vv[k] * v[k] + (v0[k] * a[i] + v1[k] * a[i + 1]);
+                        u[k] = un, v[k] = vn;
+                        top_u[k] = larger(top_u[k], fabs(un));
+                        top_y[k] = larger(top_y[k], fabs(c[k] * vn + b[k] * un));
+                    }
                 for (int k = 0; k < LANES; k++) {
-                    double un = uu[k] * u[k] + uv[k] * v[k] + (u0[k] * a + u1[k] * an);
-                    double vn = vu[k] * u[k] + vv[k] * v[k] + (v0[k] * a + v1[k] * an);
-                    u[k] = un, v[k] = vn;
-                    top_u[k] = larger(top_u[k], fabs(un));
-                    top_v[k] = larger(top_v[k], fabs(vn));
-                    top_y[k] = larger(top_y[k], fabs(yu[k] * un + yv[k] * vn));
+                    double pull = a[i] + (c[k] * v[k] + b[k] * u[k]);
+                    top_e[k] = larger(top_e[k], energy_of(pull, v[k], a[i + 1] - a[i], f[k], twice[k], ramp[k]));
                 }
             }
             for (int k = 0; k < LANES; k++) {
-                /* A bound of what lies between two steps, from those of u'', u''' and u''''. */
-                double b = -yu[k], c = -yv[k], ease = 1.0 / (1.0 - 0.5 * c * dt - 0.125 * b * dt * dt);
-                double second = (most + c * top_v[k] + b * top_u[k]) * ease;
-                double third = steepest + c * second + b * (top_v[k] + 0.5 * dt * second);
-                s[2 * LANES + k] = 0.125 * dt * dt * second;
-                s[3 * LANES + k] = 0.125 * dt * dt * (c * third + b * second);
-                s[4 * LANES + k] = top_u[k], s[5 * LANES + k] = top_y[k];
-                max_u[first + k] = larger(max_u[first + k], top_u[k]);
-                max_y[first + k] = larger(max_y[first + k], top_y[k]);
+                double energy = sqrt(top_e[k]) + (STRIDE - 1) * row[2] * ramp[k], gap[4];
+                gaps(energy, top_y[k] + row[0], row[1], dt, b[k], twice[k], ramp[k], norm[k], gap);
+                s[2 * LANES + k] = smaller(top_u[k] + gap[0], (row[0] + gap[2]) / b[k]);
+                s[3 * LANES + k] = smaller(top_y[k] + gap[1], row[0] + gap[3]);
+                for (int j = 0; j < 4; j++) s[(4 + j) * LANES + k] = gap[j];
+                high_u[k] = larger(high_u[k], top_u[k]), high_y[k] = larger(high_y[k], top_y[k]);
             }
         }
-        for (int k = 0; k < LANES; k++) {
-            double most_u = max_u[first + k], most_y = max_y[first + k], f = w[first + k], z = zeta[first + k];
-            for (long part = 0; part < parts; part++) {
-                const double *s = begin + 6 * LANES * part;
-                double gap_u = s[2 * LANES + k], gap_y = s[3 * LANES + k];
-                if (s[4 * LANES + k] + gap_u <= most_u && s[5 * LANES + k] + gap_y <= most_y) continue;
-                double p = s[k], q = s[LANES + k];
+        for (long part = 0; part < parts; part++)
+            for (int k = 0; k < LANES; k++) {
+                const double *s = kept + 8 * LANES * part + k;
+                if (s[2 * LANES] <= high_u[k] && s[3 * LANES] <= high_y[k]) continue;
+                double p = s[0], q = s[LANES], z = zeta[first + k], fourth = dt * dt * dt * dt / 384.0;
+                double pull = a[part * CHUNK] + (c[k] * q + b[k] * p);
                 long end = (part + 1) * CHUNK < n - 1 ? (part + 1) * CHUNK : n - 1;
                 for (long i = part * CHUNK; i < end; i++) {
-                    double a = base[i], an = base[i + 1], rate = (an - a) / dt;
-                    double pn = uu[k] * p + uv[k] * q + (u0[k] * a + u1[k] * an);
-                    double qn = vu[k] * p + vv[k] * q + (v0[k] * a + v1[k] * an);
-                    double b = f * f, c = 2.0 * z * f, fourth = dt * dt * dt * dt / 384.0;
-                    double near_u = larger(fabs(p), fabs(pn)), near_v = larger(fabs(q), fabs(qn));
-                    double y0 = -(c * q + b * p), y1 = -(c * qn + b * pn), near_y = larger(fabs(y0), fabs(y1));
-                    if (near_u + gap_u > most_u || near_y + gap_y > most_y) {
-                        double ease = 1.0 / (1.0 - 0.5 * c * dt - 0.125 * b * dt * dt);
-                        double second = (larger(fabs(a), fabs(an)) + c * near_v + b * near_u) * ease;
-                        double third = fabs(rate) + c * second + b * (near_v + 0.5 * dt * second);
-                        double bend = c * third + b * second, slack = fourth * bend;
-                        if (near_u + gap_u > most_u && cubic_top(p, q, pn, qn, dt) + slack > most_u)
-                            most_u = larger(larger(most_u, near_u),
-                                            peak_inside(p, q, -a, -rate, f, z, dt, 0.0, 0.0, 1.0, 0.0));
-                        double d0 = c * (a + c * q + b * p) - b * q, d1 = c * (an + c * qn + b * pn) - b * qn;
-                        slack = fourth * (c * (c * bend + b * third) + b * bend);
-                        if (near_y + gap_y > most_y && cubic_top(y0, d0, y1, d1, dt) + slack > most_y)
-                            most_y = larger(larger(most_y, near_y),
-                                            peak_inside(p, q, -a, -rate, f, z, dt, 0.0, 0.0, -b, -c));
+                    double pn = uu[k] * p + uv[k] * q + (u0[k] * a[i] + u1[k] * a[i + 1]);
+                    double qn = vu[k] * p + vv[k] * q + (v0[k] * a[i] + v1[k] * a[i + 1]);
+                    double next = a[i + 1] + (c[k] * qn + b[k] * pn), y0 = a[i] - pull, y1 = a[i + 1] - next;
+                    double near_u = larger(fabs(p), fabs(pn)), near_y = larger(fabs(y0), fabs(y1)), gap[4];
+                    double most = larger(fabs(a[i]), fabs(a[i + 1])), rise = a[i + 1] - a[i], rate = rise / dt;
+                    if (beyond(near_u, near_y, most, b[k], s + 4 * LANES, LANES, high_u[k], high_y[k])) {
+                        double energy = sqrt(energy_of(pull, q, rise, f[k], twice[k], ramp[k]));
+                        double slack = fourth * b[k] * (1.0 + twice[k]) * energy;
+                        gaps(energy, larger(fabs(pull), fabs(next)), fabs(rise), dt, b[k], twice[k], ramp[k], norm[k],
+                             gap);
+                        if (beyond(near_u, near_y, most, b[k], gap, 1, high_u[k], high_y[k])) {
+                            if (cubic_top(p, q, pn, qn, dt) + slack > high_u[k])
+                                high_u[k] = larger(larger(high_u[k], near_u), peak_inside(p, q, -a[i], -rate, f[k], z,
+                                                                                          dt, 0.0, 0.0, 1.0, 0.0));
+                            double d0 = c[k] * pull - b[k] * q, d1 = c[k] * next - b[k] * qn;
+                            slack *= b[k] * (1.0 + twice[k]) * (1.0 + twice[k]);
+                            if (cubic_top(y0, d0, y1, d1, dt) + slack > high_y[k])
+                                high_y[k] = larger(larger(high_y[k], near_y), peak_inside(p, q, -a[i], -rate, f[k], z,
+                                                                                          dt, 0.0, 0.0, -b[k], -c[k]));
+                        }
                     }
-                    p = pn, q = qn;
+                    p = pn, q = qn, pull = next;
                 }
             }
-            max_u[first + k] = most_u;
-            max_y[first + k] = most_y;
-        }
     }
-    free(begin);
+    free(kept);
+    free(outline);
+    free(a);
 }

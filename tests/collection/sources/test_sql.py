@@ -140,6 +140,8 @@ def test_columns_that_are_not_there(museum: Museum) -> None:
     museum.refused("has no column '1; --'", table="objects", order_by="1; --")
     museum.refused("no such column: .*; see whether its name is right", query="SELECT weight FROM objects")
     museum.refused("no such table: .*; see whether", query="SELECT 1 FROM absent")
+    header, *_ = museum.read(table="objects", columns=["number"], optional=["weight", "title"])
+    assert header.cells == ["number", "title"]
 
 
 # ---------------------------------------------------------------------------------------------------------------------

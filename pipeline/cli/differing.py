@@ -1,0 +1,70 @@
+"""What changed between two runs, as lines or as JSON."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import click
+
+from pipeline.cli.console import listed, printable
+from pipeline.records import FieldChange, RunChanges, VerdictChange
+
+
+def print_changes(changes: RunChanges, wanted_json: bool) -> None:
+    """Print what changed; lines show the first of each kind, JSON has all."""
+    if wanted_json:
+        click.echo(json.dumps(plain_changes(changes), indent=2))
+        return
+    click.echo(f"from {changes.old} to {changes.new}")
+    for title, lines in _kinds(changes):
+        listed(title, [printable(line) for line in lines])
+    if not changes:
+        click.echo("nothing changed")
+
+
+def plain_changes(changes: RunChanges) -> dict[str, Any]:
+    """Return the changes for JSON; each verdict's says whether it is fixed or worsened."""
+    plain = asdict(changes)
+    for row, change in zip(plain["verdicts"], changes.verdicts, strict=True):
+        row |= {"fixed": change.fixed, "worsened": change.worsened}
+    return plain
+
+
+def _kinds(changes: RunChanges) -> list[tuple[str, Sequence[str]]]:
+    return [
+        ("worse", [_verdict(v) for v in changes.worsened]),
+        ("fixed", [_verdict(v) for v in changes.fixed]),
+        ("verdict", [_verdict(v) for v in changes.others]),
+        ("new", [f"{p.object_number} ({p.gallery})" for p in changes.added]),
+        ("gone", [f"{p.object_number} ({p.gallery})" for p in changes.removed]),
+        ("moved", [f"{m.object_number}: {m.before} -> {m.after}" for m in changes.moved]),
+        ("changed", [f"{i.object_number} ({i.gallery}): {'; '.join(map(_field, i.fields))}" for i in changes.inputs]),
+        ("motion", [f"{m.level} {m.name}{f' on floor {m.floor}' if m.floor else ''}" for m in changes.motions]),
+        (
+            "decision",
+            [
+                f"{'made' if c.new else 'ended'}: {c.decision.object_number}: {c.decision.matter}, {c.decision.who}"
+                for c in changes.decisions
+            ],
+        ),
+        ("setting", [_field(f) for f in changes.settings]),
+        ("version", [_field(f) for f in changes.versions]),
+    ]
+
+
+def _verdict(change: VerdictChange) -> str:
+    why = "; ".join(f"{cause.kind} {cause.what}" for cause in change.causes) or "nothing that the runs keep differs"
+    what = f"{change.object_number} ({change.gallery}) {change.model}, {change.level}"
+    return f"{what}: {change.before} -> {change.after}, because of {why}"
+
+
+def _field(change: FieldChange) -> str:
+    return f"{change.name} {_value(change.before)} -> {_value(change.after)}"
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, dict) and "value" in value:
+        return f"{value['value']:.4g}" if isinstance(value["value"], float) else str(value["value"])
+    text = "none" if value is None else value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= 60 else f"{text[:59]}…"

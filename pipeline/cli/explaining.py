@@ -1,0 +1,109 @@
+"""`kouros run --explain`: the chain of reasoning for one object as text or JSON."""
+
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from pipeline.cli.options import Options
+
+if TYPE_CHECKING:
+    from pipeline.jobs.explaining import Explanation, Reasoning, Taken
+    from pipeline.records import Estimate, Recommendation
+    from pipeline.settings import Settings
+
+
+def print_explanation(settings: "Settings", number: str, options: Options, as_json: bool) -> None:
+    """Explain one object and print it; nothing is stored."""
+    from pipeline.jobs.explaining import explain
+    from pipeline.jobs.workspace import open_workspace
+
+    with options.console() as console:
+        explained = explain(open_workspace(settings), number, console)
+    if as_json:
+        click.echo(json.dumps([_plain(asdict(one)) for one in explained], indent=2, default=str))
+    else:
+        click.echo("\n\n".join("\n".join(explanation_lines(one)) for one in explained))
+
+
+def _plain(value: Any) -> Any:
+    # JSON has no infinity and no NaN.
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _plain(one) for key, one in value.items()}
+    return [_plain(one) for one in value] if isinstance(value, (list, tuple)) else value
+
+
+def explanation_lines(explained: "Explanation") -> Iterator[str]:
+    """Yield the reasoning for one object, line by line."""
+    scene = explained.scene
+    item = scene.item
+    yield f"{_clean(item.object_number)}  {_clean(item.title)}  ({_clean(item.gallery)})"
+    yield f"  class    {scene.object_class}, by rule {scene.rule}"
+    yield f"  support  {scene.support.value}" + (f", on floor {scene.floor}" if scene.floor else "")
+    for missing in scene.missing:
+        yield f"  missing  {missing}"
+    yield "  numbers"
+    for name, estimate in scene.parameters.items():
+        yield f"    {name:<22}{_estimate(estimate)}"
+    if scene.skipped:
+        yield "  not run"
+        for title, why in scene.skipped.items():
+            yield f"    {title}: {_clean(why)}"
+    for reasoning in explained.reasonings:
+        yield from _reasoning(reasoning)
+    for advice in explained.advice:
+        yield from _advice(advice)
+
+
+def _reasoning(reasoning: "Reasoning") -> Iterator[str]:
+    finding = reasoning.finding
+    yield f"  {finding.title}, {finding.level} [{finding.demand_name}, {finding.unit}]"
+    if finding.screen:
+        yield f"    screen    {finding.screen} (never decides)"
+    for taken in reasoning.taken:
+        yield f"    {taken.step:<10}{taken.motion}, {taken.inputs}: {taken.told or _taken(taken)}"
+    yield f"    capacity  {_estimate(reasoning.capacity)}"
+    at_most = "at most " if finding.fidelity == "bound" and finding.error else ""
+    yield f"    demand    {at_most}{_number(finding.demand)} ({_number(finding.low)} to {_number(finding.high)})"
+    outcome = f", {finding.outcome}" if finding.outcome else ""
+    yield f"    verdict   {finding.verdict.value}{outcome}, decided by {finding.decided_by}, under {finding.motion}"
+    if finding.note:
+        yield f"    note      {finding.note}"
+
+
+def _taken(taken: "Taken") -> str:
+    if taken.error is None:
+        return _number(taken.low) if taken.low == taken.high else f"{_number(taken.low)} to {_number(taken.high)}"
+    value = 0.5 * (taken.low + taken.high)
+    return f"{_number(value)} ± {taken.error:.2g}"
+
+
+def _advice(advice: "Recommendation") -> Iterator[str]:
+    values = ", ".join(f"{name} {_number(v)} {advice.units[name]}" for name, v in advice.parameters.items())
+    yield f"  advice, {advice.level}: {advice.title}" + (f" ({values})" if values else "")
+    for check in advice.checks:
+        state = "passes" if check.passes else "fails"
+        yield f"    {check.title}: {_number(check.demand)} of {_number(check.capacity)} {check.unit}, {state}"
+    for rejected in advice.rejected:
+        yield f"    rejected  {rejected}"
+
+
+def _estimate(estimate: "Estimate") -> str:
+    span = f" ({_number(estimate.low)} to {_number(estimate.high)})" if estimate.low < estimate.high else ""
+    why = f": {_clean(estimate.note)}" if estimate.note else ""
+    source = f" [{estimate.source}]" if estimate.source else ""
+    return f"{_number(estimate.value)} {estimate.unit}{span}, {estimate.origin.value}{why}{source}"
+
+
+def _number(value: float | None) -> str:
+    return "not known" if value is None else f"{value:.4g}"
+
+
+def _clean(text: str) -> str:
+    # What a record holds must not steer a terminal.
+    return "".join(c if c.isprintable() else " " for c in text)

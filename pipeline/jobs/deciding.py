@@ -1,0 +1,266 @@
+"""What people decide: writing it down, and what it does to the next run."""
+
+import getpass
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, date, datetime
+from difflib import get_close_matches
+
+import numpy as np
+
+from pipeline.classify import classify, object_classes
+from pipeline.collection.inventory import fields_since, items_named, object_numbers
+from pipeline.collection.record import digest_of
+from pipeline.jobs.doubts import now, standing
+from pipeline.jobs.workspace import UsageError, Workspace
+from pipeline.mitigate.installed import Measure, Placed, installable, placed
+from pipeline.models import MODELS
+from pipeline.motions.manifest import load_manifest
+from pipeline.quantities import Quantity
+from pipeline.records import Basis, Decision, DecisionKind, Item, RunRecord, Standing, Verdict, in_force
+from pipeline.store.decisions import add_decision, looked_at, read_decisions
+from pipeline.store.reuse import whole_runs
+
+WHO_VARIABLE = "KOUROS_WHO"
+"""Environment variable with the name of the person who decides, where it is not that of the account."""
+
+WHO_LIMIT, WHY_LIMIT = 200, 2000
+"""Characters of a name and of a reason."""
+
+
+@dataclass(frozen=True)
+class Wish:
+    """A decision as it is put, in words; None or empty for what was not said."""
+
+    object_number: str
+    kind: DecisionKind
+    words: Sequence[str] = ()
+    why: str = ""
+    who: str = ""
+    on: str = ""
+    model: str = ""
+    level: str = ""
+    until: str = ""
+
+
+def decide(workspace: Workspace, wish: Wish) -> Decision:
+    """Write a decision down, with what the last run of the whole collection found.
+
+    raises : UsageError for an object, measure, class, model, level or decision that there is not (naming those there
+             are), for a name or reason that is empty, and for a date or parameter that cannot be
+    """
+    engine = workspace.engine
+    decision = _stated(wish)
+    if wish.kind is DecisionKind.WITHDRAW:
+        return add_decision(engine, replace(decision, withdraws=_withdrawn(workspace, wish)))
+    item = items_named(engine, [wish.object_number]).get(wish.object_number)
+    if item is None:
+        raise UsageError(_nowhere(wish.object_number, object_numbers(engine)))
+    runs = whole_runs(engine)
+    basis = looked_at(engine, runs[0], wish.object_number) if runs else ()
+    decision = replace(decision, run=runs[0] if runs else "", digest=digest_of(item))
+    if wish.kind is DecisionKind.CLASS:
+        return add_decision(engine, replace(decision, object_class=_class(wish.words), basis=basis))
+    if wish.kind is DecisionKind.INSTALLED:
+        return add_decision(engine, replace(_installed(decision, wish.words), basis=basis))
+    _concerning(workspace, wish, basis)
+    if wish.kind is DecisionKind.VERDICT:
+        decision = replace(decision, verdict=_verdict(wish, basis))
+    elif wish.words:
+        raise UsageError(f"an accepted risk takes no more words than --model and --level, not {wish.words[0]!r}")
+    concerned = tuple(b for b in basis if decision.concerns(b.model, b.level))
+    return add_decision(engine, replace(decision, basis=concerned))
+
+
+def _stated(wish: Wish) -> Decision:
+    """Check what every decision has: who, when, why."""
+    who = (wish.who or os.environ.get(WHO_VARIABLE) or _account()).strip()
+    if not who:
+        raise UsageError(f"who decides is not known: give --who NAME, or set {WHO_VARIABLE}")
+    why = wish.why.strip()
+    if not why:
+        raise UsageError('a decision needs its reason: give --why "..."')
+    for name, text, most in (("--who", who, WHO_LIMIT), ("--why", why, WHY_LIMIT)):
+        if len(text) > most:
+            raise UsageError(f"{name} has {len(text)} characters; at most {most} are kept: say it shorter")
+    moment = datetime.now(UTC)
+    day = _day("--on", wish.on) if wish.on else moment.date()
+    if day > moment.date():
+        raise UsageError(f"--on {day} is in the future; a decision is written down once it is made")
+    until = _day("--until", wish.until) if wish.until else None
+    if until is not None and wish.kind is not DecisionKind.ACCEPT:
+        raise UsageError(f"--until is for accepted risks; {wish.kind} has no end but a withdrawal")
+    if until is not None and until < day:
+        raise UsageError(f"--until {until} is before the decision itself, {day}")
+    if (wish.model or wish.level) and wish.kind not in (DecisionKind.ACCEPT, DecisionKind.VERDICT):
+        raise UsageError(f"--model and --level are for accept and verdict, not for {wish.kind}")
+    return Decision(
+        0,
+        wish.object_number,
+        wish.kind,
+        who,
+        day.isoformat(),
+        why,
+        moment.isoformat(timespec="seconds"),
+        model=wish.model,
+        level=wish.level,
+        until="" if until is None else until.isoformat(),
+    )
+
+
+def _account() -> str:
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError):
+        # An account without a name: KeyError before Python 3.13.
+        return ""
+
+
+def _day(option: str, text: str) -> date:
+    try:
+        return date.fromisoformat(text)
+    except ValueError as problem:
+        raise UsageError(f"{option} {text!r} is no date; write it as 2031-05-01") from problem
+
+
+def _nowhere(number: str, known: Sequence[str]) -> str:
+    close = get_close_matches(number, known, n=3)
+    hint = f"; did you mean {' or '.join(repr(c) for c in close)}?" if close else ""
+    return f"there is no object {number!r} in the inventory{hint}"
+
+
+def _one(words: Sequence[str], what: str) -> str:
+    if len(words) != 1:
+        raise UsageError(f"say {what}, and nothing else, not {' '.join(words) or 'nothing'!r}")
+    return words[0]
+
+
+def _of(word: str, known: Iterable[str], what: str) -> str:
+    names = list(known)
+    if word not in names:
+        raise UsageError(f"there is no {what} {word!r}; use one of {', '.join(names)}")
+    return word
+
+
+def _class(words: Sequence[str]) -> str:
+    return _of(_one(words, "one class"), object_classes(), "class")
+
+
+def _withdrawn(workspace: Workspace, wish: Wish) -> int:
+    word = _one(wish.words, "the id of the decision")
+    open_ = {str(row.id): row.id for row in listed(workspace, wish.object_number)}
+    if word not in open_:
+        there = f"those in force are {', '.join(open_)}" if open_ else "it has none in force"
+        raise UsageError(f"object {wish.object_number!r} has no decision {word!r} to withdraw; {there}")
+    return open_[word]
+
+
+def _concerning(workspace: Workspace, wish: Wish, basis: Sequence[Basis]) -> None:
+    """Check that the model and the level named are there, and that the last run has such a finding."""
+    if wish.model:
+        _of(wish.model, (model.name for model in MODELS), "model")
+    if wish.level:
+        from pipeline.jobs.workspace import site_folder
+
+        settings = workspace.settings
+        manifest = load_manifest(site_folder(settings, settings.site.folder))
+        _of(wish.level, (level.name for level in manifest.level), "level")
+    if (wish.model or wish.level) and basis:
+        there = {(b.model, b.level) for b in basis}
+        if not any(wish.model in ("", model) and wish.level in ("", level) for model, level in there):
+            listed = ", ".join(f"{model} ({level})" for model, level in sorted(there))
+            raise UsageError(f"the last run has no such finding of object {wish.object_number!r}; it has {listed}")
+
+
+def _verdict(wish: Wish, basis: Sequence[Basis]) -> Verdict:
+    if not wish.model:
+        raise UsageError("say by --model which verdict is overruled")
+    if not basis:
+        raise UsageError(f"no run has a verdict on object {wish.object_number!r} yet; make one with `kouros run`")
+    levels = sorted({b.level for b in basis if b.model == wish.model})
+    if len(levels) > 1 and not wish.level:
+        raise UsageError(f"say by --level which verdict is overruled: {', '.join(levels)}")
+    return Verdict(_of(_one(wish.words, "pass or fail"), (Verdict.PASS, Verdict.FAIL), "verdict"))
+
+
+def _installed(decision: Decision, words: Sequence[str]) -> Decision:
+    measures = installable()
+    if not words:
+        raise UsageError(f"say what is installed: one of {', '.join(measures)}")
+    measure = _of(words[0], measures, "measure that can be installed")
+    wanted = {_key(q): q for q in measures[measure]}
+    parameters: dict[str, float] = {}
+    product = ""
+    for word in words[1:]:
+        name, equals, text = word.partition("=")
+        if not equals:
+            raise UsageError(f"{word!r} is no parameter; write NAME=VALUE, as clearance_m=0.1")
+        if name == "product":
+            product = text.strip()[:WHO_LIMIT]
+            continue
+        quantity = wanted[_of(name, [*wanted, "product"], f"parameter of {measure}")]
+        parameters[quantity.name] = _number(quantity, name, text)
+    lost = [f"{key} ({q.meaning})" for key, q in wanted.items() if q.name not in parameters]
+    if lost:
+        raise UsageError(f"{measure} needs {' and '.join(lost)}: write NAME=VALUE for each, in SI units")
+    units = {q.name: q.unit for q in wanted.values()}
+    return replace(decision, measure=measure, parameters=parameters, units=units, product=product)
+
+
+def _key(quantity: Quantity) -> str:
+    """Return the name with its unit, as on the command line and in the museum's records: clearance_m."""
+    return quantity.name if quantity.unit == "-" else f"{quantity.name}_{quantity.unit.lower()}"
+
+
+def _number(quantity: Quantity, name: str, text: str) -> float:
+    try:
+        value = float(text)
+        quantity.check(np.array([value]))
+    except ValueError as problem:
+        raise UsageError(f"{name}={text} cannot be: {name} must be {quantity.allowed()}") from problem
+    return value
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# What it does to a run
+
+Decided = Mapping[str, tuple[Decision, ...]]
+"""The decisions in force, by object number."""
+
+
+def decided(workspace: Workspace) -> Decided:
+    """Return the decisions in force, by object number."""
+    found: dict[str, tuple[Decision, ...]] = {}
+    for decision in in_force(read_decisions(workspace.engine)):
+        found[decision.object_number] = (*found.get(decision.object_number, ()), decision)
+    return found
+
+
+def listed(workspace: Workspace, object_number: str | None = None, *, log: bool = False) -> list[Decision]:
+    """Return the decisions in force about an object, or about all, by id; of the log all that was ever written."""
+    rows = read_decisions(workspace.engine, object_number)
+    return list(rows if log else in_force(rows))
+
+
+def place(workspace: Workspace, item: Item, decisions: Decided) -> Placed:
+    """Return an object as people say that it is and stands: of the class decided, with the measures installed."""
+    mine = decisions.get(item.object_number, ())
+    classes = [d for d in mine if d.kind is DecisionKind.CLASS and d.object_class in object_classes()]
+    scene = classify(item, workspace.rules, (classes[-1].object_class, classes[-1].by) if classes else None)
+    measures = [Measure(d.measure, d.parameters, d.by) for d in mine if d.kind is DecisionKind.INSTALLED]
+    return placed(scene, measures)
+
+
+def stand(workspace: Workspace, record: RunRecord, decisions: Decided, *, whole: bool) -> tuple[Standing, ...]:
+    """Return the decisions about the objects of a run, with what is to be doubted; of a whole run, those of all.
+
+    whole : whether the run is of all objects, so that those decided about and not in it are gone
+    """
+    there = {a.scene.item.object_number for a in record.assessments}
+    wanted = [d for mine in decisions.values() for d in mine if whole or d.object_number in there]
+    engine = workspace.engine
+    items = items_named(engine, list({d.object_number for d in wanted}))
+    digests = {number: digest_of(item) for number, item in items.items()}
+    at = now(record, digests, lambda number, digest: fields_since(engine, number, digest))
+    return standing(sorted(wanted, key=lambda d: d.id), at)

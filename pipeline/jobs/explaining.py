@@ -1,0 +1,172 @@
+"""Why one object was judged as it was: every step from its record to its advice, and nothing stored."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import isnan
+from typing import Any
+
+from pipeline.assess import assess
+from pipeline.charting import Shelf
+from pipeline.climb import AUTO, Climb, examine
+from pipeline.collection.inventory import read_inventory
+from pipeline.execute import Threads
+from pipeline.findings import findings
+from pipeline.jobs.deciding import decided, place
+from pipeline.jobs.levels import storeys
+from pipeline.jobs.nightly import named
+from pipeline.jobs.workspace import KEPT, Workspace, charts_of, site_folder
+from pipeline.mitigate import advise
+from pipeline.motions.site import read_site
+from pipeline.plan import Work, plan
+from pipeline.quantities import Array
+from pipeline.records import Estimate, Executor, Finding, Item, Progress, Recommendation, Scene
+from pipeline.settings import Settings
+from pipeline.verdicts import LevelMotions
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """A step that was taken for one parameter set under one motion.
+
+    inputs     : which of the uncertain inputs is at an end of its range, and the direction where it is known
+    step       : bound, chart, or the fidelity that was integrated at
+    low, high  : between these the demand lies; of a chart its value less and plus its error, of a history the same
+    error      : as the chart or the history states it; None of a bound
+    told       : what the object does then, where the history tells
+    """
+
+    motion: str
+    inputs: str
+    step: str
+    low: float
+    high: float
+    error: float | None = None
+    told: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Reasoning:
+    """One model under one level: the steps in the order in which they were taken, and what came of them."""
+
+    finding: Finding
+    capacity: Estimate
+    taken: tuple[Taken, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """The whole chain of reasoning for one object."""
+
+    scene: Scene
+    reasonings: tuple[Reasoning, ...]
+    advice: tuple[Recommendation, ...]
+
+
+def explain(workspace: Workspace, number: str, progress: Progress) -> list[Explanation]:
+    """Assess one object as a night would, and keep every step; all records of that number, if it has several.
+
+    raises : UsageError for an object that the inventory does not have, with close ones; errors as a run
+    """
+    settings = workspace.settings
+    inventory = read_inventory(workspace.engine)
+    items = named(inventory, objects=(number,))
+    site = read_site(site_folder(settings, settings.site.folder), kept=settings.path(KEPT))
+    executor, decisions = Threads(settings.analysis.workers or None), decided(workspace)
+    out = []
+    for storey in storeys(settings, site, items):
+        levels = storey.shaking
+        with charts_of(settings, [m.hash for level in levels for m in level.motions]) as shelf:
+            for index in storey.members:
+                scene = replace(place(workspace, items[index], decisions).scene, floor=storey.name)
+                # What is advised for a case depends on all that stand in it.
+                others = [place(workspace, other, decisions).scene for other in _neighbours(items[index], inventory)]
+                out.append(_explain(scene, others, levels, workspace, executor, progress, shelf))
+    return out
+
+
+def _neighbours(item: Item, inventory: Sequence[Item]) -> list[Item]:
+    where = (item.gallery, item.case)
+    return [other for other in inventory if item.case and other != item and (other.gallery, other.case) == where]
+
+
+def _explain(
+    scene: Scene,
+    others: Sequence[Scene],
+    levels: Sequence[LevelMotions],
+    workspace: Workspace,
+    executor: Executor,
+    progress: Progress,
+    shelf: Shelf,
+) -> Explanation:
+    settings = workspace.settings
+    todo = plan([scene], levels[0].x_azimuth)
+    scene = replace(scene, skipped=todo.skipped[0])
+    reasonings = [_reason(work, scene, level, settings, executor, shelf) for level in levels for work in todo.work]
+    how = settings.analysis
+    fineness: dict[str, Any] = {"fidelity": how.fidelity, "azimuth_step": how.azimuth_step, "charts": shelf}
+    around = assess(others, levels, executor, progress, **fineness)[1] if others else []
+    found = [[r.finding for r in reasonings], *around]
+    advice = advise([scene, *others], found, levels, executor, progress, means=workspace.means, **fineness)
+    return Explanation(scene, tuple(reasonings), tuple(advice[0]))
+
+
+def _reason(
+    work: Work, scene: Scene, level: LevelMotions, settings: Settings, executor: Executor, shelf: Shelf
+) -> Reasoning:
+    bounds: list[Mapping[str, tuple[Array, Array]]] = []
+
+    def watch(climb: Climb) -> None:
+        for found in climb.found:
+            found.trail = []
+            bounds.append({output: (low.copy(), found.high[output].copy()) for output, low in found.low.items()})
+
+    analysis = settings.analysis
+    examined = examine(
+        work,
+        [scene],
+        level,
+        executor,
+        fidelity=analysis.fidelity,
+        azimuth_step=analysis.azimuth_step,
+        charts=shelf,
+        watch=watch,
+    )
+    ((case, known),) = examined.cases
+    (finding,) = findings(examined.climb, case, known, [scene])
+    names = _named(work)
+    taken = []
+    for found, bound in zip(examined.climb.found, bounds, strict=True):
+        low, high = bound[case.output]
+        exact = work.model.exact and case.output == work.model.demand
+        for row in dict.fromkeys(work.spans.rows.ravel().tolist()):
+            # Only `auto` asks for bounds besides certificates.
+            if analysis.fidelity == AUTO or low[row] == high[row]:
+                taken.append(Taken(found.motion.name, names[row], "bound", float(low[row]), float(high[row])))
+        for step, rows, columns in found.trail or ():
+            fidelity = "chart" if step.name == "CHART" else examined.climb.integrated
+            for at, row in enumerate(rows.tolist()):
+                # Where the certificate is the demand, a history only tells what happens after.
+                value = float(low[row]) if exact else float(columns[case.output][at])
+                error = 0.0 if exact else float(columns["error"][at])
+                off = error if fidelity == "chart" else 0.0
+                one = {name: float(column[at]) for name, column in columns.items()}
+                told = work.model.outcome(one, {name: float(v[row]) for name, v in work.values.items()})[1]
+                taken.append(Taken(found.motion.name, names[row], fidelity, value - off, value + off, error, told))
+    return Reasoning(finding, case.estimates[0], tuple(taken))
+
+
+def _named(work: Work) -> list[str]:
+    """Say of each parameter set of one object in what it differs from the best estimates."""
+    spans = work.spans
+    names = [""] * work.size
+    for side in range(spans.rows.shape[1]):
+        best = int(spans.rows[0, side])
+        for row in spans.rows[:, side].tolist():
+            other = [
+                f"{name} = {float(column[row]):.4g}" for name, column in work.values.items()
+                if column[row] != column[best] and not isnan(column[row])
+            ]  # fmt: skip
+            angle = float(work.angles[row])
+            where = [] if isnan(angle) else [f"along {angle:.0f} degrees"]
+            names[row] = ", ".join([*(other or ["best estimates"]), *where])
+    return names

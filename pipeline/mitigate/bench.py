@@ -1,0 +1,220 @@
+"""Where trials are run: what all objects under one level of shaking share, each computed once."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from pipeline.assess import assess
+from pipeline.charting import SHELF, Shelf
+from pipeline.mitigate.means import Isolator, Means
+from pipeline.models import model_named
+from pipeline.models.common import largest_push, lift_ratios
+from pipeline.quantities import Array, G
+from pipeline.records import Check, Executor, Finding, Motion, Scene, Verdict
+from pipeline.response import prepare, respond, transmit
+from pipeline.verdicts import LevelMotions, capacity_of
+
+PASSED = 0.03
+"""Error that the sampling of what an isolator passes on may bring to an oscillator of 20 Hz on it.
+
+What stands on it slides at most 0.5 % off then, and is lifted 0.3 % off; 1e-3 would take eight times as long.
+"""
+
+HIDDEN = 1.005
+"""Factor on what an isolator passes on, for what its sampling may hide."""
+
+
+@dataclass(frozen=True, eq=False)
+class Carried:
+    """An isolator under the motions of a level, run once for all that may stand on it.
+
+    stroke       : m, its largest displacement
+    acceleration : m/s2, the largest horizontal acceleration passed on
+    shaking      : the level as what stands on it feels it
+    """
+
+    isolator: Isolator
+    stroke: float
+    acceleration: float
+    shaking: LevelMotions
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A changed scene, and what it stands on; None: the floor itself."""
+
+    scene: Scene
+    on: Carried | None = None
+
+
+class Silent:
+    """A trial is one of many: nobody is told of each."""
+
+    def step(self, what: str, done: int, total: int) -> None:
+        """Say nothing."""
+
+
+@dataclass(frozen=True)
+class Fineness:
+    """How finely trials are run: as the findings were."""
+
+    fidelity: str
+    azimuth_step: float
+    charts: Shelf = SHELF
+
+
+class Bench:
+    """Runs the models of changed scenes under one level of shaking.
+
+    What is said of the level is combined from its motions as its findings are: the largest, or the mean.
+    """
+
+    def __init__(self, level: LevelMotions, means: Means, executor: Executor, fineness: Fineness) -> None:
+        self.level, self.means = level, means
+        self._executor, self._fineness = executor, fineness
+        self._carried: dict[Isolator, Carried] = {}
+
+    @cached_property
+    def push(self) -> float:
+        """A_max [m/s2], resultant."""
+        return self.level.combined([largest_push(m.excitation(None)) for m in self.level.motions])
+
+    @cached_property
+    def lift(self) -> float:
+        """The largest |a_h| / N: what an object's slope b/h is held against."""
+        return self.level.combined([max(lift_ratios(m.excitation(None))) for m in self.level.motions])
+
+    @cached_property
+    def shaken(self) -> list[tuple[Array, Array]]:
+        """|a_h| and N = max(0, g + a_z) at each sample [m/s2], (n,) each, of each motion."""
+        return [(np.hypot(*m.acceleration[:2]), np.maximum(0.0, G + m.acceleration[2])) for m in self.level.motions]
+
+    def run(self, trials: Sequence[Trial]) -> list[list[Finding]]:
+        """Run every model of each trial's scene, equal work once, and return the findings in the order of the trials.
+
+        Every corner of the uncertain inputs is looked at, as in the findings that the measure is to mend.
+        """
+        out: list[list[Finding]] = [[] for _ in trials]
+        groups: dict[int, list[int]] = {}
+        for at, trial in enumerate(trials):
+            groups.setdefault(id(trial.on), []).append(at)
+        for members in groups.values():
+            on = trials[members[0]].on
+            fidelity = self._fineness.fidelity
+            # A chart of what one isolator passes on would be looked at once.
+            fidelity = "history" if on is not None and fidelity == "chart" else fidelity
+            _, found = assess(
+                [trials[at].scene for at in members],
+                [self.level if on is None else on.shaking],
+                self._executor,
+                Silent(),
+                fidelity=fidelity,
+                azimuth_step=self._fineness.azimuth_step,
+                charts=self._fineness.charts,
+                outcomes=False,
+            )
+            for at, findings in zip(members, found, strict=True):
+                out[at] = findings
+        return out
+
+    def slide(self, friction: float) -> float:
+        """Return the sliding displacement [m] at a friction."""
+        return self.level.combined(
+            [float(respond("sliding", m, friction_static=friction)["displacement"].iloc[0]) for m in self.level.motions]
+        )
+
+    def carried(self, kind: str) -> list[Carried]:
+        """Return the isolators of a kind that stand on the floor, by the length of their stroke."""
+        listed = self.means.of(kind)
+        fresh = [isolator for isolator in listed if isolator not in self._carried]
+        for isolator, one in zip(fresh, self._executor.map(self._carry, fresh), strict=True):
+            self._carried[isolator] = one
+        return sorted((self._carried[isolator] for isolator in listed), key=lambda one: one.stroke)
+
+    def _carry(self, isolator: Isolator) -> Carried:
+        names = {"frequency": isolator.frequency, "damping": isolator.damping, "friction": isolator.friction}
+        given: dict[str, Any] = (
+            {"friction_static": isolator.friction} if isolator.kind == "friction_isolator" else names
+        )
+        model = model_named(isolator.kind)
+        strokes, accelerations, passed_on = [], [], []
+        for motion in self.level.motions:
+            # One pass without an error estimate: it only ranks, and its own model is run again with the rest.
+            own = model.run(motion.excitation(None), prepare(model, given), 2, False)
+            passed = transmit(isolator.kind, motion, error=PASSED, **given)
+            strokes.append(float(own["displacement"][0]))
+            accelerations.append(max(float(own["acceleration"][0]), largest_push(passed.excitation(None))))
+            passed_on.append(passed.scaled(HIDDEN, "for what its sampling may hide"))
+        shaking = replace(self.level, motions=tuple(passed_on))
+        return Carried(isolator, self.level.combined(strokes), self.level.combined(accelerations), shaking)
+
+    def on_pad(self, pad: Isolator, cg_height: Sequence[float], inertia_ratio: float) -> tuple[float, float]:
+        """Return the largest rotation [rad] of an object on a rotational pad, and A at its centre over A_max [-].
+
+        cg_height : what its height may be; the largest of each output counts
+        """
+        rotations, shares = [], []
+        for motion in self.level.motions:
+            rows = respond(
+                "rotational_isolator",
+                motion,
+                angle=None,
+                azimuth_step=self._fineness.azimuth_step,
+                frequency=pad.frequency,
+                damping=pad.damping,
+                cg_height=list(cg_height),
+                inertia_ratio=inertia_ratio,
+            )
+            rotations.append(float(rows["rotation"].max()))
+            shares.append(float(rows["acceleration"].max()) / _push(motion))
+        return self.level.combined(rotations), max(shares)
+
+
+def _push(motion: Motion) -> float:
+    return max(largest_push(motion.excitation(None)), np.finfo(float).tiny)
+
+
+def passes(findings: Sequence[Finding]) -> bool:
+    """Say whether something was run and all of it passes, at every corner of what is uncertain."""
+    return bool(findings) and all(finding.verdict is Verdict.PASS for finding in findings)
+
+
+def checks(findings: Sequence[Finding], before: Sequence[Finding]) -> tuple[Check, ...]:
+    """Return the findings of a trial as evidence, each beside the demand before the measure."""
+    demands = {finding.model: finding.demand for finding in before}
+    return tuple(
+        Check(
+            model=finding.model,
+            title=finding.title,
+            demand=finding.demand or 0.0,
+            unit=finding.unit,
+            capacity=finding.capacity or 0.0,
+            utilisation=finding.utilisation or 0.0,
+            passes=finding.verdict is Verdict.PASS,
+            before=demands.get(finding.model),
+        )
+        for finding in findings
+    )
+
+
+def why_not(scene: Scene, findings: Sequence[Finding]) -> str:
+    """Say in words what a trial still fails by: the worst of what its uncertain inputs give, against its capacity."""
+    worst = [(_worst(scene, finding), finding) for finding in findings if finding.verdict is not Verdict.PASS]
+    if not worst:
+        return "none of its models can be run then"
+    times, finding = max(worst, key=lambda pair: pair[0])
+    if finding.fidelity == "bound" and finding.error:
+        return f"{finding.title.lower()} may still be more than is allowed"
+    if times == float("inf"):
+        return f"nothing would be left of what {finding.title.lower()} is allowed"
+    best = finding.utilisation or 0.0
+    sure = f", {best:.2g} times by the best estimates" if times > 1.05 * best else ""
+    return f"{finding.title.lower()} may still reach {times:.2g} times what is allowed{sure}"
+
+
+def _worst(scene: Scene, finding: Finding) -> float:
+    _, capacity = capacity_of(model_named(finding.model), scene)
+    return (finding.high or 0.0) / capacity.low if capacity.low > 0.0 else float("inf")

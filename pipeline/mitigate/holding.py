@@ -1,0 +1,96 @@
+"""What holds an object at its base: the force and moment that it must bear, and whether wax or putty does."""
+
+from collections.abc import Sequence
+from functools import cache
+from math import pi
+
+import numpy as np
+
+from pipeline.mitigate.bench import Bench
+from pipeline.models.stress import FLEXIBLE_STRESS
+from pipeline.records import Check, Estimate, Finding, Origin, Scene, Verdict
+from pipeline.tables import Range, spread, table
+from pipeline.verdicts import judge
+
+WAX = "museum wax"
+
+LEVER = 2.0 / 3.0
+"""Moment about an edge of an elastic layer, per its area, its strength, and its distance from the edge.
+
+The tension grows evenly from the edge to the far side, where it is the strength: the integral of (t x / 2b) x over the
+width 2b, by the area, is 2/3 t b.
+"""
+
+
+@cache
+def strengths(fixing: str) -> dict[str, Range]:
+    """Return the rows of fixings.csv for one fixing, by property.
+
+    raises : TableError for a row whose range is not in order
+    """
+    rows = [row for row in table("fixings") if row["fixing"] == fixing]
+    return {row["property"]: spread(row, "value", "low", "high", f"fixings.csv, {fixing}") for row in rows}
+
+
+def force_and_moment(scene: Scene, bench: Bench, findings: Sequence[Finding]) -> tuple[float, float]:
+    """Return what a fixing at the base must hold: force [N], and moment [N m] without the help of the weight.
+
+    findings : of the object held at its base; a flexible one pushes by its pseudo-acceleration
+    """
+    pushes = [f.mark.y for f in findings if f.model == FLEXIBLE_STRESS.name and f.mark is not None]
+    force = scene.parameters["mass"].high * max([bench.push, *pushes])
+    return force, force * scene.parameters["cg_height"].high
+
+
+def uplift_moment(scene: Scene, bench: Bench) -> tuple[float, float]:
+    """Return the largest moment that lifts the base off [N m], the weight holding it down: best, and worst.
+
+    m (|a_h| h - N b) about the nearer edge, over time and in any direction; one uncertain input at a time.
+    """
+    p = scene.parameters
+    mass, cg, half = p["mass"], p["cg_height"], p["half_width"]
+
+    def moment(m: float, h: float, b: float) -> float:
+        each = [float(np.max(m * (push * h - weight * b))) for push, weight in bench.shaken]
+        return max(0.0, bench.level.combined(each))
+
+    best = moment(mass.value, cg.value, half.value)
+    ends = ((mass.high, cg.value, half.value), (mass.value, cg.high, half.value), (mass.value, cg.value, half.low))
+    return best, max(best, *(moment(*end) for end in ends))
+
+
+def wax_area(scene: Scene, bench: Bench) -> float:
+    """Return the area of wax [m2] that holds the object at the low end of the wax's strength."""
+    strength = strengths(WAX)
+    shear = scene.parameters["mass"].high * bench.push / strength["shear"].low
+    tension = uplift_moment(scene, bench)[1] / (LEVER * scene.parameters["half_width"].low * strength["tension"].low)
+    return max(shear, tension)
+
+
+def footing(scene: Scene) -> float:
+    """Return the area of the footing [m2]: a round one across the narrower side, the least that it may be."""
+    return pi * scene.parameters["half_width"].low ** 2
+
+
+def wax_checks(scene: Scene, bench: Bench, area: float) -> tuple[Check, ...]:
+    """Return whether an area of wax [m2] holds: sideways, against uplift, and by the published fragility."""
+    strength = strengths(WAX)
+    mass, half = scene.parameters["mass"], scene.parameters["half_width"]
+    moment, worst = uplift_moment(scene, bench)
+    sideways = (mass.value * bench.push, mass.high * bench.push)
+    return (
+        _check("Wax, sideways", sideways, _times(strength["shear"], area, "N")),
+        _check("Wax, uplift", (moment, worst), _times(strength["tension"], LEVER * area * half.low, "N m")),
+        _check("Shaking that wax holds", (bench.push, bench.push), _times(strength["acceleration"], 1.0, "m/s2")),
+    )
+
+
+def _times(strength: Range, factor: float, unit: str) -> Estimate:
+    low, value, high = (factor * end for end in (strength.low, strength.value, strength.high))
+    return Estimate(value, unit, Origin.ASSUMED, low, high, source=strength.source)
+
+
+def _check(title: str, demand: tuple[float, float], capacity: Estimate) -> Check:
+    best, worst = demand
+    found = judge(best, best, worst, capacity)
+    return Check("wax", title, best, capacity.unit, capacity.value, found.utilisation, found.verdict is Verdict.PASS)

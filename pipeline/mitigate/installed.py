@@ -1,0 +1,196 @@
+"""What a measure that is installed changes for an object, so that a run computes it as it stands now.
+
+The changes are those by which a measure is verified before it is advised (`pipeline.mitigate.changes`).  What stands on
+an isolator is run on the motion that the isolator passes on.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from pipeline.assess import LevelMotions, assess
+from pipeline.mitigate.changes import CHANGES, changed, held
+from pipeline.models import model_named
+from pipeline.quantities import Quantity
+from pipeline.records import Executor, Finding, Progress, Scene
+from pipeline.response import transmit
+from pipeline.tables import table
+
+_FRICTION = Quantity("friction", "-", "friction of the surface", 0.0, 2.0, exclusive=True)
+_CLEARANCE = Quantity("clearance", "m", "room on all sides", 0.0, 100.0)
+_FREQUENCY = Quantity("frequency", "Hz", "natural frequency", 0.0, 100.0, exclusive=True)
+_DAMPING = Quantity("damping", "-", "ratio to critical damping", 0.0, 1.0)
+
+PARAMETERS: Mapping[str, tuple[Quantity, ...]] = {
+    "clearance": (_CLEARANCE,),
+    "rubber_pads": (_DAMPING,),
+    "surface": (_FRICTION,),
+    "grip_pad": (_FRICTION,),
+    "ballast": (
+        Quantity("mass", "kg", "mass of the ballast", 0.0, 1e5, exclusive=True),
+        Quantity("height", "m", "height of its centre above the base", 0.0, 100.0),
+    ),
+    "wide_base": (Quantity("width", "m", "width of the footing plate", 0.0, 100.0, exclusive=True), _CLEARANCE),
+    "friction_isolator": (_FRICTION, _CLEARANCE),
+    "horizontal_isolator": (
+        _FREQUENCY,
+        _DAMPING,
+        Quantity("friction", "-", "friction of the isolator", 0.0, 2.0),
+        Quantity("stroke", "m", "how far it can move", 0.0, 10.0, exclusive=True),
+    ),
+    "rotational_isolator": (
+        _FREQUENCY,
+        _DAMPING,
+        Quantity("rotation_limit", "rad", "how far it may turn", 0.0, 1.5, exclusive=True),
+    ),
+    "strengthen": (Quantity("enlargement", "-", "size of the section, times its own", 1.0, 100.0),),
+}
+"""What must be known of a measure that is installed; the others need nothing."""
+
+ON_TOP = "Under the motion that its isolator passes on"
+
+ISOLATORS = ("friction_isolator", "horizontal_isolator", "rotational_isolator")
+
+
+def installable() -> dict[str, tuple[Quantity, ...]]:
+    """Return the measures that can be said to be installed, each with what must be known of it."""
+    return {
+        row["measure"]: PARAMETERS.get(row["measure"], ()) for row in table("measures") if row["measure"] in CHANGES
+    }
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """A measure that is installed: a row of measures.csv, its parameters [SI], and who says so."""
+
+    name: str
+    parameters: Mapping[str, float]
+    words: str
+
+
+Transfer = tuple[str, tuple[tuple[str, float], ...]]
+"""A kind of isolator with its parameters: equal ones pass the same motion on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """An object as it stands: its scene, and where that is an isolator, the object as it stands on it.
+
+    isolator : its kind; "" for none
+    """
+
+    scene: Scene
+    above: Scene | None = None
+    isolator: str = ""
+
+    def passing(self) -> Transfer:
+        """Return what passes the motion on: the kind of the isolator, and its parameters by name."""
+        known = self.scene.parameters
+        names = (q.name for q in model_named(self.isolator).needs if q.name in known)
+        return self.isolator, tuple((name, known[name].value) for name in names)
+
+
+def placed(scene: Scene, measures: Sequence[Measure]) -> Placed:
+    """Return an object with its measures in place, one after the other.
+
+    A measure whose change needs what is not known of the object changes nothing, and the scene's assumptions say so.
+    """
+    stands = Placed(scene)
+    for measure in measures:
+        before = stands.scene
+        try:
+            after = changed(before, measure.name, measure.parameters)
+        except KeyError as unknown:
+            said = f"{measure.name} is installed ({measure.words}), but is not computed: {unknown} is not known"
+            stands = replace(stands, scene=replace(before, assumptions=(*before.assumptions, said)))
+            continue
+        after = _told(before, after, measure.words)
+        if measure.name in ISOLATORS:
+            # What is on a rotational isolator is mounted on it; on another it stands as it stood.
+            stands = Placed(after, held(before) if measure.name == "rotational_isolator" else before, measure.name)
+        else:
+            stands = replace(stands, scene=_needing(after))
+    return stands
+
+
+def _told(before: Scene, after: Scene, words: str) -> Scene:
+    """Say of each number that changed who says so, and drop what was assumed in its place."""
+    new = {name: e for name, e in after.parameters.items() if e != before.parameters.get(name)}
+    told = {name: replace(e, note=f"{e.note}; {words}" if e.note else words) for name, e in new.items()}
+    old = {before.parameters[name].note for name in new if name in before.parameters}
+    if after.support is not before.support:
+        old |= {text for text in before.assumptions if text.startswith("support: ")}
+    kept = tuple(text for text in after.assumptions if text not in old)
+    rule = f"{after.rule}; it stands as {words}" if after.support is not before.support else after.rule
+    return replace(after, parameters={**after.parameters, **told}, assumptions=kept, rule=rule)
+
+
+def _needing(scene: Scene) -> Scene:
+    """Say what is missing where the measure leaves models none of which can be run."""
+    reasons = [model_named(name).applies(scene) for name in scene.models]
+    if scene.missing or not reasons or not all(reasons):
+        return scene
+    return replace(scene, missing=(f"what its models need with the measure in place ({reasons[0]})",))
+
+
+def assess_above(
+    objects: Sequence[Placed],
+    levels: Sequence[LevelMotions],
+    executor: Executor,
+    progress: Progress,
+    *,
+    fidelity: str,
+    azimuth_step: float,
+) -> list[tuple[list[Finding], Mapping[str, str]]]:
+    """Run what stands on isolators on what these pass on; each isolator is run once, however many stand on it.
+
+    returns : for each object its findings on the isolator and the models left out there; nothing where it has none.
+              A finding names the motion of the site, and lies on no chart: those are drawn for that motion itself
+    """
+    out: list[tuple[list[Finding], Mapping[str, str]]] = [([], {}) for _ in objects]
+    groups: dict[Transfer, list[tuple[int, Scene]]] = {}
+    for index, one in enumerate(objects):
+        if one.above is not None:
+            groups.setdefault(one.passing(), []).append((index, one.above))
+    for transfer, members in groups.items():
+        passed = [_passed(level, transfer) for level in levels]
+        for index, above in members:
+            found: list[Finding] = []
+            skipped: dict[str, str] = {}
+            for scene, under in _shaken(above, transfer[0], levels, passed):
+                plan, judged = assess([scene], under, executor, progress, fidelity=fidelity, azimuth_step=azimuth_step)
+                found += [_of_site(finding, levels, under) for finding in judged[0]]
+                skipped |= plan.skipped[0]
+            out[index] = found, skipped
+    return out
+
+
+def _passed(level: LevelMotions, transfer: Transfer) -> LevelMotions:
+    kind, parameters = transfer
+    given: dict[str, Any] = dict(parameters)
+    return replace(level, motions=tuple(transmit(kind, motion, **given) for motion in level.motions))
+
+
+def _shaken(
+    above: Scene, kind: str, ground: Sequence[LevelMotions], passed: Sequence[LevelMotions]
+) -> list[tuple[Scene, Sequence[LevelMotions]]]:
+    if kind != "friction_isolator":
+        return [(above, passed)]
+    # On a low-friction pad it slides with the pad, and a low friction never excuses rocking (paper, 2.6).
+    rocks = tuple(name for name in above.models if name == "rocking")
+    rest = tuple(name for name in above.models if name not in ("rocking", "sliding"))
+    both = [(replace(above, models=rocks), ground), (replace(above, models=rest), passed)]
+    return [(scene, under) for scene, under in both if scene.models]
+
+
+def _of_site(finding: Finding, ground: Sequence[LevelMotions], under: Sequence[LevelMotions]) -> Finding:
+    if under is ground:
+        return finding
+    pairs = (
+        (p.hash, g)
+        for one, other in zip(under, ground, strict=True)
+        for p, g in zip(one.motions, other.motions, strict=True)
+    )
+    motion = dict(pairs)[finding.motion_hash]
+    note = f"{finding.note}; {ON_TOP}" if finding.note else ON_TOP
+    return replace(finding, motion=motion.name, motion_hash=motion.hash, mark=None, note=note)

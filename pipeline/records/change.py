@@ -1,0 +1,159 @@
+"""What changed from one run to another, and why."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from pipeline.records.decision import Decision
+from pipeline.records.result import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectPlace:
+    """An object and the gallery it is in, or was in where it is gone."""
+
+    object_number: str
+    gallery: str
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """An object of both runs that changed its gallery."""
+
+    object_number: str
+    before: str
+    after: str
+
+
+@dataclass(frozen=True, slots=True)
+class FieldChange:
+    """A named value before and after, JSON-ready; None where there was none."""
+
+    name: str
+    before: Any
+    after: Any
+
+
+@dataclass(frozen=True, slots=True)
+class InputChange:
+    """An object of both runs whose record or estimates differ.
+
+    fields : of the item by their names; of the scene as "scene.support", its parameters as "parameters.half_width"; the
+             gallery is not among them (see `Move`), nor the floor that follows from it
+    """
+
+    object_number: str
+    gallery: str
+    fields: tuple[FieldChange, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MotionChange:
+    """A motion of a level on a floor whose samples changed; None on the side where there was none of that name.
+
+    before, after : hashes of the samples, in order, where one name stands for several motions of the level
+    """
+
+    level: str
+    floor: str
+    name: str
+    before: tuple[str, ...] | None
+    after: tuple[str, ...] | None
+
+
+class CauseKind(StrEnum):
+    """Why a verdict may have changed, in the order in which causes are named."""
+
+    INPUT = "input"
+    DECISION = "decision"
+    FLOOR = "floor"
+    MOTION = "motion"
+    SETTINGS = "settings"
+    VERSION = "version"
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """One thing that changed and that a verdict rests on: ``what`` names the field, motion, setting or decision."""
+
+    kind: CauseKind
+    what: str
+
+
+@dataclass(frozen=True, slots=True)
+class VerdictChange:
+    """A verdict of an object of both runs that changed; None on the side where the model gave no finding.
+
+    Where a model gives several findings at a level (tension, shear), its verdict is the worst of them.
+    causes : all that changed of what the verdict rests on; empty where nothing that the runs keep differs
+    """
+
+    object_number: str
+    gallery: str
+    model: str
+    level: str
+    before: Verdict | None
+    after: Verdict | None
+    causes: tuple[Cause, ...] = ()
+
+    @property
+    def fixed(self) -> bool:
+        """Whether it failed and passes."""
+        return self.before is Verdict.FAIL and self.after is Verdict.PASS
+
+    @property
+    def worsened(self) -> bool:
+        """Whether it passed and does no longer."""
+        return self.before is Verdict.PASS and self.after in (Verdict.FAIL, Verdict.UNDETERMINED)
+
+
+@dataclass(frozen=True, slots=True)
+class DecisionChange:
+    """A decision that is new in force (``new``), or no longer in force."""
+
+    decision: Decision
+    new: bool
+
+
+@dataclass(frozen=True, slots=True)
+class RunChanges:
+    """All that changed from one run to another, each in the order of gallery and object number.
+
+    settings, versions : of the runs themselves, by name, those only that verdicts rest on
+    started            : when the older run began (ISO 8601)
+    """
+
+    old: str
+    new: str
+    added: tuple[ObjectPlace, ...] = ()
+    removed: tuple[ObjectPlace, ...] = ()
+    moved: tuple[Move, ...] = ()
+    inputs: tuple[InputChange, ...] = ()
+    verdicts: tuple[VerdictChange, ...] = ()
+    motions: tuple[MotionChange, ...] = ()
+    decisions: tuple[DecisionChange, ...] = ()
+    settings: tuple[FieldChange, ...] = ()
+    versions: tuple[FieldChange, ...] = ()
+    started: str = ""
+
+    def __bool__(self) -> bool:
+        """Whether anything changed."""
+        objects = self.added or self.removed or self.moved or self.inputs
+        return bool(objects or self.verdicts or self.motions or self.decisions or self.settings or self.versions)
+
+    @property
+    def fixed(self) -> tuple[VerdictChange, ...]:
+        """The verdicts that were fail and are pass."""
+        return tuple(change for change in self.verdicts if change.fixed)
+
+    @property
+    def worsened(self) -> tuple[VerdictChange, ...]:
+        """The verdicts that were pass and are fail or undetermined."""
+        return tuple(change for change in self.verdicts if change.worsened)
+
+    @property
+    def others(self) -> tuple[VerdictChange, ...]:
+        """The other verdicts that changed."""
+        return tuple(change for change in self.verdicts if not (change.fixed or change.worsened))

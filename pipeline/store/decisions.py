@@ -1,0 +1,48 @@
+"""The log of what people decided: rows are added, never changed and never removed."""
+
+from dataclasses import fields, replace
+
+from sqlalchemy import Engine, insert, select
+from sqlalchemy.exc import IntegrityError
+
+from pipeline.records import Basis, Decision
+from pipeline.store.codec import StoreError
+from pipeline.store.tables import DECISION, FINDING
+
+_NAMES = tuple(field.name for field in fields(Decision))
+
+
+def add_decision(engine: Engine, decision: Decision) -> Decision:
+    """Write one decision down.
+
+    engine  : from `collection.database.open_database`, brought to head by `migrate.upgrade`
+    returns : the decision with its id
+    raises  : StoreError for a withdrawal of what is withdrawn already, and for text that is not Unicode
+    """
+    values = {name: getattr(decision, name) for name in _NAMES if name != "id"}
+    try:
+        with engine.begin() as connection:
+            made: int = connection.execute(insert(DECISION).values(values).returning(DECISION.c.id)).scalar_one()
+    except IntegrityError as error:
+        raise StoreError(
+            f"decision {decision.withdraws} is withdrawn already; `kouros decide --list` shows what is in force"
+        ) from error
+    return replace(decision, id=made)
+
+
+def read_decisions(engine: Engine, object_number: str | None = None) -> tuple[Decision, ...]:
+    """Return the log, of one object or of all, in the order in which it was written."""
+    wanted = select(*(DECISION.c[name] for name in _NAMES)).order_by(DECISION.c.id)
+    if object_number is not None:
+        wanted = wanted.where(DECISION.c.object_number == object_number)
+    with engine.connect() as connection:
+        return tuple(Decision(*row) for row in connection.execute(wanted))
+
+
+def looked_at(engine: Engine, run_id: str, object_number: str) -> tuple[Basis, ...]:
+    """Return what a run found of an object, as a decision remembers it; nothing where the run has no such object."""
+    columns = (FINDING.c[field.name] for field in fields(Basis))
+    mine = (FINDING.c.run_id == run_id) & (FINDING.c.object_number == object_number)
+    with engine.connect() as connection:
+        rows = connection.execute(select(*columns).where(mine).order_by(FINDING.c.position))
+        return tuple(Basis(*row) for row in rows)

@@ -1,0 +1,60 @@
+"""Objects that one measure each is the answer for, and how they are advised."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from pipeline.assess import assess
+from pipeline.classify import classify
+from pipeline.execute import Threads
+from pipeline.mitigate import Means, advise
+from pipeline.motions import read_motion
+from pipeline.records import Item, Motion, Recommendation, Support
+from pipeline.resources import resource
+from pipeline.verdicts import LevelMotions
+
+
+class Silent:
+    def step(self, what: str, done: int, total: int) -> None:
+        assert 0 <= done <= total
+
+
+def demo_motion() -> Motion:
+    return read_motion(resource("site_motions", "demo"))[0]
+
+
+def solve_all(
+    items: Sequence[Item], motions: Sequence[Motion], means: Means | None = None, combine: str = "max"
+) -> list[list[Recommendation]]:
+    scenes = [classify(item) for item in items]
+    levels = [LevelMotions("design", combine, tuple(motions))]
+    _, findings = assess(scenes, levels, Threads(1), Silent())
+    return advise(scenes, findings, levels, Threads(1), Silent(), means=means)
+
+
+def solve(item: Item, motion: Motion, means: Means | None = None) -> Recommendation:
+    ((only,),) = solve_all([item], [motion], means)
+    return only
+
+
+def rejected(advice: Recommendation) -> Sequence[str]:
+    return [text.partition(":")[0] for text in advice.rejected]
+
+
+BLOCK = Item(
+    "1", "G", title="Block", support=Support.FREESTANDING, height_m=0.2, width_m=0.6, depth_m=0.6, base_width_m=0.6,
+    base_depth_m=0.6, cg_height_m=0.1, mass_kg=20.0, friction=0.1, clearance_m=0.02, section_shape="rectangle",
+    section_width_m=0.3, section_depth_m=0.3, allowable_stress_pa=5e6,
+)  # fmt: skip
+"""A squat block that never rocks under the demonstration's motion and slides about 5 cm."""
+
+TOWER = replace(BLOCK, title="Tower", height_m=1.0, width_m=0.2, depth_m=0.2, base_width_m=0.2, base_depth_m=0.2,
+                cg_height_m=0.5, clearance_m=0.3, section_width_m=0.1, section_depth_m=0.1)  # fmt: skip
+"""A slender one that falls over."""
+
+STUMP = replace(TOWER, title="Stump", height_m=0.3, cg_height_m=0.15, friction=0.3)
+"""Just too slender: b/h = 0.67 where 0.72 is pushed."""
+
+PICTURE = Item("2", "G", title="Picture", support=Support.HUNG, height_m=0.6, width_m=0.5, suspension_length_m=0.8,
+               damping=0.02, clearance_m=0.05, mass_kg=8.0)  # fmt: skip

@@ -1,0 +1,172 @@
+"""Whatever is recommended has been run again and passes: each advice of the demonstration, by other means."""
+
+from collections import Counter
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pipeline.collection.database import open_database
+from pipeline.mitigate.holding import WAX, strengths
+from pipeline.motions import read_motion
+from pipeline.quantities import G
+from pipeline.records import Assessment, Finding, Motion, Recommendation, RunRecord, Support, Verdict
+from pipeline.resources import resource
+from pipeline.response import respond, transmit
+from pipeline.store.runs import load_run
+
+
+@pytest.fixture(scope="module")
+def motion() -> Motion:
+    return read_motion(resource("site_motions", "demo"))[0]
+
+
+@pytest.fixture(scope="module")
+def record(demo_folder: Path) -> RunRecord:
+    return load_run(open_database(demo_folder / "kouros.sqlite"))
+
+
+def advised(record: RunRecord, measure: str) -> list[tuple[Assessment, Recommendation]]:
+    return [(a, r) for a in record.assessments for r in a.recommendations if r.measure == measure]
+
+
+def tension(assessment: Assessment, push: float) -> float:
+    """sigma = m A l / S - m g / A with one uncertain input at a time at its worse end (paper, 2.3)."""
+    p = assessment.scene.parameters
+    m, lever, s = p["mass"], p["lever"], p["section_modulus"]
+    cases = [(m.value, lever.value, s.value), (m.high, lever.value, s.value), (m.value, lever.high, s.value)]
+    cases.append((m.value, lever.value, s.low))
+    return max(mass * push * arm / modulus - mass * G / p["area"].value for mass, arm, modulus in cases)
+
+
+def test_each_failing_object_has_one_advice_and_each_advice_a_reason(record: RunRecord) -> None:
+    for assessment in record.assessments:
+        fails = any(f.verdict is Verdict.FAIL for f in assessment.findings)
+        assert len(assessment.recommendations) == 1 if fails else len(assessment.recommendations) <= 1
+        demands = {f.model: f.demand for f in assessment.findings}
+        for advice in assessment.recommendations:
+            assert all(check.passes for check in advice.checks)
+            assert all(check.before == demands.get(check.model) for check in advice.checks)
+            assert bool(advice.checks) is (advice.measure != "remove")
+            assert set(advice.parameters) == set(advice.units)
+
+
+def test_more_than_one_kind_of_measure_is_needed(record: RunRecord) -> None:
+    kinds = Counter(r.measure for a in record.assessments for r in a.recommendations)
+    assert {"clearance", "wide_base", "fasten", "horizontal_isolator", "remove"} <= set(kinds), kinds
+    rerun = {"clearance", "wide_base", "fasten", "restrain", "horizontal_isolator", "remove"}
+    assert set(kinds) <= rerun, "a measure that no test here runs again"
+
+
+def test_room_is_not_advised_where_something_else_is_open(record: RunRecord) -> None:
+    """Rocking that is open is not settled by room: of these objects there are more than a hundred in the collection."""
+    open_ = [a for a in record.assessments if {f.model for f in unsettled(a)} > {"sliding"}]
+    assert len(open_) > 100
+    for assessment in open_:
+        assert "clearance" not in {r.measure for r in assessment.recommendations}
+
+
+def unsettled(assessment: Assessment) -> list[Finding]:
+    return [f for f in assessment.findings if f.verdict is not Verdict.PASS]
+
+
+def test_clearances(record: RunRecord, motion: Motion) -> None:
+    """The room advised is more than the model moves at the worse end of what is not known.
+
+    All standing objects, and of the paintings, whose swings take longer, every thirtieth.
+    """
+
+    @cache
+    def slides(friction: float) -> float:
+        return float(respond("sliding", motion, friction_static=friction)["displacement"].iloc[0])
+
+    advice = advised(record, "clearance")
+    assert len(advice) > 500
+    for assessment, recommended in advice:
+        room = recommended.parameters["clearance"]
+        p = assessment.scene.parameters
+        if assessment.scene.support is Support.FREESTANDING:
+            assert slides(p["friction_static"].low) < room
+    paintings = [(a, r) for a, r in advice if a.scene.support is Support.HUNG][::30]
+    lengths = [getattr(a.scene.parameters["length"], end) for a, _ in paintings for end in ("low", "value", "high")]
+    dampings = [a.scene.parameters["damping"].value for a, _ in paintings for _ in range(3)]
+    swings = respond("swing", motion, angle=None, length=lengths, damping=dampings)["displacement"].to_numpy()
+    for at, (_, recommended) in enumerate(paintings):
+        assert swings[3 * at : 3 * at + 3].max() < recommended.parameters["clearance"]
+
+
+def test_fastened_objects_bear_the_push(record: RunRecord, motion: Motion) -> None:
+    push = float(np.hypot(*motion.acceleration[:2]).max())
+    for assessment, recommended in advised(record, "fasten"):
+        p = assessment.scene.parameters
+        assert tension(assessment, push) <= p["allowable_stress"].low
+        assert recommended.parameters["force"] == pytest.approx(p["mass"].high * push)
+
+
+def slopes(assessment: Assessment, half: float | None = None) -> float:
+    """b/h with one uncertain input at a time at its worse end, as findings are judged; half: a base that is built."""
+    b, h = assessment.scene.parameters["half_width"], assessment.scene.parameters["cg_height"]
+    ends = ((b.low, h.value), (b.value, h.high)) if half is None else ((half, h.high),)
+    return min(width / height for width, height in ends)
+
+
+def test_objects_on_a_plate_stand_and_hold(record: RunRecord, motion: Motion) -> None:
+    x, y, z = motion.acceleration
+    push, lift = float(np.hypot(x, y).max()), float((np.hypot(x, y) / (G + z)).max())
+
+    @cache
+    def slides(friction: float) -> float:
+        return float(respond("sliding", motion, friction_static=friction)["displacement"].iloc[0])
+
+    for assessment, recommended in advised(record, "wide_base"):
+        p, at = assessment.scene.parameters, recommended.parameters
+        assert lift <= slopes(assessment, 0.5 * at["width"])
+        assert at["width"] <= 2.0 * 2.0 * p["half_width"].value
+        assert slides(p["friction_static"].low) <= at["clearance"] <= 0.30
+        assert tension(assessment, push) <= p["allowable_stress"].low
+        assert at["force"] == pytest.approx(p["mass"].high * push)
+
+
+def test_pictures_fixed_to_the_wall_need_the_force_of_their_mass(record: RunRecord, motion: Motion) -> None:
+    push = float(np.hypot(*motion.acceleration[:2]).max())
+    for assessment, recommended in advised(record, "restrain"):
+        assert recommended.parameters["force"] == pytest.approx(assessment.scene.parameters["mass"].high * push)
+
+
+def test_wax_is_not_trusted_under_this_motion(record: RunRecord, motion: Motion) -> None:
+    """0.7 g is beyond what shelf contents with putty are known to bear, one dispersion below the median of 1 g."""
+    assert np.hypot(*motion.acceleration[:2]).max() > strengths(WAX)["acceleration"].low
+    assert not advised(record, "wax")
+
+
+def test_isolated_objects_stand_or_hold(record: RunRecord, motion: Motion) -> None:
+    """The isolator's own stroke, and the object's own model on what the isolator passes on (the chain run again)."""
+
+    @cache
+    def isolated(frequency: float, friction: float) -> tuple[float, float, float]:
+        given = {"frequency": frequency, "damping": 0.02, "friction": friction}
+        stroke = float(respond("horizontal_isolator", motion, **given)["displacement"].iloc[0])  # type: ignore[arg-type]
+        x, y, z = transmit("horizontal_isolator", motion, refine=4, **given).acceleration
+        return stroke, float(np.hypot(x, y).max()), float((np.hypot(x, y) / (G + z)).max())
+
+    @cache
+    def slides_on(frequency: float, own: float, friction: float) -> float:
+        given = {"frequency": frequency, "damping": 0.02, "friction": own}
+        carried = transmit("horizontal_isolator", motion, refine=4, **given)
+        return float(respond("sliding", carried, friction_static=friction)["displacement"].iloc[0])
+
+    advice = advised(record, "horizontal_isolator")
+    for assessment, recommended in advice:
+        at = recommended.parameters
+        stroke, push, lift = isolated(at["frequency"], at["friction"])
+        assert stroke < at["stroke"] <= 0.30
+        p = assessment.scene.parameters
+        free = recommended.sentence.endswith("It may stand free on it.")
+        held = recommended.sentence.endswith("It must be fastened to it.")
+        assert free != held
+        # Four times as many samples of the passed-on motion; the trial's own margin of 0.5 % covers the difference.
+        number = assessment.scene.item.object_number
+        assert tension(assessment, push) <= p["allowable_stress"].low if held else lift <= slopes(assessment), number
+        if free:
+            assert slides_on(at["frequency"], at["friction"], p["friction_static"].low) <= p["clearance"].low, number
