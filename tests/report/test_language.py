@@ -18,7 +18,23 @@ from babel.messages.frontend import parse_mapping_cfg
 from babel.messages.mofile import write_mo
 from lxml import etree
 
-from pipeline.records import RunRecord
+from pipeline.records import (
+    Cause,
+    CauseKind,
+    Decision,
+    DecisionChange,
+    DecisionKind,
+    FieldChange,
+    InputChange,
+    MotionChange,
+    Move,
+    ObjectPlace,
+    RunChanges,
+    RunRecord,
+    Standing,
+    Verdict,
+    VerdictChange,
+)
 from pipeline.report import Language, ReportError, language, render
 from pipeline.report.language import said, speaking
 
@@ -103,7 +119,20 @@ def foreign(value: Any) -> Any:
 
 
 KEPT = {"unit", "units", "model", "models", "motion_hash", "hash", "chart", "key", "decided_by", "fidelity"}
-KEPT |= {"measure", "field", "measures", "series", "scale", "tone", "started", "finished", "run_id", "missing"}
+KEPT |= {
+    "measure",
+    "field",
+    "measures",
+    "series",
+    "decisions",
+    "x",
+    "scale",
+    "tone",
+    "started",
+    "finished",
+    "run_id",
+    "missing",
+}
 
 
 def _field(name: str, value: Any) -> Any:
@@ -122,10 +151,34 @@ def _field(name: str, value: Any) -> Any:
     return value if name in KEPT else foreign(value)
 
 
+WORD = "Б"
+DECIDED = tuple(
+    Standing(Decision(at, "79.AA.143", kind, WORD, "2031-05-01", WORD, "2031-05-01T00:00:00+00:00", **more))  # type: ignore[arg-type]
+    for at, (kind, more) in enumerate(
+        [
+            (DecisionKind.ACCEPT, {"model": "rocking", "level": WORD, "until": "2032-01-01"}),
+            (DecisionKind.INSTALLED, {"measure": "clearance", "parameters": {"force": 0.1}, "units": {"force": "m"}}),
+            (DecisionKind.CLASS, {"object_class": WORD}),
+            (DecisionKind.VERDICT, {"model": "rocking", "verdict": Verdict.PASS}),
+        ]
+    )
+)
+TURN = VerdictChange("1", WORD, "rocking", WORD, Verdict.PASS, Verdict.FAIL, (Cause(CauseKind.MOTION, WORD),))
+CHANGED = RunChanges(
+    "1", "2", (ObjectPlace("1", WORD),), (ObjectPlace("2", WORD),), (Move("3", WORD, WORD),),
+    (InputChange("4", WORD, (FieldChange("height_m", 0.4, None),)),),
+    (TURN, replace(TURN, before=Verdict.FAIL, after=Verdict.PASS, causes=()), replace(TURN, after=None)),
+    (MotionChange(WORD, WORD, WORD, ("x",), None),),
+    (DecisionChange(DECIDED[2].decision, new=True), DecisionChange(DECIDED[2].decision, new=False)),
+    (FieldChange(WORD, WORD, None),), (FieldChange(WORD, "1", "2"),), "2031-05-01T01:00:00",
+)  # fmt: skip
+
+
 @pytest.fixture(scope="module")
 def pages(compiled: GNUTranslations, tmp_path_factory: pytest.TempPathFactory) -> dict[str, etree._Element]:
-    record: RunRecord = foreign(builder.record())
-    index = render(record, tmp_path_factory.mktemp("pseudo") / "one", language=Language("it", compiled))
+    record: RunRecord = foreign(replace(builder.record(), decisions=DECIDED))
+    folder = tmp_path_factory.mktemp("pseudo") / "one"
+    index = render(record, folder, language=Language("it", compiled), changes=CHANGED)
     return {p.name: etree.parse(str(p)).getroot() for p in sorted(index.parent.glob("*.html"))}
 
 
