@@ -52,6 +52,7 @@ MARKED = ("bdi", "code", "eq")
 
 
 NAMES = (
+    *("rocking", "height"),
     *("force", "frequency", "stroke", "acceleration", "clearance", "length", "base width", "base depth", "half width"),
     *(
         "friction static",
@@ -125,7 +126,6 @@ KEPT |= {
     "measures",
     "series",
     "decisions",
-    "x",
     "scale",
     "tone",
     "started",
