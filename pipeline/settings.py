@@ -75,6 +75,7 @@ class Analysis(_Part):
 
     fidelity: Literal["auto", "chart", "history", "reference"] = "auto"
     azimuth_step: float = Field(default=10.0, gt=0.0, le=90.0, description="degrees between directions (RotD100)")
+    fragility: bool = Field(default=True, description="from what shaking on each object on display fails")
     workers: int = Field(default=0, ge=0, le=256, description="threads; 0: as many as there are cores")
 
 
@@ -195,6 +196,8 @@ folder = {site}
 fidelity = "auto"
 # Degrees between the directions tried for an object whose orientation is not recorded.
 azimuth_step = 10.0
+# From what shaking on each object on display fails: scales the motions, which takes some seconds for 1,000 objects.
+fragility = true
 # Threads; 0 means as many as there are cores.
 workers = 0
 

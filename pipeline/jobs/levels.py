@@ -4,6 +4,7 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
+from pipeline.fragility.objects import Stripe
 from pipeline.motions.manifest import GROUND_FLOOR, FloorTable
 from pipeline.motions.site import Level, Site, levels_at, summaries
 from pipeline.records import Item, MotionSummary
@@ -29,6 +30,18 @@ class Storey:
         """The levels as objects are run under them."""
         return [
             LevelMotions(v.name, v.combine, tuple(m.motion for m in v.motions), self.x_azimuth) for v in self.levels
+        ]
+
+    @property
+    def stripes(self) -> list[Stripe]:
+        """The levels as fragilities see them: by the peak acceleration of this floor."""
+        return [
+            Stripe(
+                tuple(m.motion for m in v.motions),
+                tuple(m.measures["pga"] for m in v.motions),
+                v.return_period_years,
+            )
+            for v in self.levels
         ]
 
     @property

@@ -17,6 +17,7 @@ from pipeline.charts import chart_keys, charts, picture_version
 from pipeline.climb import Effort
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.execute import Threads
+from pipeline.fragility.objects import fragilities
 from pipeline.jobs import selftest, tradeoff
 from pipeline.jobs.deciding import Decided, decided, place, stand
 from pipeline.jobs.importing import import_collection, source_of
@@ -37,16 +38,20 @@ from pipeline.mitigate import advise
 from pipeline.mitigate.installed import assess_above
 from pipeline.models import model_named
 from pipeline.motions.site import Level, Site, read_site
+from pipeline.neighbours import neighbours
 from pipeline.records import (
     Assessment,
     Chart,
     Executor,
+    Fragility,
     Item,
     Motion,
     Progress,
     RunChanges,
     RunRecord,
+    Spacing,
     Standing,
+    Support,
     Verdict,
     Wish,
 )
@@ -228,11 +233,14 @@ def assess_items(
     # Motions that two floors share (one record for several) are drawn once.
     motions = {one.motion.hash: one.motion for f in floors for level in f.levels for one in level.motions}
     efforts: dict[str, Effort] = {}
+    spacings: list[Spacing] = []
     with charts_of(settings, motions) as shelf:
         # The pictures first: the verdicts use their charts.
         drawn = _charts(workspace, list(motions.values()), executor, progress, shelf)
         for storey in floors:
-            _assess_storey(storey, items, workspace, executor, progress, shelf, assessments, decisions, efforts, asked)
+            spacings += _assess_storey(
+                storey, items, workspace, executor, progress, shelf, assessments, decisions, efforts, asked
+            )
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
         picture = tradeoff.picture(measured)
@@ -255,6 +263,7 @@ def assess_items(
         motions=tuple(summary for storey in floors for summary in storey.summaries),
         demonstration=settings.demonstration,
         wishes=None if asked is None else tuple(in_order(asked.found)),
+        spacings=tuple(spacings),
     )
 
 
@@ -277,7 +286,8 @@ def _assess_storey(
     decisions: Decided,
     efforts: dict[str, Effort],
     asked: _Asked | None,
-) -> None:
+) -> list[Spacing]:
+    """Fill in what is found about the objects of a storey; return what was found between them."""
     # Before the long work: a table that cannot be used is told at once.
     means = workspace.means
     objects = [place(workspace, items[index], decisions) for index in storey.members]
@@ -311,14 +321,20 @@ def _assess_storey(
         azimuth_step=step,
         charts=shelf,
     )
-    for index, scene, found, advised in zip(storey.members, scenes, findings, advice, strict=True):
-        assessments[index] = Assessment(scene, tuple(found), tuple(advised))
+    curves: Sequence[tuple[Fragility, ...]] = [()] * len(scenes)
+    if settings.analysis.fragility:
+        # What an isolator passes on would have to be scaled too.
+        shown = [s.item.on_display and s.support is not Support.ISOLATED for s in scenes]
+        curves = fragilities(scenes, plan.work, storey.stripes, executor, progress, chosen=shown)
+    for index, scene, found, advised, curve in zip(storey.members, scenes, findings, advice, curves, strict=True):
+        assessments[index] = Assessment(scene, tuple(found), tuple(advised), curve)
     if asked is not None:
         began = perf_counter()
         # Each trial is asked once: a chart would not pay.
         fidelity = _integrating(settings)
         asked.found += wishes(scenes, findings, levels, executor, progress, fidelity=fidelity, azimuth_step=step)
         asked.seconds += perf_counter() - began
+    return neighbours(scenes, findings, levels)
 
 
 def _integrating(settings: Settings) -> str:

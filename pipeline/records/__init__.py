@@ -13,11 +13,12 @@ from pipeline.records.change import (
     VerdictChange,
 )
 from pipeline.records.decision import Basis, Decision, DecisionKind, Standing, in_force
+from pipeline.records.fragility import Fragility
 from pipeline.records.model import Bounds, ChartAxis, Columns, Model
 from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress
-from pipeline.records.result import Assessment, Check, Finding, Recommendation, Verdict
+from pipeline.records.result import Assessment, Check, Finding, Recommendation, Spacing, Verdict
 from pipeline.records.run import RunRecord
 from pipeline.records.scene import ITEM_FIELDS, Estimate, Item, Origin, Problem, Provenance, Scene, Support
 from pipeline.records.wish import Wish
@@ -43,6 +44,7 @@ __all__ = [
     "Executor",
     "FieldChange",
     "Finding",
+    "Fragility",
     "InputChange",
     "Item",
     "Mark",
@@ -60,6 +62,7 @@ __all__ = [
     "RunChanges",
     "RunRecord",
     "Scene",
+    "Spacing",
     "Standing",
     "Support",
     "Verdict",

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+from pipeline.records.fragility import Fragility
 from pipeline.records.picture import Mark
 from pipeline.records.scene import Origin, Scene
 
@@ -101,13 +102,47 @@ class Recommendation:
 
 @dataclass(frozen=True, slots=True)
 class Assessment:
-    """One object with everything that was found about it."""
+    """One object with everything that was found about it.
+
+    fragilities : one for each way to fail, what fails first to begin with; none where they were not asked for
+    """
 
     scene: Scene
     findings: tuple[Finding, ...]
     recommendations: tuple[Recommendation, ...]
+    fragilities: tuple[Fragility, ...] = ()
 
     @property
     def assessed(self) -> bool:
         """Whether at least one verdict could be reached."""
         return bool(self.findings) and not self.scene.missing
+
+
+@dataclass(frozen=True, slots=True)
+class Spacing:
+    """Two neighbours under one level of shaking; lengths in m.
+
+    gap        : between their outlines, along the line between their centres
+    needed     : by how much they come closer along that line at most, moving together under one motion; None where
+                 only their bound was needed or can be had
+    low, high  : its range over their uncertain measures
+    radial     : their largest displacement relative to each other in any direction
+    together   : the sum of how far each of them moves at most: they never come closer than by this
+    decided_by : "bound" where the gap is at least ``together``, else "history"
+    note       : what a reader should know
+    """
+
+    gallery: str
+    level: str
+    first: str
+    second: str
+    gap: float
+    needed: float | None
+    low: float | None
+    high: float | None
+    radial: float | None
+    together: float
+    verdict: Verdict
+    decided_by: str
+    motion: str = ""
+    note: str = ""

@@ -9,7 +9,7 @@ from typing import Any
 from pipeline.records.decision import Standing
 from pipeline.records.motion import MotionSummary
 from pipeline.records.picture import Chart
-from pipeline.records.result import Assessment
+from pipeline.records.result import Assessment, Spacing
 from pipeline.records.wish import Wish
 
 
@@ -19,6 +19,7 @@ class RunRecord:
 
     decisions : those in force about its objects, and about objects that the inventory has no more
     wishes    : what is worth measuring, what settles most first; None where the run did not ask
+    spacings  : of the neighbours in the galleries whose places are known
     """
 
     run_id: str
@@ -35,3 +36,4 @@ class RunRecord:
     demonstration: bool = False
     decisions: tuple[Standing, ...] = ()
     wishes: tuple[Wish, ...] | None = None
+    spacings: tuple[Spacing, ...] = ()

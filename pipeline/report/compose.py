@@ -5,12 +5,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import inf, isnan
 from typing import Any
 
-from pipeline.records import Assessment, Recommendation, RunChanges, RunRecord, Verdict
+from pipeline.records import Assessment, Recommendation, RunChanges, RunRecord, Spacing, Verdict
 from pipeline.report.decided import decisions_view
 from pipeline.report.describe import Describer, percent
 from pipeline.report.errors import ReportError
 from pipeline.report.floor_plan import plan_view
 from pipeline.report.ground import motion_view
+from pipeline.report.judging import first_failure, room_views, shaking_view, spacing_views
 from pipeline.report.language import said
 from pipeline.report.numerics import decided_views, fidelities
 from pipeline.report.ranking import state_of, urgency
@@ -51,7 +52,13 @@ def compose(record: RunRecord, units: Units, changes: RunChanges | None = None) 
         item = assessment.scene.item
         shown.setdefault((item.on_display, item.gallery if item.on_display else ""), []).append(assessment)
     levels = {f.level for a in record.assessments for f in a.findings}
-    galleries = [_gallery(key, members, describer, units, several=len(levels) > 1) for key, members in shown.items()]
+    between: dict[str, list[Spacing]] = {}
+    for spacing in record.spacings:
+        between.setdefault(spacing.gallery, []).append(spacing)
+    galleries = [
+        _gallery(key, members, describer, units, between.get(key[1], ()), several=len(levels) > 1)
+        for key, members in shown.items()
+    ]
     pages = Counter(g.page for g in galleries)
     twins = [g.name for g in galleries if pages[g.page] > 1]
     if twins:
@@ -112,7 +119,13 @@ def _total(counts: Iterable[Counts]) -> Counts:
 
 
 def _gallery(
-    key: tuple[bool, str], members: Sequence[Assessment], describer: Describer, units: Units, *, several: bool
+    key: tuple[bool, str],
+    members: Sequence[Assessment],
+    describer: Describer,
+    units: Units,
+    spacings: Sequence[Spacing],
+    *,
+    several: bool,
 ) -> GalleryView:
     on_display, name = key
     views = [describer.object(a, page_of(a)) for a in members]
@@ -131,6 +144,9 @@ def _gallery(
         survey=errands(pairs, describer.wishes),
         surveyed=describer.surveyed,
         plan=plan_view(pairs, units),
+        spacings=spacing_views(spacings, units) if on_display else (),
+        rooms=room_views(members, units) if on_display else (),
+        shaking=shaking_view(members, units) if on_display else None,
         decisions=decisions_view(views),
     )
 
@@ -176,7 +192,7 @@ def _spans(advice: Sequence[Recommendation], units: Units) -> tuple[tuple[str, s
     return tuple((words(name), units.pair(min(v), max(v), unit)) for (name, unit), v in values.items())
 
 
-def object_rows(record: RunRecord) -> list[Mapping[str, str | bool]]:
+def object_rows(record: RunRecord) -> list[Mapping[str, str | bool | float | None]]:
     """Return one plain row for every object of the run, assessed or not, for the export that adds up to all."""
     describer = Describer(record, Units())
     return [
@@ -189,6 +205,7 @@ def object_rows(record: RunRecord) -> list[Mapping[str, str | bool]]:
             "state": state_of(a).value,
             "object_class": a.scene.object_class,
             "missing": "; ".join(a.scene.missing),
+            **first_failure(a),
             "page": f"{page_of(a)}#{describer.anchor(a)}",
         }
         for a in record.assessments

@@ -19,6 +19,7 @@ from pipeline.records import (
 )
 from pipeline.report.decided import Decided
 from pipeline.report.errors import ReportError
+from pipeline.report.judging import fragility_views
 from pipeline.report.language import _, said
 from pipeline.report.ranking import finding_order, finding_state, grave, state_of
 from pipeline.report.survey_words import wish_views
@@ -156,6 +157,7 @@ class Describer:
             problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
             wishes=wish_views(self.wishes.get(item.object_number, ()), self._units),
             grave=any(grave(f) for f in assessment.findings),
+            fragilities=fragility_views(assessment, self._units, drawn=state in (State.ACT, State.OPEN)),
             skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
             decisions=self.decided.of(assessment),
             settled=self.decided.covered(assessment),

@@ -63,6 +63,10 @@ OBJECT_COLUMNS = (
     "state",
     "object_class",
     "missing",
+    "median_g",
+    "median_is",
+    "dispersion",
+    "annual_rate",
     "page",
 )
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from pipeline.report.judging import FragilityView, RoomView, ShakingView, SpacingView
 from pipeline.report.svg import Spot
 
 
@@ -186,6 +187,7 @@ class ObjectView:
     skipped: tuple[str, ...]
     wishes: tuple[WishView, ...] = ()
     grave: bool = False
+    fragilities: tuple[FragilityView, ...] = ()
     decisions: tuple[DecisionView, ...] = ()
     settled: bool = False
 
@@ -332,6 +334,9 @@ class GalleryView:
     survey: tuple[SurveyView, ...] = ()
     surveyed: bool = False
     plan: PlanView | None = None
+    spacings: tuple[SpacingView, ...] = ()
+    rooms: tuple[RoomView, ...] = ()
+    shaking: ShakingView | None = None
     decisions: DecisionsView = DecisionsView()
 
     def standing(self, state: State) -> tuple[ObjectView, ...]:

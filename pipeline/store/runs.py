@@ -15,11 +15,13 @@ from pipeline.records import (
     Assessment,
     Chart,
     Finding,
+    Fragility,
     MotionSummary,
     Recommendation,
     RunChanges,
     RunRecord,
     Scene,
+    Spacing,
     Standing,
     Verdict,
     Wish,
@@ -27,7 +29,18 @@ from pipeline.records import (
 from pipeline.store import codec
 from pipeline.store.changes import changes
 from pipeline.store.codec import StoreError
-from pipeline.store.tables import FINDING, RECOMMENDATION, RUN, RUN_CHART, RUN_DECISION, RUN_MOTION, RUN_SCENE, RUN_WISH
+from pipeline.store.tables import (
+    FINDING,
+    FRAGILITY,
+    RECOMMENDATION,
+    RUN,
+    RUN_CHART,
+    RUN_DECISION,
+    RUN_MOTION,
+    RUN_SCENE,
+    RUN_WISH,
+    SPACING,
+)
 
 __all__ = [
     "RunChanges",
@@ -108,16 +121,23 @@ def load_run(engine: Engine, run_id: str | None = None) -> RunRecord:
         head = _head(connection, run_id)
         findings = _by_object(connection, FINDING, Finding, run_id)
         recommendations = _by_object(connection, RECOMMENDATION, Recommendation, run_id)
+        fragilities = _by_object(connection, FRAGILITY, Fragility, run_id)
         record = RunRecord(
             **{name: head[name] for name in _RUN_FIELDS},
             assessments=tuple(
-                Assessment(scene, findings.get(number, ()), recommendations.get(number, ()))
+                Assessment(
+                    scene,
+                    findings.get(number, ()),
+                    recommendations.get(number, ()),
+                    fragilities.get(number, ()),
+                )
                 for scene in _records(connection, RUN_SCENE, Scene, run_id)
                 for number in (scene.item.object_number,)
             ),
             charts=_charts(connection, run_id),
             motions=tuple(_records(connection, RUN_MOTION, MotionSummary, run_id)),
             wishes=tuple(_records(connection, RUN_WISH, Wish, run_id)) if _WISHES in head["counts"] else None,
+            spacings=tuple(_records(connection, SPACING, Spacing, run_id)),
             decisions=tuple(_records(connection, RUN_DECISION, Standing, run_id)),
         )
     if _counts(record) != head["counts"]:
@@ -184,11 +204,17 @@ def _check(record: RunRecord) -> None:
         item = assessment.scene.item
         where = f"{run}, object {item.object_number!a} in gallery {item.gallery!a}"
         _check_types(where, Assessment, assessment)
-        judged: tuple[Finding | Recommendation, ...] = (*assessment.findings, *assessment.recommendations)
+        judged: tuple[Finding | Recommendation | Fragility, ...] = (
+            *assessment.findings,
+            *assessment.recommendations,
+            *assessment.fragilities,
+        )
         for found in judged:
             if found.object_number != item.object_number:
                 kind = type(found).__name__.lower()
                 raise StoreError(f"{where} has a {kind} of object {found.object_number!a}; keep each with its object")
+    for spacing in record.spacings:
+        _check_types(f"{run}, neighbours {spacing.first!a} and {spacing.second!a}", Spacing, spacing)
     for motion in record.motions:
         _check_types(f"{run}, motion {motion.name!a}", MotionSummary, motion)
     for wish in record.wishes or ():
@@ -244,6 +270,8 @@ def _tables(record: RunRecord) -> Iterator[tuple[Table, Iterable[dict[str, Any]]
         RECOMMENDATION,
         _rows(of_run, Recommendation, advice),
     )
+    yield FRAGILITY, _rows(of_run, Fragility, (curve for one in everything for curve in one.fragilities))
+    yield SPACING, _rows(of_run, Spacing, record.spacings)
 
 
 def _run_row(record: RunRecord) -> dict[str, Any]:

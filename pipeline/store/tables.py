@@ -26,13 +26,25 @@ from sqlalchemy.types import TypeDecorator, TypeEngine
 from pipeline.collection.database import METADATA
 from pipeline.collection.inventory import IMPORT_BATCH, ITEM
 from pipeline.collection.supplement import SUPPLEMENT
-from pipeline.records import Chart, Decision, Finding, MotionSummary, Recommendation, Scene, Standing, Wish
+from pipeline.records import (
+    Chart,
+    Decision,
+    Finding,
+    Fragility,
+    MotionSummary,
+    Recommendation,
+    Scene,
+    Spacing,
+    Standing,
+    Wish,
+)
 from pipeline.store import codec
 
 # The inventory's tables are handed on so that METADATA is whole wherever this module is imported.
 __all__ = [
     "DECISION",
     "FINDING",
+    "FRAGILITY",
     "IMPORT_BATCH",
     "ITEM",
     "METADATA",
@@ -43,6 +55,7 @@ __all__ = [
     "RUN_MOTION",
     "RUN_SCENE",
     "RUN_WISH",
+    "SPACING",
     "SUPPLEMENT",
 ]
 
@@ -289,6 +302,26 @@ RUN_WISH = Table(
     Index(None, "run_id", "object_number"),
 )
 """One row a quantity that is worth measuring on an object, or that was asked for and would settle nothing."""
+
+FRAGILITY = Table(
+    "fragility",
+    METADATA,
+    _of_run(),
+    _position(),
+    *_columns(Fragility),
+    Index(None, "run_id", "object_number"),
+)
+"""One row a fragility curve."""
+
+SPACING = Table(
+    "spacing",
+    METADATA,
+    _of_run(),
+    _position(),
+    *_columns(Spacing),
+    Index(None, "run_id", "gallery"),
+)
+"""One row a pair of neighbours under one level."""
 
 DECISION = Table(
     "decision",

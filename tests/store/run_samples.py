@@ -21,6 +21,7 @@ from pipeline.records import (
     Recommendation,
     RunRecord,
     Scene,
+    Spacing,
     Standing,
     Support,
     Verdict,
@@ -78,6 +79,7 @@ def _own(assessment: Assessment) -> Assessment:
         assessment,
         findings=tuple(replace(finding, object_number=number) for finding in assessment.findings),
         recommendations=tuple(replace(advice, object_number=number) for advice in assessment.recommendations),
+        fragilities=tuple(replace(curve, object_number=number) for curve in assessment.fragilities),
     )
 
 
@@ -93,6 +95,7 @@ RUNS = st.builds(
     motions=values_of(tuple[MotionSummary, ...]),
     decisions=values_of(tuple[Standing, ...]),
     demonstration=st.booleans(),
+    spacings=values_of(tuple[Spacing, ...]),
 )
 
 

@@ -1,0 +1,1 @@
+"""From what shaking on objects fail (`objects`, `scaling`, `curve`), how often (`hazard`), and what others found."""

@@ -1,0 +1,73 @@
+"""How often a floor shakes how strongly, by the levels' return periods, and how often something fails therefore."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import norm
+
+from pipeline.quantities import Array
+
+EXTENDED = 2.0
+"""Factor of intensity by which the straight ends of a hazard curve are drawn out beyond its levels, and no further."""
+
+
+class NoHazardError(ValueError):
+    """The levels do not make a hazard curve; the message says why."""
+
+
+@dataclass(frozen=True)
+class Hazard:
+    """Annual rate of exceeding an intensity: straight between its points in logarithms of both.
+
+    intensity : (n,) rising, m/s2
+    rate      : (n,) falling, 1/year
+    """
+
+    intensity: Array
+    rate: Array
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The intensities between which anything is said."""
+        return float(self.intensity[0]), float(self.intensity[-1])
+
+    @classmethod
+    def of(cls, intensities: Sequence[float], periods: Sequence[float], extended: float = EXTENDED) -> "Hazard":
+        """Return the curve through levels of intensity [m/s2] and return period [years].
+
+        extended : factor by which it is drawn out at both ends
+        raises   : NoHazardError for fewer than two return periods, or where a rarer level does not shake more
+        """
+        order = np.argsort(periods, kind="stable")
+        x, years = np.asarray(intensities, dtype=float)[order], np.asarray(periods, dtype=float)[order]
+        if np.unique(years).size < 2:
+            raise NoHazardError("how often it happens needs return periods of two levels or more")
+        if not (np.all(np.isfinite(x)) and x[0] > 0.0 and np.all(np.diff(x) > 0.0) and np.all(np.diff(years) > 0.0)):
+            raise NoHazardError("how often it happens cannot be told: a rarer level must shake more than a common one")
+        logs, rates = np.log(x), -np.log(years)
+        first = rates[0] - (rates[1] - rates[0]) / (logs[1] - logs[0]) * np.log(extended)
+        last = rates[-1] + (rates[-1] - rates[-2]) / (logs[-1] - logs[-2]) * np.log(extended)
+        return cls(
+            np.concatenate([[x[0] / extended], x, [x[-1] * extended]]),
+            np.exp(np.concatenate([[first], rates, [last]])),
+        )
+
+    def failures(self, median: float, dispersion: float) -> float:
+        """Return the annual rate of failure of a lognormal fragility: the hazard, averaged over its failure intensity.
+
+        Exact for each straight piece.  Below the curve the rate is taken as that at its lower end and above it as none,
+        so that the result is a lower bound; it is close where the median lies well inside.
+        source : Jalayer and Cornell (2003), lambda = k0 m^-k exp(k^2 beta^2 / 2) for a curve without ends
+        """
+        x, rate = np.log(self.intensity), np.log(self.rate)
+        at = np.log(median)
+        if dispersion == 0.0:
+            inside = np.interp(at, x, rate, right=-np.inf)
+            return float(np.exp(inside))
+        k = -np.diff(rate) / np.diff(x)
+        # The integral of k0 x^-k over the density of x between two ends: the density moved by -k beta^2.
+        whole = rate[:-1] + k * (x[:-1] - at) + 0.5 * (k * dispersion) ** 2
+        ends = (x - at) / dispersion
+        share = norm.cdf(ends[1:] + k * dispersion) - norm.cdf(ends[:-1] + k * dispersion)
+        return float(np.sum(np.exp(whole) * share) + self.rate[0] * norm.cdf(ends[0]))
