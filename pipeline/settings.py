@@ -100,6 +100,9 @@ class Report(_Part):
 
     folder: str = Field(default="reports", description="one folder a run, and 'latest'")
     length: Literal["cm", "mm", "m", "in", "ft"] = "cm"
+    survey: bool = Field(default=True, description="find out which measurements would settle a verdict")
+    language: str = Field(default="en", pattern=r"^[A-Za-z]{2,3}([-_][A-Za-z0-9]{2,8})*$", description="of the pages")
+    catalogues: str = Field(default="", description="folder of translations: <language>/LC_MESSAGES/kouros.mo")
 
 
 class Settings(_Part):
@@ -213,6 +216,11 @@ megabytes = 200
 folder = "reports"
 # cm, mm, m, in or ft
 length = "cm"
+# Each night also finds out which missing measurements would settle a verdict; it prints what that costs.
+survey = true
+# The language of the pages; other than English, it needs <language>/LC_MESSAGES/kouros.mo in the folder of catalogues.
+language = "en"
+catalogues = ""
 """
 
 

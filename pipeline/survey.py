@@ -98,8 +98,12 @@ def wishes(
             settled[id(trial)] = settled.get(id(trial), 0) + decided
         out += [_wish(trial, settled.get(id(trial), 0) / len(ENDS)) for trial in trials]
     progress.step("survey", len(shown), len(shown))
-    out.sort(key=lambda w: (-(w.settles + w.unlocks), -w.unlocks, w.gallery, w.object_number, w.field))
-    return out
+    return in_order(out)
+
+
+def in_order(found: Sequence[Wish]) -> list[Wish]:
+    """Return the wishes, what settles most first; ties by gallery, object and field."""
+    return sorted(found, key=lambda w: (-(w.settles + w.unlocks), -w.unlocks, w.gallery, w.object_number, w.field))
 
 
 def by_gallery(found: Sequence[Wish]) -> Mapping[str, Sequence[Wish]]:

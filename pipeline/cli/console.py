@@ -84,6 +84,9 @@ def summary_lines(summary: "Summary") -> list[str]:
         lines.append(f"  {'':>{width}}    {sum(n for _, n in reasons[5:]):>4}  for other reasons, named in the report")
     lines += ["", "  Recommended, each run again and passing:"]
     lines += [count(number, title) for title, number in summary.measures.items()]
+    if summary.worth is not None:
+        told = f"measurements would settle a verdict; finding them took {summary.survey_seconds:.1f} s"
+        lines += ["", count(summary.worth, told)]
     lines += effort_lines(summary.efforts)
     if summary.first:
         lines += ["", "  First:", *(f"    {text}" for text in summary.first)]

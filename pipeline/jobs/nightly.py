@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from difflib import get_close_matches
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 from pipeline import __version__
@@ -21,6 +22,7 @@ from pipeline.jobs import selftest, tradeoff
 from pipeline.jobs.deciding import Decided, decided, place, stand
 from pipeline.jobs.importing import import_collection, source_of
 from pipeline.jobs.levels import Storey, notes, storeys
+from pipeline.jobs.reporting import manner
 from pipeline.jobs.versions import code_digest, rules_digest
 from pipeline.jobs.workspace import (
     KEPT,
@@ -51,14 +53,20 @@ from pipeline.records import (
     Standing,
     Support,
     Verdict,
+    Wish,
 )
-from pipeline.report import Units, publish, render
+from pipeline.report import publish, render
 from pipeline.settings import Settings
 from pipeline.store.reuse import CODE, KERNELS, LEVELS, PICTURES, RULES, SELECTION, stored_charts, whole_runs
 from pipeline.store.runs import compare_runs, save_run
+from pipeline.survey import in_order, wishes
 
 EFFORTS = "efforts"
 """Key of a run's settings: what the verdicts of each model took."""
+
+
+SURVEY_SECONDS = "survey_seconds"
+"""The setting of a run that says what its survey cost."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +86,8 @@ class Summary:
     """What a run did, for one screen and for programs.
 
     objects       : all that were looked at; act + open + safe + cannot is the same number
+    worth         : how many measurements would settle a verdict, None where that was not asked
+    survey_seconds: what asking cost
     missing       : why objects could not be assessed, with how many of each
     decisions     : how many of each kind are in force
     doubted       : those of them that must be looked at again, with the reasons
@@ -100,6 +110,8 @@ class Summary:
     measures: Mapping[str, int]
     missing: Mapping[str, int]
     first: Sequence[str]
+    worth: int | None = None
+    survey_seconds: float = 0.0
     decisions: Mapping[str, int] = field(default_factory=dict)
     doubted: Sequence[str] = ()
     efforts: Sequence[Mapping[str, Any]] = ()
@@ -119,6 +131,7 @@ def run(
     chosen = selection or Selection()
     with locked(settings):
         started = datetime.now(UTC)
+        manner(settings)  # A catalogue that is missing is said before the night's work, not after it.
         workspace = open_workspace(settings)
         _refresh(workspace, progress, dry_run=dry_run)
         inventory = read_inventory(workspace.engine)
@@ -139,8 +152,7 @@ def run(
         save_run(workspace.engine, record)
         changes = compare_runs(workspace.engine, before[0], record.run_id) if before else None
         progress.step("report", 0, 1)
-        units = Units(length=settings.report.length)
-        index = render(record, workspace.reports / record.run_id, units=units, changes=changes)
+        index = render(record, workspace.reports / record.run_id, changes=changes, **manner(settings))
         # A part of the collection is worth a report, but not the name of the museum's latest one.
         latest = None if chosen else publish(index.parent, workspace.reports)
         progress.step("report", 1, 1)
@@ -217,6 +229,7 @@ def assess_items(
     executor = Threads(settings.analysis.workers or None)
     floors = storeys(settings, site, items)
     assessments: dict[int, Assessment] = {}
+    asked = _Asked() if settings.report.survey else None
     # Motions that two floors share (one record for several) are drawn once.
     motions = {one.motion.hash: one.motion for f in floors for level in f.levels for one in level.motions}
     efforts: dict[str, Effort] = {}
@@ -226,7 +239,7 @@ def assess_items(
         drawn = _charts(workspace, list(motions.values()), executor, progress, shelf)
         for storey in floors:
             spacings += _assess_storey(
-                storey, items, workspace, executor, progress, shelf, assessments, decisions, efforts
+                storey, items, workspace, executor, progress, shelf, assessments, decisions, efforts, asked
             )
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
@@ -243,13 +256,23 @@ def assess_items(
         site=site.name,
         museum=settings.museum.name or (info.museum if info else ""),
         level_notes=(*levels_said, *notes(settings, site, {item.gallery for item in inventory})),
-        settings=_stored_settings(settings, site, info.credit if info else "", tested, efforts),
+        settings=_stored_settings(settings, site, info.credit if info else "", tested, efforts)
+        | ({} if asked is None else {SURVEY_SECONDS: round(asked.seconds, 3)}),
         assessments=tuple(assessments[index] for index in range(len(items))),
         charts=drawn,
         motions=tuple(summary for storey in floors for summary in storey.summaries),
         demonstration=settings.demonstration,
+        wishes=None if asked is None else tuple(in_order(asked.found)),
         spacings=tuple(spacings),
     )
+
+
+@dataclass
+class _Asked:
+    """What is worth measuring, storey by storey, and the seconds that finding out took."""
+
+    found: list[Wish] = field(default_factory=list)
+    seconds: float = 0.0
 
 
 def _assess_storey(
@@ -262,6 +285,7 @@ def _assess_storey(
     assessments: dict[int, Assessment],
     decisions: Decided,
     efforts: dict[str, Effort],
+    asked: _Asked | None,
 ) -> list[Spacing]:
     """Fill in what is found about the objects of a storey; return what was found between them."""
     # Before the long work: a table that cannot be used is told at once.
@@ -304,6 +328,12 @@ def _assess_storey(
         curves = fragilities(scenes, plan.work, storey.stripes, executor, progress, chosen=shown)
     for index, scene, found, advised, curve in zip(storey.members, scenes, findings, advice, curves, strict=True):
         assessments[index] = Assessment(scene, tuple(found), tuple(advised), curve)
+    if asked is not None:
+        began = perf_counter()
+        # Each trial is asked once: a chart would not pay.
+        fidelity = _integrating(settings)
+        asked.found += wishes(scenes, findings, levels, executor, progress, fidelity=fidelity, azimuth_step=step)
+        asked.seconds += perf_counter() - began
     return neighbours(scenes, findings, levels)
 
 
@@ -392,6 +422,8 @@ def summarise(record: RunRecord) -> Summary:
         measures=dict(Counter(advised.title for advised in advice).most_common()),
         missing=dict(missing.most_common()),
         first=_first(record),
+        worth=None if record.wishes is None else sum(not wish.waste for wish in record.wishes),
+        survey_seconds=float(record.settings.get(SURVEY_SECONDS, 0.0)),
         decisions=dict(Counter(s.decision.kind.value for s in record.decisions)),
         doubted=[
             f"{d.object_number}: {d.matter}, {d.who}, {d.date}: {'; '.join(s.doubts)}"

@@ -1,10 +1,11 @@
 """Looking at runs that are over: render one again, compare two."""
 
 from pathlib import Path
+from typing import TypedDict
 
 from pipeline.jobs.workspace import UsageError, locked, open_workspace
 from pipeline.records import RunChanges
-from pipeline.report import Units, publish, render
+from pipeline.report import Language, Units, language, publish, render
 from pipeline.settings import Settings
 from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import compare_runs, load_run
@@ -23,11 +24,27 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
         at = whole.index(record.run_id) if record.run_id in whole else len(whole)
         before = whole[at + 1 : at + 2]
         changes = compare_runs(workspace.engine, before[0], record.run_id) if before else None
-        units = Units(length=settings.report.length)
-        index = render(record, _free(workspace.reports / record.run_id), units=units, changes=changes)
+        index = render(record, _free(workspace.reports / record.run_id), changes=changes, **manner(settings))
         if [record.run_id] == whole[:1]:
             publish(index.parent, workspace.reports)
         return index
+
+
+class Manner(TypedDict):
+    """How a report is written: what `render` is told."""
+
+    units: Units
+    language: Language
+
+
+def manner(settings: Settings) -> Manner:
+    """Return the units and the language that the settings ask for.
+
+    raises : ReportError for a language without a catalogue, or with a damaged one
+    """
+    asked = settings.report
+    folder = settings.path(asked.catalogues) if asked.catalogues else None
+    return {"units": Units(length=asked.length), "language": language(asked.language, folder)}
 
 
 def _free(folder: Path) -> Path:

@@ -17,7 +17,7 @@ from pipeline.motions.site import read_site
 from pipeline.quantities import LENGTHS
 from pipeline.records import Progress, Wish
 from pipeline.report.survey_sheet import HEADER_ROW, column_name, sheet_title, write_survey
-from pipeline.survey import measurables, wishes
+from pipeline.survey import in_order, measurables, wishes
 
 LENGTH_UNITS = ("cm", "mm", "m", "in", "ft")
 
@@ -63,7 +63,7 @@ def survey(
         shaking = storey.shaking
         _, findings = assess(scenes, shaking, executor, progress, fidelity=fidelity, azimuth_step=step, outcomes=False)
         found += wishes(scenes, findings, shaking, executor, progress, fidelity=fidelity, azimuth_step=step)
-    found.sort(key=lambda w: (-(w.settles + w.unlocks), -w.unlocks, w.gallery, w.object_number, w.field))
+    found = in_order(found)
     target = path or settings.path(f"survey-{datetime.now():%Y-%m-%d}.xlsx")
     counts = write_survey(target, found, measurables(), length=settings.report.length)
     return Surveyed(target, tuple(found), **counts)

@@ -10,6 +10,7 @@ from pipeline.records.decision import Standing
 from pipeline.records.motion import MotionSummary
 from pipeline.records.picture import Chart
 from pipeline.records.result import Assessment, Spacing
+from pipeline.records.wish import Wish
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,6 +18,7 @@ class RunRecord:
     """A whole run, as the store gives it back: all that the reports need, and nothing is computed again.
 
     decisions : those in force about its objects, and about objects that the inventory has no more
+    wishes    : what is worth measuring, what settles most first; None where the run did not ask
     spacings  : of the neighbours in the galleries whose places are known
     """
 
@@ -33,4 +35,5 @@ class RunRecord:
     motions: tuple[MotionSummary, ...]
     demonstration: bool = False
     decisions: tuple[Standing, ...] = ()
+    wishes: tuple[Wish, ...] | None = None
     spacings: tuple[Spacing, ...] = ()

@@ -1,8 +1,9 @@
 """A run's record becomes a report: pages for people, files for programs, and one lasting name for the newest."""
 
 from pipeline.report.errors import ReportError
+from pipeline.report.language import Language, language
 from pipeline.report.publish import publish
 from pipeline.report.render import render
 from pipeline.report.units import Units
 
-__all__ = ["ReportError", "Units", "publish", "render"]
+__all__ = ["Language", "ReportError", "Units", "language", "publish", "render"]

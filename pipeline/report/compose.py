@@ -2,17 +2,22 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from math import inf, isnan
 from typing import Any
 
-from pipeline.records import Assessment, Recommendation, RunChanges, RunRecord, Spacing
+from pipeline.records import Assessment, Recommendation, RunChanges, RunRecord, Spacing, Verdict
 from pipeline.report.decided import decisions_view
-from pipeline.report.describe import Describer
+from pipeline.report.describe import Describer, percent
 from pipeline.report.errors import ReportError
+from pipeline.report.floor_plan import plan_view
 from pipeline.report.ground import motion_view
 from pipeline.report.judging import first_failure, room_views, shaking_view, spacing_views
+from pipeline.report.language import said
+from pipeline.report.numerics import decided_views, fidelities
 from pipeline.report.ranking import state_of, urgency
 from pipeline.report.selftest import self_test_view
 from pipeline.report.since import since_view
+from pipeline.report.survey_words import errands, survey_sentence
 from pipeline.report.text import clean, slug, words
 from pipeline.report.units import Units
 from pipeline.report.views import (
@@ -78,6 +83,9 @@ def compose(record: RunRecord, units: Units, changes: RunChanges | None = None) 
         level_notes=tuple(clean(n) for n in record.level_notes),
         efforts=tuple(_effort(e) for e in record.settings.get("efforts") or ()),
         self_test=self_test_view(record),
+        decided=decided_views(record),
+        fidelities=fidelities(record),
+        survey=survey_sentence(record),
         decisions=decisions_view(order, describer.decided.strangers(record.assessments)),
         since=None if changes is None else since_view(changes, by_number, units),
     )
@@ -86,7 +94,7 @@ def compose(record: RunRecord, units: Units, changes: RunChanges | None = None) 
 def _effort(effort: Mapping[str, Any]) -> EffortView:
     analyses, needing = int(effort["analyses"]), int(effort["needing_history"])
     return EffortView(
-        clean(str(effort["title"])),
+        said(clean(str(effort["title"]))),
         analyses,
         int(effort["certificate"]),
         int(effort["chart"]),
@@ -121,17 +129,21 @@ def _gallery(
 ) -> GalleryView:
     on_display, name = key
     views = [describer.object(a, page_of(a)) for a in members]
+    pairs = list(zip(members, views, strict=True))
     by_state = Counter(v.state for v in views)
     return GalleryView(
         name=clean(name) if on_display else "",
         page=page_of(members[0]),
         on_display=on_display,
         counts=Counts(*(by_state[state] for state in STATES)),
-        tasks=_tasks(list(zip(members, views, strict=True)), describer, units),
+        tasks=_tasks(pairs, describer, units),
         objects=tuple(views),
         charts=tuple(dict.fromkeys(f.chart for v in views for f in v.figures)),
         motions=tuple(dict.fromkeys(f.motion for v in views for f in v.findings)),
         several_levels=several,
+        survey=errands(pairs, describer.wishes),
+        surveyed=describer.surveyed,
+        plan=plan_view(pairs, units),
         spacings=spacing_views(spacings, units) if on_display else (),
         rooms=room_views(members, units) if on_display else (),
         shaking=shaking_view(members) if on_display else None,
@@ -156,12 +168,20 @@ def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], describer: Describer,
             advice.setdefault(recommendation.measure, []).append(recommendation)
         if view.state is State.ACT and not assessment.recommendations and not view.settled:
             members.setdefault(_HELPLESS, []).append(view)
+    size = {view.anchor: _utilisation(assessment) for assessment, view in pairs}
+    worst = {key: percent(max(size[o.anchor] for o in objects)) for key, objects in members.items()}
     return tuple(
-        TaskView(clean(advice[key][0].title), tuple(objects), _spans(advice[key], units))
+        TaskView(said(clean(advice[key][0].title)), tuple(objects), _spans(advice[key], units), worst=worst[key])
         if key in advice
-        else TaskView("", tuple(objects), advised=False)
+        else TaskView("", tuple(objects), advised=False, worst=worst[key])
         for key, objects in members.items()
     )
+
+
+def _utilisation(assessment: Assessment) -> float:
+    """Return the largest utilisation of an object, endless where one of a failure is not known."""
+    sizes = [f.utilisation for f in assessment.findings if f.verdict is not Verdict.PASS]
+    return max((inf if u is None or isnan(u) else u for u in sizes), default=0.0)
 
 
 def _spans(advice: Sequence[Recommendation], units: Units) -> tuple[tuple[str, str], ...]:

@@ -4,16 +4,22 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
 from pipeline.records import Assessment, Decision, DecisionKind, Standing, Verdict
+from pipeline.report.language import _, said
 from pipeline.report.text import clean, words
 from pipeline.report.units import Units
 from pipeline.report.views import DecisionsView, DecisionView, ObjectView
 
-_TITLES = {
-    DecisionKind.ACCEPT: "Risk accepted",
-    DecisionKind.INSTALLED: "Installed",
-    DecisionKind.CLASS: "Class decided",
-    DecisionKind.VERDICT: "Verdict overruled",
-}
+_KINDS = (DecisionKind.ACCEPT, DecisionKind.INSTALLED, DecisionKind.CLASS, DecisionKind.VERDICT)
+
+
+def _title(kind: DecisionKind) -> str:
+    told = {
+        DecisionKind.ACCEPT: _("Risk accepted"),
+        DecisionKind.INSTALLED: _("Installed"),
+        DecisionKind.CLASS: _("Class decided"),
+        DecisionKind.VERDICT: _("Verdict overruled"),
+    }
+    return told[kind]
 
 
 class Decided:
@@ -48,13 +54,13 @@ class Decided:
         return DecisionView(
             kind=decision.kind.value,
             number=clean(decision.object_number),
-            title=_TITLES[decision.kind],
+            title=_title(decision.kind),
             what=clean(self._what(decision)),
             who=clean(decision.who),
             date=clean(decision.date),
             why=clean(decision.why),
             until=clean(decision.until),
-            doubts=tuple(clean(doubt) for doubt in standing.doubts),
+            doubts=tuple(said(clean(doubt)) for doubt in standing.doubts),
         )
 
     def _what(self, decision: Decision) -> str:
@@ -67,10 +73,10 @@ class Decided:
         elif decision.kind is DecisionKind.CLASS:
             parts = (words(decision.object_class), "", "")
         else:
-            said = {Verdict.PASS: "passes", Verdict.FAIL: "fails"}
-            verdict = said.get(decision.verdict, "") if decision.verdict else ""
+            told = {Verdict.PASS: _("passes"), Verdict.FAIL: _("fails")}
+            verdict = told.get(decision.verdict, "") if decision.verdict else ""
             about = f"{words(decision.model)} {verdict}".strip()
-            parts = (about, f"level {decision.level}" if decision.level else "", "")
+            parts = (about, _("level %(level)s") % {"level": decision.level} if decision.level else "", "")
         return ", ".join(part for part in parts if part)
 
 
@@ -78,9 +84,9 @@ def decisions_view(objects: Sequence[ObjectView], strangers: Sequence[DecisionVi
     """Gather the decisions about objects, in their order, under the headings of a page; those in doubt come first."""
     pairs = [(d, o) for o in objects for d in o.decisions]
     everything: list[tuple[DecisionView, ObjectView | None]] = [*pairs, *((d, None) for d in strangers)]
-    counts: Mapping[str, int] = Counter(d.kind for d, _ in everything)
+    counts: Mapping[str, int] = Counter(d.kind for d, _object in everything)
     doubted = tuple(pair for pair in everything if pair[0].doubts)
-    groups = {kind.value: tuple(p for p in everything if p[0].kind == kind and not p[0].doubts) for kind in _TITLES}
+    groups = {kind.value: tuple(p for p in everything if p[0].kind == kind and not p[0].doubts) for kind in _KINDS}
     return DecisionsView(
         accepted=counts.get(DecisionKind.ACCEPT, 0),
         installed=counts.get(DecisionKind.INSTALLED, 0),

@@ -1,7 +1,7 @@
 """One object in words and in the reader's units."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import isfinite, isnan
 
 from pipeline.records import (
@@ -14,11 +14,15 @@ from pipeline.records import (
     Origin,
     Recommendation,
     RunRecord,
+    Support,
+    Wish,
 )
 from pipeline.report.decided import Decided
 from pipeline.report.errors import ReportError
 from pipeline.report.judging import fragility_views
-from pipeline.report.ranking import finding_order, finding_state, state_of
+from pipeline.report.language import _, said
+from pipeline.report.ranking import finding_order, finding_state, grave, state_of
+from pipeline.report.survey_words import wish_views
 from pipeline.report.svg import Spot
 from pipeline.report.text import clean, digest, plain, short, words
 from pipeline.report.units import Units, ratio
@@ -35,11 +39,6 @@ from pipeline.report.views import (
 )
 
 _ORIGIN_ORDER = {Origin.MEASURED: 0, Origin.DERIVED: 1, Origin.ASSUMED: 2}
-_DECIDED = {
-    "certificate": "a guaranteed bound, without integration",
-    "chart": "the response chart of this motion",
-    "history": "a time history of this object",
-}
 
 
 def motion_anchor(motion_hash: str) -> str:
@@ -57,10 +56,37 @@ def approval(motion: MotionSummary) -> str:
 def percent(utilisation: float | None) -> str:
     """Write demand / capacity for the reader, "∞" where the capacity is zero or nothing stops the object."""
     if utilisation is None:
-        return "not known"
+        return _("not known")
     if isnan(utilisation):
-        return "not a number"
+        return _("not a number")
     return ratio(utilisation) if isfinite(utilisation) else "∞"
+
+
+def decided(by: str) -> str:
+    """Say in words what settled a verdict."""
+    told = {
+        "certificate": _("a guaranteed bound, without integration"),
+        "chart": _("the response chart of this motion"),
+        "history": _("a time history of this object"),
+    }
+    return told.get(by) or clean(by)
+
+
+def origin(of: Origin) -> str:
+    """Say in words where a number comes from."""
+    return {Origin.MEASURED: _("measured"), Origin.DERIVED: _("derived"), Origin.ASSUMED: _("assumed")}[of]
+
+
+def support(of: Support) -> str:
+    """Say in words how an object is held."""
+    told = {
+        Support.FREESTANDING: _("freestanding"),
+        Support.FASTENED: _("fastened"),
+        Support.HUNG: _("hung"),
+        Support.SUSPENDED: _("suspended"),
+        Support.ISOLATED: _("isolated"),
+    }
+    return told[of]
 
 
 def bar(utilisation: float | None) -> Bar | None:
@@ -78,6 +104,10 @@ class Describer:
         self.decided = Decided(record.decisions, units)
         self._motions = {m.hash: m for m in record.motions}
         self._links: dict[tuple[str, str], MotionLink] = {}
+        self.surveyed = record.wishes is not None
+        self.wishes: dict[str, list[Wish]] = {}
+        for wish in record.wishes or ():
+            self.wishes.setdefault(wish.object_number, []).append(wish)
         # Two records of one number in one gallery would share an id; the later ones are told apart by their place.
         seen: Counter[tuple[bool, str, str]] = Counter()
         self._twins: dict[int, int] = {}
@@ -113,18 +143,20 @@ class Describer:
             page=page,
             state=state,
             value_class=clean(item.value_class),
-            object_class=clean(scene.object_class),
-            rule=clean(scene.rule),
-            support=scene.support.value,
+            object_class=said(clean(scene.object_class)),
+            rule=said(clean(scene.rule)),
+            support=support(scene.support),
             place=clean(item.case),
             lead=findings[0] if findings else None,
             findings=findings,
-            measures=tuple(self._measure(r) for r in assessment.recommendations),
+            measures=tuple(self._measure(r, assessment.findings) for r in assessment.recommendations),
             figures=self._figures(ordered, assessment.recommendations) if state is State.ACT else (),
             numbers=tuple(self._number(name, estimate) for name, estimate in estimates),
-            assumptions=tuple(dict.fromkeys(clean(text) for text in named)),
+            assumptions=tuple(dict.fromkeys(said(clean(text)) for text in named)),
             missing=tuple(words(clean(m)) for m in scene.missing),
             problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
+            wishes=wish_views(self.wishes.get(item.object_number, ()), self._units),
+            grave=any(grave(f) for f in assessment.findings),
             fragilities=fragility_views(assessment, drawn=state is State.ACT),
             skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
             decisions=self.decided.of(assessment),
@@ -141,32 +173,35 @@ class Describer:
         where = f"object {f.object_number}, finding {f.model}"
         utilisation = percent(f.utilisation)
         return FindingView(
-            title=clean(f.title),
+            title=said(clean(f.title)),
             level=clean(f.level),
             state=finding_state(f),
-            outcome=clean(f.outcome),
-            sentence=clean(self._units.fill(f.sentence, values, where)),
+            outcome=said(clean(f.outcome)),
+            sentence=clean(self._units.fill(said(f.sentence), values, where)),
             numbers=self._sums(f, utilisation),
             utilisation=utilisation,
             bar=bar(f.utilisation),
-            screen=clean(f.screen),
-            note=clean(f.note),
+            screen=said(clean(f.screen)),
+            note=said(clean(f.note)),
             motion=self._motion(f.motion_hash, f.motion),
-            assumptions=tuple(clean(text) for text in f.assumptions),
+            assumptions=tuple(said(clean(text)) for text in f.assumptions),
+            size="" if f.utilisation is None or isnan(f.utilisation) else f"{min(f.utilisation, 1e9):.3g}",
         )
 
     def _sums(self, f: Finding, utilisation: str) -> str:
         span = self._span(f.low, f.high, f.unit)
         error = "" if f.fidelity == "bound" else self._error(f)
-        origin = f" ({f.capacity_origin.value})" if f.capacity_origin else ""
-        demand = self._units.text(f.demand, f.unit)
+        demand, capacity = self._units.text(f.demand, f.unit), self._units.text(f.capacity, f.unit)
         if f.fidelity == "bound" and f.error:
-            demand = f"at most {demand}"
+            demand = _("at most %(demand)s") % {"demand": demand}
+        demand += " " + _("(%(range)s with what is uncertain)") % {"range": span} if span else ""
+        capacity += f" ({origin(f.capacity_origin)})" if f.capacity_origin else ""
+        sums = {"demand": demand, "capacity": capacity, "utilisation": utilisation}
+        by = {"means": decided(f.decided_by), "error": error}
         return (
-            f"Demand {demand}{f' ({span} with what is uncertain)' if span else ''}, "
-            f"capacity {self._units.text(f.capacity, f.unit)}{origin}, utilisation {utilisation}. "
-            f"Decided by {_DECIDED.get(f.decided_by) or clean(f.decided_by)}"
-            f"{f', error {error}' if error else ''}."
+            _("Demand %(demand)s, capacity %(capacity)s, utilisation %(utilisation)s.") % sums
+            + " "
+            + (_("Decided by %(means)s, error %(error)s.") if error else _("Decided by %(means)s.")) % by
         )
 
     def _motion(self, motion_hash: str, name: str) -> MotionLink:
@@ -190,39 +225,67 @@ class Describer:
         if not f.error:
             return ""
         if f.demand and isfinite(f.demand) and f.error < 5e-4 * abs(f.demand):
-            return "less than 0.1 %"
+            return _("less than 0.1 %")
         return self._units.text(f.error, f.unit)
 
-    def _measure(self, r: Recommendation) -> MeasureView:
+    def _measure(self, r: Recommendation, findings: Sequence[Finding]) -> MeasureView:
         where = f"object {r.object_number}, recommendation {r.measure}"
         for name in r.parameters:
             if name not in r.units:
                 raise ReportError(f"{where}: parameter {name!r} has no unit; store its unit with it")
         values: dict[str, tuple[float | None, str]] = {k: (v, r.units[k]) for k, v in r.parameters.items()}
+        before = {f.model: f for f in findings if f.level == r.level}
         return MeasureView(
             measure=clean(r.measure),
-            title=clean(r.title),
+            title=said(clean(r.title)),
             level=clean(r.level),
-            sentence=clean(self._units.fill(r.sentence, values, where)),
-            checks=tuple(self._check(c) for c in r.checks),
+            sentence=clean(self._units.fill(said(r.sentence), values, where)),
+            checks=tuple(self._check(c, before.get(c.model)) for c in r.checks),
+            ended=self._ended(r, before),
             rejected=tuple(clean(text) for text in r.rejected),
             source=clean(r.source),
         )
 
-    def _check(self, c: Check) -> CheckView:
+    def _ended(self, r: Recommendation, before: Mapping[str, Finding]) -> tuple[CheckView, ...]:
+        """Return the failures that the measure takes away: every model that still applies was run again."""
+        if not r.checks:
+            return ()
+        left = {c.model for c in r.checks}
+        gone = [f for name, f in before.items() if name not in left and finding_state(f) is State.ACT]
+        return tuple(
+            CheckView(
+                title=said(clean(f.title)),
+                before=self._units.text(f.demand, f.unit),
+                demand="–",
+                capacity=self._units.text(f.capacity, f.unit),
+                utilisation_before=percent(f.utilisation),
+                utilisation="–",
+                bar_before=bar(f.utilisation),
+                bar=None,
+                passes=True,
+            )
+            for f in gone
+        )
+
+    def _check(self, c: Check, f: Finding | None) -> CheckView:
+        # A model may measure another thing on the changed chain; then the two are not to be compared.
+        f = f if f is not None and f.unit == c.unit else None
         return CheckView(
-            clean(c.title),
-            self._units.text(c.demand, c.unit),
-            self._units.text(c.capacity, c.unit),
-            percent(c.utilisation),
-            c.passes,
-            "" if c.before is None else self._units.text(c.before, c.unit),
+            title=said(clean(c.title)),
+            before="" if c.before is None else self._units.text(c.before, c.unit),
+            demand=self._units.text(c.demand, c.unit),
+            capacity=self._units.text(c.capacity, c.unit),
+            utilisation_before="" if f is None else percent(f.utilisation),
+            utilisation=percent(c.utilisation),
+            bar_before=None if f is None else bar(f.utilisation),
+            bar=bar(c.utilisation),
+            passes=c.passes,
         )
 
     def _number(self, name: str, e: Estimate) -> NumberView:
         span = self._span(e.low, e.high, e.unit)
         text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{f' ({span})' if span else ''}"
-        return NumberView(text, e.origin.value, clean(e.note), clean(e.source))
+        return NumberView(text, origin(e.origin), clean(e.note), clean(e.source))
 
     def _figures(
         self, findings: Sequence[Finding], recommendations: Sequence[Recommendation]
@@ -243,7 +306,8 @@ class Describer:
                 f"object {number}: it is marked on chart {mark.chart!r}, which the run does not hold; "
                 "store the chart with the run"
             )
-        label = plain(mark.label) or (f"{plain(number)} after the measure" if after else plain(number))
+        subject = _("%(object)s after the measure") % {"object": plain(number)} if after else plain(number)
+        label = said(plain(mark.label)) or subject
         spot = Spot(mark.x, mark.y, label, after)
         listed = spots.setdefault(mark.chart, [])
         if spot not in listed:

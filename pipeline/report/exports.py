@@ -3,6 +3,7 @@
 import csv
 import json
 from collections.abc import Iterable, Mapping, Sequence
+from datetime import UTC, datetime
 from math import isfinite, isnan
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 from pipeline.records import Finding, Recommendation, RunRecord
 from pipeline.report.compose import object_rows
 from pipeline.report.units import Units
+from pipeline.report.workbook import write_workbook
 
 _NUMBERS = ("demand", "low", "high", "capacity", "utilisation", "error")
 FINDING_COLUMNS = (
@@ -70,14 +72,14 @@ OBJECT_COLUMNS = (
 
 
 def export(record: RunRecord, folder: Path, units: Units) -> None:
-    """Write findings.csv, .jsonl and .parquet, recommendations.csv and objects.csv into an existing folder.
+    """Write findings.csv, .jsonl and .parquet, recommendations.csv and objects.csv, and all three in findings.xlsx.
 
     Numbers are in SI; ``unit`` names the unit of demand, low, high, capacity and error.  CSV files are UTF-8 with a
     header row; an unknown number is an empty cell and an endless one is ``inf``.  In CSV a text that starts with
     ``=``, ``+``, ``-``, ``@``, a tab or a carriage return gets a leading apostrophe, because a spreadsheet would run
     it as a formula; JSON Lines and Parquet keep the text as it is.  JSON has no infinity: it is the text "inf" there.
     Only the sentences of recommendations.csv are in the reader's units.  objects.csv has one row for every object,
-    so that what could not be assessed is not lost.
+    so that what could not be assessed is not lost.  In the workbook a text is a text whatever it begins with.
 
     raises : FileNotFoundError if the folder does not exist
     """
@@ -85,16 +87,30 @@ def export(record: RunRecord, folder: Path, units: Units) -> None:
     recommendations = [_recommendation(record.run_id, r, units) for a in record.assessments for r in a.recommendations]
     _write_csv(folder / "findings.csv", FINDING_COLUMNS, findings)
     _write_csv(folder / "recommendations.csv", RECOMMENDATION_COLUMNS, recommendations)
-    _write_csv(folder / "objects.csv", OBJECT_COLUMNS, object_rows(record))
+    objects = object_rows(record)
+    _write_csv(folder / "objects.csv", OBJECT_COLUMNS, objects)
     lines = (json.dumps({k: _json(row[k]) for k in FINDING_COLUMNS}, allow_nan=False) for row in findings)
     (folder / "findings.jsonl").write_text("".join(line + "\n" for line in lines), encoding="utf-8", newline="\n")
     _write_parquet(folder / "findings.parquet", findings)
+    tables: dict[str, tuple[Sequence[str], Iterable[Mapping[str, Any]]]] = {
+        "findings": (FINDING_COLUMNS, findings),
+        "recommendations": (RECOMMENDATION_COLUMNS, recommendations),
+        "objects": (OBJECT_COLUMNS, objects),
+    }
+    write_workbook(folder / "findings.xlsx", tables, _began(record.started))
 
 
 def safe_cell(text: str) -> str:
     """Return a text that no spreadsheet takes for a formula: an apostrophe goes before = + - @ tab and return."""
     fit = _encodable(text)
     return "'" + fit if fit.startswith(("=", "+", "-", "@", "\t", "\r")) else fit
+
+
+def _began(started: str) -> datetime:
+    try:
+        return datetime.fromisoformat(started)
+    except ValueError:
+        return datetime(1980, 1, 1, tzinfo=UTC)
 
 
 def _finding(run: str, f: Finding) -> dict[str, Any]:

@@ -6,19 +6,13 @@ from math import inf, isfinite
 
 from pipeline.records import Chart, MotionSummary
 from pipeline.report.describe import approval, motion_anchor
+from pipeline.report.language import _
 from pipeline.report.text import clean, count, plain, words
 from pipeline.report.units import Units
 from pipeline.report.views import MotionView
 
-_ROWS = (("pga", "PGA", "m/s2"), ("pgv", "PGV", "m/s"), ("pgd", "PGD", "m"), ("arias", "Arias intensity", ""))
-_COLUMNS = (
-    ("_x", "East (x)"),
-    ("_y", "North (y)"),
-    ("_z", "Up (z)"),
-    ("", "Larger horizontal"),
-    ("_resultant", "Resultant"),
-)
-_NAMES = {"duration_5_95": "Significant duration (5 to 95 %)"}
+_ROWS = (("pga", "PGA", "m/s2"), ("pgv", "PGV", "m/s"), ("pgd", "PGD", "m"), ("arias", "", ""))
+_ENDS = ("_x", "_y", "_z", "", "_resultant")
 _SECONDS = ("d5_", "significant_duration", "duration", "pulse_period", "tp")
 _FIGURE = re.compile(r"Figure (\d+)")
 
@@ -31,11 +25,11 @@ def motion_view(motion: MotionSummary, charts: Mapping[str, Chart], units: Units
     table: list[tuple[str, tuple[str, ...]]] = []
     used: set[str] = set()
     for stem, title, unit in _ROWS:
-        cells = [(f"{stem}{end}", motion.measures.get(f"{stem}{end}")) for end, _ in _COLUMNS]
+        cells = [(f"{stem}{end}", motion.measures.get(f"{stem}{end}")) for end in _ENDS]
         if any(value is not None for _, value in cells):
             used.update(key for key, _ in cells)
             texts = tuple("–" if value is None else _write(key, value, unit, units) for key, value in cells)
-            table.append((title, texts))
+            table.append((title or _("Arias intensity"), texts))
     rest = {key: value for key, value in motion.measures.items() if key not in used}
     mine = [key for key in charts if motion.hash[:16] in key]
     return MotionView(
@@ -46,10 +40,13 @@ def motion_view(motion: MotionSummary, charts: Mapping[str, Chart], units: Units
         source=clean(motion.source),
         licence=clean(motion.licence),
         approved=approval(motion),
-        sampling=(
-            f"{count(motion.samples)} samples, {motion.dt:.6g} s apart, {(motion.samples - 1) * motion.dt:.4g} s"
-        ),
-        columns=tuple(title for _, title in _COLUMNS),
+        sampling=_("%(samples)s samples, %(step)s s apart, %(duration)s s")
+        % {
+            "samples": count(motion.samples),
+            "step": f"{motion.dt:.6g}",
+            "duration": f"{(motion.samples - 1) * motion.dt:.4g}",
+        },
+        columns=(_("East (x)"), _("North (y)"), _("Up (z)"), _("Larger horizontal"), _("Resultant")),
         table=tuple(table),
         others=tuple((_name(key), _write(key, value, _unit(key), units)) for key, value in rest.items()),
         charts=tuple(sorted(mine, key=lambda key: _figure(charts[key]))),
@@ -64,16 +61,19 @@ def _figure(chart: Chart) -> float:
 
 
 def _name(key: str) -> str:
-    head, _, rest = key.partition("_")
+    head, _bar, rest = key.partition("_")
     if head in ("pga", "pgv", "pgd"):
-        return f"{head.upper()} {rest.replace('_', ' ')}".strip()
-    return _NAMES.get(key) or words(plain(key)).capitalize()
+        return f"{head.upper()} {words(rest)}".strip()
+    if key == "duration_5_95":
+        return _("Significant duration (5 to 95 %)")
+    told = words(plain(key))
+    return told[:1].upper() + told[1:]
 
 
 def _unit(key: str) -> str:
     if key.startswith(_SECONDS):
         return "s"
-    return next((unit for stem, _, unit in _ROWS if key.startswith(stem)), "")
+    return next((unit for stem, _title, unit in _ROWS if key.startswith(stem)), "")
 
 
 def _write(key: str, value: float, unit: str, units: Units) -> str:

@@ -11,6 +11,7 @@ from pipeline.fragility.published import all_published
 from pipeline.quantities import G
 from pipeline.records import Assessment, Fragility, Spacing, Support, Verdict
 from pipeline.records.fragility import ABOVE
+from pipeline.report.language import _, said
 from pipeline.report.svg import path
 from pipeline.report.text import clean, count
 from pipeline.report.units import Units, significant
@@ -87,13 +88,18 @@ def fragility_views(assessment: Assessment, *, drawn: bool) -> tuple[FragilityVi
 def _view(f: Fragility, draw: str) -> FragilityView:
     at = in_g(f.median)
     if f.bound:
-        sentence = f"stands up to {at} at least" if f.bound == ABOVE else f"fails already at {at} or less"
+        phrase = _("stands up to %(at)s at least") if f.bound == ABOVE else _("fails already at %(at)s or less")
+        sentence = phrase % {"at": at}
     else:
-        sentence = f"fails from about {at} ({in_g(f.low)} to {in_g(f.high)})"
-    again = "; stronger shaking of the same kind may pass: the weakest that fails counts" if f.returns else ""
+        sentence = _("fails from about %(at)s (%(low)s to %(high)s)") % {
+            "at": at,
+            "low": in_g(f.low),
+            "high": in_g(f.high),
+        }
+    again = "; " + _("stronger shaking of the same kind may pass: the weakest that fails counts") if f.returns else ""
     beside = "" if f.published_median is None else in_g(f.published_median)
     return FragilityView(
-        clean(f.title),
+        said(clean(f.title)),
         sentence + again,
         _sources(f),
         _rate(f),
@@ -103,19 +109,26 @@ def _view(f: Fragility, draw: str) -> FragilityView:
 
 
 def _sources(f: Fragility) -> str:
-    motions = "1 motion" if f.motions == 1 else f"{f.motions} motions"
+    motions = _("1 motion") if f.motions == 1 else _("%(count)s motions") % {"count": f.motions}
     # That few motions cannot tell it is said once a gallery.
-    record = "stated" if f.stated else f"of {motions}"
-    return (
-        f"Dispersion {f.dispersion:.2f}: records {f.record:.2f} ({record}), measures {f.inputs:.2f}, model "
-        f"{f.modelling:.2f}."
-    )
+    record = _("stated") if f.stated else _("of %(motions)s") % {"motions": motions}
+    return _("Dispersion %(whole)s: records %(record)s (%(how)s), measures %(inputs)s, model %(model)s.") % {
+        "whole": f"{f.dispersion:.2f}",
+        "record": f"{f.record:.2f}",
+        "how": record,
+        "inputs": f"{f.inputs:.2f}",
+        "model": f"{f.modelling:.2f}",
+    }
 
 
 def _rate(f: Fragility) -> str:
     if f.annual_rate is None or f.rate_low is None or f.rate_high is None:
         return ""
-    return f"about once in {years(f.annual_rate)} years ({years(f.rate_high)} to {years(f.rate_low)})"
+    return _("about once in %(years)s years (%(low)s to %(high)s)") % {
+        "years": years(f.annual_rate),
+        "low": years(f.rate_high),
+        "high": years(f.rate_low),
+    }
 
 
 def in_g(acceleration: float) -> str:
@@ -139,9 +152,12 @@ def _picture(f: Fragility, number: str) -> Markup:
     steps = [_MOST * (i / (_POINTS - 1)) ** 2 for i in range(_POINTS)]
     curve = path([(round(_across(a)), round(_FLOOR - 52.0 * f.probability(a))) for a in steps])
     beside = f"M{_across(f.published_median):.0f} 6V{_FLOOR:.0f}" if f.published_median is not None else ""
-    title = f"{clean(number)}: {clean(f.title)}"
-    told = "Probability of failure at a peak acceleration of the floor: "
-    told += ", ".join(f"{f.probability(a):.0%} at {in_g(a)}" for a in _TOLD)
+    title = f"{clean(number)}: {said(clean(f.title))}"
+    at = [
+        _("%(probability)s at %(acceleration)s") % {"probability": f"{f.probability(a):.0%}", "acceleration": in_g(a)}
+        for a in _TOLD
+    ]
+    told = _("Probability of failure at a peak acceleration of the floor:") + " " + ", ".join(at)
     return Markup(
         '<svg class="chart curve" viewBox="0 0 {wide} {high}" role="img"><title>{title}</title><desc>{told}.</desc>'
         '<path class="ax" d="M10 6V{floor}H200"/>'
@@ -165,10 +181,10 @@ def shaking_view(members: Sequence[Assessment]) -> ShakingView | None:
         return None
     middle = median(inf if f.bound == ABOVE else f.median for f in free)
     least = max(f.median for f in free)
-    text = in_g(middle) if isfinite(middle) else f"above {in_g(least)}"
-    rows = tuple((p.what, in_g(p.median), p.source) for p in all_published())
+    text = in_g(middle) if isfinite(middle) else _("above %(least)s") % {"least": in_g(least)}
+    rows = tuple((said(p.what), in_g(p.median), p.source) for p in all_published())
     note = "" if any(f.annual_rate is not None for f in free) else free[0].note
-    return ShakingView(count(len(free)), text, rows, clean(note))
+    return ShakingView(count(len(free)), text, rows, said(clean(note)))
 
 
 def spacing_views(spacings: Sequence[Spacing], units: Units) -> tuple[SpacingView, ...]:
@@ -183,7 +199,7 @@ def _spacing(s: Spacing, units: Units) -> SpacingView:
     if s.needed is not None and s.low is not None and s.high is not None:
         span = f" ({units.pair(s.low, s.high, 'm')})" if s.low < s.high else ""
         needed = units.text(s.needed, "m") + span
-    decided = "both moving together" if s.decided_by == "history" else "bound: the sum of both"
+    decided = _("both moving together") if s.decided_by == "history" else _("bound: the sum of both")
     state = {Verdict.FAIL: "act", Verdict.UNDETERMINED: "open", Verdict.PASS: "safe"}[s.verdict]
     return SpacingView(
         clean(s.first),

@@ -26,10 +26,11 @@ class Notes:
     """The texts of one kind on one page.
 
     letter : what the numbers of this list begin with, so that two lists are told apart on paper
+    headed : whether a citation repeats the beginning of the text, up to its colon
     texts  : (text, source) as often as each is used; what is used once is not listed but written where it is used
     """
 
-    def __init__(self, letter: str, texts: Iterable[tuple[str, str]]) -> None:
+    def __init__(self, letter: str, texts: Iterable[tuple[str, str]], *, headed: bool = True) -> None:
         uses: Counter[str] = Counter()
         sources: dict[str, dict[str, None]] = {}
         for text, source in texts:
@@ -41,7 +42,9 @@ class Notes:
             Note(f"{letter}{i}", text, "; ".join(sources.get(text, ()))) for i, text in enumerate(shared, 1)
         )
         self._tags = {n.text: Markup(" ") + _link(n.label, n.label) for n in self.listed}
-        self._links = {n.text: _link(n.label, f"{_head(n.text)} {n.label}".strip()) for n in self.listed}
+        self._links = {
+            n.text: _link(n.label, f"{_head(n.text) if headed else ''} {n.label}".strip()) for n in self.listed
+        }
 
     def cite(self, texts: Sequence[str]) -> Markup:
         """Return the texts in one line: a link to the list for each that is listed there, the others in full."""
@@ -67,7 +70,7 @@ class PageNotes:
     def numbers(self, numbers: Sequence[NumberView]) -> Markup:
         """Return the numbers that an object was run with in one line, grouped by where they come from."""
         groups = (
-            f"{escape(origin.capitalize())}: "
+            f"{escape(origin[:1].upper() + origin[1:])}: "
             + "; ".join([escape(n.text) + self.assumed.tag(n.note, n.source) for n in members])
             for origin, members in groupby(numbers, key=lambda n: n.origin)
         )
@@ -90,8 +93,14 @@ def page_notes(objects: Iterable[ObjectView]) -> PageNotes:
             ),
         ),
         rejected=Notes("R", ((text, "") for o in told for m in o.measures for text in m.rejected)),
-        skipped=Notes("M", ((text, "") for o in told for text in o.skipped)),
+        # Objects of one kind leave out the same models for the same reasons: one note for all of an object's.
+        skipped=Notes("M", ((left_out(o), "") for o in told if o.skipped), headed=False),
     )
+
+
+def left_out(view: ObjectView) -> str:
+    """Return the models that were not run for an object, with the reasons, in one text."""
+    return "; ".join(view.skipped)
 
 
 def _head(text: str) -> str:

@@ -40,8 +40,8 @@ def finding_order(finding: Finding) -> tuple[int, bool, float, str, str]:
     )
 
 
-def urgency(assessment: Assessment) -> tuple[int, bool, float, bool, str, str, str]:
-    """Sort key of objects: state; overturns or breaks; largest utilisation; value class where given (A before B).
+def urgency(assessment: Assessment) -> tuple[int, bool, bool, str, float, str, str]:
+    """Sort key of objects: state; overturns or breaks; value class where given (A before B); largest utilisation.
 
     Ties are settled by object number and gallery, so that the same run always gives the same page.
     """
@@ -50,9 +50,9 @@ def urgency(assessment: Assessment) -> tuple[int, bool, float, bool, str, str, s
     return (
         STATES.index(state_of(assessment)),
         not any(grave(f) for f in decisive),
-        -max((_size(f.utilisation) for f in decisive), default=0.0),
         not item.value_class,
         item.value_class,
+        -max((_size(f.utilisation) for f in decisive), default=0.0),
         item.object_number,
         item.gallery,
     )

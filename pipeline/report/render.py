@@ -2,9 +2,10 @@
 
 import os
 import shutil
+from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from gettext import NullTranslations
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from pipeline.records import RunChanges, RunRecord
 from pipeline.report.compose import STORED_PAGE, compose
 from pipeline.report.errors import ReportError
 from pipeline.report.exports import export
+from pipeline.report.language import Language, speaking
 from pipeline.report.notes import page_notes
 from pipeline.report.svg import PATTERNS, Drawing
 from pipeline.report.text import clean, count, plain
@@ -24,11 +26,19 @@ from pipeline.report.views import FigureView, State
 from pipeline.resources import resource
 
 
-def render(record: RunRecord, folder: Path, *, units: Units | None = None, changes: RunChanges | None = None) -> Path:
+def render(
+    record: RunRecord,
+    folder: Path,
+    *,
+    units: Units | None = None,
+    language: Language | None = None,
+    changes: RunChanges | None = None,
+) -> Path:
     """Write a whole report: pages and exports.  The same record gives the same bytes.
 
     folder  : a new folder; it appears only when everything in it is written
     units   : the reader's units; centimetres where None
+    language: of the pages; English where None.  The exports keep the words of the run, for programs read them.
     changes : since the run before, for the index; None where there was none
     returns : the path of index.html
     raises  : ReportError if the folder exists, or if the record cannot be shown (see ``compose``)
@@ -40,7 +50,9 @@ def render(record: RunRecord, folder: Path, *, units: Units | None = None, chang
     partial.mkdir(parents=True)
     chosen = units or Units()
     try:
-        for name, text in _pages(record, chosen, changes):
+        with speaking(language or Language()):
+            pages = _pages(record, chosen, language or Language(), changes)
+        for name, text in pages:
             (partial / name).write_text(text, encoding="utf-8", newline="\n")
         export(record, partial, chosen)
         partial.rename(folder)
@@ -50,10 +62,10 @@ def render(record: RunRecord, folder: Path, *, units: Units | None = None, chang
     return folder / "index.html"
 
 
-def _pages(record: RunRecord, units: Units, changes: RunChanges | None) -> list[tuple[str, str]]:
+def _pages(record: RunRecord, units: Units, language: Language, changes: RunChanges | None) -> list[tuple[str, str]]:
     museum = compose(record, units, changes)
-    env = environment()
-    shared = {"museum": museum, "units": units, "stored_page": STORED_PAGE, "State": State}
+    env = environment(language)
+    shared: dict[str, Any] = {"museum": museum, "units": units, "stored_page": STORED_PAGE, "State": State}
     shown = (*(m.charts for m in museum.motions), *(g.charts for g in museum.galleries))
     used = dict.fromkeys(key for keys in shown for key in keys)
     drawings = {key: Drawing(record.charts[key], units, f"c{i}") for i, key in enumerate(used)}
@@ -71,15 +83,17 @@ def _pages(record: RunRecord, units: Units, changes: RunChanges | None) -> list[
         ("method.html", fill(env, "method.html", shared | measured | {"here": "method"})),
         ("motion.html", fill(env, "motion.html", shared | shaken | {"here": "motion", "traces": traces})),
     ]
+    script = Markup(resource("templates", "gallery.js").read_text(encoding="utf-8").strip())  # noqa: S704 - our own
+    allowed = b64encode(sha256(script.encode()).digest()).decode()
     for gallery in museum.galleries:
-        context = shared | _drawn(gallery.charts, drawings)
+        context = shared | _drawn(gallery.charts, drawings) | {"script": script, "script_hash": allowed}
         context |= {"here": "gallery", "gallery": gallery, "notes": page_notes(gallery.objects)}
         pages.append((gallery.page, fill(env, "gallery.html", context)))
     return pages
 
 
-def environment() -> Environment:
-    """Return the templates' environment: everything escaped, nothing undefined, phrases marked for translation."""
+def environment(language: Language | None = None) -> Environment:
+    """Return the templates' environment: everything escaped, nothing undefined, phrases in the language."""
     env = Environment(
         loader=FileSystemLoader(resource("templates")),
         autoescape=True,
@@ -90,11 +104,14 @@ def environment() -> Environment:
         extensions=["jinja2.ext.i18n"],
         finalize=_present,
     )
-    phrases = NullTranslations()
+    spoken = language or Language()
+    phrases = spoken.phrases
     env.install_gettext_translations(phrases, newstyle=True)  # type: ignore[attr-defined]
     # The pages ask for the same few phrases a hundred thousand times.
     env.globals["_"] = lru_cache(maxsize=1024)(lambda text: Markup(phrases.gettext(text)))  # noqa: S704
+    env.globals["language"] = spoken
     env.filters["plain"] = plain
+    env.filters["drawn"] = Markup  # of a drawing of ours, which escapes all text itself
     env.filters["thousands"] = count
     return env
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pipeline.records import RunRecord
+from pipeline.report.language import _
 from pipeline.report.text import clean
 from pipeline.report.views import CaseView, SelfTestView
 
@@ -24,7 +25,7 @@ def self_test_view(record: RunRecord) -> SelfTestView | None:
 
 
 def _case(case: Mapping[str, Any]) -> CaseView:
-    result = "no number" if case["result"] is None else f"{case['result']:.2g}"
+    result = _("no number") if case["result"] is None else f"{case['result']:.2g}"
     return CaseView(
         what=clean(str(case["what"])),
         truth=clean(str(case["truth"])),

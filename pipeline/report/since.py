@@ -4,7 +4,8 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pipeline.records import Cause, CauseKind, FieldChange, InputChange, RunChanges, VerdictChange
+from pipeline.records import Cause, CauseKind, FieldChange, InputChange, RunChanges, Verdict, VerdictChange
+from pipeline.report.language import _, said
 from pipeline.report.text import clean, count, short, words
 from pipeline.report.units import Units
 from pipeline.report.views import ChangeView, ObjectView, SinceView, TurnView
@@ -12,15 +13,19 @@ from pipeline.report.views import ChangeView, ObjectView, SinceView, TurnView
 MOST = 12
 """Lines of one kind that the page shows; `kouros diff --json` has all."""
 
-_WHY = {
-    CauseKind.INPUT: "record of the object",
-    CauseKind.DECISION: "decision",
-    CauseKind.FLOOR: "floor",
-    CauseKind.MOTION: "motion",
-    CauseKind.SETTINGS: "settings",
-    CauseKind.VERSION: "version of Kouros",
-}
 _UNITS = {"m": "m", "kg": "kg", "hz": "Hz", "pa": "Pa"}
+
+
+def _why(kind: CauseKind) -> str:
+    told = {
+        CauseKind.INPUT: _("record of the object"),
+        CauseKind.DECISION: _("decision"),
+        CauseKind.FLOOR: _("floor"),
+        CauseKind.MOTION: _("motion"),
+        CauseKind.SETTINGS: _("settings"),
+        CauseKind.VERSION: _("version of Kouros"),
+    }
+    return told[kind]
 
 
 def since_view(changes: RunChanges, objects: Mapping[str, ObjectView], units: Units) -> SinceView:
@@ -31,7 +36,7 @@ def since_view(changes: RunChanges, objects: Mapping[str, ObjectView], units: Un
     worse = [_turn(change, objects) for change in changes.worsened]
     fixed = [_turn(change, objects) for change in changes.fixed]
     causes = Counter(cause.kind for change in changes.verdicts for cause in {c.kind: c for c in change.causes}.values())
-    told = [(_WHY[kind], count(causes[kind])) for kind in CauseKind if causes[kind]]
+    told = [(_why(kind), count(causes[kind])) for kind in CauseKind if causes[kind]]
     unknown = sum(not change.causes for change in changes.verdicts)
     return SinceView(
         before=clean(changes.started[:16].replace("T", " ")),
@@ -39,24 +44,24 @@ def since_view(changes: RunChanges, objects: Mapping[str, ObjectView], units: Un
         worse=_cut(worse),
         fixed=_cut(fixed),
         counts=tuple((title, count(number)) for title, number in _counts(changes) if number),
-        causes=(*told, *([("not found", count(unknown))] if unknown else [])),
+        causes=(*told, *([(_("not found"), count(unknown))] if unknown else [])),
         lists=_lists(changes, objects, units),
     )
 
 
 def _counts(changes: RunChanges) -> list[tuple[str, int]]:
     return [
-        ("verdicts worse", len(changes.worsened)),
-        ("verdicts fixed", len(changes.fixed)),
-        ("verdicts otherwise changed", len(changes.others)),
-        ("objects new", len(changes.added)),
-        ("objects gone", len(changes.removed)),
-        ("objects moved", len(changes.moved)),
-        ("objects otherwise changed", len(changes.inputs)),
-        ("motions", len(changes.motions)),
-        ("decisions", len(changes.decisions)),
-        ("settings", len(changes.settings)),
-        ("versions", len(changes.versions)),
+        (_("verdicts worse"), len(changes.worsened)),
+        (_("verdicts fixed"), len(changes.fixed)),
+        (_("verdicts otherwise changed"), len(changes.others)),
+        (_("objects new"), len(changes.added)),
+        (_("objects gone"), len(changes.removed)),
+        (_("objects moved"), len(changes.moved)),
+        (_("objects otherwise changed"), len(changes.inputs)),
+        (_("motions"), len(changes.motions)),
+        (_("decisions"), len(changes.decisions)),
+        (_("settings"), len(changes.settings)),
+        (_("versions"), len(changes.versions)),
     ]
 
 
@@ -71,46 +76,65 @@ def _turn(change: VerdictChange, objects: Mapping[str, ObjectView]) -> TurnView:
         gallery=clean(change.gallery),
         model=words(clean(change.model)),
         level=clean(change.level),
-        before=str(change.before or "none"),
-        after=str(change.after or "none"),
-        causes=tuple(_cause(cause) for cause in change.causes) or ("nothing that the runs keep differs",),
+        before=_verdict(change.before),
+        after=_verdict(change.after),
+        causes=tuple(_cause(cause) for cause in change.causes) or (_("nothing that the runs keep differs"),),
     )
 
 
 def _cause(cause: Cause) -> str:
     what = words(clean(cause.what)) if cause.kind is CauseKind.INPUT else clean(cause.what)
-    return f"{_WHY[cause.kind]}: {short(what, 120)}"
+    return f"{_why(cause.kind)}: {short(what, 120)}"
 
 
 def _lists(
     changes: RunChanges, objects: Mapping[str, ObjectView], units: Units
 ) -> tuple[tuple[str, tuple[ChangeView, ...], int], ...]:
     lists: list[tuple[str, list[ChangeView]]] = [
-        ("Other verdicts", [_other(v, objects) for v in changes.others]),
-        ("New", [_change(p.object_number, p.gallery, objects) for p in changes.added]),
-        ("Gone", [_change(p.object_number, f"was in {p.gallery}", objects) for p in changes.removed]),
-        ("Moved", [_change(m.object_number, f"{m.before} → {m.after}", objects) for m in changes.moved]),
-        ("Otherwise changed", [_change(i.object_number, _fields(i, units), objects) for i in changes.inputs]),
-        ("Motions", [_change("", f"{m.name}, level {m.level}{_floor(m.floor)}", objects) for m in changes.motions]),
+        (_("Other verdicts"), [_other(v, objects) for v in changes.others]),
+        (_("New"), [_change(p.object_number, p.gallery, objects) for p in changes.added]),
         (
-            "Decisions",
+            _("Gone"),
+            [
+                _change(p.object_number, _("was in %(gallery)s") % {"gallery": p.gallery}, objects)
+                for p in changes.removed
+            ],
+        ),
+        (_("Moved"), [_change(m.object_number, f"{m.before} → {m.after}", objects) for m in changes.moved]),
+        (_("Otherwise changed"), [_change(i.object_number, _fields(i, units), objects) for i in changes.inputs]),
+        (
+            _("Motions"),
+            [_change("", f"{m.name}, {_level(m.level)}{_floor(m.floor)}", objects) for m in changes.motions],
+        ),
+        (
+            _("Decisions"),
             [
                 _change(
                     c.decision.object_number,
-                    f"{'made' if c.new else 'no longer in force'}: {c.decision.matter}, {c.decision.who}",
+                    (_("made") if c.new else _("no longer in force"))
+                    + f": {said(c.decision.matter)}, {c.decision.who}",
                     objects,
                 )
                 for c in changes.decisions
             ],
         ),
-        ("Settings", [_change("", _field(f, units), objects) for f in changes.settings]),
-        ("Versions", [_change("", _field(f, units), objects) for f in changes.versions]),
+        (_("Settings"), [_change("", _field(f, units), objects) for f in changes.settings]),
+        (_("Versions"), [_change("", _field(f, units), objects) for f in changes.versions]),
     ]
     return tuple((title, tuple(found[:MOST]), max(len(found) - MOST, 0)) for title, found in lists if found)
 
 
 def _floor(name: str) -> str:
-    return f", floor {name}" if name else ""
+    return ", " + _("floor %(floor)s") % {"floor": name} if name else ""
+
+
+def _level(name: str) -> str:
+    return _("level %(level)s") % {"level": name}
+
+
+def _verdict(verdict: str | None) -> str:
+    told = {Verdict.PASS: _("pass"), Verdict.FAIL: _("fail"), Verdict.UNDETERMINED: _("undetermined")}
+    return told[Verdict(verdict)] if verdict else _("none")
 
 
 def _change(number: str, text: str, objects: Mapping[str, ObjectView]) -> ChangeView:
@@ -119,7 +143,7 @@ def _change(number: str, text: str, objects: Mapping[str, ObjectView]) -> Change
 
 def _other(change: VerdictChange, objects: Mapping[str, ObjectView]) -> ChangeView:
     turn = _turn(change, objects)
-    text = f"{turn.model}, level {turn.level}: {turn.before} → {turn.after} ({'; '.join(turn.causes)})"
+    text = f"{turn.model}, {_level(turn.level)}: {turn.before} → {turn.after} ({'; '.join(turn.causes)})"
     return _change(change.object_number, text, objects)
 
 
@@ -140,4 +164,4 @@ def _value(name: str, value: Any, units: Units) -> str:
     unit = _UNITS.get(name.rpartition("_")[2], "")
     if unit and isinstance(value, float):
         return units.text(value, unit)
-    return "none" if value is None or value == "" else short(str(value), 60)
+    return _("none") if value is None or value == "" else short(str(value), 60)

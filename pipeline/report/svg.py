@@ -8,6 +8,7 @@ from math import isnan
 
 from pipeline.records import Chart, Curve, Zone
 from pipeline.report.errors import ReportError
+from pipeline.report.language import _, said
 from pipeline.report.scales import Scale, inside, limits, roomy, thin
 from pipeline.report.text import plain, short
 from pipeline.report.units import Units
@@ -53,13 +54,13 @@ class Drawing:
         self.chart, self.units, self.ident = chart, units, ident
         self._fx, self._fy = units.factor(chart.x.unit), units.factor(chart.y.unit)
         self._margin = [c for c in chart.curves if c.label and c.x] if not chart.equal else []
-        widest = max((len(short(c.label, 26)) for c in self._margin), default=0)
+        widest = max((len(short(said(c.label), 26)) for c in self._margin), default=0)
         right = WIDTH - _RIGHT - (widest * _LETTER + 4 if widest else 0)
         self.x = self._scale("x", _LEFT, right)
         self.y = self._scale("y", HEIGHT - _BOTTOM, _TOP)
         if chart.equal:
             self._equalise()
-        self._places = [(short(z.label, 40), self._room(z)) for z in chart.zones if z.label]
+        self._places = [(short(said(z.label), 40), self._room(z)) for z in chart.zones if z.label]
 
     def _scale(self, which: str, start: float, end: float) -> Scale:
         axis, factor = getattr(self.chart, which), self._fx if which == "x" else self._fy
@@ -112,7 +113,7 @@ class Drawing:
 
     def _room(self, zone: Zone) -> list[tuple[float, float]]:
         points = thin(self._points(zone))
-        return roomy([p[0] for p in points], [p[1] for p in points], len(short(zone.label, 40)) * _LETTER / 2)
+        return roomy([p[0] for p in points], [p[1] for p in points], len(short(said(zone.label), 40)) * _LETTER / 2)
 
     def _zone_labels(self, taken: Sequence[tuple[float, float]]) -> str:
         """Write each zone's name at its roomiest place that no mark takes.
@@ -141,7 +142,7 @@ class Drawing:
         """Return "Base width (cm)": the axis' label with the reader's unit."""
         axis = getattr(self.chart, which)
         unit = self.units.symbol(axis.unit)
-        return short(axis.label, 60) + (f" ({unit})" if unit else "")
+        return short(said(axis.label), 60) + (f" ({unit})" if unit else "")
 
     def _curve(self, curve: Curve, index: int) -> str:
         runs: list[list[tuple[float, float]]] = [[]]
@@ -159,7 +160,7 @@ class Drawing:
     def _curve_labels(self) -> list[str]:
         if self.chart.equal:
             return [self._end_label(c) for c in self.chart.curves if c.label and c.x]
-        ends = [(self._points(c)[-1], short(c.label, 26)) for c in self._margin]
+        ends = [(self._points(c)[-1], short(said(c.label), 26)) for c in self._margin]
         wanted = sorted((y, x, label) for (x, y), label in ends)
         placed = _spread([y for y, _, _ in wanted], 14.0, self.y.end + 4, self.y.start - 2)
         x = self.x.end + 6
@@ -177,7 +178,7 @@ class Drawing:
 
     def _end_label(self, curve: Curve) -> str:
         x, y = self._points(curve)[-1]
-        label = short(curve.label, 40)
+        label = short(said(curve.label), 40)
         left = x > (self.x.start + self.x.end) / 2
         side, dx = ("cl e", -8) if left else ("cl", 8)
         return f'<text class="{side}" x="{x + dx:.0f}" y="{y - 6:.0f}">{escape(label)}</text>'
@@ -191,36 +192,38 @@ class Drawing:
         subject : what is marked, in words, for the description; "" for a chart that marks nothing
         """
         shown = [s for s in spots if not (isnan(s.x) or isnan(s.y))]
-        title = plain(self.chart.title) + (f": {plain(short(subject, 60))}" if subject else "")
+        title = plain(said(self.chart.title)) + (f": {plain(short(subject, 60))}" if subject else "")
         told = " ".join(self.say(s) for s in shown)
         if subject and not shown:
-            told = "Nothing is marked: the object's place is not known."
+            told = _("Nothing is marked: the object’s place is not known.")
         elif not subject:
             told = self._contents
-        said = f"Horizontal: {plain(self.axis_label('x'))}. Vertical: {plain(self.axis_label('y'))}. {told}".rstrip()
+        axes = {"x": plain(self.axis_label("x")), "y": plain(self.axis_label("y"))}
+        read = (_("Horizontal: %(x)s. Vertical: %(y)s.") % axes + " " + told).rstrip()
         marks = "".join(self._spot(s, self._label_line(s, shown)) for s in shown)
         taken = [(self.x.at(s.x * self._fx), self.y.at(s.y * self._fy)) for s in shown]
         return (
             f'<svg class="chart" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-labelledby="{ident}t {ident}d">'
-            f'<title id="{ident}t">{escape(title)}</title><desc id="{ident}d">{escape(said)}</desc>'
-            f'<use href="#{self.ident}" width="{WIDTH}" height="{HEIGHT}"/>'
+            f'<title id="{ident}t">{escape(title)}</title><desc id="{ident}d">{escape(read)}</desc>'
+            f'<use href="#{self.ident}"/>'
             f"{self._zone_labels(taken)}{marks}</svg>"
         )
 
     @cached_property
     def _contents(self) -> str:
-        lines = ", ".join(plain(c.label) for c in self.chart.curves if c.label)
-        zones = ", ".join(plain(z.label) for z in self.chart.zones if z.label)
-        return (f"Lines: {lines}. " if lines else "") + (f"Zones: {zones}." if zones else "")
+        lines = ", ".join(plain(said(c.label)) for c in self.chart.curves if c.label)
+        zones = ", ".join(plain(said(z.label)) for z in self.chart.zones if z.label)
+        told = [_("Lines: %(names)s.") % {"names": lines}] if lines else []
+        return " ".join(told + ([_("Zones: %(names)s.") % {"names": zones}] if zones else []))
 
     def say(self, spot: Spot) -> str:
         """Tell in words and numbers where a mark lies, in which zone, and whether it is off the chart."""
         x, y = self.units.text(spot.x, self.chart.x.unit), self.units.text(spot.y, self.chart.y.unit)
         zone = next((z.label for z in self.chart.zones if inside(spot.x, spot.y, z.x, z.y)), "")
-        told = f"{plain(spot.label)} at {x} across and {y} up"
-        told += f', in the zone "{plain(zone)}"' if zone else ""
-        told += ", beyond the edge of the chart" if self._off(spot) != (0, 0) else ""
-        return told + "."
+        told = [_("%(mark)s at %(x)s across and %(y)s up") % {"mark": plain(spot.label), "x": x, "y": y}]
+        told += [_('in the zone "%(zone)s"') % {"zone": plain(said(zone))}] if zone else []
+        told += [_("beyond the edge of the chart")] if self._off(spot) != (0, 0) else []
+        return ", ".join(told) + "."
 
     def _off(self, spot: Spot) -> tuple[int, int]:
         return self.x.side(spot.x * self._fx), self.y.side(spot.y * self._fy)
@@ -243,7 +246,7 @@ class Drawing:
             turn = {(1, 0): 90, (1, 1): 45, (0, 1): 0, (-1, 1): -45, (-1, 0): -90, (-1, -1): -135, (0, -1): 180}
             angle = turn.get((sx, sy), 135)
             shape = f'<path class="{kind}" transform="translate({x:.1f} {y:.1f})rotate({angle})" d="M0 -7L7 6H-7Z"/>'
-        label = short(spot.label, 44) + (" (off the chart)" if (sx, sy) != (0, 0) else "")
+        label = short(spot.label, 44) + (" " + _("(off the chart)") if (sx, sy) != (0, 0) else "")
         up = y - 11 if line < 0 else y + 20
         up = min(max(up, self.y.end + 12), self.y.start - 6)
         room = len(label) * _LETTER + 14

@@ -5,6 +5,8 @@ import re
 import unicodedata
 from functools import lru_cache
 
+from pipeline.report.language import _
+
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 _BIDI = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 _UNIT_SUFFIX = re.compile(r"_(m|kg|hz|pa|deg|s|g|rad)$")
@@ -38,9 +40,13 @@ def count(number: int) -> str:
     return f"{number:,}"
 
 
-@lru_cache(maxsize=4096)
 def words(name: str) -> str:
     """Say a field or parameter in plain words: "base_width_m" becomes "base width"."""
+    return _(_bare(name))
+
+
+@lru_cache(maxsize=4096)
+def _bare(name: str) -> str:
     bare = _UNIT_SUFFIX.sub("", name)
     bare = "height of the centre of gravity" if bare == "cg_height" else bare
     return bare.replace("_", " ").strip() or name

@@ -5,6 +5,7 @@ from math import isfinite
 
 from pipeline.records import MotionSummary
 from pipeline.report.errors import ReportError
+from pipeline.report.language import _
 from pipeline.report.scales import Scale, limits, thin
 from pipeline.report.svg import tick
 from pipeline.report.text import plain, short
@@ -13,7 +14,6 @@ from pipeline.report.units import Units
 WIDTH, ROW = 1050, 118
 _LEFT, _RIGHT, _TOP, _BOTTOM = 76, 16, 10, 42
 _TIMES = ("t", "time", "time_s")
-_NAMES = {"x": "East (x)", "y": "North (y)", "z": "Up (z)"}
 
 
 def trace(motion: MotionSummary, units: Units, ident: str) -> str:
@@ -35,6 +35,7 @@ def trace(motion: MotionSummary, units: Units, ident: str) -> str:
     start = given[0] if given else 0.0
     x = Scale(start, max(end, start + motion.dt), _LEFT, WIDTH - _RIGHT)
     parts = []
+    names = {"x": _("East (x)"), "y": _("North (y)"), "z": _("Up (z)")}
     for row, (name, series) in enumerate(components.items()):
         if given and len(given) != len(series):
             raise ReportError(
@@ -50,20 +51,28 @@ def trace(motion: MotionSummary, units: Units, ident: str) -> str:
         parts.append(f'<path class="gr" d="{"".join(f"M{_LEFT} {y.at(v):.1f}H{WIDTH - _RIGHT}" for v in ticks)}"/>')
         parts += [f'<text class="ty" x="{_LEFT - 8}" y="{y.at(v) + 4:.1f}">{tick(v)}</text>' for v in ticks]
         parts.append(f'<path class="tr" d="{d}"/>')
-        label = escape(short(_NAMES.get(name, name), 40))
+        label = escape(short(names.get(name, name), 40))
         parts.append(f'<text class="cl" x="{_LEFT + 6}" y="{top + 12}">{label}</text>')
     floor = _TOP + ROW * len(components) - 20
     height = floor + _BOTTOM
     seconds = "".join(f'<text class="tx" x="{x.at(v):.1f}" y="{floor + 14}">{tick(v)}</text>' for v in x.ticks())
     symbol = units.symbol("m/s2")
-    said = (
-        f"Acceleration in {symbol} against time from {x.low:.3g} to {x.high:.3g} seconds, "
-        f"components {', '.join(components)}; largest value drawn {units.text(peak / factor, 'm/s2')}."
-    )
+    told = _(
+        "Acceleration in %(unit)s against time from %(start)s to %(end)s seconds, components %(names)s; "
+        "largest value drawn %(peak)s."
+    ) % {
+        "unit": symbol,
+        "start": f"{x.low:.3g}",
+        "end": f"{x.high:.3g}",
+        "names": ", ".join(components),
+        "peak": units.text(peak / factor, "m/s2"),
+    }
+    heading = _("%(motion)s: accelerogram") % {"motion": plain(motion.name)}
+    across, up = escape(_("Time (s)")), escape(_("Acceleration")) + f" ({symbol})"
     return (
         f'<svg class="chart wide" viewBox="0 0 {WIDTH} {height}" role="img" aria-labelledby="{ident}t {ident}d">'
-        f'<title id="{ident}t">{escape(plain(motion.name))}: accelerogram</title>'
-        f'<desc id="{ident}d">{escape(said)}</desc>'
-        f'{"".join(parts)}{seconds}<text class="al" x="{(_LEFT + WIDTH) / 2:.0f}" y="{height - 6}">Time (s)</text>'
-        f'<text class="al" transform="translate(15 {floor / 2:.0f})rotate(-90)">Acceleration ({symbol})</text></svg>'
+        f'<title id="{ident}t">{escape(heading)}</title>'
+        f'<desc id="{ident}d">{escape(told)}</desc>'
+        f'{"".join(parts)}{seconds}<text class="al" x="{(_LEFT + WIDTH) / 2:.0f}" y="{height - 6}">{across}</text>'
+        f'<text class="al" transform="translate(15 {floor / 2:.0f})rotate(-90)">{up}</text></svg>'
     )

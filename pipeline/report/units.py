@@ -8,6 +8,7 @@ from string import Formatter
 
 from pipeline.quantities import LENGTHS, G
 from pipeline.report.errors import ReportError
+from pipeline.report.language import _
 
 _FIXED: dict[str, tuple[str, float]] = {
     "m/s2": ("g", 1.0 / G),
@@ -35,16 +36,20 @@ def significant(value: float, digits: int, *, keep: bool = False) -> str:
     return (text.rstrip("0").rstrip(".") if "." in text and not keep else text).replace("-", "−")
 
 
-@lru_cache(maxsize=65536)
 def ratio(value: float) -> str:
     """Write a finite ratio with two significant digits, and more where two would hide on which side of 1 it lies."""
+    return _digits(value) or (_("just above 1") if value > 1.0 else _("just below 1"))
+
+
+@lru_cache(maxsize=65536)
+def _digits(value: float) -> str:
     if value == round(value):
         return significant(value, 2 if abs(value) >= 100.0 else 3)
     for digits in range(2, 7):
         text = significant(value, digits, keep=True)
         if float(text.replace("−", "-")) != 1.0:
             return text
-    return "just above 1" if value > 1.0 else "just below 1"
+    return ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +84,7 @@ class Units:
     def number(self, value: float, unit: str) -> str:
         """Write the number alone, in the reader's unit: ratios with two significant digits, others with three."""
         if isnan(value):
-            return "not a number"
+            return _("not a number")
         if not isfinite(value):
             return "∞" if value > 0.0 else "−∞"
         shown = value * self.factor(unit)
@@ -88,9 +93,9 @@ class Units:
     def text(self, value: float | None, unit: str) -> str:
         """Write a number with its unit in the reader's units, an endless one in words, and None as "not known"."""
         if value is None:
-            return "not known"
+            return _("not known")
         if value == inf:
-            return "no limit (∞)"
+            return _("no limit (∞)")
         symbol = self.symbol(unit)
         number = self.number(value, unit)
         if not symbol or not isfinite(value):
@@ -102,7 +107,7 @@ class Units:
         if self.text(low, unit) == self.text(high, unit):
             return self.text(high, unit)
         first = self.number(low, unit) if isfinite(high) else self.text(low, unit)
-        return f"{first} to {self.text(high, unit)}"
+        return _("%(low)s to %(high)s") % {"low": first, "high": self.text(high, unit)}
 
     def fill(self, sentence: str, values: Mapping[str, tuple[float | None, str]], where: str) -> str:
         """Fill the {placeholders} of a sentence with numbers in the reader's units.

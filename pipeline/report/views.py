@@ -55,7 +55,10 @@ class MotionLink:
 
 @dataclass(frozen=True, slots=True)
 class FindingView:
-    """One finding in words; ``state`` is act, open or safe, ``numbers`` the sums behind the sentence in one line."""
+    """One finding in words; ``state`` is act, open or safe, ``numbers`` the sums behind the sentence in one line.
+
+    size : the utilisation for sorting, "" where it is not known
+    """
 
     title: str
     level: str
@@ -69,31 +72,56 @@ class FindingView:
     note: str
     motion: MotionLink
     assumptions: tuple[str, ...]
+    size: str
 
 
 @dataclass(frozen=True, slots=True)
 class CheckView:
-    """One model run again on the changed chain."""
+    """One model run again on the changed chain; ``before`` and its utilisation are "" where nothing was found then."""
 
     title: str
+    before: str
     demand: str
     capacity: str
+    utilisation_before: str
     utilisation: str
+    bar_before: Bar | None
+    bar: Bar | None
     passes: bool
-    before: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class MeasureView:
-    """One recommendation in words."""
+    """One recommendation in words; ``ended`` are the failures that can no longer happen with it."""
 
     measure: str
     title: str
     level: str
     sentence: str
     checks: tuple[CheckView, ...]
+    ended: tuple[CheckView, ...]
     rejected: tuple[str, ...]
     source: str
+
+
+@dataclass(frozen=True, slots=True)
+class WishView:
+    """A quantity of one object that is worth measuring: what it is, what it does, what is taken for it now."""
+
+    what: str
+    effect: str
+    now: str
+    waste: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SurveyView:
+    """One errand of measuring in a gallery: a quantity, how to measure it, on which objects, and what that settles."""
+
+    what: str
+    how: str
+    settles: str
+    objects: tuple["ObjectView", ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,6 +185,8 @@ class ObjectView:
     missing: tuple[str, ...]
     problems: tuple[tuple[str, str, str], ...]
     skipped: tuple[str, ...]
+    wishes: tuple[WishView, ...] = ()
+    grave: bool = False
     fragilities: tuple[FragilityView, ...] = ()
     decisions: tuple[DecisionView, ...] = ()
     settled: bool = False
@@ -192,6 +222,7 @@ class ObjectView:
 class TaskView:
     """One line of "What to do first": a measure and the objects it is for, the most urgent ones first.
 
+    worst   : the largest utilisation, in words; "" where none is known
     numbers : parameters of the measure with the range over the objects, such as ("clearance", "9 to 14 cm")
     """
 
@@ -199,6 +230,32 @@ class TaskView:
     objects: tuple[ObjectView, ...]
     numbers: tuple[tuple[str, str], ...] = ()
     advised: bool = True
+    worst: str = ""
+
+    @property
+    def grave(self) -> int:
+        """How many of the objects overturn or break."""
+        return sum(o.grave for o in self.objects)
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceView:
+    """A row of the plan's table: the number on the plan, the object, and where it stands, in the reader's units."""
+
+    number: int
+    object: ObjectView
+    position: str
+    footprint: str
+    clearance: str
+
+
+@dataclass(frozen=True, slots=True)
+class PlanView:
+    """A gallery to scale: the drawing, its legend in rows, and how many objects have no recorded position."""
+
+    svg: str
+    places: tuple[PlaceView, ...]
+    missing: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,6 +331,9 @@ class GalleryView:
     charts: tuple[str, ...]
     motions: tuple[MotionLink, ...]
     several_levels: bool
+    survey: tuple[SurveyView, ...] = ()
+    surveyed: bool = False
+    plan: PlanView | None = None
     spacings: tuple[SpacingView, ...] = ()
     rooms: tuple[RoomView, ...] = ()
     shaking: ShakingView | None = None
@@ -337,6 +397,17 @@ class SelfTestView:
 
 
 @dataclass(frozen=True, slots=True)
+class DecidedView:
+    """How many verdicts one kind of calculation settled, their share, and their numerical errors."""
+
+    means: str
+    verdicts: int
+    share: str
+    median: str
+    worst: str
+
+
+@dataclass(frozen=True, slots=True)
 class EffortView:
     """By what the verdicts of one model were decided; ``any`` is the share of analyses for which a history was run."""
 
@@ -352,6 +423,10 @@ class EffortView:
 class MuseumView:
     """The index: all galleries, ranked, with totals over all objects; ``credit`` is the source's own line.
 
+    decided    : what settled the verdicts, by kind
+    fidelities : how many verdicts were asked at which fidelity, in one line
+    self_test  : None where none was run before this run
+    survey     : what is worth measuring in the whole museum and what asking cost, "" where it was not asked
     self_test : None where none was run before this run
     since     : None where there was no run before
     """
@@ -371,5 +446,8 @@ class MuseumView:
     level_notes: tuple[str, ...] = field(default=())
     efforts: tuple[EffortView, ...] = ()
     self_test: SelfTestView | None = None
+    decided: tuple[DecidedView, ...] = ()
+    fidelities: str = ""
+    survey: str = ""
     decisions: DecisionsView = DecisionsView()
     since: SinceView | None = None

@@ -24,6 +24,7 @@ from pipeline.records import (
     Spacing,
     Standing,
     Verdict,
+    Wish,
 )
 from pipeline.store import codec
 from pipeline.store.changes import changes
@@ -37,6 +38,7 @@ from pipeline.store.tables import (
     RUN_DECISION,
     RUN_MOTION,
     RUN_SCENE,
+    RUN_WISH,
     SPACING,
 )
 
@@ -57,6 +59,9 @@ _CHUNK = 2_000
 
 FINISHED, UNFINISHED = "finished", "unfinished"
 
+_WISHES = "wishes"
+"""Counted only where the run asked what is worth measuring: nothing asked is not the same as nothing found."""
+
 _RUN_FIELDS = ("run_id", "started", "finished", "version", "site", "museum", "level_notes", "settings", "demonstration")
 
 
@@ -65,7 +70,8 @@ class RunSummary:
     """A run as a list shows it.
 
     status : "finished", or "unfinished" for a run without a time of finishing
-    counts : objects, assessed, findings, pass, fail, undetermined, recommendations, charts, motions
+    counts : objects, assessed, findings, pass, fail, undetermined, recommendations, charts, motions,
+             and wishes where it asked for them
     """
 
     run_id: str
@@ -130,6 +136,7 @@ def load_run(engine: Engine, run_id: str | None = None) -> RunRecord:
             ),
             charts=_charts(connection, run_id),
             motions=tuple(_records(connection, RUN_MOTION, MotionSummary, run_id)),
+            wishes=tuple(_records(connection, RUN_WISH, Wish, run_id)) if _WISHES in head["counts"] else None,
             spacings=tuple(_records(connection, SPACING, Spacing, run_id)),
             decisions=tuple(_records(connection, RUN_DECISION, Standing, run_id)),
         )
@@ -210,6 +217,8 @@ def _check(record: RunRecord) -> None:
         _check_types(f"{run}, neighbours {spacing.first!a} and {spacing.second!a}", Spacing, spacing)
     for motion in record.motions:
         _check_types(f"{run}, motion {motion.name!a}", MotionSummary, motion)
+    for wish in record.wishes or ():
+        _check_types(f"{run}, {wish.field} of object {wish.object_number!a}", Wish, wish)
     for standing in record.decisions:
         _check_types(f"{run}, decision {standing.decision.id}", Standing, standing)
     for key, chart in record.charts.items():
@@ -249,6 +258,7 @@ def _tables(record: RunRecord) -> Iterator[tuple[Table, Iterable[dict[str, Any]]
     yield RUN_MOTION, _rows(of_run, MotionSummary, record.motions)
     charts = enumerate(record.charts.items())
     yield RUN_CHART, ({**of_run, "position": i, "key": key, "chart": chart} for i, (key, chart) in charts)
+    yield RUN_WISH, _rows(of_run, Wish, record.wishes or ())
     standing = (
         row | {"object_number": row["decision"].object_number} for row in _rows(of_run, Standing, record.decisions)
     )
@@ -293,6 +303,7 @@ def _counts(record: RunRecord) -> dict[str, int]:
         "recommendations": sum(len(assessment.recommendations) for assessment in record.assessments),
         "charts": len(record.charts),
         "motions": len(record.motions),
+        **({} if record.wishes is None else {_WISHES: len(record.wishes)}),
     }
 
 

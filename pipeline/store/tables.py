@@ -36,6 +36,7 @@ from pipeline.records import (
     Scene,
     Spacing,
     Standing,
+    Wish,
 )
 from pipeline.store import codec
 
@@ -53,6 +54,7 @@ __all__ = [
     "RUN_DECISION",
     "RUN_MOTION",
     "RUN_SCENE",
+    "RUN_WISH",
     "SPACING",
     "SUPPLEMENT",
 ]
@@ -290,6 +292,16 @@ RECOMMENDATION = Table(
     Index(None, "run_id", "object_number"),
 )
 """One row a recommendation."""
+
+RUN_WISH = Table(
+    "run_wish",
+    METADATA,
+    _of_run(),
+    _position(),
+    *_columns(Wish),
+    Index(None, "run_id", "object_number"),
+)
+"""One row a quantity that is worth measuring on an object, or that was asked for and would settle nothing."""
 
 FRAGILITY = Table(
     "fragility",

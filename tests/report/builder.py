@@ -17,6 +17,7 @@ from pipeline.records import (
     Scene,
     Support,
     Verdict,
+    Wish,
 )
 
 from .pictures import HASH, charts, motion
@@ -349,11 +350,42 @@ def endless(item: Item) -> Assessment:
     )
 
 
+PLACES = {
+    "79.AA.143": (1.0, 1.0, 0.0),
+    "82.AB.7": (2.2, 1.1, 30.0),
+    "83.AC.10": (3.5, 1.0, -45.0),
+    "70.AA.2": (1.1, 3.0, None),
+    "85.AA.40": (4.0, 3.2, 90.0),
+    "73.AA.33": (2.5, 4.4, None),
+    "96.AC.77": (5.0, 4.5, None),
+}
+"""Where objects of the first gallery stand: metres east, metres north, degrees; one of them stands nowhere."""
+
+
+def wish(number: str, gallery: str, field: str, **values: object) -> Wish:
+    base = Wish(number, gallery, "", field, "-", 0.1, 0.15, 0.2, "marble on terrazzo", 1, 2 / 3, 0)
+    return replace(base, **values)  # type: ignore[arg-type]
+
+
+def wishes() -> tuple[Wish, ...]:
+    """Return what each kind of wish asks for: one that unlocks, one that settles, one that is a waste."""
+    span = {"unit": "m", "low": 0.38, "best": 0.44, "high": 0.50}
+    return (
+        wish("96.AC.77", GREEK, "base_width_m", low=None, best=None, high=None, open=0, settles=0.0, unlocks=2),
+        wish("73.AA.33", GREEK, "cg_height_m", **span),
+        wish("79.AA.143", GREEK, "friction", open=2, settles=1.5),
+        wish("73.AA.33", GREEK, "friction", settles=0.0),
+    )
+
+
 def record(*extra: Assessment) -> RunRecord:
     """Return a run of 20 objects in two galleries and in store; their states are known by construction."""
 
     def item(number: str, gallery: str, title: str, **more: object) -> Item:
-        return replace(Item(number, gallery, title), **more)  # type: ignore[arg-type]
+        x, y, turn = PLACES.get(number, (None, None, None))
+        size = {"base_width_m": 0.5, "base_depth_m": 0.4} if number != "73.AA.33" else {}
+        place = {"position_x_m": x, "position_y_m": y, "orientation_deg": turn}
+        return replace(Item(number, gallery, title), **(place | size | more))  # type: ignore[arg-type]
 
     objects = (
         rocking(item("79.AA.143", GREEK, "Kylix with warriors", case="12", value_class="A")),
@@ -386,6 +418,7 @@ def record(*extra: Assessment) -> RunRecord:
         charts=charts(),
         motions=(motion(),),
         demonstration=True,
+        wishes=wishes(),
     )
 
 

@@ -25,13 +25,13 @@ def test_the_four_counts_add_up_to_all_objects() -> None:
     assert len(listed) == len(set(listed)) == len(record.assessments)
 
 
-def test_urgency_overturning_and_breaking_then_utilisation_then_open_then_unknown_then_safe() -> None:
+def test_urgency_overturning_and_breaking_then_value_class_then_utilisation_then_open_unknown_safe() -> None:
     museum = compose(builder.record(), Units())
     gallery = next(g for g in museum.galleries if g.name == builder.GREEK)
     assert [o.number for o in gallery.objects] == [
         "79.AA.143",  # overturns at 1.82, class A
+        "85.AA.40",  # breaks at 1.63, class A
         "82.AB.7",  # overturns at 1.82, without a class
-        "85.AA.40",  # breaks at 1.63
         "83.AC.10",  # rocks at 2.6: more, but it stays up
         "70.AA.2",
         "73.AA.33",

@@ -86,7 +86,7 @@ def test_hostile_words_of_every_kind_are_text(tmp_path: Path) -> None:
     folder = render(decided(*standing), tmp_path / "one", changes=changes).parent
     pages = {p.name: p.read_text(encoding="utf-8") for p in folder.glob("*.html")}
     for name, page in pages.items():
-        assert "<script" not in page, name
+        assert page.count("<script") == page.count("script-src 'sha256-"), name  # the page's own, allowed by its hash
         assert "<img" not in page, name
         assert "results hold for the earthquake motion that was used, and for no other" in page, name
         assert "qualified earthquake engineer should be consulted" in page, name

@@ -5,6 +5,7 @@ import json
 from math import inf
 from pathlib import Path
 
+import openpyxl
 import pyarrow.parquet as pq
 import pytest
 
@@ -51,6 +52,29 @@ def test_numbers_survive_exactly(report: Path) -> None:
             assert (None if c[name] is None else float(str(c[name]))) == value
         assert a["assumptions"] == list(finding.assumptions) == c["assumptions"]
     assert inf in [f.utilisation for f in FINDINGS]
+
+
+def test_the_workbook_has_the_same_names_and_numbers(report: Path) -> None:
+    book = openpyxl.load_workbook(report / "findings.xlsx")
+    assert book.sheetnames == ["findings", "recommendations", "objects"]
+    for name in book.sheetnames:
+        rows = list(book[name].iter_rows(values_only=True))
+        text = _rows(report / f"{name}.csv")
+        assert list(rows[0]) == list(text[0])
+        assert len(rows) == len(text) + 1
+    columns = [cell.value for cell in book["findings"][1]]
+    for finding, row in zip(FINDINGS, book["findings"].iter_rows(min_row=2, values_only=True), strict=True):
+        found = dict(zip(columns, row, strict=True))
+        assert found["demand"] == finding.demand
+        capacity = finding.capacity
+        assert found["capacity"] == ("inf" if capacity == inf else capacity)
+
+
+def test_no_cell_of_the_workbook_is_a_formula(report: Path) -> None:
+    book = openpyxl.load_workbook(report / "findings.xlsx")
+    cells = [cell for sheet in book for row in sheet.iter_rows() for cell in row]
+    assert {cell.data_type for cell in cells} <= {"s", "n", "b", "inlineStr"}
+    assert builder.HOSTILE["H.3"] in {cell.value for cell in cells}
 
 
 def test_every_object_is_exported_even_where_nothing_was_found(report: Path) -> None:

@@ -1,0 +1,107 @@
+"""The language of the pages: phrases are English in the code, and looked up in the museum's catalogue when shown."""
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from gettext import NullTranslations, translation
+from pathlib import Path
+
+from pipeline.report.errors import ReportError
+
+DOMAIN = "kouros"
+"""The name of a catalogue: <folder>/<language>/LC_MESSAGES/kouros.mo."""
+
+_RIGHT_TO_LEFT = ("ar", "fa", "he", "ur", "yi")
+
+# The language holds for the rendering of one report, in the thread that renders it; nothing outlives that.
+_PHRASES: ContextVar[NullTranslations | None] = ContextVar("phrases", default=None)
+
+
+@dataclass(frozen=True, slots=True)
+class Language:
+    """A language of the pages; English, which needs no catalogue, where nothing is said.
+
+    code : a language tag, such as "it" or "pt-BR"
+    """
+
+    code: str = "en"
+    phrases: NullTranslations = field(default_factory=NullTranslations, compare=False)
+
+    @property
+    def direction(self) -> str:
+        """Which way it is written, as HTML says it."""
+        return "rtl" if self.code.partition("-")[0].lower() in _RIGHT_TO_LEFT else "ltr"
+
+
+def language(code: str, catalogues: Path | None) -> Language:
+    """Return a language with its phrases; what a catalogue lacks stays English.
+
+    catalogues : the folder of the catalogues; None where the settings name none
+    raises     : ReportError for another language than English without a catalogue, or with a damaged one
+    """
+    tag = code.replace("_", "-")
+    if catalogues is None:
+        if tag.partition("-")[0].lower() == "en":
+            return Language(tag)
+        raise ReportError(f"[report] language is {code!r}, and [report] catalogues names no folder: name it")
+    locale = tag.replace("-", "_")
+    try:
+        phrases = translation(DOMAIN, str(catalogues), [locale], fallback=locale == "en")
+    except FileNotFoundError as error:
+        raise ReportError(
+            f"there is no {catalogues / locale / 'LC_MESSAGES' / f'{DOMAIN}.mo'}; compile the catalogue, "
+            "or correct [report] language and catalogues"
+        ) from error
+    except (OSError, UnicodeDecodeError, ValueError) as error:
+        raise ReportError(
+            f"the catalogue of {code!r} in {catalogues} is damaged ({error}); compile it again"
+        ) from error
+    _check(phrases, code)
+    return Language(tag, phrases)
+
+
+_NAMES = re.compile(r"%\((\w+)\)s|\{(\w+)\}")
+
+
+def _check(phrases: NullTranslations, code: str) -> None:
+    # gettext offers no other way to look at a whole catalogue; NullTranslations has none.
+    catalogue: dict[str | tuple[str, int], str] = getattr(phrases, "_catalog", {})
+    for key, told in catalogue.items():
+        phrase = key if isinstance(key, str) else key[0]
+        unknown = {*_NAMES.findall(told)} - {*_NAMES.findall(phrase), ("count", "")} if phrase else set()
+        if unknown:
+            names = ", ".join(sorted(a or b for a, b in unknown))
+            raise ReportError(
+                f"the catalogue of {code!r} translates {phrase!r} by {told!r}, which asks for {names}: "
+                "use only the names of the phrase itself"
+            )
+
+
+@contextmanager
+def speaking(chosen: Language) -> Iterator[None]:
+    """Look all phrases up in this language, until the end of the block."""
+    token = _PHRASES.set(chosen.phrases)
+    try:
+        yield
+    finally:
+        _PHRASES.reset(token)
+
+
+def _(phrase: str) -> str:
+    """Return a phrase in the reader's language; "" stays "" (a catalogue keeps its own header there)."""
+    phrases = _PHRASES.get()
+    return phrase if phrases is None or not phrase else phrases.gettext(phrase)
+
+
+_SENTENCES = re.compile(r"(?<=[.!?;:]) ")
+
+
+def said(text: str) -> str:
+    """Return a text of the run (a title, sentences with placeholders) in the reader's language.
+
+    The whole text is looked up first, then sentence by sentence: the models put theirs together.
+    """
+    whole = _(text)
+    return whole if whole != text else " ".join(_(part) for part in _SENTENCES.split(text))

@@ -1,0 +1,90 @@
+"""The exports as one workbook: a sheet a table, under the names that the text files have."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from datetime import datetime
+from itertools import islice
+from math import isfinite, isnan
+from pathlib import Path
+from typing import Any
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+_MOST = 32_767
+"""Characters that a cell of a spreadsheet can hold."""
+
+_ROWS = 1_048_575
+"""Rows below the header that a sheet can hold; more go on in another sheet."""
+
+_DATE = (1980, 1, 1, 0, 0, 0)
+
+
+def write_workbook(
+    path: Path, sheets: Mapping[str, tuple[Sequence[str], Iterable[Mapping[str, Any]]]], made: datetime
+) -> None:
+    """Write tables to a workbook, row by row; equal tables give equal bytes.
+
+    sheets : name -> (columns, rows); a text is written as text whatever it begins with, a number that no cell can hold
+             as the text "inf" or "-inf", what is unknown as an empty cell, a list joined by "; "
+    made   : when the run began, as the workbook's own date
+    """
+    from openpyxl import Workbook
+    from openpyxl.styles import Font
+    from openpyxl.utils import get_column_letter
+
+    book = Workbook(write_only=True)
+    for name, (columns, rows) in sheets.items():
+        waiting, number = iter(rows), 1
+        batch = list(islice(waiting, _ROWS))
+        while batch or number == 1:
+            sheet = book.create_sheet(name if number == 1 else f"{name} {number}")
+            sheet.freeze_panes = "A2"
+            for at, column in enumerate(columns, start=1):
+                sheet.column_dimensions[get_column_letter(at)].width = max(12, min(40, len(column) + 4))
+            sheet.append([_cell(sheet, column, Font(bold=True)) for column in columns])
+            for row in batch:
+                sheet.append([_cell(sheet, row[column]) for column in columns])
+            batch, number = list(islice(waiting, _ROWS)), number + 1
+    book.properties.creator, book.properties.lastModifiedBy = "Kouros", "Kouros"
+    book.properties.created = book.properties.modified = made
+    aside = path.with_name(f".{path.name}.partial")
+    book.save(aside)
+    _steady(aside, path, made)
+    aside.unlink()
+
+
+def _cell(sheet: Any, value: object, font: Any = None) -> Any:
+    from openpyxl.cell import WriteOnlyCell
+    from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
+
+    cell = WriteOnlyCell(sheet)
+    if font is not None:
+        cell.font = font
+    if value is None or (isinstance(value, float) and isnan(value)):
+        return cell
+    if isinstance(value, bool | int) or (isinstance(value, float) and isfinite(value)):
+        cell.value = value
+    else:
+        text = "; ".join(str(part) for part in value) if isinstance(value, list) else str(value)
+        fit = ILLEGAL_CHARACTERS_RE.sub("\ufffd", text.encode("utf-8", "replace").decode("utf-8"))[:_MOST]
+        cell.value = fit
+        # A leading "=" makes openpyxl write a formula, unless the type says that it is a text.
+        cell.data_type = "s"
+    return cell
+
+
+def _steady(source: Path, target: Path, made: datetime) -> None:
+    """Copy a workbook with one date in place of the clock's, which a zip and openpyxl's properties would keep."""
+    stamp = made.strftime("%Y-%m-%dT%H:%M:%SZ").encode()
+    with ZipFile(source) as old, ZipFile(target, "w", ZIP_DEFLATED) as new:
+        for info in old.infolist():
+            data = old.read(info.filename)
+            if info.filename == "docProps/core.xml":
+                data = _stamped(data, stamp)
+            fixed = ZipInfo(info.filename, _DATE)
+            fixed.compress_type = ZIP_DEFLATED
+            new.writestr(fixed, data)
+
+
+def _stamped(properties: bytes, stamp: bytes) -> bytes:
+    import re
+
+    return re.sub(rb"(<dcterms:(?:created|modified)[^>]*>)[^<]*", rb"\g<1>" + stamp, properties)
