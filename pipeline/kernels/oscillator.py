@@ -373,7 +373,7 @@ def oscillator_batch(
     if n < 2:
         return
     # A sample more, so that the last one has a slope like the others; one by one, as a slice that is set brings numba's
-    # messages about shapes into the compilation, a fifth of it.
+    # messages about shapes into the compilation, a tenth of it.
     a = np.empty(n + 1)
     for i in range(n):
         a[i] = base[i]
