@@ -146,7 +146,7 @@ def _gallery(
         plan=plan_view(pairs, units),
         spacings=spacing_views(spacings, units) if on_display else (),
         rooms=room_views(members, units) if on_display else (),
-        shaking=shaking_view(members, units) if on_display else None,
+        shaking=shaking_view(members) if on_display else None,
         decisions=decisions_view(views),
     )
 

@@ -157,7 +157,7 @@ class Describer:
             problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
             wishes=wish_views(self.wishes.get(item.object_number, ()), self._units),
             grave=any(grave(f) for f in assessment.findings),
-            fragilities=fragility_views(assessment, self._units, drawn=state in (State.ACT, State.OPEN)),
+            fragilities=fragility_views(assessment, drawn=state is State.ACT),
             skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
             decisions=self.decided.of(assessment),
             settled=self.decided.covered(assessment),

@@ -19,7 +19,7 @@ from pipeline.report.units import Units, significant
 _WIDE, _HIGH, _FLOOR = 220.0, 72.0, 58.0
 _MOST = 2.0 * G
 """Right end of the picture's axis, m/s2."""
-_POINTS = 25
+_POINTS = 13
 
 _TOLD = (0.25 * G, 0.5 * G, G)
 """Where the picture's text alternative tells the probability."""
@@ -68,49 +68,51 @@ class RoomView:
 
 @dataclass(frozen=True, slots=True)
 class ShakingView:
-    """From what shaking on the free objects of a gallery fail, beside what others published."""
+    """From what shaking on the free objects of a gallery fail, beside what others published.
+
+    note : why nothing is said of how often that comes; "" where it is said of some
+    """
 
     objects: str
     median: str
     rows: tuple[tuple[str, str, str], ...]
+    note: str
 
 
-def fragility_views(assessment: Assessment, units: Units, *, drawn: bool) -> tuple[FragilityView, ...]:
+def fragility_views(assessment: Assessment, *, drawn: bool) -> tuple[FragilityView, ...]:
     """Return the curves of an object, what fails first to begin with; only that one is drawn."""
     number = clean(assessment.scene.item.object_number)
-    return tuple(_view(f, units, number if drawn and i == 0 else "") for i, f in enumerate(assessment.fragilities))
+    return tuple(_view(f, number if drawn and i == 0 else "") for i, f in enumerate(assessment.fragilities))
 
 
-def _view(f: Fragility, units: Units, draw: str) -> FragilityView:
-    at = units.text(f.median, "m/s2")
+def _view(f: Fragility, draw: str) -> FragilityView:
+    at = in_g(f.median)
     if f.bound:
         phrase = _("stands up to %(at)s at least") if f.bound == ABOVE else _("fails already at %(at)s or less")
         sentence = phrase % {"at": at}
     else:
-        span = units.pair(f.low, f.high, "m/s2")
-        sentence = _("fails from about %(at)s (%(range)s)") % {"at": at, "range": span}
+        span = {"at": at, "low": in_g(f.low), "high": in_g(f.high)}
+        sentence = _("fails from about %(at)s (%(low)s to %(high)s)") % span
     again = "; " + _("stronger shaking of the same kind may pass: the weakest that fails counts") if f.returns else ""
-    beside = "" if f.published_median is None else f"{f.published}: {units.text(f.published_median, 'm/s2')}"
+    beside = "" if f.published_median is None else in_g(f.published_median)
     return FragilityView(
         said(clean(f.title)),
         sentence + again,
         _sources(f),
         _rate(f),
         clean(beside),
-        _picture(f, units, draw) if draw else Markup(""),
+        _picture(f, draw) if draw else Markup(""),
     )
 
 
 def _sources(f: Fragility) -> str:
     motions = _("1 motion") if f.motions == 1 else _("%(count)s motions") % {"count": f.motions}
-    record = _("stated, since %(motions)s cannot tell") if f.stated else _("of %(motions)s")
-    return _(
-        "Dispersion %(whole)s: from record to record %(record)s (%(how)s), from its uncertain measures %(inputs)s, "
-        "of the model %(model)s (stated)."
-    ) % {
+    # That few motions cannot tell it is said once a gallery.
+    record = _("stated") if f.stated else _("of %(motions)s") % {"motions": motions}
+    return _("Dispersion %(whole)s: records %(record)s (%(how)s), measures %(inputs)s, model %(model)s.") % {
         "whole": f"{f.dispersion:.2f}",
         "record": f"{f.record:.2f}",
-        "how": record % {"motions": motions},
+        "how": record,
         "inputs": f"{f.inputs:.2f}",
         "model": f"{f.modelling:.2f}",
     }
@@ -118,12 +120,17 @@ def _sources(f: Fragility) -> str:
 
 def _rate(f: Fragility) -> str:
     if f.annual_rate is None or f.rate_low is None or f.rate_high is None:
-        return said(clean(f.note))
+        return ""
     return _("about once in %(years)s years (%(low)s to %(high)s)") % {
         "years": years(f.annual_rate),
         "low": years(f.rate_high),
         "high": years(f.rate_low),
     }
+
+
+def in_g(acceleration: float) -> str:
+    """Write an acceleration in g with two digits: more would be a boast."""
+    return f"{significant(acceleration / G, 2)}\u202fg"
 
 
 def years(rate: float) -> str:
@@ -136,35 +143,32 @@ def years(rate: float) -> str:
     return count(int(rounded)) if rounded >= 100.0 else significant(period, 2)
 
 
-def _picture(f: Fragility, units: Units, number: str) -> Markup:
+def _picture(f: Fragility, number: str) -> Markup:
     """Return the probability of failing against the peak acceleration of the floor, 0 to 2 g."""
-    steps = [_MOST * i / (_POINTS - 1) for i in range(_POINTS)]
-    curve = path([(_across(a), _FLOOR - 52.0 * f.probability(a)) for a in steps])
+    # Closer together where curves are steep.
+    steps = [_MOST * (i / (_POINTS - 1)) ** 2 for i in range(_POINTS)]
+    curve = path([(round(_across(a)), round(_FLOOR - 52.0 * f.probability(a))) for a in steps])
     beside = f"M{_across(f.published_median):.0f} 6V{_FLOOR:.0f}" if f.published_median is not None else ""
     title = f"{clean(number)}: {said(clean(f.title))}"
     at = [
-        _("%(probability)s at %(acceleration)s")
-        % {"probability": f"{f.probability(a):.0%}", "acceleration": units.text(a, "m/s2")}
+        _("%(probability)s at %(acceleration)s") % {"probability": f"{f.probability(a):.0%}", "acceleration": in_g(a)}
         for a in _TOLD
     ]
-    told = _("Probability of failure against peak acceleration of the floor:") + " " + ", ".join(at)
-    ticks = "".join(
-        f'<text class="tx" x="{_across(g * G):.0f}" y="71">{text}</text>'
-        for g, text in ((0.0, "0"), (1.0, "1"), (2.0, "2 g"))
-    )
+    told = _("Probability of failure at a peak acceleration of the floor:") + " " + ", ".join(at)
     return Markup(
         '<svg class="chart curve" viewBox="0 0 {wide} {high}" role="img"><title>{title}</title><desc>{told}.</desc>'
-        '<path class="ax" d="M10 6V{floor}H210"/><path class="gr" d="M10 32H210"/>'
+        '<path class="ax" d="M10 6V{floor}H200"/>'
     ).format(wide=int(_WIDE), high=int(_HIGH), floor=int(_FLOOR), title=title, told=told) + Markup(  # noqa: S704
-        (f'<path class="gd" d="{beside}"/>' if beside else "") + f'<path class="cu" d="{curve}"/>{ticks}</svg>'
+        (f'<path class="gd" d="{beside}"/>' if beside else "")
+        + f'<path class="cu" d="{curve}"/><text class="ty" x="216" y="68">2 g</text></svg>'
     )
 
 
 def _across(acceleration: float) -> float:
-    return 10.0 + 200.0 * min(acceleration / _MOST, 1.0)
+    return 10.0 + 190.0 * min(acceleration / _MOST, 1.0)
 
 
-def shaking_view(members: Sequence[Assessment], units: Units) -> ShakingView | None:
+def shaking_view(members: Sequence[Assessment]) -> ShakingView | None:
     """Return the median of the free objects' medians beside the published ones; None where there is none.
 
     Where half of them stand at all that was tried, the median is said to be at least that.
@@ -174,11 +178,10 @@ def shaking_view(members: Sequence[Assessment], units: Units) -> ShakingView | N
         return None
     middle = median(inf if f.bound == ABOVE else f.median for f in free)
     least = max(f.median for f in free)
-    text = (
-        units.text(middle, "m/s2") if isfinite(middle) else _("above %(least)s") % {"least": units.text(least, "m/s2")}
-    )
-    rows = tuple((said(p.what), units.text(p.median, "m/s2"), p.source) for p in all_published())
-    return ShakingView(count(len(free)), text, rows)
+    text = in_g(middle) if isfinite(middle) else _("above %(least)s") % {"least": in_g(least)}
+    rows = tuple((said(p.what), in_g(p.median), p.source) for p in all_published())
+    note = "" if any(f.annual_rate is not None for f in free) else free[0].note
+    return ShakingView(count(len(free)), text, rows, said(clean(note)))
 
 
 def spacing_views(spacings: Sequence[Spacing], units: Units) -> tuple[SpacingView, ...]:
