@@ -91,8 +91,11 @@ def _view(f: Fragility, draw: str) -> FragilityView:
         phrase = _("stands up to %(at)s at least") if f.bound == ABOVE else _("fails already at %(at)s or less")
         sentence = phrase % {"at": at}
     else:
-        span = {"at": at, "low": in_g(f.low), "high": in_g(f.high)}
-        sentence = _("fails from about %(at)s (%(low)s to %(high)s)") % span
+        sentence = _("fails from about %(at)s (%(low)s to %(high)s)") % {
+            "at": at,
+            "low": in_g(f.low),
+            "high": in_g(f.high),
+        }
     again = "; " + _("stronger shaking of the same kind may pass: the weakest that fails counts") if f.returns else ""
     beside = "" if f.published_median is None else in_g(f.published_median)
     return FragilityView(

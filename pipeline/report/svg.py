@@ -203,7 +203,7 @@ class Drawing:
         taken = [(self.x.at(s.x * self._fx), self.y.at(s.y * self._fy)) for s in shown]
         return (
             f'<svg class="chart" viewBox="0 0 {WIDTH} {HEIGHT}" role="img">'
-            f'<title>{escape(title)}</title><desc>{escape(read)}</desc>'
+            f"<title>{escape(title)}</title><desc>{escape(read)}</desc>"
             f'<use href="#{self.ident}"/>'
             f"{self._zone_labels(taken)}{marks}</svg>"
         )
