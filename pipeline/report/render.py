@@ -134,10 +134,10 @@ def _drawn(keys: Sequence[str], drawings: Mapping[str, Drawing]) -> dict[str, An
     mine = {key: drawings[key] for key in keys}
     symbols = PATTERNS + "".join(d.symbol() for d in mine.values())
 
-    def figure(view: FigureView, ident: str, subject: str) -> Markup:
-        return Markup(mine[view.chart].figure(view.spots, ident, subject))  # noqa: S704
+    def figure(view: FigureView, subject: str) -> Markup:
+        return Markup(mine[view.chart].figure(view.spots, subject))  # noqa: S704
 
-    def bare(key: str, ident: str) -> Markup:
-        return Markup(mine[key].figure((), ident, ""))  # noqa: S704
+    def bare(key: str) -> Markup:
+        return Markup(mine[key].figure((), ""))  # noqa: S704
 
     return {"drawings": mine, "symbols": Markup(symbols), "figure": figure, "bare": bare}  # noqa: S704

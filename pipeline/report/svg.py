@@ -185,10 +185,9 @@ class Drawing:
 
     # -- a figure -----------------------------------------------------------------------------------------------------
 
-    def figure(self, spots: Sequence[Spot], ident: str, subject: str) -> str:
+    def figure(self, spots: Sequence[Spot], subject: str) -> str:
         """Return an <svg> that uses the symbol and marks an object on it, with a text alternative.
 
-        ident   : prefix of the ids of the title and description within the page
         subject : what is marked, in words, for the description; "" for a chart that marks nothing
         """
         shown = [s for s in spots if not (isnan(s.x) or isnan(s.y))]
@@ -203,8 +202,8 @@ class Drawing:
         marks = "".join(self._spot(s, self._label_line(s, shown)) for s in shown)
         taken = [(self.x.at(s.x * self._fx), self.y.at(s.y * self._fy)) for s in shown]
         return (
-            f'<svg class="chart" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-labelledby="{ident}t {ident}d">'
-            f'<title id="{ident}t">{escape(title)}</title><desc id="{ident}d">{escape(read)}</desc>'
+            f'<svg class="chart" viewBox="0 0 {WIDTH} {HEIGHT}" role="img">'
+            f"<title>{escape(title)}</title><desc>{escape(read)}</desc>"
             f'<use href="#{self.ident}"/>'
             f"{self._zone_labels(taken)}{marks}</svg>"
         )

@@ -89,7 +89,7 @@ def test_label_places_lie_wholly_inside_a_concave_zone() -> None:
 
 
 def _figure(*spots: Spot, units: Units | None = None) -> etree._Element:
-    return etree.fromstring(Drawing(SQUARE, units or Units(), "c0").figure(spots, "f", "12 <b>"))
+    return etree.fromstring(Drawing(SQUARE, units or Units(), "c0").figure(spots, "12 <b>"))
 
 
 def test_a_mark_is_drawn_where_the_data_say() -> None:
