@@ -24,7 +24,7 @@ FIRST = np.int64(0)
 def samples(values: Array) -> Array:
     """Return samples of a motion as the kernels take them: contiguous and writable, a copy where they are not.
 
-    For an array that may not be written numba compiles each kernel once more: a third of the time of a first rocking body.
+    For an array that may not be written numba compiles each kernel once more, a third of a first rocking body.
     """
     return np.require(values, np.float64, ["C", "W"])
 
