@@ -156,7 +156,7 @@ def test_an_accepted_risk_stands_beside_the_verdict(museum: Path) -> None:
     assert (summary.decisions, summary.doubted) == ({"accept": 1, "verdict": 1}, [])
     assert not any(text.startswith("1 ") for text in summary.first)
     page = next((museum / "reports" / "latest").glob("a-*.html")).read_text(encoding="utf-8")
-    first = page[page.index('id="first"') : page.index('id="decided"')]
+    first = page[page.index('id="first"') : page.index('id="measure"')]
     assert ">1</bdi>" not in first
     assert ">2</bdi>" in first  # sliding still fails there
     assert "Accepted risks" in page
@@ -333,4 +333,5 @@ def test_hostile_words_reach_the_page_as_text(museum: Path) -> None:
     pages = {p.name: p.read_text(encoding="utf-8") for p in (museum / "reports" / "latest").resolve().glob("*.html")}
     assert "&lt;script&gt;alert(1)&lt;/script&gt;&#34;&#39;&amp;{{7*7}}" in pages["index.html"]
     assert "the object is no longer in the inventory" in pages["index.html"]
-    assert not any("<script" in page for page in pages.values())
+    # A gallery has one script of its own, to sort and filter; none comes from what people wrote.
+    assert all(page.count("<script") <= 1 and "<script>alert" not in page for page in pages.values())
