@@ -14,7 +14,6 @@ from sqlalchemy import (
     Connection,
     Double,
     Engine,
-    Index,
     Integer,
     RowMapping,
     Table,
@@ -61,7 +60,6 @@ ITEM = Table(
     Column("since", Integer(), primary_key=True, autoincrement=False),
     Column("until", Integer(), nullable=True),
     Column("digest", Text(), nullable=False),
-    Index(None, "until"),
 )
 """One row for each state of an object: a column for each field of Item, of the same name; lists as JSON.
 

@@ -26,7 +26,6 @@ def upgrade() -> None:
         item.create_primary_key("pk_item", ["object_number", "since"])
         for name in ("aat", "dimensions", "digest", "provenance", "since"):
             item.alter_column(name, server_default=None)
-    op.create_index("ix_item_until", "item", ["until"])
     op.create_table(
         "supplement",
         sa.Column("object_number", sa.Text(), nullable=False),
