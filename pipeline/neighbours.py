@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from pipeline.models import model_named
+from pipeline.plan import corners, own_angle
 from pipeline.quantities import Array, G
 from pipeline.records import Estimate, Finding, Motion, Scene, Spacing, Support, Verdict
 from pipeline.response import trace
@@ -214,21 +215,16 @@ Variant = tuple[str, tuple[tuple[str, float], ...]]
 
 def _variants(place: Place) -> list[Variant]:
     """Return the parameter sets of an object: the best estimates, then one input at a time at its ends."""
-    known = {q.name: place.scene.parameters[q.name] for q in model_named(place.model).needs
-             if q.name in place.scene.parameters}  # fmt: skip
-    best = {name: estimate.value for name, estimate in known.items()}
-    sets = [best]
-    for name, estimate in known.items():
-        if estimate.low < estimate.high:
-            sets += [best | {name: estimate.low}, best | {name: estimate.high}]
-    return [(place.model, tuple(one.items())) for one in sets]
+    known = place.scene.parameters
+    names = [q.name for q in model_named(place.model).needs if q.name in known]
+    best, low, high = (np.array([[getattr(known[n], end) for n in names]]) for end in ("value", "low", "high"))
+    sets, _ = corners(best, low, high, low < high)
+    return [(place.model, tuple(zip(names, one, strict=True))) for one in sets.tolist()]
 
 
 def _angle(place: Place, x_azimuth: float) -> float | None:
-    orientation = place.scene.item.orientation_deg
-    if model_named(place.model).directions != 1 or orientation is None:
-        return None
-    return x_azimuth - orientation
+    angle = own_angle(model_named(place.model), place.scene, x_azimuth)
+    return None if np.isnan(angle) else angle
 
 
 @dataclass(frozen=True)

@@ -167,7 +167,7 @@ def _reason(model: Model, scene: Scene) -> str:
 def _gather(model: Model, scenes: Sequence[Scene], chosen: Sequence[int], x_azimuth: float) -> Work:
     """Return the parameter sets of the scenes that a model is run for."""
     axes = model.axes if model.directions == 1 else ({},)
-    angles = np.array([_own_angle(model, scenes[index], x_azimuth) for index in chosen])
+    angles = np.array([own_angle(model, scenes[index], x_azimuth) for index in chosen])
     turned = ~np.isnan(angles)
     if not turned.any():
         axes = ({},)
@@ -182,7 +182,7 @@ def _gather(model: Model, scenes: Sequence[Scene], chosen: Sequence[int], x_azim
     for _, name, _ in own:
         uncertain[turned, names.index(name)] = False
     uncertain[~turned, len(names) :] = False
-    sets, analysis = _corners(base, low, high, uncertain)
+    sets, analysis = corners(base, low, high, uncertain)
     along = []
     for at in range(len(axes)):
         one = sets[:, : len(names)].copy()
@@ -202,7 +202,7 @@ def _gather(model: Model, scenes: Sequence[Scene], chosen: Sequence[int], x_azim
     )
 
 
-def _own_angle(model: Model, scene: Scene, x_azimuth: float) -> float:
+def own_angle(model: Model, scene: Scene, x_azimuth: float) -> float:
     """Return the direction of an object's width, degrees from x towards y; NaN where it is not known or not needed."""
     orientation = scene.item.orientation_deg
     if orientation is None or model.directions != 1:
@@ -230,7 +230,7 @@ def _estimates(
     return value, low, high
 
 
-def _corners(base: Array, low: Array, high: Array, uncertain: NDArray[np.bool_]) -> tuple[Array, Indices]:
+def corners(base: Array, low: Array, high: Array, uncertain: NDArray[np.bool_]) -> tuple[Array, Indices]:
     """Return the best estimates (m, n), each followed by copies with one uncertain input at its low or high end.
 
     What each of them can do to the demand on its own.

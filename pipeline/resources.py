@@ -1,8 +1,27 @@
 """Where the files that travel with Kouros are, in a checkout and in an installed wheel alike."""
 
+import hashlib
+from collections.abc import Iterable
 from pathlib import Path
 
 _PACKAGE = Path(__file__).resolve().parent
+
+
+def digest_of(*parts: str, kinds: Iterable[str] = (".py",), but: Iterable[str] = ()) -> str:
+    """Return the SHA-256 of files of the package, names included: what is kept depends on the code that made it.
+
+    parts : files, and folders with all below them; none: the whole package
+    kinds : endings of the files in folders that count
+    but   : folders at the top of the package that are left out
+    """
+    found = {file for part in parts or ("",) for file in (_PACKAGE / part, *(_PACKAGE / part).rglob("*"))}
+    left_out = set(but)
+    digest = hashlib.sha256()
+    for file in sorted(found):
+        name = file.relative_to(_PACKAGE)
+        if file.suffix in kinds and file.is_file() and name.parts[0] not in left_out:
+            digest.update(name.as_posix().encode() + b"\0" + file.read_bytes())
+    return digest.hexdigest()
 
 
 def resource(*parts: str) -> Path:

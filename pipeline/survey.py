@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from pipeline.assess import assess
-from pipeline.models import MODELS
-from pipeline.records import Estimate, Executor, Finding, Origin, Progress, Scene, Verdict, Wish
+from pipeline.models import model_named
+from pipeline.records import Estimate, Executor, Finding, Origin, Progress, Scene, Silent, Verdict, Wish
 from pipeline.tables import number, table
 from pipeline.verdicts import LevelMotions
 
@@ -87,7 +87,7 @@ def wishes(
             [_measured(trial, end) for trial, end in tried],
             levels,
             executor,
-            _Silent(),
+            Silent(),
             fidelity=fidelity,
             azimuth_step=azimuth_step,
             outcomes=False,
@@ -103,7 +103,7 @@ def wishes(
 
 def in_order(found: Sequence[Wish]) -> list[Wish]:
     """Return the wishes, what settles most first; ties by gallery, object and field."""
-    return sorted(found, key=lambda w: (-(w.settles + w.unlocks), -w.unlocks, w.gallery, w.object_number, w.field))
+    return sorted(found, key=lambda w: (-w.gain, -w.unlocks, w.gallery, w.object_number, w.field))
 
 
 def by_gallery(found: Sequence[Wish]) -> Mapping[str, Sequence[Wish]]:
@@ -130,7 +130,6 @@ def _trials(scene: Scene, findings: Sequence[Finding]) -> list[_Trial]:
     still = {(f.model, f.level) for f in findings if f.verdict is Verdict.UNDETERMINED}
     if not still:
         return []
-    used = {model.name: _inputs(model.name) for model in MODELS}
     out = []
     for measurable in measurables():
         uncertain = [
@@ -138,17 +137,17 @@ def _trials(scene: Scene, findings: Sequence[Finding]) -> list[_Trial]:
             for name in measurable.parameters
             if name in scene.parameters and scene.parameters[name].low < scene.parameters[name].high
         ]
-        mine = frozenset((m, level) for m, level in still if used[m] & set(measurable.parameters))
+        mine = frozenset((m, level) for m, level in still if _inputs(m) & set(measurable.parameters))
         if uncertain and mine:
             models = tuple(dict.fromkeys(model for model, _ in sorted(mine)))
             out.append(_Trial(scene, measurable, mine, models, uncertain[0].note or "derived"))
     return out
 
 
-def _inputs(name: str) -> set[str]:
-    model = next(m for m in MODELS if m.name == name)
-    capacity = {model.capacity} if isinstance(model.capacity, str) else set()
-    return set(model.inputs) | capacity
+@cache
+def _inputs(name: str) -> frozenset[str]:
+    model = model_named(name)
+    return frozenset(model.inputs) | ({model.capacity} if isinstance(model.capacity, str) else frozenset())
 
 
 def _missing(scene: Scene) -> list[_Trial]:
@@ -191,10 +190,3 @@ def _wish(trial: _Trial, settles: float) -> Wish:
         settles,
         trial.unlocks,
     )
-
-
-class _Silent:
-    """The trials are one step of the survey's own progress."""
-
-    def step(self, what: str, done: int, total: int) -> None:
-        """Say nothing."""

@@ -22,6 +22,7 @@ from pipeline.charting.refine import Cells
 from pipeline.charting.response_chart import ResponseChart
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.records import ChartAxis
+from pipeline.resources import digest_of
 
 LARGEST = 16_000_000
 """Bytes beyond which a file is no chart: the largest have 0.5 MB."""
@@ -48,12 +49,7 @@ class ChartWarning(UserWarning):
 @cache
 def _code() -> str:
     """What computes a chart besides the kernels, as one hash: models, records, charts and the search of directions."""
-    digest = hashlib.sha256()
-    package = Path(__file__).parents[1]
-    for source in sorted(s for folder in ("charting", "models", "records") for s in (package / folder).glob("*.py")):
-        digest.update(source.read_bytes())
-    digest.update((package / "response.py").read_bytes())
-    return digest.hexdigest()[:12]
+    return digest_of("charting", "models", "records", "response.py")[:12]
 
 
 def code_version() -> str:

@@ -13,6 +13,7 @@ from pipeline.cli.options import Options, as_json
 
 if TYPE_CHECKING:
     from pipeline.collection.inventory import Difference
+    from pipeline.collection.reading import Reading
     from pipeline.jobs.importing import Imported
 
 
@@ -132,11 +133,7 @@ def _sheet(options: Options, source: str, wanted_json: bool) -> None:
     settings = options.settings()
     with locked(settings):
         reading, changes, unknown = add_measurements(open_workspace(settings), Path(source))
-    problems = [
-        f"row {place[0]}, {item.object_number}: {p.field}: {p.message}; {p.remedy}"
-        for item, place in zip(reading.items, reading.places, strict=True)
-        for p in item.problems
-    ]
+    problems = _problems(reading)
     if wanted_json:
         rejected = [asdict(r) for r in reading.rejected]
         found = {"changes": asdict(changes), "unknown": unknown, "problems": problems, "rejected": rejected}
@@ -206,10 +203,7 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
     )
     listed("rejected", [f"{r.message}; {r.remedy}" for r in reading.rejected])
     listed("suspicion", [f"{s.message}; {s.remedy}" for s in reading.suspicions])
-    problems = []
-    for item, place in zip(reading.items, reading.places, strict=True):
-        problems += [f"row {place[0]}, {item.object_number}: {p.field}: {p.message}; {p.remedy}" for p in item.problems]
-    listed("problem", problems)
+    listed("problem", _problems(reading))
     if done.changes is None:
         return
     c = done.changes.counts
@@ -223,6 +217,14 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
         click.echo(f"log: {done.log}")
     else:
         click.echo("nothing has changed since the last import")
+
+
+def _problems(reading: "Reading") -> list[str]:
+    return [
+        f"row {place[0]}, {item.object_number}: {p.field}: {p.message}; {p.remedy}"
+        for item, place in zip(reading.items, reading.places, strict=True)
+        for p in item.problems
+    ]
 
 
 def _changed(changes: "Difference") -> None:

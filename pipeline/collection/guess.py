@@ -6,7 +6,7 @@ import csv
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
 from itertools import islice
 from pathlib import Path
 from unicodedata import normalize
@@ -17,6 +17,7 @@ from pipeline.collection.dimensions import parse
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.mapping import DIAMETER, WRITTEN, Mapping
 from pipeline.collection.record import KINDS, units_of
+from pipeline.collection.sources.files import unreadable
 from pipeline.collection.sources.opening import open_source
 from pipeline.tables import table
 
@@ -52,18 +53,20 @@ class Guess:
 
 @dataclass
 class _Column:
+    """A column, whole when it is asked about."""
+
     name: str
     values: list[str] = field(default_factory=list)
 
-    @property
+    @cached_property
     def filled(self) -> list[str]:
         return [value.strip() for value in self.values if value.strip()]
 
-    @property
+    @cached_property
     def numbers(self) -> list[str]:
         return [value for value in self.filled if _NUMBER.fullmatch(value)]
 
-    @property
+    @cached_property
     def dimensional(self) -> float:
         """Share of its texts that hold a dimension with a unit."""
         some = self.filled[:200]
@@ -103,7 +106,7 @@ def _source(path: Path) -> dict[str, str]:
         with path.open("rb") as stream:
             head = stream.read(SNIFFED)
     except OSError as problem:
-        raise CollectionError(f"{path}: cannot be read: {problem.strerror or problem}") from problem
+        raise unreadable(path, problem) from problem
     if head.startswith(b"PK\x03\x04"):
         return {"format": "xlsx"}
     if b"lido-schema.org" in head[:4096]:

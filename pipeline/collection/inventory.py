@@ -18,6 +18,7 @@ from sqlalchemy import (
     RowMapping,
     Table,
     Text,
+    bindparam,
     func,
     insert,
     select,
@@ -368,10 +369,11 @@ def _write(
     for start in range(0, len(ended), NAMED):
         some = ITEM.c.object_number.in_(ended[start : start + NAMED])
         connection.execute(update(ITEM).where(ITEM.c.until.is_(None), some).values(until=version))
-    for number in digests.keys() - new:
-        # The same record, whose digest an older version of Kouros did not know.
-        mine = (ITEM.c.object_number == number) & ITEM.c.until.is_(None)
-        connection.execute(update(ITEM).where(mine).values(digest=digests[number]))
+    same = [{"number": number, "found": digests[number]} for number in digests.keys() - new]
+    if same:
+        # The same records, whose digests an older version of Kouros did not know.
+        mine = (ITEM.c.object_number == bindparam("number")) & ITEM.c.until.is_(None)
+        connection.execute(update(ITEM).where(mine).values(digest=bindparam("found")), same)
     fresh = [item for item in items if item.object_number in new]
     for start in range(0, len(fresh), CHUNK):
         chunk = fresh[start : start + CHUNK]

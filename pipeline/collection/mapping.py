@@ -32,7 +32,6 @@ DIAMETER = "diameter_m"
 """The one column that is not a field of the record: it fills width_m and depth_m where they are missing."""
 
 MAPPABLE = (*(name for name, kind in KINDS.items() if kind != "list" and name != "dimensions"), DIAMETER)
-
 """What a mapping may name under [columns]."""
 
 WRITTEN = "as written"

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Any
 
 from pipeline.collection.cells import Cells
-from pipeline.collection.dimensions import Choice, Dimensions, Part, choose, parse
+from pipeline.collection.dimensions import Choice, Dimensions, Part, agree, choose, parse
 from pipeline.collection.mapping import ColumnMap, Texts
 from pipeline.collection.record import TEXT_LIMIT
 from pipeline.records import Origin, Problem, Provenance
@@ -22,9 +23,6 @@ FIELDS: Mapping[str, tuple[str, ...]] = {
 }
 """What a text says -> the fields that it fills, in the order in which they are filled."""
 
-AGREE_ABSOLUTE, AGREE_RELATIVE = 0.003, 0.03
-"""Two numbers for one thing contradict each other where they differ by more than both: 3 mm (or 3 g) and 3 %."""
-
 _PART = "weight of a part"
 """How the reason of a weight begins that is not the whole object's."""
 
@@ -38,16 +36,20 @@ _WORTH_A_WORD = {
 """Notes on a text that a person should mend, and how."""
 
 
+@cache
+def _joined(columns: tuple[str, ...]) -> ColumnMap:
+    return ColumnMap(columns=columns, separator="; ")
+
+
 def fill(values: dict[str, Any], cells: Cells, mapping: Texts, texts: Sequence[str], decimal: str) -> None:
     """Fill what no column gives from the texts of a row; where both speak, say whether they agree.
 
     values : of the record so far; changed in place, as are the cells' provenance and problems
     texts  : of the mapping's columns, in its order; the first that says something counts
     """
-    column = ColumnMap(columns=mapping.columns, separator="; ")
     # Lines are how such texts are written, and no fault of theirs.
     lines = ["; ".join(filter(None, (line.strip() for line in text.splitlines()))) for text in texts]
-    values["dimensions"] = cells.text("dimensions", column, lines, limit=TEXT_LIMIT)
+    values["dimensions"] = cells.text("dimensions", _joined(mapping.columns), lines, limit=TEXT_LIMIT)
     given = {field for field in FIELDS_FILLED if values.get(field) is not None}
     for text in texts:
         if text.strip():
@@ -88,7 +90,7 @@ def _fill_from(values: dict[str, Any], given: set[str], cells: Cells, read: Dime
 def _compare(field: str, value: float, choice: Choice, cells: Cells) -> None:
     if any(p.field == field and p.message.startswith("the text says") for p in cells.problems):
         return
-    if abs(value - choice.value) > max(AGREE_ABSOLUTE, AGREE_RELATIVE * max(value, choice.value)):
+    if not agree(value, choice.value, "mass" if field == "mass_kg" else "length"):
         unit = "kg" if field == "mass_kg" else "m"
         message = f"the text says {choice.value:.4g} {unit} ({choice.why}), its own column {value:.4g}, which is used"
         cells.problems.append(Problem(field, message, "see which is right, and correct the other"))

@@ -128,10 +128,8 @@ class _Desk:
             self._reject(row, "", message, remedy)
             return
         cells = Cells(self._decimal)
-        for field, column, places in self._columns:
-            for cell in places:
-                if cell in row.faults:
-                    cells.refuse(field, column, *row.faults[cell])
+        if row.faults:
+            self._refuse_cells(row, cells)
         values: dict[str, Any] = self._constants | {
             field: _READ[KINDS.get(field, "number")](cells, field, column, [row.cells[i] for i in places])
             for field, column, places in self._columns
@@ -163,6 +161,12 @@ class _Desk:
             self._seen[number] = row.number
             self.items.append(self._item(values, cells))
             self.places.append((row.number, row.line))
+
+    def _refuse_cells(self, row: Row, cells: Cells) -> None:
+        for field, column, places in self._columns:
+            for cell in places:
+                if cell in row.faults:
+                    cells.refuse(field, column, *row.faults[cell])
 
     def _item(self, values: dict[str, Any], cells: Cells) -> Item:
         said = values.pop("on_display", None)

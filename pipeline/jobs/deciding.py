@@ -5,7 +5,6 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
-from difflib import get_close_matches
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from pipeline.classify import classify, object_classes
 from pipeline.collection.inventory import fields_since, items_named, object_numbers
 from pipeline.collection.record import digest_of
 from pipeline.jobs.doubts import now, standing
-from pipeline.jobs.workspace import UsageError, Workspace
+from pipeline.jobs.workspace import UsageError, Workspace, near, site_folder
 from pipeline.mitigate.installed import Measure, Placed, installable, placed
 from pipeline.models import MODELS
 from pipeline.motions.manifest import load_manifest
@@ -125,9 +124,7 @@ def _day(option: str, text: str) -> date:
 
 
 def _nowhere(number: str, known: Sequence[str]) -> str:
-    close = get_close_matches(number, known, n=3)
-    hint = f"; did you mean {' or '.join(repr(c) for c in close)}?" if close else ""
-    return f"there is no object {number!r} in the inventory{hint}"
+    return f"there is no object {number!r} in the inventory{near(number, known)}"
 
 
 def _one(words: Sequence[str], what: str) -> str:
@@ -161,8 +158,6 @@ def _concerning(workspace: Workspace, wish: Wish, basis: Sequence[Basis]) -> Non
     if wish.model:
         _of(wish.model, (model.name for model in MODELS), "model")
     if wish.level:
-        from pipeline.jobs.workspace import site_folder
-
         settings = workspace.settings
         manifest = load_manifest(site_folder(settings, settings.site.folder))
         _of(wish.level, (level.name for level in manifest.level), "level")

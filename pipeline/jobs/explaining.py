@@ -14,9 +14,8 @@ from pipeline.findings import findings
 from pipeline.jobs.deciding import decided, place
 from pipeline.jobs.levels import storeys
 from pipeline.jobs.nightly import named
-from pipeline.jobs.workspace import KEPT, Workspace, charts_of, site_folder
+from pipeline.jobs.workspace import Workspace, charts_of
 from pipeline.mitigate import advise
-from pipeline.motions.site import read_site
 from pipeline.plan import Work, plan
 from pipeline.quantities import Array
 from pipeline.records import Estimate, Executor, Finding, Item, Progress, Recommendation, Scene
@@ -70,7 +69,7 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
     settings = workspace.settings
     inventory = read_inventory(workspace.engine)
     items = named(inventory, objects=(number,))
-    site = read_site(site_folder(settings, settings.site.folder), kept=settings.path(KEPT))
+    site = workspace.site()
     executor, decisions = Threads(settings.analysis.workers or None), decided(workspace)
     out = []
     for storey in storeys(settings, site, items):

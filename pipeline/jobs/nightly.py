@@ -5,7 +5,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from difflib import get_close_matches
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -30,14 +29,14 @@ from pipeline.jobs.workspace import (
     Workspace,
     charts_of,
     locked,
+    near,
     open_workspace,
-    site_folder,
 )
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import advise
 from pipeline.mitigate.installed import assess_above
 from pipeline.models import model_named
-from pipeline.motions.site import Level, Site, read_site
+from pipeline.motions.site import Level, Site
 from pipeline.neighbours import neighbours
 from pipeline.records import (
     Assessment,
@@ -56,17 +55,12 @@ from pipeline.records import (
     Wish,
 )
 from pipeline.report import publish, render
+from pipeline.report.compose import EFFORTS
+from pipeline.report.survey_words import SURVEY_SECONDS
 from pipeline.settings import Settings
 from pipeline.store.reuse import CODE, KERNELS, LEVELS, PICTURES, RULES, SELECTION, stored_charts, whole_runs
 from pipeline.store.runs import compare_runs, save_run
 from pipeline.survey import in_order, wishes
-
-EFFORTS = "efforts"
-"""Key of a run's settings: what the verdicts of each model took."""
-
-
-SURVEY_SECONDS = "survey_seconds"
-"""The setting of a run that says what its survey cost."""
 
 
 @dataclass(frozen=True)
@@ -196,15 +190,12 @@ class EmptyCollectionError(ValueError):
 def _known(what: str, wanted: Sequence[str], known: set[str]) -> None:
     for name in wanted:
         if name not in known:
-            close = get_close_matches(name, known, n=3)
-            hint = f"; did you mean {' or '.join(repr(c) for c in close)}?" if close else ""
-            raise UsageError(f"there is no {what} {name!r} in the inventory{hint}")
+            raise UsageError(f"there is no {what} {name!r} in the inventory{near(name, known)}")
 
 
 def _read_site(workspace: Workspace, progress: Progress) -> Site:
     progress.step("motions", 0, 1)
-    settings = workspace.settings
-    site = read_site(site_folder(settings, settings.site.folder), kept=settings.path(KEPT))
+    site = workspace.site()
     progress.step("motions", 1, 1)
     return site
 

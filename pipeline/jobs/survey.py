@@ -12,9 +12,7 @@ from pipeline.collection.reading import Reading, read_items
 from pipeline.execute import Threads
 from pipeline.jobs.deciding import decided, place
 from pipeline.jobs.levels import storeys
-from pipeline.jobs.workspace import KEPT, Workspace, site_folder
-from pipeline.motions.site import read_site
-from pipeline.quantities import LENGTHS
+from pipeline.jobs.workspace import Workspace
 from pipeline.records import Progress, Wish
 from pipeline.report.survey_sheet import HEADER_ROW, column_name, sheet_title, write_survey
 from pipeline.survey import in_order, measurables, wishes
@@ -50,7 +48,7 @@ def survey(
     ]
     if not items:
         raise CollectionError("nothing on display to survey: import the collection, or name another gallery")
-    site = read_site(site_folder(settings, settings.site.folder), kept=settings.path(KEPT))
+    site = workspace.site()
     executor = Threads(settings.analysis.workers or None)
     fidelity, step = settings.analysis.fidelity, settings.analysis.azimuth_step
     if fidelity == "chart":
@@ -93,7 +91,7 @@ def sheet_mapping(length: str) -> Mapping:
     whole["source"] = {"format": "xlsx", "sheet": sheet_title(length), "header_row": HEADER_ROW}
     columns = {}
     for field, column in whole["columns"].items():
-        unit = {"unit": length} if field.endswith("_m") and length in LENGTHS else {}
+        unit = {"unit": length} if field.endswith("_m") else {}
         columns[field] = column | {"column": column_name(field, length)} | unit
     return Mapping.model_validate(whole | {"columns": columns})
 

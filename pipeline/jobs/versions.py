@@ -2,9 +2,8 @@
 
 import hashlib
 from functools import cache
-from pathlib import Path
 
-import pipeline
+from pipeline.resources import digest_of
 from pipeline.settings import Settings
 
 _ELSEWHERE = frozenset({"cli", "collection", "execute", "jobs", "kernels", "motions", "records", "report", "store"})
@@ -14,12 +13,7 @@ _ELSEWHERE = frozenset({"cli", "collection", "execute", "jobs", "kernels", "moti
 @cache
 def code_digest() -> str:
     """Return a digest of the code and the tables that turn items and motions into verdicts."""
-    home = Path(pipeline.__file__).parent
-    digest = hashlib.sha256()
-    for file in sorted(home.rglob("*")):
-        if file.suffix in (".py", ".csv") and file.relative_to(home).parts[0] not in _ELSEWHERE:
-            digest.update(file.relative_to(home).as_posix().encode() + b"\0" + file.read_bytes())
-    return digest.hexdigest()[:12]
+    return digest_of(kinds=(".py", ".csv"), but=_ELSEWHERE)[:12]
 
 
 def rules_digest(settings: Settings) -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from pipeline.charting import Shelf
     from pipeline.collection.database import Database
     from pipeline.mitigate import Means
+    from pipeline.motions.site import Site
 
 KEPT = ".kouros-kept"
 """Folder beside the settings in which processed motions, charts and measurements are kept between nights."""
@@ -65,6 +67,16 @@ class Workspace:
             self._own(wanted.catalogue, "[mitigation] catalogue names the file of your own isolators"),
         )
 
+    def site(self) -> "Site":
+        """Read the site of the settings; its processed motions are kept for the next time.
+
+        raises : MotionError
+        """
+        from pipeline.motions.site import read_site
+
+        settings = self.settings
+        return read_site(site_folder(settings, settings.site.folder), kept=settings.path(KEPT))
+
     def _own(self, name: str, remedy: str) -> Path | None:
         if not name:
             return None
@@ -77,6 +89,12 @@ class Workspace:
     def reports(self) -> Path:
         """The folder of all reports."""
         return self.settings.path(self.settings.report.folder)
+
+
+def near(name: str, known: Collection[str]) -> str:
+    """Return "; did you mean 'x' or 'y'?" for the names that are most like this one, or nothing where none is."""
+    close = get_close_matches(name, known, n=3)
+    return f"; did you mean {' or '.join(map(repr, close))}?" if close else ""
 
 
 def site_folder(settings: Settings, name: str) -> Path:

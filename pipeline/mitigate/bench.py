@@ -13,7 +13,7 @@ from pipeline.mitigate.means import Isolator, Means
 from pipeline.models import model_named
 from pipeline.models.common import largest_push, lift_ratios
 from pipeline.quantities import Array, G
-from pipeline.records import Check, Executor, Finding, Motion, Scene, Verdict
+from pipeline.records import Check, Executor, Finding, Motion, Scene, Silent, Verdict
 from pipeline.response import prepare, respond, transmit
 from pipeline.verdicts import LevelMotions, capacity_of
 
@@ -48,13 +48,6 @@ class Trial:
 
     scene: Scene
     on: Carried | None = None
-
-
-class Silent:
-    """A trial is one of many: nobody is told of each."""
-
-    def step(self, what: str, done: int, total: int) -> None:
-        """Say nothing."""
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from dataclasses import replace
 from math import isfinite
 
 from pipeline.mitigate.bench import Bench, Carried, Trial
-from pipeline.mitigate.changes import changed, held, knows_section
+from pipeline.mitigate.changes import held, knows_section
 from pipeline.mitigate.means import Measure
-from pipeline.mitigate.measures import MARGIN, up
+from pipeline.mitigate.measures import MARGIN, on_floor, up
 from pipeline.mitigate.offers import Need, Offer, Proposal, Way, refused
 from pipeline.records import Scene, Support
 
@@ -50,7 +50,7 @@ def horizontal_isolator(unit: Sequence[Need], bench: Bench, measure: Measure) ->
             "stroke": (stroke, "m"),
             "acceleration": (carried.acceleration, "m/s2"),
         }
-        moving = changed(unit[0].scene, measure.name, {name: value for name, (value, _) in numbers.items()})
+        moving = on_floor(unit[0], measure, numbers)
         stands = tuple((need, _ways(need.scene, carried)) for need in unit)
         mark = ("isolator", isolator.frequency, carried.acceleration)
         offers.append(Offer(numbers, (Trial(moving),), stands, mark=mark))

@@ -11,6 +11,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from pipeline.records import Motion
+from pipeline.resources import digest_of
 
 Processed = tuple[Motion, dict[str, float]]
 """A motion and its measures."""
@@ -18,15 +19,9 @@ Processed = tuple[Motion, dict[str, float]]
 
 @cache
 def _code() -> bytes:
-    """What the sources that motions depend on (floors too) and the libraries that read and filter are, as one hash."""
-    digest = hashlib.sha256()
-    package = Path(__file__).parents[1]
-    for folder in ("motions", "supports", "kernels"):
-        for source in sorted((package / folder).rglob("*.py")):
-            digest.update(source.read_bytes())
-    for library in ("obspy", "scipy", "numpy", "pywavelets"):
-        digest.update(version(library).encode())
-    return digest.digest()
+    """What the sources that motions depend on (floors too) and the libraries that read and filter are."""
+    libraries = (version(library) for library in ("obspy", "scipy", "numpy", "pywavelets"))
+    return "-".join([digest_of("motions", "supports", "kernels"), *libraries]).encode()
 
 
 def key_of(*parts: str) -> str:

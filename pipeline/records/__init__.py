@@ -17,7 +17,7 @@ from pipeline.records.fragility import Fragility
 from pipeline.records.model import Bounds, ChartAxis, Columns, Model
 from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
-from pipeline.records.protocols import Executor, Progress
+from pipeline.records.protocols import Executor, Progress, Silent
 from pipeline.records.result import Assessment, Check, Finding, Recommendation, Spacing, Verdict
 from pipeline.records.run import RunRecord
 from pipeline.records.scene import ITEM_FIELDS, Estimate, Item, Origin, Problem, Provenance, Scene, Support
@@ -62,6 +62,7 @@ __all__ = [
     "RunChanges",
     "RunRecord",
     "Scene",
+    "Silent",
     "Spacing",
     "Standing",
     "Support",

@@ -23,3 +23,10 @@ class Progress(Protocol):
     def step(self, what: str, done: int, total: int) -> None:
         """Report that ``done`` of ``total`` pieces of ``what`` are finished."""
         ...
+
+
+class Silent:
+    """Progress of work that is a part of another's: nobody is told of it."""
+
+    def step(self, what: str, done: int, total: int) -> None:
+        """Say nothing."""

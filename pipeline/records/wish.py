@@ -31,6 +31,11 @@ class Wish:
     unlocks: int
 
     @property
+    def gain(self) -> float:
+        """What measuring it is worth: verdicts that it would settle, and models that it would make possible."""
+        return self.settles + self.unlocks
+
+    @property
     def waste(self) -> bool:
         """Whether measuring it alone would settle nothing, wherever in its range it lies."""
-        return not self.settles and not self.unlocks
+        return not self.gain

@@ -34,6 +34,9 @@ from pipeline.report.views import (
 STORED_PAGE = "not-on-display.html"
 """File of the objects that are not on display; a gallery's file always ends in a hash, so the two never meet."""
 
+EFFORTS = "efforts"
+"""The setting of a run that says what the verdicts of each model took."""
+
 _HELPLESS = "\0"
 """Groups the objects for which nothing helps; no measure of a table can have this name."""
 
@@ -81,7 +84,7 @@ def compose(record: RunRecord, units: Units, changes: RunChanges | None = None) 
         first=tuple([o for o in order if o.state is State.ACT and not o.settled][:8]),
         motions=tuple(motion_view(m, record.charts, units) for m in record.motions),
         level_notes=tuple(clean(n) for n in record.level_notes),
-        efforts=tuple(_effort(e) for e in record.settings.get("efforts") or ()),
+        efforts=tuple(_effort(e) for e in record.settings.get(EFFORTS) or ()),
         self_test=self_test_view(record),
         decided=decided_views(record),
         fidelities=fidelities(record),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from pipeline.quantities import LENGTHS
 from pipeline.records import Wish
 from pipeline.report.exports import safe_cell
+from pipeline.report.workbook import write_text
 
 if TYPE_CHECKING:
     from openpyxl.worksheet.worksheet import Worksheet
@@ -163,8 +164,7 @@ def _headed(sheet: Worksheet, widths: Sequence[int], *, rows: int) -> None:
 
 
 def _write_text(cell: Any, text: str) -> None:
-    # Object numbers must come back as they are: the type says text, and a quotation prefix keeps it one.
-    cell.value = text
-    cell.data_type = "s"
+    write_text(cell, text)
+    # Object numbers must come back as they are: in a sheet that people edit a quotation prefix keeps the text one.
     if safe_cell(text) != text:
         cell.quotePrefix = True

@@ -15,7 +15,7 @@ SURVEY_SECONDS = "survey_seconds"
 
 def wish_views(wishes: Iterable[Wish], units: Units) -> tuple[WishView, ...]:
     """Return what is worth measuring on one object, what settles most first; what settles nothing comes last."""
-    ordered = sorted(wishes, key=lambda w: (-(w.settles + w.unlocks), w.field))
+    ordered = sorted(wishes, key=lambda w: (-w.gain, w.field))
     return tuple(
         WishView(
             what=_label(wish.field),
@@ -37,7 +37,7 @@ def errands(
         item = assessment.scene.item
         for wish in wishes.get(item.object_number, ()):
             if item.on_display and not wish.waste and wish.gallery == item.gallery:
-                found.setdefault(wish.field, []).append((wish.settles + wish.unlocks, wish, view))
+                found.setdefault(wish.field, []).append((wish.gain, wish, view))
     ranked = sorted(found.items(), key=lambda entry: (-sum(gain for gain, _wish, _view in entry[1]), entry[0]))
     out = []
     for name, entries in ranked:

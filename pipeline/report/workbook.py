@@ -53,7 +53,6 @@ def write_workbook(
 
 def _cell(sheet: Any, value: object, font: Any = None) -> Any:
     from openpyxl.cell import WriteOnlyCell
-    from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
 
     cell = WriteOnlyCell(sheet)
     if font is not None:
@@ -64,11 +63,17 @@ def _cell(sheet: Any, value: object, font: Any = None) -> Any:
         cell.value = value
     else:
         text = "; ".join(str(part) for part in value) if isinstance(value, list) else str(value)
-        fit = ILLEGAL_CHARACTERS_RE.sub("\ufffd", text.encode("utf-8", "replace").decode("utf-8"))[:_MOST]
-        cell.value = fit
-        # A leading "=" makes openpyxl write a formula, unless the type says that it is a text.
-        cell.data_type = "s"
+        write_text(cell, text)
     return cell
+
+
+def write_text(cell: Any, text: str) -> None:
+    """Write a text into a cell as a text, whatever it begins with; what no cell can hold is replaced or cut."""
+    from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
+
+    cell.value = ILLEGAL_CHARACTERS_RE.sub("\ufffd", text.encode("utf-8", "replace").decode("utf-8"))[:_MOST]
+    # A leading "=" makes openpyxl write a formula, unless the type says that it is a text.
+    cell.data_type = "s"
 
 
 def _steady(source: Path, target: Path, made: datetime) -> None:

@@ -1,7 +1,8 @@
 """The text of a museum's dimensions field -> measured parts, and the extents of the object that they give."""
 
 from pipeline.collection.dimensions.choice import choose
+from pipeline.collection.dimensions.pairing import agree
 from pipeline.collection.dimensions.parsing import parse
 from pipeline.collection.dimensions.result import Choice, Chosen, Dimensions, Note, Part
 
-__all__ = ["Choice", "Chosen", "Dimensions", "Note", "Part", "choose", "parse"]
+__all__ = ["Choice", "Chosen", "Dimensions", "Note", "Part", "agree", "choose", "parse"]

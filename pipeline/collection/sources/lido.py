@@ -32,6 +32,7 @@ from unicodedata import normalize
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.delimited import RECORD_LIMIT
+from pipeline.collection.sources.files import stream_of
 from pipeline.collection.sources.lido_terms import (
     FORMER,
     KIND_CONCEPTS,
@@ -87,22 +88,12 @@ def read_records(source: str | Path | BinaryIO, file: str, *, languages: Sequenc
     raises : CollectionError for a file that is missing, damaged, incomplete, not LIDO, or declares a document type
     """
     with ExitStack() as stack:
-        stream = stack.enter_context(_open(Path(source), file)) if isinstance(source, str | Path) else source
+        stream = stream_of(source, file, stack)
         yield Row(0, 1, list(COLUMNS))
         preferred = tuple(_language(code) for code in languages)
         for number, record in enumerate(_records(_Bounded(stream, file), file), start=1):
             cells = _Record(record, preferred).cells()
             yield Row(number, record.sourceline, [cells.get(column, "") for column in COLUMNS])
-
-
-def _open(path: Path, file: str) -> BinaryIO:
-    try:
-        return path.open("rb")
-    except OSError as problem:
-        raise CollectionError(
-            f"{file}: cannot be read: {problem.strerror or problem}; see whether the path is right, the share is "
-            "mounted and Kouros may read it"
-        ) from problem
 
 
 class _Bounded:

@@ -14,6 +14,7 @@ from pathlib import Path
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.mapping import Mapping, Source
 from pipeline.collection.sources.delimited import read_rows
+from pipeline.collection.sources.files import unreadable
 from pipeline.collection.sources.rows import Row
 
 FILE_LIMIT = 1 << 30
@@ -117,10 +118,7 @@ def _open(path: Path) -> BufferedReader:
             )
         return path.open("rb")
     except OSError as problem:
-        raise CollectionError(
-            f"{path}: cannot be read: {problem.strerror or problem}; see whether the path is right, the share is "
-            "mounted and Kouros may read it"
-        ) from problem
+        raise unreadable(path, problem) from problem
 
 
 def _digest(binary: BufferedReader, file: str) -> str:

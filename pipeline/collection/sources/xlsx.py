@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.sources.files import stream_of
 from pipeline.collection.sources.rows import Row, as_text
 from pipeline.collection.sources.workbook import SAVE_AGAIN, Range, Survey, check_archive, check_kind, survey
 
@@ -59,7 +60,7 @@ def read_sheet(
              `workbook`, and for a sheet that is not there or has no header
     """
     with ExitStack() as stack:
-        stream = stack.enter_context(_open(Path(source), file)) if isinstance(source, str | Path) else source
+        stream = stream_of(source, file, stack)
         try:
             stream.seek(0)
             check_kind(stream, file)
@@ -77,16 +78,6 @@ def read_sheet(
             raise CollectionError(f"{file}: {page.title!r} ends in row {found.last_row}; say which row is the header")
         if found.last_row:
             yield from _rows(page, file, header_row, found)
-
-
-def _open(path: Path, file: str) -> BinaryIO:
-    try:
-        return path.open("rb")
-    except OSError as problem:
-        raise CollectionError(
-            f"{file}: cannot be read: {problem.strerror or problem}; see whether the path is right, the share is "
-            "mounted and Kouros may read it"
-        ) from problem
 
 
 def _load(stream: BinaryIO, file: str) -> Any:
