@@ -55,7 +55,7 @@ def parameters() -> dict[str, tuple[float, dict[str, Array | float]]]:
 
 
 def in_threads(work: Callable[[Columns], None], values: Columns, alone: float) -> tuple[float, float]:
-    """Return the seconds of one of several batches, each of all objects, in two threads, and the cores these were given.
+    """Return the seconds of one of several batches, each of all objects, in two threads, and the cores they had.
 
     alone : seconds of one batch in one thread
     """
