@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from pipeline import __version__
+from pipeline.charting import Shelf
 from pipeline.charting.grouping import group_name, groups
 from pipeline.charts import chart_keys, charts, picture_version
 from pipeline.classify import classify
@@ -151,10 +152,12 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
 def _charts(workspace: Workspace, motions: Sequence[Motion], brief: Brief, progress: Progress) -> dict[str, Chart]:
     drawn: dict[str, Chart] = {}
     executor: Executor = brief.executor
+    # Not the brief's own, which is made once it is decided what it holds.
+    shelf = Shelf(brief.kept)
     for done, motion in enumerate(motions):
         progress.step("charts", done, len(motions))
         kept = stored_charts(workspace.engine, chart_keys(motion), picture_version())
-        drawn |= kept if len(kept) == len(chart_keys(motion)) else charts(motion, executor, brief.shelf)
+        drawn |= kept if len(kept) == len(chart_keys(motion)) else charts(motion, executor, shelf)
     progress.step("charts", len(motions), len(motions))
     return drawn
 

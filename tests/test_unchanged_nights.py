@@ -1,0 +1,214 @@
+"""A night finds anew only what changed, says so, and shows what an undisturbed first night would show."""
+
+import csv
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from lxml import html
+from sqlalchemy import func, select
+
+from pipeline.cli.console import Console
+from pipeline.collection.database import open_database
+from pipeline.collection.inventory import Listed
+from pipeline.jobs.nightly import Summary, run
+from pipeline.jobs.sheets import LEAST, MOST, cut
+from pipeline.records import RunRecord
+from pipeline.resources import resource
+from pipeline.settings import Settings, load_settings, template
+from pipeline.store.runs import load_run
+from pipeline.store.tables import RESULT
+
+COLUMNS = ("object_number", "title", "object_name", "gallery", "height_m", "width_m", "depth_m", "medium")
+
+
+def rows(galleries: int = 3, each: int = 4) -> list[dict[str, str]]:
+    """A few vases of different sizes in a few galleries."""
+    return [
+        {
+            "object_number": f"{g}.{n}",
+            "title": f"Vase {n}",
+            "object_name": "vase",
+            "gallery": f"Room {g}",
+            "height_m": str(round(0.2 + 0.1 * n, 3)),
+            "width_m": str(round(0.1 + 0.02 * g, 3)),
+            "depth_m": "0.12",
+            "medium": "earthenware",
+        }
+        for g in range(galleries)
+        for n in range(each)
+    ]
+
+
+def write(folder: Path, objects: list[dict[str, str]]) -> None:
+    with (folder / "collection.csv").open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.DictWriter(stream, COLUMNS)
+        writer.writeheader()
+        writer.writerows(objects)
+
+
+def museum(folder: Path, objects: list[dict[str, str]]) -> Settings:
+    folder.mkdir(parents=True)
+    write(folder, objects)
+    text = template(museum="Three rooms", source="collection.csv", mapping="kouros", site="site")
+    (folder / "kouros.toml").write_text(text, encoding="utf-8")
+    shutil.copytree(resource("site_motions", "demo"), folder / "site")
+    return load_settings(folder / "kouros.toml")
+
+
+def night(settings: Settings) -> Summary:
+    return run(settings, Console(quiet=True))
+
+
+def results(settings: Settings) -> int:
+    engine = open_database(settings.database)
+    with engine.connect() as connection:
+        return connection.execute(select(func.count()).select_from(RESULT)).scalar_one()
+
+
+def found(settings: Settings) -> RunRecord:
+    """Return the last run without what tells one night from another."""
+    record = load_run(open_database(settings.database))
+    kept = {k: v for k, v in record.settings.items() if k != "survey_seconds"}
+    return replace(record, run_id="", started="", finished="", settings=kept)
+
+
+@pytest.fixture(scope="module")
+def settings(tmp_path_factory: pytest.TempPathFactory) -> Settings:
+    """A museum after its first night."""
+    made = museum(tmp_path_factory.mktemp("nights") / "museum", rows())
+    assert night(made).fresh == 12
+    return made
+
+
+def test_an_unchanged_night_finds_nothing_anew_and_shows_the_same_files(settings: Settings) -> None:
+    before = settings.path("reports").joinpath("latest").resolve()
+    summary = night(settings)
+    assert summary.report is not None
+    after = summary.report.parent
+    assert (summary.fresh, results(settings)) == (0, 3)
+    pages = sorted(p.name for p in before.glob("room-*.html"))
+    assert len(pages) == 3
+    for name in pages:
+        # The very same file, so that a large museum's unchanged night costs nothing.
+        assert (before / name).samefile(after / name)
+    for name in ("findings.csv", "findings.jsonl", "findings.parquet", "objects.csv", "recommendations.csv"):
+        assert (before / name).read_bytes() == (after / name).read_bytes(), name
+    assert "Nothing has changed since" in (after / "index.html").read_text(encoding="utf-8")
+
+
+def test_one_changed_object_costs_its_own_sheet_and_the_rest_is_taken_over(settings: Settings, tmp_path: Path) -> None:
+    objects = rows()
+    objects[5]["height_m"] = "0.9"
+    write(settings.home, objects)
+    summary = night(settings)
+    assert summary.fresh == 4  # those of its room
+    assert summary.changes is not None
+    assert [change.object_number for change in summary.changes.inputs] == ["1.1"]
+    # A first night of the same museum shows the same, row for row.
+    again = museum(tmp_path / "again", objects)
+    other = night(again)
+    assert found(settings) == found(again)
+    assert summary.report is not None
+    assert other.report is not None
+    for name in ("findings.csv", "objects.csv", "recommendations.csv"):
+        with (summary.report.parent / name).open() as mine, (other.report.parent / name).open() as its:
+            for one, same in zip(csv.DictReader(mine), csv.DictReader(its), strict=True):
+                assert one | {"run": ""} == same | {"run": ""}
+    write(settings.home, rows())
+    # What was found on the first night is still there.
+    assert night(settings).fresh == 0
+
+
+def test_a_changed_motion_is_named_and_all_is_found_anew(settings: Settings) -> None:
+    manifest = settings.home / "site" / "manifest.toml"
+    text = manifest.read_text(encoding="utf-8")
+    manifest.write_text(text.replace("scale_to_pga_g = 0.7", "scale_to_pga_g = 0.6"), encoding="utf-8")
+    summary = night(settings)
+    assert summary.fresh == 12
+    assert summary.changes is not None
+    assert len(summary.changes.motions) == 1
+    manifest.write_text(text, encoding="utf-8")
+    assert night(settings).fresh == 0
+
+
+def test_a_result_that_is_there_is_taken_up_by_a_run_that_was_cut_off(settings: Settings, tmp_path: Path) -> None:
+    """What a run stored before it died needs not be found again, and the report is that of an undisturbed night."""
+    again = museum(tmp_path / "cut", rows())
+    night(again)
+    engine = open_database(again.database)
+    with engine.begin() as connection:
+        # As after a kill: a result and the run itself are not there, two results are.
+        connection.exec_driver_sql("DELETE FROM run")
+        connection.exec_driver_sql("DELETE FROM result WHERE key = (SELECT min(key) FROM result)")
+    shutil.rmtree(again.path("reports"))
+    summary = run(again, Console(quiet=True), resume=True)
+    assert summary.fresh == 4
+    assert found(again).assessments == found(settings).assessments
+
+
+def listed(number: int, case: str = "", gallery: str = "Store") -> Listed:
+    return Listed(f"S.{number:05d}", gallery, case, True, "")
+
+
+def test_a_large_gallery_is_cut_where_its_own_objects_say() -> None:
+    plain = Settings()
+    everything = [listed(n) for n in range(6_000)]
+    sheets = cut(everything, plain)
+    assert [part.number for part in sheets] == list(range(1, len(sheets) + 1))
+    assert {part.of for part in sheets} == {len(sheets)}
+    assert all(LEAST <= len(part.objects) <= MOST for part in sheets[:-1])
+    assert [one for part in sheets for one in part.objects] == everything
+    # An object less changes the sheet that it was on and leaves the others as they are.
+    fewer = cut([one for one in everything if one.object_number != "S.01234"], plain)
+    before, after = ({part.objects for part in parts} for parts in (sheets, fewer))
+    assert len(before - after) <= 2
+
+
+def test_a_case_is_never_cut() -> None:
+    everything = [listed(n, case=f"case {n // 70:03d}") for n in range(3_000)]
+    where: dict[str, set[int]] = {}
+    for part in cut(everything, Settings()):
+        for one in part.objects:
+            where.setdefault(one.case, set()).add(part.number)
+    assert all(len(numbers) == 1 for numbers in where.values())
+
+
+def test_a_small_gallery_is_one_sheet_and_what_is_stored_shares_pages() -> None:
+    stored = [replace(listed(n, gallery=f"Store {n % 3}"), on_display=False) for n in range(30)]
+    parts = cut([listed(100), *stored], Settings())
+    assert [(part.gallery, part.on_display, len(part.objects)) for part in parts] == [
+        ("Store", True, 1),
+        ("", False, 30),
+    ]
+
+
+def test_the_pages_of_a_cut_gallery_lead_to_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Cut at 12 instead of 1,000 objects, so that the test is quick."""
+    monkeypatch.setattr("pipeline.jobs.sheets.MOST", 12)
+    monkeypatch.setattr("pipeline.jobs.sheets.LEAST", 6)
+    made = museum(tmp_path / "large", rows(galleries=1, each=30))
+    summary = night(made)
+    assert summary.report is not None
+    folder = summary.report.parent
+    pages = sorted(folder.glob("room-0-*.html"))
+    assert len(pages) >= 3
+    index = (folder / "index.html").read_text(encoding="utf-8")
+    galleries = html.fromstring(index.encode()).xpath("//section[@aria-labelledby='galleries']//tbody/tr")
+    assert len(galleries) == 1
+    for page in pages:
+        assert f'href="{page.name}"' in index
+        assert f"of {len(pages)} of this gallery" in page.read_text(encoding="utf-8")
+    entries = json.loads((folder / ".sheets.json").read_text(encoding="utf-8"))
+    assert sum(sum(entry["entry"]["counts"].values()) for entry in entries) == 30
+
+
+def test_a_page_whose_report_was_tampered_with_is_drawn_again(settings: Settings) -> None:
+    latest = settings.path("reports").joinpath("latest").resolve()
+    (latest / ".sheets.json").write_text("[{}]", encoding="utf-8")
+    summary = night(settings)
+    assert (summary.fresh, summary.objects) == (0, 12)
+    assert summary.report is not None
+    assert len(list(summary.report.parent.glob("room-*.html"))) == 3
