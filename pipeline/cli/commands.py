@@ -23,12 +23,12 @@ FIDELITIES = ("screen", "bound", "chart", "history", "reference")
 
 
 def _print_summary(summary: "Summary", wanted: bool) -> None:
-    if not wanted:
+    from pipeline.jobs.outcome import summary_document
+
+    if wanted:
+        click.echo(json.dumps(summary_document(summary), indent=2, allow_nan=False))
+    else:
         click.echo("\n".join(summary_lines(summary)))
-        return
-    plain = {k: v for k, v in vars(summary).items() if k != "changes"}
-    plain["changes"] = None if summary.changes is None else asdict(summary.changes)
-    click.echo(json.dumps(plain, indent=2, default=str))
 
 
 @click.command()
@@ -163,8 +163,11 @@ def run(
     Example: kouros run --gallery "Hall of Sculpture"
     Example: kouros run --explain 1922.9
     """
+    from pipeline.jobs.journal import journal
     from pipeline.jobs.nightly import Selection
     from pipeline.jobs.nightly import run as job
+    from pipeline.jobs.secrets import hider
+    from pipeline.jobs.watch import watched
 
     settings = options.settings()
     if site is not None:
@@ -176,11 +179,42 @@ def run(
             raise click.UsageError("--explain is about one object: leave out --gallery and --object")
         print_explanation(settings, explain, options, as_json)
         return
-    with options.console() as console:
-        summary = job(settings, console, Selection(galleries, objects), dry_run=dry_run)
+    chosen = Selection(galleries, objects)
+    hide = hider(settings)
+    with journal(settings, hide), options.console() as console:
+        summary = watched(
+            settings,
+            lambda: job(settings, console, chosen, dry_run=dry_run),
+            hide,
+            whole=not (chosen or dry_run),
+        )
     _print_summary(summary, as_json)
     if summary.cannot:
         raise click.exceptions.Exit(3)
+
+
+@click.command()
+@click.option("--dry-run", is_flag=True, help="Say what would be removed; remove nothing.")
+@as_json
+@click.pass_obj
+def prune(options: Options, dry_run: bool, as_json: bool) -> None:
+    """Remove the runs and report folders beyond [retention]; the last good ones always stay.
+
+    `kouros run` does so after every good night.
+
+    Example: kouros prune --dry-run
+    """
+    from pipeline.jobs.retention import prune as job
+
+    done = job(options.settings(), dry_run=dry_run)
+    if as_json:
+        click.echo(json.dumps(asdict(done), indent=2))
+        return
+    what = "would be removed" if dry_run else "removed"
+    click.echo(f"{len(done.runs):,} runs and {len(done.reports):,} report folders {what}")
+    listed("run", done.runs)
+    listed("report", done.reports)
+    listed("stays", done.kept)
 
 
 @click.command()
@@ -322,4 +356,4 @@ def tradeoff(
     click.echo("\n".join(tradeoff_lines(found, wanted)))
 
 
-ALL = (demo, init, import_, survey, check, run, report, decide, diff, motions, models, respond, tradeoff)
+ALL = (demo, init, import_, survey, check, run, prune, report, decide, diff, motions, models, respond, tradeoff)

@@ -21,7 +21,9 @@ from pipeline.jobs import selftest, tradeoff
 from pipeline.jobs.deciding import Decided, decided, place, stand
 from pipeline.jobs.importing import import_collection, source_of
 from pipeline.jobs.levels import Storey, notes, storeys
+from pipeline.jobs.outcome import write_summary
 from pipeline.jobs.reporting import manner
+from pipeline.jobs.standing import mark_good, mark_running
 from pipeline.jobs.versions import code_digest, rules_digest
 from pipeline.jobs.workspace import (
     KEPT,
@@ -90,6 +92,9 @@ class Summary:
     """
 
     run_id: str
+    started: str
+    finished: str
+    version: str
     museum: str
     site: str
     objects: int
@@ -125,6 +130,8 @@ def run(
     chosen = selection or Selection()
     with locked(settings):
         started = datetime.now(UTC)
+        if not (chosen or dry_run):
+            mark_running(settings)
         manner(settings)  # A catalogue that is missing is said before the night's work, not after it.
         workspace = open_workspace(settings)
         _refresh(workspace, progress, dry_run=dry_run)
@@ -150,7 +157,11 @@ def run(
         # A part of the collection is worth a report, but not the name of the museum's latest one.
         latest = None if chosen else publish(index.parent, workspace.reports)
         progress.step("report", 1, 1)
-        return replace(summary, report=index, latest=latest, changes=changes)
+        summary = replace(summary, report=index, latest=latest, changes=changes)
+        write_summary(summary, index.parent)
+        if latest is not None:
+            mark_good(settings, summary)
+        return summary
 
 
 def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None:
@@ -399,6 +410,9 @@ def summarise(record: RunRecord) -> Summary:
     )
     return Summary(
         run_id=record.run_id,
+        started=record.started,
+        finished=record.finished,
+        version=record.version,
         museum=record.museum,
         site=record.site,
         objects=objects,
