@@ -95,7 +95,7 @@ def journal(settings: "Settings | None", hide: Callable[[str], str], *, to_stder
             handler.close()
 
 
-def note(event: str, *, level: int = logging.INFO, **fields: Any) -> None:
+def note(event: str, /, *, level: int = logging.INFO, **fields: Any) -> None:
     """Write an event into the log, wherever `journal` keeps it; nowhere, where none is kept.
 
     event  : what happened, by its lasting name, such as "run.finished"

@@ -128,16 +128,15 @@ def _write(settings: Settings, now: Status) -> None:
 
     root = _root(settings)
     root.mkdir(parents=True, exist_ok=True)
-    write_aside(root / STATUS, json.dumps(asdict(now), indent=2) + "\n")
-    page = root / LANDING
-    # Somebody else's page is not ours to replace.
-    if page.exists() and MARK not in page.read_text(encoding="utf-8", errors="replace"):
-        return
     try:
         spoken = manner(settings)["language"]
     except ReportError:  # A catalogue that cannot be read may be the very failure that is told.
         spoken = Language()
-    write_aside(page, landing_page(asdict(now), settings.museum.name, spoken))
+    page = root / LANDING
+    # Somebody else's page is not ours to replace.
+    if not page.exists() or MARK in page.read_text(encoding="utf-8", errors="replace"):
+        write_aside(page, landing_page(asdict(now), settings.museum.name, spoken))
+    write_aside(root / STATUS, json.dumps(asdict(now), indent=2) + "\n")
 
 
 def _root(settings: Settings) -> Path:
