@@ -48,7 +48,7 @@ class _WebHandler(BaseHTTPRequestHandler):
             self.send_header("Location", self.server.location)
         self.end_headers()
 
-    do_GET = do_POST
+    do_GET = do_POST  # noqa: N815 - as the standard library calls it
 
     def log_message(self, *_: Any) -> None:
         pass

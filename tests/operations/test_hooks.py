@@ -20,9 +20,10 @@ from pipeline.jobs.secrets import hider
 from pipeline.settings import Settings, SettingsError, load_settings
 from pipeline.settings.operations import CommandHook, EmailHook, Hooks, WebhookHook
 
-from .servers import CERTIFICATE, mail, web
+from .servers import CERTIFICATE, Mail, mail, web
 
 TOKEN = "t0ken-that-nobody-may-read"
+OPEN = {"host": "h", "sender": "k@m", "to": ["a@b"], "user": "k", "password_from": "KOUROS_P"}
 DOCUMENT: dict[str, Any] = {
     "event": "changed",
     "time": "2031-05-01T03:00:00+00:00",
@@ -57,7 +58,8 @@ def program(folder: Path, code: str) -> tuple[str, ...]:
 
 def test_a_command_gets_the_event_and_no_secret(tmp_path: Path) -> None:
     out = tmp_path / "out.json"
-    code = f"import json, os, sys; open({str(out)!r}, 'w').write(json.dumps([json.load(sys.stdin), sys.argv[1:], *os.environ]))"
+    answer = "json.dumps([json.load(sys.stdin), sys.argv[1:], *os.environ])"
+    code = f"import json, os, sys; open({str(out)!r}, 'w').write({answer})"
     command = CommandHook(run=(*program(tmp_path, code), "$(id)", "; ls"))
     hooks = Hooks(command=(command,), webhook=(WebhookHook(url_from="KOUROS_HOOK", on=("failed",)),))
     assert told(hooks, KOUROS_HOOK="https://h.example/x", KOUROS_DATABASE="postgresql://h/x", OTHER="1") == [""]
@@ -152,11 +154,14 @@ def test_a_failure_does_not_tell_the_secret_address() -> None:
     assert "S3CRET" not in said[0]
 
 
+def unencrypted(server: Mail) -> EmailHook:
+    to = "a@m.example", "b@m.example"
+    return EmailHook(host="127.0.0.1", port=server.port, security="none", sender="k@museum.example", to=to)
+
+
 def test_a_mail_goes_out_and_its_subject_is_one_line() -> None:
     with mail() as server:
-        hook = EmailHook(
-            host="127.0.0.1", port=server.port, security="none", sender="k@museum.example", to=("a@m.example", "b@m.example")
-        )  # fmt: skip
+        hook = unencrypted(server)
         assert told(Hooks(email=(hook,)), "failed") == [""]
     [(sender, to, raw)] = server.mails
     assert (sender, to) == ("k@museum.example", ["a@m.example", "b@m.example"])
@@ -198,9 +203,7 @@ def test_a_password_goes_only_to_a_server_whose_certificate_is_trusted(monkeypat
 
 def test_a_mail_that_some_do_not_get_is_said() -> None:
     with mail(refused="b@m.example") as server:
-        hook = EmailHook(
-            host="127.0.0.1", port=server.port, security="none", sender="k@museum.example", to=("a@m.example", "b@m.example")
-        )  # fmt: skip
+        hook = unencrypted(server)
         assert told(Hooks(email=(hook,))) == ["the mail was not taken for b@m.example"]
     assert server.mails[0][1] == ["a@m.example"]
 
@@ -242,7 +245,7 @@ def test_names_hold_no_secret() -> None:
         {"command": [{"run": []}]},
         {"email": [{"host": "h", "sender": "k@m\r\nBcc: x@y", "to": ["a@b"]}]},
         {"email": [{"host": "h", "sender": "k@m", "to": ["a@b"], "user": "k"}]},
-        {"email": [{"host": "h", "sender": "k@m", "to": ["a@b"], "user": "k", "password_from": "KOUROS_P", "security": "none"}]},
+        {"email": [OPEN | {"security": "none"}]},
         {"email": [{"host": "h", "sender": "k@m", "to": ["a@b"], "password": "geheim"}]},
     ],
 )  # fmt: skip
