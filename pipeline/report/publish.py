@@ -46,7 +46,8 @@ def _redirect(target: Path, page: Path) -> Path:
     address = escape(quote(target.as_posix()) + "/index.html", quote=True)
     aside = page.with_name(f".latest-{os.getpid()}.html")
     aside.write_text(
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"/><title>Latest report</title>'
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"/>'
+        '<meta http-equiv="Content-Security-Policy" content="default-src \'none\'"/><title>Latest report</title>'
         f'<meta http-equiv="refresh" content="0; url={address}"/></head>'
         f'<body><p><a href="{address}">The latest report</a></p></body></html>\n',
         encoding="utf-8",
