@@ -36,7 +36,7 @@ class _WebHandler(BaseHTTPRequestHandler):
     server: Web
 
     def do_POST(self) -> None:
-        body = self.rfile.read(int(self.headers["Content-Length"]))
+        body = self.rfile.read(int(self.headers.get("Content-Length", 0)))
         place = min(len(self.server.heard), len(self.server.answers) - 1)
         self.server.heard.append((dict(self.headers), body))
         code = self.server.answers[place]
