@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import TypedDict
 
+from pipeline.jobs.standing import renew
 from pipeline.jobs.workspace import UsageError, locked, open_workspace
 from pipeline.records import RunChanges
 from pipeline.report import Language, Units, language, publish, render
@@ -27,6 +28,7 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
         index = render(record, _free(workspace.reports / record.run_id), changes=changes, **manner(settings))
         if [record.run_id] == whole[:1]:
             publish(index.parent, workspace.reports)
+            renew(settings)
         return index
 
 

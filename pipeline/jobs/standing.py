@@ -6,6 +6,7 @@ page reports/index.html, which links to the last good report.
 
 import json
 import os
+import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
@@ -24,6 +25,9 @@ STATUS = "status.json"
 """The file in the folder of reports that says how the last report stands."""
 
 LANDING = "index.html"
+
+_RENDERED = re.compile(r"(\d{8}T\d{6}\.\d{3}-\d+)(-\d+)?")
+"""A run's id, and which rendering of it a folder holds."""
 
 GOOD, RUNNING, FAILED = "good", "running", "failed"
 
@@ -90,6 +94,13 @@ def mark_failed(settings: Settings, problem: BaseException, message: str) -> Non
     _write(settings, status)
 
 
+def renew(settings: Settings) -> None:
+    """Say the same as before of the report that `latest` points at now."""
+    now = status(settings)
+    if now is not None:
+        _write(settings, now)
+
+
 def status(settings: Settings) -> Status | None:
     """Return how the last report stands; None where nobody said it yet, or where the file cannot be read."""
     try:
@@ -104,16 +115,23 @@ def status(settings: Settings) -> Status | None:
 def last_good(settings: Settings) -> LastGood | None:
     """Return the report that `latest` points at, or, where links cannot be made, the one that was last said."""
     root = _root(settings)
+    said = _said(root)
     link = root / "latest"
     if link.is_symlink() and (link / LANDING).is_file():
         folder = link.resolve()
-        return LastGood(folder.name, _finished(folder), f"{folder.name}/{LANDING}")
+        rendered = _RENDERED.fullmatch(folder.name)
+        run = rendered[1] if rendered else folder.name
+        finished = _finished(folder) or (said.finished if said is not None and said.run_id == run else "")
+        return LastGood(run, finished, f"{folder.name}/{LANDING}")
+    return said if said is not None and (root / said.report).is_file() else None
+
+
+def _said(root: Path) -> LastGood | None:
     try:
         said: Mapping[str, str] | None = json.loads((root / STATUS).read_text(encoding="utf-8"))["last_good"]
-        known = None if said is None else LastGood(**said)
+        return None if said is None else LastGood(**said)
     except (OSError, ValueError, TypeError, KeyError):
         return None
-    return known if known is not None and (root / known.report).is_file() else None
 
 
 def _finished(folder: Path) -> str:

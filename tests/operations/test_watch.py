@@ -76,6 +76,12 @@ def test_a_week_of_nights(museum: Callable[..., Path], kouros: Kouros, server: W
     assert kept == printed | {"report": "index.html", "latest": "../latest"}
     assert standing(folder)["state"] == "good"
     assert f'href="{printed["run_id"]}/index.html"' in landing(folder)
+    assert kouros("report").returncode == 0
+    # Rendered again: the same run, in another folder, with the time that is known of it.
+    again = standing(folder)["last_good"]
+    assert again == {"run_id": printed["run_id"], "finished": printed["finished"], "report": again["report"]}
+    assert again["report"] == f"{printed['run_id']}-2/index.html"
+    assert f'href="{again["report"]}"' in landing(folder)
     assert server.heard == []  # nothing changed: there was nothing before
 
     museum([TIPPING, *ROWS[1:]], settings_for(server))
