@@ -16,6 +16,12 @@ from hypothesis import settings as trying
 from hypothesis import strategies as st
 from sqlalchemy import create_engine, inspect, make_url, text
 
+from pipeline.collection.errors import MappingError
+from pipeline.collection.mapping import load_mapping
+from pipeline.motions.errors import MotionError
+from pipeline.motions.manifest import load_manifest
+from pipeline.motions.reading import LARGEST
+from pipeline.motions.reading import _open as read_record
 from pipeline.report import Language
 from pipeline.report.landing import landing_page
 from pipeline.report.publish import _redirect
@@ -103,6 +109,20 @@ def test_a_settings_file_without_end_is_refused(tmp_path: Path) -> None:
         load_settings(file)
     file.write_bytes(b"[museum]\r\nname = 'x'\r\n")
     assert small_text(file) == "[museum]\nname = 'x'\n"
+
+
+def test_every_other_input_without_end_is_refused_before_it_is_read(tmp_path: Path) -> None:
+    """Sparse files, which take no room: a mapping, a manifest, a record of a motion."""
+    mapping, manifest, record = (tmp_path / name for name in ("mapping.toml", "manifest.toml", "record.mseed"))
+    for file, size in ((mapping, SMALL), (manifest, SMALL), (record, LARGEST)):
+        with file.open("wb") as stream:
+            stream.truncate(size + 1)
+    with pytest.raises(MappingError, match=r"mapping\.toml: cannot be read: more than 8,388,608 bytes; .*size"):
+        load_mapping(mapping)
+    with pytest.raises(MotionError, match=r"manifest\.toml: .*more than 8,388,608 bytes"):
+        load_manifest(tmp_path)
+    with pytest.raises(MotionError, match=r"record\.mseed: .*268,435,457 bytes are more than a record has"):
+        read_record(record, [])
 
 
 SECRET = "geheim-7f3a"
