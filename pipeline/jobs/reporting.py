@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import TypedDict
 
+from pipeline.jobs.outcome import SUMMARY, write_aside
 from pipeline.jobs.standing import renew
 from pipeline.jobs.workspace import UsageError, locked, open_workspace
 from pipeline.records import RunChanges
@@ -26,6 +27,9 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
         before = whole[at + 1 : at + 2]
         changes = compare_runs(workspace.engine, before[0], record.run_id) if before else None
         index = render(record, _free(workspace.reports / record.run_id), changes=changes, **manner(settings))
+        told = workspace.reports / record.run_id / SUMMARY
+        if told.is_file():
+            write_aside(index.with_name(SUMMARY), told.read_text(encoding="utf-8"))
         if [record.run_id] == whole[:1]:
             publish(index.parent, workspace.reports)
             renew(settings)
