@@ -6,7 +6,10 @@ import json
 import os
 import subprocess
 import sys
+import warnings
 from collections.abc import Callable, Mapping
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -74,3 +77,19 @@ def command(*words: str) -> list[str]:
 
 def environment(more: Mapping[str, str]) -> dict[str, str]:
     return {**os.environ, "NO_PROXY": "127.0.0.1,localhost", **more}
+
+
+def within(folder: Path, *words: str, **more: str) -> subprocess.CompletedProcess[str]:
+    """Run the command in this process, which saves the seconds of its start: same answer, same streams, same code."""
+    from pipeline.cli import main
+
+    out, err = StringIO(), StringIO()
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
+        patch.chdir(folder)
+        patch.setattr(sys, "argv", ["kouros", *words])
+        patch.setattr(warnings, "formatwarning", warnings.formatwarning)
+        for name, value in more.items():
+            patch.setenv(name, value)
+        with pytest.raises(SystemExit) as left:
+            main()
+    return subprocess.CompletedProcess(words, int(str(left.value.code)), out.getvalue(), err.getvalue())

@@ -17,7 +17,7 @@ from pipeline.jobs.workspace import locked
 from pipeline.settings import load_settings
 from tests.test_jobs import ROWS
 
-from .conftest import Kouros, command, environment, validate
+from .conftest import Kouros, command, environment, validate, within
 from .servers import Web, web
 
 TIPPING = ROWS[0].replace("0.4,0.2,0.2", "0.8,0.1,0.1")
@@ -61,11 +61,15 @@ def landing(folder: Path) -> str:
     return (folder / "reports" / "index.html").read_text(encoding="utf-8")
 
 
-def test_a_week_of_nights(museum: Callable[..., Path], kouros: Kouros, server: Web) -> None:
+def test_a_week_of_nights(museum: Callable[..., Path], server: Web, monkeypatch: pytest.MonkeyPatch) -> None:
     """A first night, a changed object, an unchanged night, a lost export, a shrunken one, a part; then tidy again."""
     folder = museum(more=settings_for(server))
+    monkeypatch.setenv("NO_PROXY", "127.0.0.1")
 
-    first = kouros("run", "--json", KOUROS_TOKEN=TOKEN)
+    def kouros(*words: str) -> subprocess.CompletedProcess[str]:
+        return within(folder, *words, KOUROS_TOKEN=TOKEN)
+
+    first = kouros("run", "--json")
     assert first.returncode == 3, first.stderr
     printed = json.loads(first.stdout)
     validate(printed, "run-summary")
@@ -85,7 +89,7 @@ def test_a_week_of_nights(museum: Callable[..., Path], kouros: Kouros, server: W
     assert server.heard == []  # nothing changed: there was nothing before
 
     museum([TIPPING, *ROWS[1:]], settings_for(server))
-    second = kouros("run", "--json", KOUROS_TOKEN=TOKEN)
+    second = kouros("run", "--json")
     assert second.returncode == 3, second.stderr
     validate(json.loads(second.stdout), "run-summary")
     [(headers, body)] = server.heard
@@ -100,7 +104,7 @@ def test_a_week_of_nights(museum: Callable[..., Path], kouros: Kouros, server: W
     # The other hook failed: it is said and logged, and the night's own code is that of a good one.
     assert "command no-such-program was not told: cannot be started" in second.stderr
 
-    quiet = kouros("run", KOUROS_TOKEN=TOKEN)
+    quiet = kouros("run")
     assert (quiet.returncode, len(server.heard)) == (3, 1)
     good = standing(folder)["last_good"]
     # Two of three reports stay.
@@ -109,7 +113,7 @@ def test_a_week_of_nights(museum: Callable[..., Path], kouros: Kouros, server: W
     before = {p.name: p.read_bytes() for p in (folder / "reports" / "latest").iterdir()}
 
     (folder / "export.csv").unlink()
-    lost = kouros("run", KOUROS_TOKEN=TOKEN)
+    lost = kouros("run")
     assert lost.returncode == 5
     failed = json.loads(server.heard[1][1])
     validate(failed, "event")
@@ -124,7 +128,7 @@ def test_a_week_of_nights(museum: Callable[..., Path], kouros: Kouros, server: W
     assert before == {p.name: p.read_bytes() for p in (folder / "reports" / "latest").iterdir()}
 
     museum(ROWS[:1], settings_for(server))
-    shrunk = kouros("run", KOUROS_TOKEN=TOKEN)
+    shrunk = kouros("run")
     assert shrunk.returncode == 7
     told = json.loads(server.heard[2][1])
     validate(told, "event")
@@ -133,9 +137,9 @@ def test_a_week_of_nights(museum: Callable[..., Path], kouros: Kouros, server: W
 
     museum([TIPPING, *ROWS[1:]], settings_for(server))
     for words in (["--object", "2"], ["--dry-run"]):
-        kouros("run", *words, KOUROS_TOKEN=TOKEN)
+        kouros("run", *words)
     assert standing(folder)["state"] == "failed"  # none of these is the night
-    assert kouros("run", KOUROS_TOKEN=TOKEN).returncode == 3
+    assert kouros("run").returncode == 3
     assert standing(folder)["state"] == "good"
     assert "what follows is older" not in landing(folder)
     assert len(server.heard) == 3
