@@ -65,7 +65,9 @@ def main() -> None:
         except Exception as problem:
             if debug:
                 raise
-            code = int(getattr(problem, "exit_code", 2 if isinstance(problem, ValueError) else 1))
+            from pipeline.jobs.outcome import exit_code_of
+
+            code = exit_code_of(problem)
             _say(problem, code, as_json="--log-json" in sys.argv)
     sys.exit(code if isinstance(code, int) else 0)
 

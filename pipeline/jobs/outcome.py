@@ -68,6 +68,13 @@ def json_ready(value: Any) -> Any:
     return [json_ready(one) for one in value] if isinstance(value, list | tuple) else value
 
 
+def exit_code_of(problem: BaseException) -> int:
+    """Return the exit code of the command that ends with this error."""
+    if not isinstance(problem, Exception):
+        return 130  # stopped by hand
+    return int(getattr(problem, "exit_code", 2 if isinstance(problem, ValueError) else 1))
+
+
 def write_summary(summary: "Summary", folder: Path) -> None:
     """Write summary.json beside a report's index, whole or not at all.
 

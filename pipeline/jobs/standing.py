@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pipeline.jobs.outcome import SUMMARY, write_aside
+from pipeline.jobs.outcome import SUMMARY, exit_code_of, write_aside
 from pipeline.report import Language, ReportError
 from pipeline.report.landing import MARK, landing_page
 from pipeline.settings import Settings
@@ -89,9 +89,8 @@ def mark_failed(settings: Settings, problem: BaseException, message: str) -> Non
 
     message : without secrets, for everybody who may read the reports
     """
-    code = int(getattr(problem, "exit_code", 1))
-    status = Status(FAILED, _now(), os.getpid(), last_good(settings), type(problem).__name__, message, code)
-    _write(settings, status)
+    good, kind = last_good(settings), type(problem).__name__
+    _write(settings, Status(FAILED, _now(), os.getpid(), good, kind, message, exit_code_of(problem)))
 
 
 def renew(settings: Settings) -> None:

@@ -13,7 +13,7 @@ from pipeline.collection.errors import ShrunkError
 from pipeline.jobs.hooks import tell
 from pipeline.jobs.journal import note
 from pipeline.jobs.nightly import Summary
-from pipeline.jobs.outcome import summary_document
+from pipeline.jobs.outcome import exit_code_of, summary_document
 from pipeline.jobs.retention import prune
 from pipeline.jobs.standing import last_good, mark_failed
 from pipeline.jobs.workspace import LockedError
@@ -52,7 +52,7 @@ def _failed(
 ) -> None:
     shrunk = isinstance(problem, ShrunkError)
     message = hide(str(problem) or type(problem).__name__)
-    code = int(getattr(problem, "exit_code", 1))
+    code = exit_code_of(problem)
     note(
         "run.shrunk" if shrunk else "run.failed",
         level=logging.ERROR,

@@ -209,6 +209,10 @@ def test_a_failure_speaks_no_markup_and_no_secret(museum: Callable[..., Path], k
     assert "default-src 'none'" in page
     assert not set(page) & {"\x1b", "\u202e"}
     assert standing(folder)["kind"] == "CollectionError"
+    # An error without a code of its own: page, log and command say the same one.
+    odd = kouros("run", KOUROS_DATABASE="nonsense://u:geheim@host/x")
+    assert odd.returncode == standing(folder)["exit_code"] == 2
+    assert "geheim" not in odd.stderr + landing(folder)
 
 
 def test_somebody_elses_index_is_not_replaced(museum: Callable[..., Path]) -> None:
