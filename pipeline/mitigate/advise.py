@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pipeline.charting import SHELF, Shelf
 from pipeline.charts import chart_key
 from pipeline.climb import AUTO
-from pipeline.mitigate.bench import Bench, Fineness, Trial, checks, passes, why_not
+from pipeline.mitigate.bench import Bench, Carriage, Fineness, Trial, checks, passes, why_not
 from pipeline.mitigate.means import Means, Measure, own_means
 from pipeline.mitigate.measures import DISPLACEMENTS, MEASURES
 from pipeline.mitigate.offers import Need, Offer, Proposal, Way
@@ -34,6 +34,7 @@ def advise(
     fidelity: str = AUTO,
     azimuth_step: float = 10.0,
     charts: Shelf = SHELF,
+    carriage: Carriage | None = None,
 ) -> list[list[Recommendation]]:
     """Recommend one measure for each object and level at which something fails, or is open for want of room alone.
 
@@ -45,6 +46,7 @@ def advise(
     levels   : of shaking, with the motions that the findings were made under
     means    : the measures and isolators that there are; None: Kouros's own tables
     fidelity, azimuth_step, charts : as the findings were made
+    carriage : what isolators pass on, kept from one call to the next; None: for this call only
     returns  : the recommendations of each scene, in the order of the scenes
     raises   : TableError where the last measure of the table is not removal
     """
@@ -53,7 +55,7 @@ def advise(
         raise TableError("measures.csv: the last measure must always be possible (remove)")
     out: list[list[Recommendation]] = [[] for _ in scenes]
     for at, level in enumerate(levels):
-        bench = Bench(level, have, executor, Fineness(fidelity, azimuth_step, charts))
+        bench = Bench(level, have, executor, Fineness(fidelity, azimuth_step, charts), carriage)
         search = _Search(bench, _needs(scenes, findings, level.name), _unassessed(scenes, findings))
         for done, measure in enumerate(have.measures, start=1):
             search.tries(measure)

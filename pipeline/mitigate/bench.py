@@ -1,6 +1,6 @@
 """Where trials are run: what all objects under one level of shaking share, each computed once."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -59,16 +59,12 @@ class Fineness:
     charts: Shelf = SHELF
 
 
-class Bench:
-    """Runs the models of changed scenes under one level of shaking.
+class Ground:
+    """What a level of shaking is to all objects on the same floor, each worked out once."""
 
-    What is said of the level is combined from its motions as its findings are: the largest, or the mean.
-    """
-
-    def __init__(self, level: LevelMotions, means: Means, executor: Executor, fineness: Fineness) -> None:
-        self.level, self.means = level, means
-        self._executor, self._fineness = executor, fineness
-        self._carried: dict[Isolator, Carried] = {}
+    def __init__(self, level: LevelMotions) -> None:
+        self.level = level
+        self.carried: dict[Isolator, Carried] = {}
 
     @cached_property
     def push(self) -> float:
@@ -84,6 +80,53 @@ class Bench:
     def shaken(self) -> list[tuple[Array, Array]]:
         """|a_h| and N = max(0, g + a_z) at each sample [m/s2], (n,) each, of each motion."""
         return [(np.hypot(*m.acceleration[:2]), np.maximum(0.0, G + m.acceleration[2])) for m in self.level.motions]
+
+
+class Carriage:
+    """What isolators pass on and other things that hang on the shaking alone, kept for as long as this object lives."""
+
+    def __init__(self) -> None:
+        self._grounds: dict[Hashable, Ground] = {}
+
+    def ground(self, level: LevelMotions) -> Ground:
+        """Return what is known of a level so far."""
+        key = (level.name, level.combine, level.x_azimuth, tuple(motion.hash for motion in level.motions))
+        return self._grounds.setdefault(key, Ground(level))
+
+
+class Bench:
+    """Runs the models of changed scenes under one level of shaking.
+
+    What is said of the level is combined from its motions as its findings are: the largest, or the mean.
+    """
+
+    def __init__(
+        self,
+        level: LevelMotions,
+        means: Means,
+        executor: Executor,
+        fineness: Fineness,
+        carriage: Carriage | None = None,
+    ) -> None:
+        self.level, self.means = level, means
+        self._executor, self._fineness = executor, fineness
+        self._ground = (carriage or Carriage()).ground(level)
+        self._carried = self._ground.carried
+
+    @property
+    def push(self) -> float:
+        """A_max [m/s2], resultant."""
+        return self._ground.push
+
+    @property
+    def lift(self) -> float:
+        """The largest |a_h| / N: what an object's slope b/h is held against."""
+        return self._ground.lift
+
+    @property
+    def shaken(self) -> list[tuple[Array, Array]]:
+        """|a_h| and N = max(0, g + a_z) at each sample [m/s2], (n,) each, of each motion."""
+        return self._ground.shaken
 
     def run(self, trials: Sequence[Trial]) -> list[list[Finding]]:
         """Run every model of each trial's scene, equal work once, and return the findings in the order of the trials.

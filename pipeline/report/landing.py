@@ -6,7 +6,7 @@ from typing import Any
 from urllib.parse import quote
 
 from pipeline.report.language import Language, speaking
-from pipeline.report.render import environment, fill
+from pipeline.report.pages import environment, fill
 from pipeline.report.text import plain
 
 MARK = "<!-- kouros: landing page -->"

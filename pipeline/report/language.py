@@ -95,6 +95,12 @@ def _(phrase: str) -> str:
     return phrase if phrases is None or not phrase else phrases.gettext(phrase)
 
 
+def ngettext(one: str, many: str, number: int) -> str:
+    """Return the phrase for a number of things in the reader's language."""
+    phrases = _PHRASES.get()
+    return (one if number == 1 else many) if phrases is None else phrases.ngettext(one, many, number)
+
+
 _SENTENCES = re.compile(r"(?<=[.!?;:]) ")
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from pipeline.records import Assessment, RunRecord, Wish
+from pipeline.records import Assessment, Tally, Wish
 from pipeline.report.language import _, said
 from pipeline.report.text import clean, count, words
 from pipeline.report.units import Units, significant
@@ -48,16 +48,15 @@ def errands(
     return tuple(out)
 
 
-def survey_sentence(record: RunRecord) -> str:
+def survey_sentence(tally: Tally, seconds: float) -> str:
     """Say how many measurements would settle something, and what finding that out cost; "" where it was not asked."""
-    if record.wishes is None:
+    if not tally.surveyed:
         return ""
-    worth = [w for w in record.wishes if not w.waste]
     numbers = {
-        "worth": count(len(worth)),
-        "objects": count(len({w.object_number for w in worth})),
-        "waste": count(len(record.wishes) - len(worth)),
-        "seconds": f"{float(record.settings.get(SURVEY_SECONDS, 0.0)):.1f}",
+        "worth": count(tally.worth),
+        "objects": count(tally.wished),
+        "waste": count(tally.waste),
+        "seconds": f"{seconds:.1f}",
     }
     return (
         _(

@@ -219,6 +219,31 @@ class ObjectView:
 
 
 @dataclass(frozen=True, slots=True)
+class Lead:
+    """The most urgent finding of an object, as a page other than its own names it."""
+
+    title: str
+    outcome: str
+
+
+@dataclass(frozen=True, slots=True)
+class Pointer:
+    """An object as a page other than its own names it: what it is, where its entry is, what happens, what to do.
+
+    measure : the first recommendation in a sentence, "" where there is none
+    """
+
+    number: str
+    short: str
+    page: str
+    anchor: str
+    gallery: str
+    state: State
+    lead: Lead | None = None
+    measure: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class TaskView:
     """One line of "What to do first": a measure and the objects it is for, the most urgent ones first.
 
@@ -271,8 +296,8 @@ class DecisionsView:
     classes: int = 0
     verdicts: int = 0
     settled: int = 0
-    doubted: tuple[tuple[DecisionView, ObjectView | None], ...] = ()
-    groups: tuple[tuple[str, tuple[tuple[DecisionView, ObjectView | None], ...]], ...] = ()
+    doubted: tuple[tuple[DecisionView, Pointer | None], ...] = ()
+    groups: tuple[tuple[str, tuple[tuple[DecisionView, Pointer | None], ...]], ...] = ()
 
     def __bool__(self) -> bool:
         """Whether there is any."""
@@ -284,7 +309,7 @@ class TurnView:
     """A verdict that turned, and why; ``view`` is the object where the report has it."""
 
     number: str
-    view: ObjectView | None
+    view: Pointer | None
     gallery: str
     model: str
     level: str
@@ -298,7 +323,7 @@ class ChangeView:
     """One line of what changed: the object where it is about one, and the change in words."""
 
     number: str
-    view: ObjectView | None
+    view: Pointer | None
     text: str
 
 
@@ -319,12 +344,27 @@ class SinceView:
 
 
 @dataclass(frozen=True, slots=True)
+class SheetView:
+    """Which of its gallery's pages a page is: large galleries are cut into several.
+
+    number, of : from 1;  first, last : numbers of the objects between which it lies in the catalogue's order
+    """
+
+    page: str
+    number: int = 1
+    of: int = 1
+    first: str = ""
+    last: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class GalleryView:
-    """One gallery's page."""
+    """One gallery's page, or one of its pages."""
 
     name: str
     page: str
     on_display: bool
+    sheet: SheetView
     counts: Counts
     tasks: tuple[TaskView, ...]
     objects: tuple[ObjectView, ...]
@@ -342,6 +382,34 @@ class GalleryView:
     def standing(self, state: State) -> tuple[ObjectView, ...]:
         """Return the objects in that state, the most urgent first."""
         return tuple(o for o in self.objects if o.state is state)
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """What the index says of a gallery's page, and of those on it that it names; kept beside the report as JSON.
+
+    task     : what is to do first there, in words, "" where nothing is advised
+    leaders  : its most urgent objects that nobody has settled, each with the key that sorts it among all
+    """
+
+    name: str
+    on_display: bool
+    sheet: SheetView
+    counts: Counts
+    task: str
+    leaders: tuple[tuple[tuple[int, bool, bool, str, float, str, str], Pointer], ...] = ()
+    decisions: DecisionsView = DecisionsView()
+
+
+@dataclass(frozen=True, slots=True)
+class GalleryRow:
+    """One gallery's row of the index, with all its pages."""
+
+    name: str
+    on_display: bool
+    sheets: tuple[SheetView, ...]
+    counts: Counts
+    task: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -423,11 +491,12 @@ class EffortView:
 class MuseumView:
     """The index: all galleries, ranked, with totals over all objects; ``credit`` is the source's own line.
 
+    rows       : the galleries, the one with the most to do first
+    workbook   : whether the exports include a workbook: it is left out where it would be too long
     decided    : what settled the verdicts, by kind
     fidelities : how many verdicts were asked at which fidelity, in one line
     self_test  : None where none was run before this run
     survey     : what is worth measuring in the whole museum and what asking cost, "" where it was not asked
-    self_test : None where none was run before this run
     since     : None where there was no run before
     """
 
@@ -440,8 +509,8 @@ class MuseumView:
     credit: str
     demonstration: bool
     counts: Counts
-    galleries: tuple[GalleryView, ...]
-    first: tuple[ObjectView, ...]
+    rows: tuple[GalleryRow, ...]
+    first: tuple[Pointer, ...]
     motions: tuple[MotionView, ...]
     level_notes: tuple[str, ...] = field(default=())
     efforts: tuple[EffortView, ...] = ()
@@ -451,3 +520,4 @@ class MuseumView:
     survey: str = ""
     decisions: DecisionsView = DecisionsView()
     since: SinceView | None = None
+    workbook: bool = True

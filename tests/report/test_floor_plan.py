@@ -9,15 +9,15 @@ from lxml import etree
 
 from pipeline.records import Item, Origin, Verdict
 from pipeline.report import Units
-from pipeline.report.compose import compose
 from pipeline.report.floor_plan import needed_clearance
 from pipeline.report.views import GalleryView, PlanView
 
 from . import builder
+from .shown import shown
 
 
 def gallery(units: Units | None = None) -> GalleryView:
-    museum = compose(builder.record(), units or Units())
+    museum = shown(builder.record(), units or Units())
     return next(g for g in museum.galleries if g.name == builder.GREEK)
 
 
@@ -101,7 +101,7 @@ def test_the_table_says_what_the_drawing_says() -> None:
 
 
 def test_without_a_position_there_is_no_plan() -> None:
-    museum = compose(builder.record(), Units())
+    museum = shown(builder.record(), Units())
     assert [g.plan is None for g in museum.galleries] == [g.name != builder.GREEK for g in museum.galleries]
 
 
@@ -127,7 +127,7 @@ def test_a_task_counts_what_overturns_or_breaks_and_how_far_the_worst_is_beyond(
 
 
 def test_what_settled_the_verdicts_adds_up() -> None:
-    museum = compose(builder.record(), Units())
+    museum = shown(builder.record(), Units())
     findings = [f for a in builder.record().assessments for f in a.findings]
     assert sum(d.verdicts for d in museum.decided) == len(findings)
     # The largest share of any history's demand that an error of 0.004 or of the like makes.

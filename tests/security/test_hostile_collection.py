@@ -33,7 +33,10 @@ STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u20
 """What may reach no terminal: control characters but tabs and line ends, and marks of direction."""
 
 PAGE = re.compile(r"(index|motion|method)\.html|[a-z0-9-]{1,60}-[0-9a-f]{8}\.html")
-EXPORTS = {"findings.csv", "findings.jsonl", "findings.parquet", "findings.xlsx", "objects.csv", "recommendations.csv"}
+EXPORTS = {
+    *("findings.csv", "findings.jsonl", "findings.parquet", "findings.xlsx", "objects.csv", "objects.parquet"),
+    *("recommendations.csv", "recommendations.parquet", ".sheets.json", "summary.json"),
+}
 OUTSIDE = "owned-by-a-title"
 
 
@@ -152,7 +155,7 @@ def test_nothing_was_written_elsewhere(night: Night) -> None:
     }
     for folder in (night.folder / "reports").iterdir():
         if folder.is_dir() and not folder.is_symlink():
-            names = {path.name for path in folder.iterdir()} - EXPORTS - {"summary.json"}
+            names = {path.name for path in folder.iterdir()} - EXPORTS
             assert [name for name in names if not PAGE.fullmatch(name)] == []
 
 
