@@ -4,7 +4,7 @@ BIN := .venv/bin
 STAMP := .venv/.kouros-installed
 PEERS := .venv/.kouros-peers
 
-.PHONY: demo test lint bench soak check-browser clean
+.PHONY: demo test lint bench soak audit airflow check-browser clean
 
 $(STAMP): pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv || { echo "python3 has no venv module: apt-get install python3-venv"; exit 1; }
@@ -27,8 +27,9 @@ test: $(STAMP) lint check-browser  ## lint, types, floors and all tests
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile
 
 lint: $(STAMP)
-	$(BIN)/ruff format --check pipeline schemas tests
-	$(BIN)/ruff check pipeline schemas tests
+	$(BIN)/ruff format --check pipeline schemas tests examples .ci
+	$(BIN)/ruff check pipeline schemas tests examples .ci
+	$(BIN)/bandit --quiet --configfile pyproject.toml --recursive pipeline schemas
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
@@ -37,6 +38,18 @@ bench: $(PEERS)  ## costs beside peers and beside C, ns per object and sample of
 
 soak: $(STAMP)  ## what is too long for every day: each reader of records fed damaged files for two minutes
 	KOUROS_FUZZ_SECONDS=120 $(BIN)/python -m pytest --numprocesses 2 tests/motions/formats/test_fuzz.py -k damage
+
+# In environments of their own: what audits and what schedules must not decide which versions Kouros is tested with.
+audit:  ## known vulnerabilities of the pinned versions; needs the network, and says so and fails where it has none
+	@test -x .venv-audit/bin/pip-audit || { $(PYTHON) -m venv .venv-audit && \
+	  .venv-audit/bin/pip install --quiet --disable-pip-version-check pip-audit; } || \
+	  { echo "audit: NOT AUDITED: pip-audit cannot be installed here"; exit 75; }
+	@.venv-audit/bin/python .ci/audit.py
+
+airflow: $(STAMP)  ## the example for Airflow in Airflow itself
+	@test -x .venv-airflow/bin/airflow || { $(PYTHON) -m venv .venv-airflow && \
+	  .venv-airflow/bin/pip install --quiet --disable-pip-version-check 'apache-airflow>=3,<4'; }
+	KOUROS_AIRFLOW=$(CURDIR)/.venv-airflow/bin/python $(BIN)/python -m pytest tests/operations/test_examples.py -k airflow
 
 # The browser tests need Chromium and its driver; where they are missing they come from Debian's packages.
 check-browser:

@@ -1,8 +1,12 @@
 """Where the files that travel with Kouros are, in a checkout and in an installed wheel alike."""
 
+import errno
 import hashlib
 from collections.abc import Iterable
 from pathlib import Path
+
+SMALL = 8 << 20
+"""Bytes of a file that a person writes: settings, a mapping, a manifest."""
 
 _PACKAGE = Path(__file__).resolve().parent
 
@@ -22,6 +26,18 @@ def digest_of(*parts: str, kinds: Iterable[str] = (".py",), but: Iterable[str] =
         if file.suffix in kinds and file.is_file() and name.parts[0] not in left_out:
             digest.update(name.as_posix().encode() + b"\0" + file.read_bytes())
     return digest.hexdigest()
+
+
+def small_text(file: Path) -> str:
+    """Return the text (UTF-8) of a file that a person writes.
+
+    raises : OSError for a file that cannot be read, and for one of more than SMALL bytes; UnicodeDecodeError
+    """
+    with file.open("rb") as stream:
+        data = stream.read(SMALL + 1)
+    if len(data) > SMALL:
+        raise OSError(errno.EFBIG, f"more than {SMALL:,} bytes", str(file))
+    return data.decode("utf-8").replace("\r\n", "\n")
 
 
 def resource(*parts: str) -> Path:

@@ -109,7 +109,7 @@ def test_a_truncated_record(tmp_path: Path) -> None:
     done = kouros("run", folder=tmp_path)
     assert done.returncode == 4
     assert "CI.CLC..HNN.mseed" in done.stderr
-    assert not (tmp_path / "reports").exists()
+    assert [path.name for path in sorted((tmp_path / "reports").iterdir())] == ["index.html", "status.json"]
 
 
 def test_a_shrunken_source(tmp_path: Path) -> None:

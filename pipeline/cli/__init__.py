@@ -1,14 +1,19 @@
 """The command `kouros`: parse, call, print; decides nothing."""
 
 import gc
+import logging
 import sys
 import warnings
+from contextlib import ExitStack
+from typing import TextIO, cast
 
 import click
 
 from pipeline import __version__
 from pipeline.cli import commands
+from pipeline.cli.console import Guarded
 from pipeline.cli.options import Options
+from pipeline.jobs.journal import note
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -17,10 +22,11 @@ from pipeline.cli.options import Options
 )
 @click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors and results.")
 @click.option("-v", "--verbose", is_flag=True, help="Plain progress lines even on a terminal.")
+@click.option("--log-json", is_flag=True, help="Say what happens as JSON on standard error, one object a line.")
 @click.option("--debug", is_flag=True, help="Show the traceback of an error.")
 @click.version_option(__version__, prog_name="kouros")
 @click.pass_context
-def kouros(context: click.Context, config: str, quiet: bool, verbose: bool, debug: bool) -> None:
+def kouros(context: click.Context, config: str, quiet: bool, verbose: bool, log_json: bool, debug: bool) -> None:
     """Which objects of a museum an earthquake would rock, slide, swing, break or throw down, and what to do.
 
     \b
@@ -30,7 +36,7 @@ def kouros(context: click.Context, config: str, quiet: bool, verbose: bool, debu
 
     Example: kouros demo
     """
-    context.obj = Options(config=config, quiet=quiet, verbose=verbose, debug=debug)
+    context.obj = Options(config=config, quiet=quiet, verbose=verbose, debug=debug, log_json=log_json)
 
 
 for command in commands.ALL:
@@ -43,23 +49,53 @@ def main() -> None:
     # an eighth of a short command.
     gc.set_threshold(100_000, 20, 50)
     debug = "--debug" in sys.argv
-    warnings.formatwarning = _warned
-    try:
-        code = kouros.main(standalone_mode=False)
-    except click.exceptions.Exit as leaving:
-        code = leaving.exit_code
-    except click.Abort:
-        print("kouros: stopped", file=sys.stderr)
-        code = 130
-    except click.ClickException as problem:
-        problem.show()
-        code = 2
-    except Exception as problem:
-        if debug:
-            raise
-        print(f"kouros: {_said(problem)}", file=sys.stderr)
-        code = int(getattr(problem, "exit_code", 2 if isinstance(problem, ValueError) else 1))
+    # Whatever prints, a museum's texts must not steer the terminal.
+    sys.stdout, sys.stderr = cast(TextIO, Guarded(sys.stdout)), cast(TextIO, Guarded(sys.stderr))
+    with ExitStack() as stack:
+        if "--log-json" in sys.argv:
+            _log(stack)
+        else:
+            warnings.formatwarning = _warned
+        try:
+            code = kouros.main(standalone_mode=False)
+        except click.exceptions.Exit as leaving:
+            code = leaving.exit_code
+        except click.Abort:
+            print("kouros: stopped", file=sys.stderr)
+            code = 130
+        except click.ClickException as problem:
+            problem.show()
+            code = 2
+        except Exception as problem:
+            if debug:
+                raise
+            from pipeline.jobs.outcome import exit_code_of
+
+            code = exit_code_of(problem)
+            _say(problem, code, as_json="--log-json" in sys.argv)
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _log(stack: ExitStack) -> None:
+    """Write JSON lines to standard error from now on, warnings included."""
+    from pipeline.jobs.journal import journal
+    from pipeline.jobs.secrets import hider
+
+    stack.enter_context(journal(None, hider(None), to_stderr=True))
+    warnings.showwarning = lambda message, category, *_where: note(
+        "warning", level=logging.WARNING, kind=category.__name__, message=str(message)
+    )
+
+
+def _say(problem: Exception, code: int, *, as_json: bool) -> None:
+    """Tell an error without its secrets: as a sentence, or as a line of the log."""
+    from pipeline.jobs.secrets import hider
+
+    said = hider(None)(_said(problem))
+    if as_json:
+        note("error", level=logging.ERROR, kind=type(problem).__name__, message=said, exit_code=code)
+    else:
+        print(f"kouros: {said}", file=sys.stderr)
 
 
 def _said(problem: Exception) -> str:

@@ -24,12 +24,12 @@ FIDELITIES = ("screen", "bound", "chart", "history", "reference")
 
 
 def _print_summary(summary: "Summary", wanted: bool) -> None:
-    if not wanted:
+    from pipeline.jobs.outcome import summary_document
+
+    if wanted:
+        click.echo(json.dumps(summary_document(summary), indent=2, allow_nan=False))
+    else:
         click.echo("\n".join(summary_lines(summary)))
-        return
-    plain = {k: v for k, v in vars(summary).items() if k != "changes"}
-    plain["changes"] = None if summary.changes is None else asdict(summary.changes)
-    click.echo(json.dumps(plain, indent=2, default=str))
 
 
 @click.command()
@@ -142,6 +142,9 @@ def _check_numerics(options: Options, as_json: bool) -> None:
 @click.option("--site", help="Another site's folder, or 'demo'.")
 @click.option("--fidelity", type=click.Choice(["auto", "chart", "history", "reference"]), help="How finely to look.")
 @click.option("--dry-run", is_flag=True, help="Assess and summarise; store and publish nothing.")
+@click.option(
+    "--resume", is_flag=True, help="Go on where a run was cut off: with the inventory as it is, without reading the source."
+)
 @click.option("--explain", metavar="OBJECT", help="Print the whole chain of reasoning for one object instead.")
 @as_json
 @click.pass_obj
@@ -152,6 +155,7 @@ def run(
     site: str | None,
     fidelity: str | None,
     dry_run: bool,
+    resume: bool,
     explain: str | None,
     as_json: bool,
 ) -> None:
@@ -159,13 +163,19 @@ def run(
 
     A run of a part of the collection is stored and has its report, but does not become the latest one.
 
+    What has not changed since an earlier run is not found again, and what a run that was cut off had found is taken up.
+
     With --explain nothing is stored: it prints class, numbers, every step of each model and the advice for an object.
 
     Example: kouros run --gallery "Hall of Sculpture"
+    Example: kouros run --resume
     Example: kouros run --explain 1922.9
     """
+    from pipeline.jobs.journal import journal
     from pipeline.jobs.nightly import Selection
     from pipeline.jobs.nightly import run as job
+    from pipeline.jobs.secrets import hider
+    from pipeline.jobs.watch import watched
 
     settings = options.settings()
     if site is not None:
@@ -177,11 +187,42 @@ def run(
             raise click.UsageError("--explain is about one object: leave out --gallery and --object")
         print_explanation(settings, explain, options, as_json)
         return
-    with options.console() as console:
-        summary = job(settings, console, Selection(galleries, objects), dry_run=dry_run)
+    chosen = Selection(galleries, objects)
+    hide = hider(settings)
+    with journal(settings, hide), options.console() as console:
+        summary = watched(
+            settings,
+            lambda: job(settings, console, chosen, dry_run=dry_run, resume=resume),
+            hide,
+            whole=not (chosen or dry_run),
+        )
     _print_summary(summary, as_json)
     if summary.cannot:
         raise click.exceptions.Exit(3)
+
+
+@click.command()
+@click.option("--dry-run", is_flag=True, help="Say what would be removed; remove nothing.")
+@as_json
+@click.pass_obj
+def prune(options: Options, dry_run: bool, as_json: bool) -> None:
+    """Remove the runs and report folders beyond [retention]; the last good ones always stay.
+
+    `kouros run` does so after every good night.
+
+    Example: kouros prune --dry-run
+    """
+    from pipeline.jobs.retention import prune as job
+
+    done = job(options.settings(), dry_run=dry_run)
+    if as_json:
+        click.echo(json.dumps(asdict(done), indent=2))
+        return
+    what = "would be removed" if dry_run else "removed"
+    click.echo(f"{len(done.runs):,} runs and {len(done.reports):,} report folders {what}")
+    listed("run", done.runs)
+    listed("report", done.reports)
+    listed("stays", done.kept)
 
 
 @click.command()
@@ -328,4 +369,4 @@ def tradeoff(
     click.echo("\n".join(tradeoff_lines(found, wanted)))
 
 
-ALL = (demo, init, import_, survey, check, run, report, decide, diff, motions, models, respond, tradeoff)
+ALL = (demo, init, import_, survey, check, run, prune, report, decide, diff, motions, models, respond, tradeoff)

@@ -1,16 +1,24 @@
 """What a person sees: progress bars on a terminal, plain lines elsewhere, one screen at the end."""
 
+import re
 import sys
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from math import isnan
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, TextIO
+
+from pipeline.jobs.journal import note
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
 
     from pipeline.jobs.nightly import Summary
     from pipeline.jobs.tradeoff import Tradeoff
+
+
+_STEERING = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
+)
 
 
 class Console:
@@ -32,7 +40,8 @@ class Console:
             from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
             columns = (TextColumn("{task.description:<16}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-            self._bars = Progress(*columns, console=Rich(stderr=True), transient=True)
+            # To the terminal itself: the bars steer it on purpose.
+            self._bars = Progress(*columns, console=Rich(file=sys.__stderr__), transient=True)
             self._bars.start()
         return self
 
@@ -44,6 +53,8 @@ class Console:
 
     def step(self, what: str, done: int, total: int) -> None:
         """Show that ``done`` of ``total`` pieces of ``what`` are finished."""
+        if done in (0, total):
+            note("step", what=what, done=done, total=total)
         if self.quiet:
             return
         if self._bars is not None:
@@ -66,7 +77,7 @@ def summary_lines(summary: "Summary") -> list[str]:
         return f"  {number:>{width},}  {words}"
 
     lines = [
-        f"{summary.museum or 'Collection'} under {summary.site}",
+        printable(f"{summary.museum or 'Collection'} under {summary.site}"),
         "",
         count(
             summary.objects,
@@ -90,7 +101,7 @@ def summary_lines(summary: "Summary") -> list[str]:
         lines += ["", count(summary.worth, told)]
     lines += effort_lines(summary.efforts)
     if summary.first:
-        lines += ["", "  First:", *(f"    {text}" for text in summary.first)]
+        lines += ["", "  First:", *(f"    {printable(text)}" for text in summary.first)]
     lines += _decision_lines(summary)
     if summary.changes is not None:
         changes = summary.changes
@@ -121,6 +132,30 @@ def _decision_lines(summary: "Summary") -> list[str]:
 def printable(text: str) -> str:
     """Return text in one line without the characters by which it could steer a terminal."""
     return "".join(c if c.isprintable() else "\ufffd" for c in text)
+
+
+class Guarded:
+    """A stream of texts that lets nothing through by which a museum's text could steer a terminal.
+
+    Control characters but for line ends and tabs, marks of writing direction and lone surrogates become U+FFFD, whoever
+    writes; JSON writes them as escapes, and loses nothing.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        """Write a text, made harmless."""
+        self._stream.write(_STEERING.sub("\ufffd", text))
+        return len(text)
+
+    def writelines(self, lines: Iterable[str]) -> None:
+        """Write texts, made harmless."""
+        for line in lines:
+            self.write(line)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
 
 
 def effort_lines(efforts: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -163,7 +198,7 @@ def tradeoff_lines(found: "Tradeoff", wanted: float) -> list[str]:
 def listed(title: str, lines: Sequence[str], most: int = 10) -> None:
     """Print lines of one kind, the first of them only where they are many: JSON has all."""
     for line in lines[:most]:
-        print(f"  {title}: {line}")
+        print(f"  {title}: {printable(line)}")
     if len(lines) > most:
         print(f"  {title}: and {len(lines) - most:,} more (--json lists all)")
 

@@ -2,33 +2,25 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import Any
 
 import click
 
-from pipeline.cli.console import listed, printable
+from pipeline.cli.console import listed
+from pipeline.jobs.outcome import json_ready, plain_changes
 from pipeline.records import FieldChange, RunChanges, VerdictChange
 
 
 def print_changes(changes: RunChanges, wanted_json: bool) -> None:
     """Print what changed; lines show the first of each kind, JSON has all."""
     if wanted_json:
-        click.echo(json.dumps(plain_changes(changes), indent=2))
+        click.echo(json.dumps(json_ready(plain_changes(changes)), indent=2))
         return
     click.echo(f"from {changes.old} to {changes.new}")
     for title, lines in _kinds(changes):
-        listed(title, [printable(line) for line in lines])
+        listed(title, lines)
     if not changes:
         click.echo("nothing changed")
-
-
-def plain_changes(changes: RunChanges) -> dict[str, Any]:
-    """Return the changes for JSON; each verdict's says whether it is fixed or worsened."""
-    plain = asdict(changes)
-    for row, change in zip(plain["verdicts"], changes.verdicts, strict=True):
-        row |= {"fixed": change.fixed, "worsened": change.worsened}
-    return plain
 
 
 def _kinds(changes: RunChanges) -> list[tuple[str, Sequence[str]]]:

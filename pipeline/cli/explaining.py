@@ -1,10 +1,9 @@
 """`kouros run --explain`: the chain of reasoning for one object as text or JSON."""
 
 import json
-import math
 from collections.abc import Iterator
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -19,23 +18,15 @@ if TYPE_CHECKING:
 def print_explanation(settings: "Settings", number: str, options: Options, as_json: bool) -> None:
     """Explain one object and print it; nothing is stored."""
     from pipeline.jobs.explaining import explain
+    from pipeline.jobs.outcome import json_ready
     from pipeline.jobs.workspace import open_workspace
 
     with options.console() as console:
         explained = explain(open_workspace(settings), number, console)
     if as_json:
-        click.echo(json.dumps([_plain(asdict(one)) for one in explained], indent=2, default=str))
+        click.echo(json.dumps([json_ready(asdict(one)) for one in explained], indent=2, default=str))
     else:
         click.echo("\n\n".join("\n".join(explanation_lines(one)) for one in explained))
-
-
-def _plain(value: Any) -> Any:
-    # JSON has no infinity and no NaN.
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {key: _plain(one) for key, one in value.items()}
-    return [_plain(one) for one in value] if isinstance(value, (list, tuple)) else value
 
 
 def explanation_lines(explained: "Explanation") -> Iterator[str]:

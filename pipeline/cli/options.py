@@ -21,10 +21,11 @@ class Options:
     quiet: bool
     verbose: bool
     debug: bool
+    log_json: bool = False
 
     def console(self) -> Console:
-        """Return where progress goes."""
-        return Console(quiet=self.quiet, verbose=self.verbose)
+        """Return where progress goes: with JSON on standard error, nothing else does."""
+        return Console(quiet=self.quiet or self.log_json, verbose=self.verbose)
 
     def settings(self) -> "Settings":
         """Read the settings file."""

@@ -25,6 +25,7 @@ from pipeline.collection.errors import MappingError
 from pipeline.collection.record import KINDS, REQUIRED, units_of
 from pipeline.quantities import LENGTHS, MASSES
 from pipeline.records import Support
+from pipeline.resources import small_text
 
 PRESETS = Path(__file__).resolve().parent / "presets"
 
@@ -263,13 +264,13 @@ def load_mapping(path_or_preset_name: str | Path) -> Mapping:
             f"{closest(wanted, preset_names())}"
         )
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(small_text(path))
     except UnicodeDecodeError as fault:
         raise MappingError(f"{name}: byte {fault.start} is not UTF-8; save the mapping as UTF-8") from fault
-    except tomllib.TOMLDecodeError as fault:
+    except (tomllib.TOMLDecodeError, RecursionError) as fault:
         raise MappingError(f"{name}: not TOML: {fault}; quote texts and write one key a line") from fault
     except OSError as fault:
-        raise MappingError(f"{name}: cannot be read: {fault.strerror}; check its permissions") from fault
+        raise MappingError(f"{name}: cannot be read: {fault.strerror}; check its permissions and its size") from fault
     try:
         mapping = Mapping.model_validate(data)
     except ValidationError as fault:

@@ -10,6 +10,7 @@ from typing import Any
 from pipeline.collection.cells import Cells
 from pipeline.collection.contradictions import contradictions
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.limits import STANDARD, Limits, Meter
 from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, check_header
 from pipeline.collection.measured import fill, is_dimension
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
@@ -18,9 +19,6 @@ from pipeline.collection.sources.opening import open_source
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.suspicion import Suspicion, suspicions
 from pipeline.records import Item, Origin, Problem, Provenance
-
-ROW_LIMIT = 5_000_000
-"""Data rows of a file."""
 
 NOWHERE = "Location not recorded"
 """The gallery of an object whose location is empty."""
@@ -61,21 +59,22 @@ class Reading:
     suspicions: tuple[Suspicion, ...] = ()
 
 
-def read_items(where: str | Path, mapping: Mapping) -> Reading:
+def read_items(where: str | Path, mapping: Mapping, limits: Limits = STANDARD) -> Reading:
     """Read a museum's file or database, row by row.
 
     A value that cannot be accepted is None in its item, which keeps the reason as a problem; only rows that are broken,
     have no object number or repeat one are rejected.
 
     where  : path of a file, or the URL of a database
+    limits : bytes, rows and seconds that are accepted
     raises : CollectionError for a source that is missing, unreadable, too large, empty or not in its encoding;
              MappingError where the mapping's columns are not the source's
     """
-    with open_source(where, mapping) as source:
+    with open_source(where, mapping, limits) as source:
         header = next(source.rows, None)
         if header is None:
             raise CollectionError(f"{source.name}: empty collection: there is no header; export it again")
-        desk = _Desk(source.name, mapping, header)
+        desk = _Desk(source.name, mapping, header, limits)
         for row in source.rows:
             desk.take(row)
         digest = source.digest()
@@ -98,7 +97,7 @@ def read_items(where: str | Path, mapping: Mapping) -> Reading:
 class _Desk:
     """Where the rows of one file are looked at, one after the other."""
 
-    def __init__(self, file: str, mapping: Mapping, header: Row) -> None:
+    def __init__(self, file: str, mapping: Mapping, header: Row, limits: Limits) -> None:
         names = [cell.strip() for cell in header.cells]
         check_header(mapping, file, names)
         self._file = file
@@ -117,12 +116,14 @@ class _Desk:
         self.items: list[Item] = []
         self.places: list[tuple[int, int]] = []
         self.rejected: list[Rejected] = []
-        self.rows = 0
+        self._meter = Meter(file, limits)
+
+    @property
+    def rows(self) -> int:
+        return self._meter.rows
 
     def take(self, row: Row) -> None:
-        self.rows += 1
-        if self.rows > ROW_LIMIT:
-            raise CollectionError(f"{self._file}: more than {ROW_LIMIT:,} rows; export only the objects on display")
+        self._meter.count()
         message, remedy = row.fault
         if message:
             self._reject(row, "", message, remedy)

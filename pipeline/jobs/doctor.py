@@ -1,21 +1,16 @@
 """Whether the next night can run, and what to mend if not."""
 
-import os
-import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.collection.mapping import load_mapping, preset_names
 from pipeline.collection.sources.opening import is_database
-from pipeline.jobs.workspace import LockedError, Workspace, locked, open_workspace
+from pipeline.jobs import checkup
+from pipeline.jobs.secrets import hider
+from pipeline.jobs.workspace import Workspace, open_workspace
 from pipeline.settings import Settings, load_settings
-from pipeline.store.runs import list_runs
-
-SPACE = 1_000_000_000
-"""Bytes of free disk below which a night may fail to write."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +32,7 @@ def diagnose(file: Path) -> list[Diagnosis]:
     try:
         workspace = open_workspace(settings)
     except Exception as problem:  # noqa: BLE001 - a doctor reports whatever a database driver raises
-        found.append(Diagnosis("database", "wrong", f"{type(problem).__name__}: {problem}"))
+        found.append(Diagnosis("database", "wrong", hider(settings)(f"{type(problem).__name__}: {problem}")))
         return [*found, *_each(settings, None)]
     found.append(Diagnosis("database", "ok", f"{workspace.engine.dialect.name}, tables up to date"))
     return [*found, *_each(settings, workspace)]
@@ -47,23 +42,21 @@ def _each(settings: Settings, workspace: Workspace | None) -> list[Diagnosis]:
     looks: list[tuple[str, Callable[[], tuple[str, str]]]] = [
         ("collection", lambda: _collection(settings)),
         ("motions", lambda: _motions(settings)),
-        ("disk", lambda: _disk(settings)),
-        ("kernels", _kernels),
-        ("lock", lambda: _lock(settings)),
     ]
     if workspace is not None:
         looks += [
             ("measures", lambda: _means(workspace)),
             ("inventory", lambda: _inventory(workspace)),
-            ("clock", lambda: _clock(workspace)),
         ]
+    looks += checkup.looks(settings, workspace)
+    hide = hider(settings)
     out = []
     for what, look in looks:
         try:
             state, message = look()
         except Exception as problem:  # noqa: BLE001 - one thing that is broken must not hide the others
             state, message = "wrong", str(problem) or type(problem).__name__
-        out.append(Diagnosis(what, state, message))
+        out.append(Diagnosis(what, state, hide(message)))
     return out
 
 
@@ -100,34 +93,9 @@ def _motions(settings: Settings) -> tuple[str, str]:
     return ("warning", "; ".join([text, *doubts])) if doubts else ("ok", text)
 
 
-def _disk(settings: Settings) -> tuple[str, str]:
-    folder = settings.path(settings.report.folder)
-    while not folder.exists():
-        folder = folder.parent
-    if not os.access(folder, os.W_OK):
-        return "wrong", f"{folder} cannot be written; change its permissions or [report] folder"
-    free = shutil.disk_usage(folder).free
-    text = f"{free / 1e9:.1f} GB free at {folder}"
-    return ("ok", text) if free >= SPACE else ("warning", f"{text}; make room")
-
-
 def _means(workspace: Workspace) -> tuple[str, str]:
     have = workspace.means
     return "ok", f"{len(have.measures)} measures, {len(have.isolators)} isolators"
-
-
-def _kernels() -> tuple[str, str]:
-    from pipeline.kernels import KERNEL_VERSION, cache_folder
-
-    return "ok", f"version {KERNEL_VERSION}, compiled code in {cache_folder()}"
-
-
-def _lock(settings: Settings) -> tuple[str, str]:
-    try:
-        with locked(settings):
-            return "ok", "no other run is at work"
-    except LockedError as problem:
-        return "warning", str(problem)
 
 
 def _inventory(workspace: Workspace) -> tuple[str, str]:
@@ -142,11 +110,3 @@ def _inventory(workspace: Workspace) -> tuple[str, str]:
     if doubts:
         return "warning", "; ".join(doubts)
     return "ok", f"{len(items)} objects, {shown} on display, from {info.source} on {info.imported_at}"
-
-
-def _clock(workspace: Workspace) -> tuple[str, str]:
-    now = datetime.now(UTC)
-    runs = list_runs(workspace.engine)
-    if runs and datetime.fromisoformat(runs[0].started) > now:
-        return "wrong", f"the last run is of {runs[0].started}, later than now ({now.isoformat()}); set the clock"
-    return "ok", now.isoformat(timespec="seconds")

@@ -9,6 +9,7 @@ from typing import Any
 
 from pipeline.collection.guess import Guess, guess
 from pipeline.collection.inventory import Difference, difference, held, latest_import, replace_inventory, return_to
+from pipeline.collection.limits import Limits
 from pipeline.collection.mapping import load_mapping, preset_names
 from pipeline.collection.reading import Reading, read_items
 from pipeline.collection.sources.opening import is_database
@@ -16,6 +17,7 @@ from pipeline.collection.suspicion import Suspicion
 from pipeline.jobs.workspace import Workspace
 from pipeline.records import Item, Problem
 from pipeline.report.exports import safe_cell
+from pipeline.settings import Settings
 
 LOGS = "imports"
 """Folder beside the settings that holds the log of every import that changed something."""
@@ -88,6 +90,12 @@ def source_of(workspace: Workspace, source: str) -> str:
     return source if is_database(source) else str(workspace.settings.path(source))
 
 
+def accepted(settings: Settings) -> Limits:
+    """Return how much of the collection the settings accept."""
+    said = settings.limits
+    return Limits(round(1e6 * said.megabytes), said.rows, said.seconds)
+
+
 def import_collection(
     workspace: Workspace,
     source: str | Path,
@@ -104,7 +112,7 @@ def import_collection(
     raises  : CollectionError, MappingError and ShrunkError, as reading and writing do; nothing is written then
     """
     named = mapping if mapping in preset_names() else workspace.settings.path(mapping)
-    reading = read_items(source, load_mapping(named))
+    reading = read_items(source, load_mapping(named), accepted(workspace.settings))
     if nightly:
         stays = held(workspace.engine, reading.sha256)
         if stays is not None:

@@ -11,7 +11,9 @@ from pipeline.collection.inventory import catalogue
 from pipeline.jobs.briefing import admit, brief_for, hashes
 from pipeline.jobs.deciding import decided
 from pipeline.jobs.importing import import_collection, source_of
+from pipeline.jobs.outcome import write_summary
 from pipeline.jobs.rounds import Round
+from pipeline.jobs.standing import mark_good, mark_running
 from pipeline.jobs.workspace import UsageError, Workspace, locked, near, open_workspace
 from pipeline.motions.site import Site
 from pipeline.records import Progress, RunChanges, RunRecord, Sheet, Tally
@@ -50,6 +52,9 @@ class Summary:
     """
 
     run_id: str
+    started: str
+    finished: str
+    version: str
     museum: str
     site: str
     objects: int
@@ -93,6 +98,8 @@ def run(
     chosen = selection or Selection()
     with locked(settings):
         started = datetime.now(UTC)
+        if not (chosen or dry_run):
+            mark_running(settings)
         workspace = open_workspace(settings)
         if not resume:
             _refresh(workspace, progress, dry_run=dry_run)
@@ -133,7 +140,11 @@ def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool)
         mark_finished(engine, head.run_id)
         progress.step("report", 1, 1)
     summary = summarise(replace(head, decisions=standing), night.sheets, found)
-    return replace(summary, fresh=night.fresh, report=index, latest=latest, changes=changes)
+    summary = replace(summary, fresh=night.fresh, report=index, latest=latest, changes=changes)
+    write_summary(summary, index.parent)
+    if latest is not None:
+        mark_good(workspace.settings, summary)
+    return summary
 
 
 def _ended(night: Round, chosen: Selection) -> RunRecord:
@@ -212,6 +223,9 @@ def summarise(head: RunRecord, sheets: Sequence[Sheet], found: Tally) -> Summary
     objects = sum(states.values())
     return Summary(
         run_id=head.run_id,
+        started=head.started,
+        finished=head.finished,
+        version=head.version,
         museum=head.museum,
         site=head.site,
         objects=objects,

@@ -4,6 +4,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypedDict
 
+from pipeline.jobs.outcome import SUMMARY, write_aside
+from pipeline.jobs.standing import renew
 from pipeline.jobs.workspace import UsageError, locked, open_workspace
 from pipeline.records import RunChanges, Standing, Tally
 from pipeline.report import Language, Units, language, publish
@@ -49,8 +51,12 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
                 links |= {n: link_to(sheet, n, title) for n, title in numbers.items() if n in named}
             strangers = tuple(standing for left in decisions.values() for standing in left)
             index = edition.finish(replace(head, decisions=strangers), total(tallies), changes, links)
+        told = workspace.reports / head.run_id / SUMMARY
+        if told.is_file():
+            write_aside(index.with_name(SUMMARY), told.read_text(encoding="utf-8"))
         if [head.run_id] == whole[:1]:
             publish(index.parent, workspace.reports)
+            renew(settings)
         return index
 
 

@@ -50,9 +50,17 @@ def user_cache(name: str) -> Path:
             folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         except OSError:
             continue
-        if os.access(folder, os.W_OK):
+        if os.access(folder, os.W_OK) and _own(base) and _own(folder):
             return folder
     return Path(tempfile.mkdtemp(prefix=f"kouros-{name}-"))
+
+
+def _own(folder: Path) -> bool:
+    """Whether nobody else can put files there: compiled code is loaded from it, and in /tmp anybody makes folders."""
+    if os.name != "posix":
+        return True
+    state = folder.stat()
+    return state.st_uid == os.getuid() and not state.st_mode & 0o022
 
 
 KERNEL_VERSION = kernel_version()

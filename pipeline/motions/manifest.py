@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints, Validation
 
 from pipeline.motions.errors import MotionError, refusal
 from pipeline.motions.record import PRINTABLE, BaselineTable, Horizontal, Record, Table, Text
+from pipeline.resources import small_text
 
 MANIFEST = "manifest.toml"
 
@@ -257,9 +258,12 @@ def load_manifest(folder: str | Path) -> Manifest:
     """
     file = manifest_file(folder)
     try:
-        data = tomllib.loads(file.read_text(encoding="utf-8"))
+        data = tomllib.loads(small_text(file))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise refusal(file, "TOML", str(error), "mend the line; the file is TOML in UTF-8") from error
+    except OSError as error:
+        why = f"cannot be read: {error.strerror or error}"
+        raise refusal(file, "file", why, "check its permissions and its size") from error
     try:
         # Through JSON, so that the strict rules of the model are those of the JSON Schema.
         manifest = Manifest.model_validate_json(json.dumps(data, default=_as_json))

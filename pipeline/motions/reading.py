@@ -24,6 +24,9 @@ _SPELLINGS = {"m/s**2": "m/s2", "m/s/s": "m/s2", "m/s^2": "m/s2", "cm/s**2": "cm
 # obspy's ASCII readers hand on the storage type in the place of the unit where a file was written without one.
 _SILENT = {"", "integer", "float", "ascii", "unknown"}
 
+LARGEST = 256 << 20
+"""Bytes of a file of a record; three components of an hour at 1,000 samples a second have 90 MB as text."""
+
 PGA_MOST = 20.0 * G
 PGA_LEAST = 1e-9 * G
 WATER_LEVEL_DB = 60.0
@@ -120,6 +123,10 @@ def _obspy() -> Any:
 def _open(file: Path, steps: list[str]) -> list[Any]:
     obspy = _obspy()
 
+    size = file.stat().st_size
+    if size > LARGEST:
+        wrong = f"{size:,} bytes are more than a record has ({LARGEST:,} at most)"
+        raise refusal(file, "file", wrong, "cut out the earthquake, or see whether it is another file")
     with file.open("rb") as stream:
         head = stream.read(100)
     if b"obspy.core.stream" in head:

@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -143,10 +144,21 @@ def workbook(folder: Path, started: str) -> bool:
     return True
 
 
+_BEGINS = frozenset("=+-@\t\r\n\uff1d\uff0b\uff0d\uff20")
+_INSIDE = re.compile("([;\t\r\n])(?=[=+\\-@\uff1d\uff0b\uff0d\uff20])")
+"""Where a formula begins for programs that cut the line of a CSV file at other separators than the comma, whatever its
+quotation marks say: spreadsheets of countries that write decimal commas cut at semicolons."""
+
+
 def safe_cell(text: str) -> str:
-    """Return a text that no spreadsheet takes for a formula: an apostrophe goes before = + - @ tab and return."""
+    """Return a text that no spreadsheet takes for a formula: an apostrophe goes before = + - @ tab and return.
+
+    The same goes for signs of full width, and after a semicolon, a tab or a line end within the text.
+    """
     fit = _encodable(text)
-    return "'" + fit if fit.startswith(("=", "+", "-", "@", "\t", "\r")) else fit
+    if _INSIDE.search(fit):
+        fit = _INSIDE.sub(r"\1'", fit)
+    return "'" + fit if fit[:1] in _BEGINS else fit
 
 
 def _began(started: str) -> datetime:

@@ -8,6 +8,8 @@ from urllib.parse import quote
 
 from pipeline.report.errors import ReportError
 
+_POLICY = "default-src 'none'; base-uri 'none'; form-action 'none'"
+
 
 def publish(folder: Path, root: Path) -> Path:
     """Point ``root/latest`` at a whole report, atomically; earlier reports stay where they are.
@@ -46,7 +48,8 @@ def _redirect(target: Path, page: Path) -> Path:
     address = escape(quote(target.as_posix()) + "/index.html", quote=True)
     aside = page.with_name(f".latest-{os.getpid()}.html")
     aside.write_text(
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"/><title>Latest report</title>'
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"/>'
+        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}"/><title>Latest report</title>'
         f'<meta http-equiv="refresh" content="0; url={address}"/></head>'
         f'<body><p><a href="{address}">The latest report</a></p></body></html>\n',
         encoding="utf-8",

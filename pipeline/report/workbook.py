@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
+from pipeline.report.text import clean
+
 _MOST = 32_767
 """Characters that a cell of a spreadsheet can hold."""
 
@@ -69,9 +71,8 @@ def _cell(sheet: Any, value: object, font: Any = None) -> Any:
 
 def write_text(cell: Any, text: str) -> None:
     """Write a text into a cell as a text, whatever it begins with; what no cell can hold is replaced or cut."""
-    from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
-
-    cell.value = ILLEGAL_CHARACTERS_RE.sub("\ufffd", text.encode("utf-8", "replace").decode("utf-8"))[:_MOST]
+    # XML refuses more than openpyxl does: U+FFFE in one title would end the night.
+    cell.value = clean(text)[:_MOST]
     # A leading "=" makes openpyxl write a formula, unless the type says that it is a text.
     cell.data_type = "s"
 

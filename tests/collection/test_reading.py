@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import hashlib
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -12,13 +13,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from pipeline.collection import reading as reading_module
 from pipeline.collection.errors import CollectionError, MappingError
 from pipeline.collection.inventory import galleries
+from pipeline.collection.limits import STANDARD, Limits
 from pipeline.collection.mapping import PRESETS, Mapping, load_mapping
 from pipeline.collection.reading import NOWHERE, Reading, read_items
 from pipeline.collection.sources.delimited import FIELD_LIMIT
-from pipeline.collection.sources.opening import FILE_LIMIT
 from pipeline.records import Item, Origin, Provenance, Support
 
 from .conftest import HEADER, MAPPING, Read
@@ -311,7 +311,7 @@ def test_a_file_beyond_the_limit_is_not_even_opened(tmp_path: Path, make_mapping
     """A sparse file: 1 GiB and a byte of holes that take no room on the disk."""
     path = tmp_path / "large.csv"
     with path.open("wb") as stream:
-        stream.truncate(FILE_LIMIT + 1)
+        stream.truncate(STANDARD.bytes + 1)
     with pytest.raises(CollectionError, match="1,073,741,825 bytes, more than 1,073,741,824"):
         read_items(path, make_mapping(MAPPING))
 
@@ -324,11 +324,25 @@ def test_a_line_without_end(tmp_path: Path, make_mapping: Callable[[str], Mappin
         read_items(path, make_mapping(MAPPING))
 
 
-def test_too_many_rows(read: Read, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(reading_module, "ROW_LIMIT", 2)
-    assert read(HEADER + "1,H,,,\n2,H,,,\n").rows == 2
-    with pytest.raises(CollectionError, match="more than 2 rows"):
-        read(HEADER + "1,H,,,\n2,H,,,\n3,H,,,\n")
+def test_too_many_rows_and_too_many_bytes(tmp_path: Path, make_mapping: Callable[[str], Mapping]) -> None:
+    path = tmp_path / "m.csv"
+    path.write_text(HEADER + "1,H,,,\n2,H,,,\n", encoding="utf-8")
+    two = Limits(bytes=path.stat().st_size, rows=2)
+    assert read_items(path, make_mapping(MAPPING), two).rows == 2
+    with pytest.raises(CollectionError, match=r"m\.csv: more than 1 rows; .* raise \[limits\] rows"):
+        read_items(path, make_mapping(MAPPING), replace(two, rows=1))
+    with pytest.raises(CollectionError, match=r"bytes, more than .* raise \[limits\] megabytes"):
+        read_items(path, make_mapping(MAPPING), replace(two, bytes=two.bytes - 1))
+
+
+def test_a_source_that_comes_too_slowly(tmp_path: Path, make_mapping: Callable[[str], Mapping]) -> None:
+    """The clock is looked at between rows: a pipe behind a share may give one every minute."""
+    path = tmp_path / "m.csv"
+    path.write_text(HEADER + "".join(f"{n},H,,,\n" for n in range(20_000)), encoding="utf-8")
+    with pytest.raises(
+        CollectionError, match=r"m\.csv, row [\d,]+: reading took more than 0.001 s; .*\[limits\] seconds"
+    ):
+        read_items(path, make_mapping(MAPPING), Limits(seconds=0.001))
 
 
 def test_the_field_limit_of_other_readers_is_left_alone(read: Read) -> None:

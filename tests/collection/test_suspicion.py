@@ -36,7 +36,7 @@ def bodies() -> list[tuple[str, list[float], float]]:
     """Medium, sides [in], mass [kg] of 300 real bodies; masses fill 5 to 60 % of the box, drawn with a fixed seed."""
     with (PRESETS.parent / "data" / "carnegie_2000.csv").open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
-    random = Random(7)  # noqa: S311
+    random = Random(7)
     out = []
     for row in rows:
         sides = [float(row[f"item_{side}"]) for side in ("height", "width", "depth")]

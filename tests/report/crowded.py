@@ -16,7 +16,7 @@ def resampled(record: RunRecord, count: int = COUNT, *, seed: int = 1) -> RunRec
     Each draw gets a number of its own and a place on the floor, so that the page also carries the plan; its findings,
     advice and wishes are those of the real object.
     """
-    draw = Random(seed)  # noqa: S311 - a sample, not a secret
+    draw = Random(seed)
     shown = [a for a in record.assessments if a.scene.item.on_display]
     chosen = draw.choices(shown, k=count)
     asked: dict[str, list[Wish]] = {}

@@ -62,7 +62,8 @@ def test_nothing_is_fetched_and_nothing_runs(report: Path) -> None:
         # The one script may run because the policy names the hash of its text, and nothing else may.
         named = [b64encode(sha256(text.encode()).digest()).decode() for text in scripts]
         allowed = "".join(f" script-src 'sha256-{one}';" for one in named)
-        assert policy == f"default-src 'none';{allowed} style-src 'unsafe-inline'; img-src data:"
+        closed = "base-uri 'none'; form-action 'none'"  # neither falls back to default-src
+        assert policy == f"default-src 'none';{allowed} style-src 'unsafe-inline'; img-src data:; {closed}"
 
 
 @pytest.mark.parametrize("number", builder.HOSTILE)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from urllib.parse import quote, quote_plus, unquote
 
@@ -24,24 +24,28 @@ _MESSAGE_LIMIT = 300
 class Address:
     """Where a database is.
 
-    url   : with its secrets, for opening it only
-    shown : without them, as it was written: the password is ***, ${NAME} stays, and what follows ? is left out
+    url     : with its secrets, for opening it only
+    shown   : without them, as it was written: the password is ***, ${NAME} stays, and what follows ? is left out
+    secrets : every form of them, the longest first, to be taken out of messages
     """
 
     url: URL
     shown: str
-    _secrets: tuple[str, ...]
+    secrets: tuple[str, ...]
 
     def __repr__(self) -> str:
         return f"Address({self.shown!r})"
 
     def clean(self, message: object) -> str:
         """Return what a driver said as one line without any of the secrets."""
-        text = str(message)
-        for secret in self._secrets:
-            text = text.replace(secret, "***")
-        text = _INSIDE.sub(r"\1:***@", _SAID.sub(r"\1\2***", text))
-        return " ".join(text.split())[:_MESSAGE_LIMIT]
+        return " ".join(hidden(str(message), self.secrets).split())[:_MESSAGE_LIMIT]
+
+
+def hidden(text: str, secrets: Iterable[str] = ()) -> str:
+    """Return a text with *** for these secrets, for passwords in addresses, and for what is said to be a password."""
+    for secret in secrets:
+        text = text.replace(secret, "***")
+    return _INSIDE.sub(r"\1:***@", _SAID.sub(r"\1\2***", text))
 
 
 def expand_secrets(url: str, environment: Mapping[str, str] | None = None) -> Address:
@@ -82,7 +86,7 @@ def expand_secrets(url: str, environment: Mapping[str, str] | None = None) -> Ad
             "the database's address has a ${ that is no ${NAME}; use letters, digits and _ for the name"
         )
     shown = whole[0] if whole else _shown(written)
-    return Address(opened, shown, tuple(_forms(values, opened)))
+    return Address(opened, shown, forms(_secret_values(values, opened)))
 
 
 def _each(url: URL, expand: Callable[[str], str]) -> URL:
@@ -102,11 +106,14 @@ def _shown(url: URL) -> str:
     return unquote(url.set(query={}).render_as_string(hide_password=True))
 
 
-def _forms(values: list[str], url: URL) -> Iterator[str]:
-    """Every form in which a secret may come back in a message, the longest first."""
-    secrets = {*values, str(url.password or "")}
+def _secret_values(values: list[str], url: URL) -> Iterator[str]:
+    yield from (*values, str(url.password or ""))
     for key, value in url.query.items():
         if _SECRET_KEY.search(key):
-            secrets |= {value} if isinstance(value, str) else set(value)
-    forms = {form for s in secrets for form in (s, quote(s, safe=""), quote_plus(s), repr(s)[1:-1]) if form}
-    yield from sorted(forms, key=lambda form: (-len(form), form))
+            yield from (value,) if isinstance(value, str) else value
+
+
+def forms(secrets: Iterable[str]) -> tuple[str, ...]:
+    """Return every form in which secrets may come back in a message, the longest first."""
+    found = {form for s in secrets for form in (s, quote(s, safe=""), quote_plus(s), repr(s)[1:-1]) if form}
+    return tuple(sorted(found, key=lambda form: (-len(form), form)))

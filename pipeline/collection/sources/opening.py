@@ -12,13 +12,11 @@ from io import BufferedReader, TextIOWrapper
 from pathlib import Path
 
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.limits import STANDARD, Limits
 from pipeline.collection.mapping import Mapping, Source
 from pipeline.collection.sources.delimited import read_rows
 from pipeline.collection.sources.files import unreadable
 from pipeline.collection.sources.rows import Row
-
-FILE_LIMIT = 1 << 30
-"""Bytes of a file (1 GiB)."""
 
 TIMEOUT = 600.0
 """Seconds that a database may take, where the mapping says nothing."""
@@ -44,7 +42,7 @@ def is_database(where: str | Path) -> bool:
 
 
 @contextmanager
-def open_source(where: str | Path, mapping: Mapping) -> Iterator[Opened]:
+def open_source(where: str | Path, mapping: Mapping, limits: Limits = STANDARD) -> Iterator[Opened]:
     """Open a museum's file or database.
 
     where  : path of a file, or the URL of a database
@@ -52,7 +50,7 @@ def open_source(where: str | Path, mapping: Mapping) -> Iterator[Opened]:
              raise the same while they are read
     """
     if mapping.source.format == "sql":
-        yield _database(str(where), mapping)
+        yield _database(str(where), mapping, limits)
         return
     if is_database(where):
         raise CollectionError(
@@ -60,7 +58,7 @@ def open_source(where: str | Path, mapping: Mapping) -> Iterator[Opened]:
             "or table in its [source]"
         )
     path = Path(where)
-    with _open(path) as binary:
+    with _open(path, limits.bytes) as binary:
         digest = _digest(binary, path.name)
         yield Opened(path.name, _file_rows(binary, path.name, mapping.source), lambda: digest)
 
@@ -82,7 +80,7 @@ def _file_rows(binary: BufferedReader, file: str, source: Source) -> Iterator[Ro
     return read_rows(stream, file, source.delimiter or "\t", encoding)
 
 
-def _database(url: str, mapping: Mapping) -> Opened:
+def _database(url: str, mapping: Mapping, limits: Limits) -> Opened:
     from pipeline.collection.sources.address import expand_secrets
     from pipeline.collection.sources.sql import read_database
 
@@ -95,7 +93,7 @@ def _database(url: str, mapping: Mapping) -> Opened:
         columns=[column for _, column, may_lack in wanted if not may_lack] if source.table else None,
         optional=[column for _, column, may_lack in wanted if may_lack],
         order_by=mapping.columns["object_number"].sources[0] if source.table else None,
-        timeout_seconds=source.timeout_seconds or TIMEOUT,
+        timeout_seconds=min(source.timeout_seconds or TIMEOUT, limits.seconds),
     )
     digest = hashlib.sha256()
 
@@ -107,14 +105,15 @@ def _database(url: str, mapping: Mapping) -> Opened:
     return Opened(expand_secrets(url).shown, told(), digest.hexdigest)
 
 
-def _open(path: Path) -> BufferedReader:
+def _open(path: Path, most: int) -> BufferedReader:
     try:
         state = path.stat()
         if not stat.S_ISREG(state.st_mode):
             raise CollectionError(f"{path}: not a file; name the museum's export itself")
-        if state.st_size > FILE_LIMIT:
+        if state.st_size > most:
             raise CollectionError(
-                f"{path}: {state.st_size:,} bytes, more than {FILE_LIMIT:,}; export fewer columns or objects"
+                f"{path}: {state.st_size:,} bytes, more than {most:,}; export fewer columns or objects, "
+                "or raise [limits] megabytes"
             )
         return path.open("rb")
     except OSError as problem:

@@ -18,7 +18,7 @@ from pipeline.collection.sources.address import expand_secrets
 
 from .conftest import Museum
 
-SECRET = "p@ss/w:rd %41'x"  # noqa: S105
+SECRET = "p@ss/w:rd %41'x"
 
 
 def test_secrets_come_from_the_environment_only() -> None:
@@ -80,7 +80,7 @@ def guarded(postgresql_museum: Museum) -> Iterator[Museum]:
         f"CREATE ROLE {role} LOGIN PASSWORD {quoted}".replace("%", "%%"),
         "SELECT pg_reload_conf()",
     )
-    url = make_url(postgresql_museum.url).set(username=role, password="x")  # noqa: S106
+    url = make_url(postgresql_museum.url).set(username=role, password="x")
     yield Museum(
         url.render_as_string(hide_password=False).replace(":x@", ":${MUSEUM_PASSWORD}@"), postgresql_museum.writer
     )

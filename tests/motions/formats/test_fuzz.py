@@ -126,7 +126,7 @@ def test_agency_records_cut_off(agency_file, name):
     reader = importlib.import_module(f"pipeline.motions.formats.{AGENCY[name]}")
     content = agency_file(name).read_bytes()
     whole = reader.read_format(io.BytesIO(content))
-    chance = random.Random(3)  # noqa: S311
+    chance = random.Random(3)
     for _ in range(12):
         try:
             part = reader.read_format(io.BytesIO(content[: chance.randrange(len(content) - 200)]))
@@ -142,7 +142,7 @@ def test_agency_records_cut_off(agency_file, name):
 @pytest.mark.parametrize("name", SPECIMENS)
 def test_damage(name):
     seed = 1 if SECONDS is None else random.SystemRandom().randrange(2**32)
-    chance = random.Random(seed)  # noqa: S311
+    chance = random.Random(seed)
     content = SPECIMENS[name][1]()
     readers = sum(SPECIMENS[other][0] == SPECIMENS[name][0] for other in SPECIMENS)
     until = time.monotonic() + (0.5 if SECONDS is None else float(SECONDS) / readers)
@@ -161,7 +161,7 @@ def test_damage(name):
 
 @pytest.mark.parametrize("name", SPECIMENS)
 def test_noise(name):
-    chance = random.Random(2)  # noqa: S311
+    chance = random.Random(2)
     for size in (0, 1, 2, 100, 5000):
         assert not judge(name, chance.randbytes(size))
         assert not judge(name, bytes(size))

@@ -1,14 +1,27 @@
 """kouros.toml -> typed, frozen settings.  Unknown keys are errors; secrets come from the environment only."""
 
 import os
+import re
 import tomllib
 from pathlib import Path
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field, RootModel, ValidationError, model_validator
+from pydantic import ConfigDict, Field, RootModel, ValidationError, field_validator, model_validator
+
+from pipeline.resources import small_text
+from pipeline.settings.operations import OPERATIONS, Hooks, Limits, Logs, Retention
+from pipeline.settings.operations import Part as _Part
 
 DATABASE_VARIABLE = "KOUROS_DATABASE"
 """Environment variable that names the database, with its password, in place of the file's."""
+
+
+_SECRETIVE = re.compile(r"hooks(\..*)?|inventory\.database|collection\.source")
+"""Keys whose values are not repeated in messages: what stands in the wrong place may be a secret."""
+
+
+_PASSWORD = re.compile(r"://[^:/@\s]*:([^@\s]+)@")
+_VARIABLE = re.compile(r"\$\{[A-Za-z_][A-Za-z0-9_]*\}")
 
 
 class SettingsError(ValueError):
@@ -17,8 +30,15 @@ class SettingsError(ValueError):
     exit_code = 2
 
 
-class _Part(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+def _without_password(where: str) -> str:
+    """Refuse an address that holds a password itself and not the name of a variable."""
+    password = _PASSWORD.search(where)
+    if password and not _VARIABLE.fullmatch(password[1]):
+        raise ValueError(
+            "a password stands in this file, where others can read it; put it into an environment variable "
+            f"and write ${{NAME}} in its place, or put the whole address into {DATABASE_VARIABLE}"
+        )
+    return where
 
 
 class Museum(_Part):
@@ -32,14 +52,18 @@ class Inventory(_Part):
 
     database: str = Field(default="kouros.sqlite", description="a file, or postgresql://host/name without a password")
 
+    _open = field_validator("database")(_without_password)
+
 
 class Collection(_Part):
     """The museum's own records, read again before every run; empty: the inventory as it is."""
 
-    source: str = Field(default="", description="the file to import")
+    source: str = Field(default="", description="the file to import, or a database's address with ${NAME} for secrets")
     mapping: str = Field(default="kouros", description="a preset, or the file of a mapping")
     shrink_limit: float = Field(default=0.2, ge=0.0, le=1.0, description="share of objects that may vanish at once")
     rules: str = Field(default="", description="a CSV file of your own rules of classification, read before Kouros's")
+
+    _open = field_validator("source")(_without_password)
 
 
 class SiteFolder(_Part):
@@ -131,6 +155,10 @@ class Settings(_Part):
     mitigation: Mitigation = Mitigation()
     charts: Charts = Charts()
     report: Report = Report()
+    hooks: Hooks = Hooks()
+    logs: Logs = Logs()
+    retention: Retention = Retention()
+    limits: Limits = Limits()
     home: Path = Field(default=Path(), exclude=True)
     demonstration: bool = Field(default=False, description="say on every page that this is a demonstration")
 
@@ -152,16 +180,16 @@ def load_settings(file: str | Path) -> Settings:
     """
     where = Path(file)
     try:
-        data = tomllib.loads(where.read_text(encoding="utf-8"))
+        data = tomllib.loads(small_text(where))
     except FileNotFoundError as problem:
         raise SettingsError(
             f"{where}: there is no such file; make one with `kouros init`, or name it by --config"
         ) from problem
     except (OSError, UnicodeDecodeError) as problem:
         raise SettingsError(
-            f"{where}: cannot be read ({problem}); check its permissions and that it is UTF-8"
+            f"{where}: cannot be read ({problem}); check its permissions, its size, and that it is UTF-8"
         ) from problem
-    except tomllib.TOMLDecodeError as problem:
+    except (tomllib.TOMLDecodeError, RecursionError) as problem:
         raise SettingsError(f"{where}: is not valid TOML ({problem}); mend that line") from problem
     if "home" in data:
         raise SettingsError(f"{where}: key 'home' is not a setting; remove it")
@@ -170,9 +198,9 @@ def load_settings(file: str | Path) -> Settings:
     except ValidationError as problem:
         first = problem.errors()[0]
         key = ".".join(str(part) for part in first["loc"])
-        raise SettingsError(
-            f"{where}: {key}: {first['msg']} (is {first.get('input')!r}); see `kouros init`"
-        ) from problem
+        shown = "" if _SECRETIVE.fullmatch(key) else f" (is {first.get('input')!r})"
+        # Not chained: pydantic would repeat the input.
+        raise SettingsError(f"{where}: {key}: {first['msg']}{shown}; see `kouros init`") from None
 
 
 TEMPLATE = """\
@@ -249,7 +277,7 @@ catalogues = ""
 def template(*, museum: str, source: str, mapping: str, site: str) -> str:
     """Return a commented kouros.toml."""
     quoted = {key: _quoted(value) for key, value in {"museum": museum, "source": source, "mapping": mapping}.items()}
-    return TEMPLATE.format(site=_quoted(site), **quoted)
+    return TEMPLATE.format(site=_quoted(site), **quoted) + OPERATIONS
 
 
 def _quoted(text: str) -> str:

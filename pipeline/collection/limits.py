@@ -1,0 +1,55 @@
+"""How much of a museum's records is accepted: beyond it a source is refused whole, and nothing of it is written."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+from pipeline.collection.errors import CollectionError
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How much of a source is accepted; `[limits]` in kouros.toml sets it.
+
+    bytes   : of a file, as it lies on the disk
+    rows    : below the header
+    seconds : that reading may take, from the opening on; what a mapping says of a database counts where it is less
+    """
+
+    bytes: int = 1 << 30
+    rows: int = 5_000_000
+    seconds: float = 3600.0
+
+
+STANDARD = Limits()
+
+_ROWS_BETWEEN = 256
+"""Rows between two looks at the clock."""
+
+
+class Meter:
+    """Counts the rows of a source, and looks at the clock."""
+
+    def __init__(self, source: str, limits: Limits) -> None:
+        self._source = source
+        self._limits = limits
+        self._end = time.monotonic() + limits.seconds
+        self.rows = 0
+
+    def count(self) -> None:
+        """Count one more row.
+
+        raises : CollectionError beyond the limits, naming the source, the row and the remedy
+        """
+        self.rows += 1
+        if self.rows > self._limits.rows:
+            raise CollectionError(
+                f"{self._source}: more than {self._limits.rows:,} rows; export only the objects on display, "
+                "or raise [limits] rows"
+            )
+        if self.rows % _ROWS_BETWEEN == 1 and time.monotonic() > self._end:
+            raise CollectionError(
+                f"{self._source}, row {self.rows:,}: reading took more than {self._limits.seconds:g} s; see whether "
+                "the disk or the network is slow, or raise [limits] seconds"
+            )

@@ -1,0 +1,94 @@
+"""What a night came to, for programs: the document of `kouros run --json`, of summary.json and of the hooks."""
+
+import json
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pipeline.records import RunChanges
+
+if TYPE_CHECKING:
+    from pipeline.jobs.nightly import Summary
+
+SUMMARY = "summary.json"
+"""The file beside a report's index."""
+
+LISTED = 1000
+"""Changes of each kind that the file lists; `kouros diff --json` has all."""
+
+_KINDS = ("added", "removed", "moved", "inputs", "verdicts", "motions", "decisions", "settings", "versions")
+
+
+def summary_document(summary: "Summary", *, most: int | None = None, base: Path | None = None) -> dict[str, Any]:
+    """Return a summary as schemas/run-summary.schema.json describes it.
+
+    most : changes of each kind that are listed, all of them where None; how many there are is told in any case
+    base : paths are told from this folder on, so that a report that is moved or published names no place of the machine
+    """
+    plain: dict[str, Any] = dict(vars(summary))
+    changes: RunChanges | None = plain.pop("changes")
+    for name in ("report", "latest"):
+        path: Path | None = plain[name]
+        plain[name] = None if path is None else str(path if base is None else _from(path, base))
+    plain["exit_code"] = 3 if summary.cannot else 0
+    plain["changes"] = None if changes is None else _counted(changes, most)
+    document: dict[str, Any] = json_ready(plain)
+    return document
+
+
+def _from(path: Path, base: Path) -> Path:
+    # The link itself is meant, not what it points at.
+    return Path(os.path.relpath(path.parent.resolve() / path.name, base.resolve()))
+
+
+def _counted(changes: RunChanges, most: int | None) -> dict[str, Any]:
+    counts = {kind: len(getattr(changes, kind)) for kind in _KINDS}
+    counts |= {"worsened": len(changes.worsened), "fixed": len(changes.fixed)}
+    plain = plain_changes(changes)
+    return {"counts": counts, **{name: v[:most] if name in _KINDS else v for name, v in plain.items()}}
+
+
+def plain_changes(changes: RunChanges) -> dict[str, Any]:
+    """Return the changes for JSON; each verdict's says whether it is fixed or worsened."""
+    plain = asdict(changes)
+    for row, change in zip(plain["verdicts"], changes.verdicts, strict=True):
+        row |= {"fixed": change.fixed, "worsened": change.worsened}
+    return plain
+
+
+def json_ready(value: Any) -> Any:
+    """Return a value of texts, numbers, lists and mappings as JSON can hold it: None for infinity and no number."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {str(key): json_ready(one) for key, one in value.items()}
+    return [json_ready(one) for one in value] if isinstance(value, list | tuple) else value
+
+
+def exit_code_of(problem: BaseException) -> int:
+    """Return the exit code of the command that ends with this error."""
+    if not isinstance(problem, Exception):
+        return 130  # stopped by hand
+    return int(getattr(problem, "exit_code", 2 if isinstance(problem, ValueError) else 1))
+
+
+def write_summary(summary: "Summary", folder: Path) -> None:
+    """Write summary.json beside a report's index, whole or not at all.
+
+    folder : of the report; paths in the file are told from it
+    """
+    text = json.dumps(summary_document(summary, most=LISTED, base=folder), indent=2, allow_nan=False)
+    write_aside(folder / SUMMARY, text + "\n")
+
+
+def write_aside(path: Path, text: str) -> None:
+    """Put a file (UTF-8) in place of another by one rename, so that nobody ever reads half of it."""
+    aside = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    try:
+        aside.write_text(text, encoding="utf-8", newline="\n")
+        aside.replace(path)
+    finally:
+        aside.unlink(missing_ok=True)

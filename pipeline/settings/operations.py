@@ -1,0 +1,175 @@
+"""The settings of every night's operation: whom to tell, what to log, how long to keep, how much to accept."""
+
+from typing import Literal
+from urllib.parse import urlsplit
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+
+Event = Literal["changed", "failed", "shrunk"]
+"""Verdicts changed; the run failed; the collection shrank suspiciously, and nothing was published."""
+
+EVENTS: tuple[Event, ...] = ("changed", "failed", "shrunk")
+
+_VARIABLE = r"^KOUROS_[A-Z0-9_]+$"
+
+
+class Part(BaseModel):
+    """A table of kouros.toml: unknown keys are errors."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class _Hook(Part):
+    on: tuple[Event, ...] = Field(default=EVENTS, description="the events that are told")
+    timeout_s: float = Field(default=30.0, gt=0.0, le=600.0, description="seconds that telling may take")
+
+
+class CommandHook(_Hook):
+    """A program that is started without a shell, with the event as JSON on its standard input."""
+
+    run: tuple[str, ...] = Field(min_length=1, description="the program and its arguments, each a text of its own")
+
+    @field_validator("run")
+    @classmethod
+    def _startable(cls, words: tuple[str, ...]) -> tuple[str, ...]:
+        if not words[0].strip() or any("\0" in word for word in words):
+            raise ValueError("the first word names a program, and no word holds a NUL character")
+        return words
+
+
+class WebhookHook(_Hook):
+    """An address that the event is sent to as JSON, by POST."""
+
+    url: str = Field(default="", description="http:// or https://, where the address is no secret")
+    url_from: str = Field(default="", pattern=f"^$|{_VARIABLE}", description="environment variable with the address")
+    token_from: str = Field(default="", pattern=f"^$|{_VARIABLE}", description="environment variable with a token")
+    retries: int = Field(default=2, ge=0, le=10, description="further attempts after one that failed")
+
+    @model_validator(mode="after")
+    def _one_address(self) -> "WebhookHook":
+        if bool(self.url) == bool(self.url_from):
+            raise ValueError("give either url, or url_from with the name of an environment variable")
+        if self.url:
+            check_address(self.url)
+        return self
+
+
+def check_address(url: str) -> None:
+    """Refuse what is no address of a webhook, or holds a password.
+
+    raises : ValueError, which does not repeat the address
+    """
+    parts = urlsplit(url)
+    if parts.scheme not in ("http", "https") or not parts.hostname:
+        raise ValueError("a webhook's address begins with https:// (or http://) and names a host")
+    if parts.username or parts.password:
+        raise ValueError("a webhook's address holds no password; put a token into a variable and name it in token_from")
+
+
+class EmailHook(_Hook):
+    """A mail to people."""
+
+    host: str = Field(min_length=1, pattern=r"^[^\s/@]+$", description="the mail server")
+    port: int = Field(default=587, ge=1, le=65535)
+    security: Literal["starttls", "tls", "none"] = Field(default="starttls", description="how the line is encrypted")
+    sender: str = Field(description="the address that the mail comes from")
+    to: tuple[str, ...] = Field(min_length=1, description="the addresses that it goes to")
+    user: str = Field(default="", description="where the server asks for one")
+    password_from: str = Field(
+        default="", pattern=f"^$|{_VARIABLE}", description="environment variable of the password"
+    )
+
+    @field_validator("sender", "to")
+    @classmethod
+    def _addresses(cls, value: str | tuple[str, ...]) -> str | tuple[str, ...]:
+        for address in (value,) if isinstance(value, str) else value:
+            name, _, domain = address.rpartition("@")
+            if not (
+                name and domain and address.isascii() and address.isprintable() and not set(" ,;<>") & set(address)
+            ):
+                raise ValueError("an e-mail address is name@domain, without a display name")
+        return value
+
+    @model_validator(mode="after")
+    def _password_is_protected(self) -> "EmailHook":
+        if bool(self.user) != bool(self.password_from):
+            raise ValueError("user and password_from belong together")
+        if self.user and self.security == "none":
+            raise ValueError('a password is never sent in clear: say security = "starttls" or "tls"')
+        return self
+
+
+class Hooks(Part):
+    """Who is told when verdicts changed, when a run failed, and when the collection shrank."""
+
+    command: tuple[CommandHook, ...] = ()
+    webhook: tuple[WebhookHook, ...] = ()
+    email: tuple[EmailHook, ...] = ()
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """The environment variables whose values are secrets."""
+        named = [name for hook in self.webhook for name in (hook.url_from, hook.token_from)]
+        return tuple(dict.fromkeys(filter(None, [*named, *(hook.password_from for hook in self.email)])))
+
+
+class Logs(Part):
+    """Where the log is kept, one JSON object a line."""
+
+    file: str = Field(default="", description="a file beside kouros.toml; empty: none is kept")
+    megabytes: float = Field(default=10.0, gt=0.0, le=1000.0, description="of one file, before the next is begun")
+    keep: int = Field(default=5, ge=1, le=1000, description="full files that are kept")
+
+
+class Retention(Part):
+    """What stays of earlier nights.  0: no limit.  The last good run and its report always stay."""
+
+    runs: int = Field(default=0, ge=0, description="runs in the database")
+    reports: int = Field(default=0, ge=0, description="report folders")
+    days: float = Field(default=0.0, ge=0.0, description="runs and reports older than this are removed")
+
+
+class Limits(Part):
+    """How much of an input is accepted."""
+
+    megabytes: float = Field(default=1024.0, gt=0.0, le=102_400.0, description="of a file of the collection")
+    rows: int = Field(default=5_000_000, ge=1, le=200_000_000, description="of the collection")
+    seconds: float = Field(default=3600.0, gt=0.0, le=86_400.0, description="that reading the collection may take")
+
+
+OPERATIONS = """
+# Who is told when verdicts "changed", when a run "failed", and when the collection "shrunk" suspiciously; each may be
+# repeated.  Secrets never stand here: url_from, token_from and password_from name variables KOUROS_... of the
+# environment.  A command gets the event as JSON on its standard input, and is started without a shell.
+# [[hooks.command]]
+# run = ["/usr/local/bin/tell-conservation", "--from=kouros"]
+# on = ["changed", "failed", "shrunk"]
+# [[hooks.webhook]]
+# url = "https://hooks.museum.example/kouros"
+# token_from = "KOUROS_WEBHOOK_TOKEN"
+# [[hooks.email]]
+# host = "smtp.museum.example"
+# sender = "kouros@museum.example"
+# to = ["registrar@museum.example"]
+# user = "kouros"
+# password_from = "KOUROS_SMTP_PASSWORD"
+
+[logs]
+# A file with one JSON object a line, such as "logs/kouros.jsonl"; empty: none.  `kouros --log-json run` writes the same
+# lines to standard error.
+file = ""
+megabytes = 10
+keep = 5
+
+[retention]
+# How many runs and report folders stay, and for how many days; 0 means all.  The last good ones always stay.
+runs = 30
+reports = 30
+days = 0
+
+[limits]
+# A collection beyond these is refused whole: megabytes of a file, rows, seconds that reading may take.
+megabytes = 1024
+rows = 5000000
+seconds = 3600
+"""

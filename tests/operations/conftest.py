@@ -1,0 +1,95 @@
+"""A small museum whose nights are short, and the command as a process."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import warnings
+from collections.abc import Callable, Mapping
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+from referencing import Registry, Resource
+
+from pipeline.jobs.signals import synthesise
+from pipeline.resources import resource
+from tests.test_jobs import workspace
+
+SCHEMAS = ("run-summary", "status", "event")
+
+Kouros = Callable[..., "subprocess.CompletedProcess[str]"]
+
+
+def validate(document: Any, schema: str) -> None:
+    """Hold a document against a published schema; the schemas may name each other."""
+    known = {
+        f"{n}.schema.json": json.loads(resource("schemas", f"{n}.schema.json").read_text("utf-8")) for n in SCHEMAS
+    }
+    registry = Registry().with_resources((name, Resource.from_contents(text)) for name, text in known.items())
+    wanted = known[f"{schema}.schema.json"]
+    Draft202012Validator.check_schema(wanted)
+    Draft202012Validator(wanted, registry=registry).validate(document)
+
+
+@pytest.fixture(scope="session")
+def shaking(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A site of one short motion: what is tested here is not what it does to objects."""
+    folder = tmp_path_factory.mktemp("sites") / "shaking"
+    synthesise("sine", ["amplitude=1.2", "frequency=2", "cycles=2"], folder)
+    return folder
+
+
+@pytest.fixture
+def museum(tmp_path: Path, shaking: Path) -> Callable[..., Path]:
+    """Write a museum of three objects, or of other rows, with more settings."""
+
+    def make(rows: list[str] | None = None, more: str = "", folder: Path = tmp_path) -> Path:
+        workspace(folder, rows, site=str(shaking))
+        file = folder / "kouros.toml"
+        text = file.read_text(encoding="utf-8").split("\n[logs]")[0]
+        file.write_text(text + "\n" + more, encoding="utf-8")
+        return folder
+
+    return make
+
+
+@pytest.fixture
+def kouros(tmp_path: Path) -> Kouros:
+    """Run the command in the museum's folder, with more variables of the environment."""
+
+    def call(*words: str, folder: Path = tmp_path, **more: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            command(*words), cwd=folder, env=environment(more), capture_output=True, text=True, check=False
+        )
+
+    return call
+
+
+def command(*words: str) -> list[str]:
+    return [sys.executable, "-c", "from pipeline.cli import main; main()", *words]
+
+
+def environment(more: Mapping[str, str]) -> dict[str, str]:
+    return {**os.environ, "NO_PROXY": "127.0.0.1,localhost", **more}
+
+
+def within(folder: Path, *words: str, **more: str) -> subprocess.CompletedProcess[str]:
+    """Run the command in this process, which saves the seconds of its start: same answer, same streams, same code."""
+    from pipeline.cli import main
+
+    out, err = StringIO(), StringIO()
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
+        patch.chdir(folder)
+        patch.setattr(sys, "argv", ["kouros", *words])
+        patch.setattr(warnings, "formatwarning", warnings.formatwarning)
+        for name, value in more.items():
+            patch.setenv(name, value)
+        with pytest.raises(SystemExit) as left:
+            main()
+    return subprocess.CompletedProcess(words, int(str(left.value.code)), out.getvalue(), err.getvalue())

@@ -1,0 +1,178 @@
+"""What is removed of earlier nights, and what never is."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from pipeline.jobs.retention import Pruned, prune
+from pipeline.jobs.standing import last_good
+from pipeline.jobs.workspace import LockedError, Workspace, locked, open_workspace
+from pipeline.report import publish
+from pipeline.settings import Retention, Settings
+from pipeline.store.reuse import SELECTION
+from pipeline.store.runs import list_runs, save_run
+from tests.report import builder
+
+NOW = datetime.now(UTC)
+
+
+def museum(folder: Path, limits: Retention) -> Workspace:
+    return open_workspace(Settings(home=folder, retention=limits))
+
+
+def night(
+    workspace: Workspace, hours_ago: float, *, part: bool = False, finished: bool = True, report: bool = True
+) -> str:
+    """Store a run of a while ago, with the files of its report; the newest whole one is the latest."""
+    began = NOW - timedelta(hours=hours_ago)
+    run_id = f"{began:%Y%m%dT%H%M%S}.{began.microsecond // 1000:03d}-77"
+    record = replace(
+        builder.record(),
+        run_id=run_id,
+        started=began.isoformat(),
+        finished=began.isoformat() if finished else "",
+        assessments=(),
+        charts={},
+        motions=(),
+        wishes=None,
+        settings={SELECTION: part},
+    )
+    save_run(workspace.engine, record)
+    if report and finished:
+        folder = workspace.reports / run_id
+        folder.mkdir(parents=True)
+        for name in ("index.html", "findings.jsonl", "objects.csv", "findings.xlsx"):
+            (folder / name).write_text(run_id, encoding="utf-8")
+        if not part:
+            publish(folder, workspace.reports)
+    return run_id
+
+
+def runs(workspace: Workspace) -> list[str]:
+    return [run.run_id for run in list_runs(workspace.engine)]
+
+
+def folders(workspace: Workspace) -> list[str]:
+    return sorted(path.name for path in workspace.reports.iterdir() if path.name != "latest")
+
+
+def test_nothing_is_removed_where_nothing_is_asked(tmp_path: Path) -> None:
+    workspace = museum(tmp_path, Retention())
+    ids = [night(workspace, hours) for hours in (30_000, 1)]
+    assert prune(workspace.settings) == Pruned()
+    assert runs(workspace) == ids[::-1]
+
+
+def test_the_newest_stay_and_a_dry_run_removes_nothing(tmp_path: Path) -> None:
+    workspace = museum(tmp_path, Retention(runs=2, reports=3))
+    ids = [night(workspace, hours) for hours in (5, 4, 3, 2, 1)]
+    foreseen = prune(workspace.settings, dry_run=True)
+    assert foreseen == Pruned(tuple(ids[:3]), tuple(ids[:2]))
+    assert (runs(workspace), folders(workspace)) == (ids[::-1], ids)
+    assert prune(workspace.settings) == foreseen
+    assert (runs(workspace), folders(workspace)) == (ids[:2:-1], ids[2:])
+    assert (workspace.reports / "latest").resolve().name == ids[-1]
+    assert prune(workspace.settings) == Pruned()
+
+
+def test_age_removes_all_but_the_last_good_one(tmp_path: Path) -> None:
+    """A museum whose nights failed for months: its last good run and report are old, and stay."""
+    workspace = museum(tmp_path, Retention(days=1))
+    old, good = night(workspace, 500), night(workspace, 400)
+    assert prune(workspace.settings) == Pruned((old,), (old,))
+    assert runs(workspace) == folders(workspace) == [good]
+
+
+def test_parts_of_the_collection_do_not_push_out_the_last_whole_run(tmp_path: Path) -> None:
+    workspace = museum(tmp_path, Retention(runs=1, reports=1))
+    good = night(workspace, 9)
+    parts = [night(workspace, hours, part=True) for hours in (3, 2, 1)]
+    prune(workspace.settings)
+    assert runs(workspace) == [parts[-1], good]
+    assert folders(workspace) == [good, parts[-1]]
+
+
+def test_what_latest_points_at_stays_whatever_the_database_says(tmp_path: Path) -> None:
+    """Somebody went back to an older report by hand."""
+    workspace = museum(tmp_path, Retention(runs=1, reports=1))
+    ids = [night(workspace, hours) for hours in (3, 2, 1)]
+    publish(workspace.reports / ids[0], workspace.reports)
+    prune(workspace.settings)
+    assert runs(workspace) == [ids[2], ids[0]]
+    assert folders(workspace) == [ids[0], ids[2]]
+    good = last_good(workspace.settings)
+    assert good is not None
+    assert good.run_id == ids[0]
+
+
+def test_a_run_that_was_cut_off_waits_for_a_good_one(tmp_path: Path) -> None:
+    workspace = museum(tmp_path, Retention(runs=1))
+    stale = night(workspace, 9, finished=False)
+    good = night(workspace, 5)
+    pending = night(workspace, 1, finished=False)
+    assert prune(workspace.settings).runs == (stale,)
+    assert runs(workspace) == [pending, good]
+
+
+def test_a_folder_that_is_not_wholly_ours_stays(tmp_path: Path) -> None:
+    workspace = museum(tmp_path, Retention(reports=1))
+    noted, linked, hollow, plain, newest = [night(workspace, hours) for hours in (9, 8, 7, 6, 1)]
+    root = workspace.reports
+    (root / noted / "what the registrar said.docx").write_text("keep", encoding="utf-8")
+    outside = tmp_path / "outside.csv"
+    outside.write_text("keep", encoding="utf-8")
+    (root / linked / "link.csv").symlink_to(outside)
+    (root / hollow / "findings.jsonl").unlink()
+    for name in ("exhibition 2031", "20310501", "20310501T030000.000-1x", ".kouros"):
+        (root / name).mkdir()
+    (root / "20300501T030000.000-1").symlink_to(tmp_path, target_is_directory=True)
+    (root / "notes.txt").write_text("keep", encoding="utf-8")
+    before = set(folders(workspace))
+    done = prune(workspace.settings)
+    assert done.reports == (plain,)
+    assert before - set(folders(workspace)) == {plain}
+    assert len(done.kept) == 3
+    assert any("docx" in why for why in done.kept)
+    assert outside.read_text(encoding="utf-8") == "keep"
+    assert newest in folders(workspace)
+
+
+def test_what_is_left_of_reports_that_were_never_finished_goes(tmp_path: Path) -> None:
+    workspace = museum(tmp_path, Retention(reports=5))
+    good = night(workspace, 1)
+    leftover = workspace.reports / ".20310501T030000.000-1.4711.partial"
+    leftover.mkdir()
+    (leftover / "index.html").write_text("half", encoding="utf-8")
+    (workspace.reports / ".something.partial").mkdir()
+    assert prune(workspace.settings).reports == (leftover.name,)
+    assert folders(workspace) == [".something.partial", good]
+
+
+def test_nothing_is_removed_while_a_run_is_at_work(tmp_path: Path) -> None:
+    workspace = museum(tmp_path, Retention(runs=1))
+    with locked(workspace.settings), pytest.raises(LockedError):
+        prune(workspace.settings)
+
+
+def test_at_random_the_last_good_run_always_stays(tmp_path: Path) -> None:
+    """A dozen museums of any history and any limits."""
+    chance = random.Random(11)
+    for number in range(12):
+        limits = Retention(
+            runs=chance.choice([0, 1, 2]), reports=chance.choice([0, 1, 2]), days=chance.choice([0.0, 0.1, 2.0])
+        )
+        workspace = museum(tmp_path / str(number), limits)
+        good = []
+        for hours in sorted(chance.sample(range(1, 100), 4), reverse=True):
+            part, finished = chance.random() < 0.3, chance.random() < 0.7
+            run = night(workspace, hours, part=part, finished=finished)
+            good += [run] if finished and not part else []
+        prune(workspace.settings)
+        if good:
+            assert good[-1] in runs(workspace)
+            assert (workspace.reports / "latest" / "index.html").read_text(encoding="utf-8") == good[-1]
