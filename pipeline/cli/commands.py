@@ -143,7 +143,7 @@ def _check_numerics(options: Options, as_json: bool) -> None:
 @click.option("--fidelity", type=click.Choice(["auto", "chart", "history", "reference"]), help="How finely to look.")
 @click.option("--dry-run", is_flag=True, help="Assess and summarise; store and publish nothing.")
 @click.option(
-    "--resume", is_flag=True, help="Go on where a run was cut off: with the inventory as it is, without reading the source."
+    "--resume", is_flag=True, help="Go on where a run was cut off, with the inventory as it is: the source is not read."
 )
 @click.option("--explain", metavar="OBJECT", help="Print the whole chain of reasoning for one object instead.")
 @as_json
