@@ -52,8 +52,8 @@ def horizontal_isolator(unit: Sequence[Need], bench: Bench, measure: Measure) ->
         }
         moving = on_floor(unit[0], measure, numbers)
         stands = tuple((need, _ways(need.scene, carried)) for need in unit)
-        mark = ("isolator", isolator.frequency, carried.acceleration)
-        offers.append(Offer(numbers, (Trial(moving),), stands, mark=mark))
+        marks = {level: ("isolator", isolator.frequency, felt) for level, felt in carried.accelerations.items()}
+        offers.append(Offer(numbers, (Trial(moving),), stands, marks=marks))
     if not offers:
         longest = f" and none under {100 * measure.limit:.0f} cm" if isfinite(measure.limit) else ""
         return refused(f"the catalogue has no horizontal isolator that keeps to its stroke{longest}")
@@ -64,6 +64,9 @@ def horizontal_isolator(unit: Sequence[Need], bench: Bench, measure: Measure) ->
 def _standing(scene: Scene) -> str:
     if scene.support not in STANDING:
         return "it does not stand"
+    if {"stroke", "rotation_limit"} & set(scene.parameters):
+        # The frequency and the damping are the isolator's then, and its own are not at hand.
+        return "it stands on an isolator already: have that one changed"
     if not knows_section(scene) and not _can_stand(scene):
         return "neither its base nor its critical section is known"
     return ""
