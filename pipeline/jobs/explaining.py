@@ -137,6 +137,7 @@ def _reason(
     for found, bound in zip(examined.climb.found, bounds, strict=True):
         low, high = bound[case.output]
         exact = work.model.exact and case.output == work.model.demand
+        no_error = exact or work.model.output(case.output).unit == "bool"
         for row in dict.fromkeys(work.spans.rows.ravel().tolist()):
             # Only `auto` asks for bounds besides certificates.
             if analysis.fidelity == AUTO or low[row] == high[row]:
@@ -146,7 +147,7 @@ def _reason(
             for at, row in enumerate(rows.tolist()):
                 # Where the certificate is the demand, a history only tells what happens after.
                 value = float(low[row]) if exact else float(columns[case.output][at])
-                error = 0.0 if exact else float(columns["error"][at])
+                error = 0.0 if no_error else float(columns[work.model.error_of(case.output)][at])
                 off = error if fidelity == "chart" else 0.0
                 one = {name: float(column[at]) for name, column in columns.items()}
                 told = work.model.outcome(one, {name: float(v[row]) for name, v in work.values.items()})[1]

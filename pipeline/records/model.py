@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -59,6 +59,7 @@ class Model:
     directions : 1 (along an angle), 2 (both horizontal directions) or 0 (the parameter `directions` says)
     run        : (excitation, parameters, refine, estimate) -> columns; parameters are broadcast (n,) arrays, refine
                  divides the standard step; without estimate the error is left out (NaN) and the cost is a third
+    errors     : output -> column of `run` with its own error, where `error` is not of the same unit
     demand     : which output is set against the capacity
     capacity   : parameter of the scene that the demand is held against, or a constant
     applies    : scene -> "" where the model applies, else the reason why not; it may look at the support, the isolator,
@@ -101,6 +102,7 @@ class Model:
     sentence: str
     fails: str
     at_most: str = ""
+    errors: Mapping[str, str] = field(default_factory=dict)
     axes: tuple[Mapping[str, str], ...] = ({}, {})
     symmetric: Callable[[Mapping[str, Array]], bool] = lambda _: True
     screen: Callable[[Excitation, Mapping[str, Array]], Columns] | None = None
@@ -122,6 +124,10 @@ class Model:
         """All parameters of a scene that it may be run with."""
         own = (other for axis in self.axes for other in axis.values())
         return (*(q.name for q in self.needs), *own)
+
+    def error_of(self, output: str) -> str:
+        """Return the name of the column that holds the error of an output."""
+        return self.errors.get(output, "error")
 
     def output(self, name: str) -> Quantity:
         """Return the output of that name.
