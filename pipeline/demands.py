@@ -92,9 +92,9 @@ class Demands:
         return self._whole(output)[self._slot[rows]]
 
     def told(self, row: int) -> dict[str, float]:
-        """Return all outputs of one row, with their errors and "note"; zeros where it was neither looked up nor integrated.
+        """Return all outputs of one row, with their errors and "note".
 
-        Where the certificate is the demand, that is the demand.
+        Zeros where it was neither looked up nor integrated.  Where the certificate is the demand, that is the demand.
         """
         model, at = self.work.model, int(self._slot[row])
         names = (*(q.name for q in model.gives), "error", *model.errors.values(), "note")
