@@ -285,8 +285,8 @@ ROCKING = Model(
     symmetric=_symmetric,
     uncharted="its outcomes flip back and forth, so that it is never tabulated",
     sentence=(
-        "The largest horizontal push is {demand} times what lifts an edge of this object (the range of its uncertain "
-        "measures gives {low} to {high}); from 1 on it rocks."
+        "The largest horizontal push is {demand} ({low} to {high}) times what lifts an edge of this object; from 1 on "
+        "it rocks."
     ),
     fails="rocks",
 )

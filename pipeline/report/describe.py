@@ -1,5 +1,6 @@
 """One object in words and in the reader's units."""
 
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from math import isfinite, isnan
@@ -38,6 +39,10 @@ from pipeline.report.views import (
     State,
 )
 
+_PLACEHOLDER = re.compile(r"{(\w+)}")
+_RANGE = re.compile(r" \([^()]*{(?:low|high)}[^()]*\)")
+"""Brackets of a sentence that tell the range of a demand."""
+
 _ORIGIN_ORDER = {Origin.MEASURED: 0, Origin.DERIVED: 1, Origin.ASSUMED: 2}
 
 
@@ -65,9 +70,9 @@ def percent(utilisation: float | None) -> str:
 def decided(by: str) -> str:
     """Say in words what settled a verdict."""
     told = {
-        "certificate": _("a guaranteed bound, without integration"),
-        "chart": _("the response chart of this motion"),
-        "history": _("a time history of this object"),
+        "certificate": _("a guaranteed bound"),
+        "chart": _("the response chart"),
+        "history": _("a time history"),
     }
     return told.get(by) or clean(by)
 
@@ -93,7 +98,7 @@ def bar(utilisation: float | None) -> Bar | None:
     """Return the bar of a utilisation: its track spans 0 to 2, and the limit, 1, lies in the middle."""
     if utilisation is None or isnan(utilisation):
         return None
-    return Bar(round(50.0 * min(max(utilisation, 0.0), 2.0), 1), utilisation > 2.0, utilisation > 1.0)
+    return Bar(round(50.0 * min(max(utilisation, 0.0), 2.0)), utilisation > 2.0, utilisation > 1.0)
 
 
 class Describer:
@@ -177,7 +182,7 @@ class Describer:
             level=clean(f.level),
             state=finding_state(f),
             outcome=said(clean(f.outcome)),
-            sentence=clean(self._units.fill(said(f.sentence), values, where)),
+            sentence=clean(self._units.fill(self._certain(f, said(f.sentence)), values, where)),
             numbers=self._sums(f, utilisation),
             utilisation=utilisation,
             bar=bar(f.utilisation),
@@ -191,18 +196,32 @@ class Describer:
     def _sums(self, f: Finding, utilisation: str) -> str:
         span = self._span(f.low, f.high, f.unit)
         error = "" if f.fidelity == "bound" else self._error(f)
-        demand, capacity = self._units.text(f.demand, f.unit), self._units.text(f.capacity, f.unit)
-        if f.fidelity == "bound" and f.error:
-            demand = _("at most %(demand)s") % {"demand": demand}
-        demand += " " + _("(%(range)s with what is uncertain)") % {"range": span} if span else ""
-        capacity += f" ({origin(f.capacity_origin)})" if f.capacity_origin else ""
-        sums = {"demand": demand, "capacity": capacity, "utilisation": utilisation}
         by = {"means": decided(f.decided_by), "error": error}
-        return (
-            _("Demand %(demand)s, capacity %(capacity)s, utilisation %(utilisation)s.") % sums
-            + " "
-            + (_("Decided by %(means)s, error %(error)s.") if error else _("Decided by %(means)s.")) % by
-        )
+        means = (_("Decided by %(means)s, error %(error)s.") if error else _("Decided by %(means)s.")) % by
+        capacity = self._units.text(f.capacity, f.unit)
+        of = origin(f.capacity_origin) if f.capacity_origin else ""
+        # What the sentence has said is not said again.
+        asked = set(_PLACEHOLDER.findall(f.sentence))
+        ranged = not span or {"low", "high"} <= asked
+        if "demand" in asked and ranged and f.demand == f.utilisation:
+            # Of a share of what is allowed nothing is left to say.
+            return means
+        if "demand" not in asked or not ranged:
+            demand = self._units.text(f.demand, f.unit)
+            if f.fidelity == "bound" and f.error:
+                demand = _("at most %(demand)s") % {"demand": demand}
+            demand += " " + _("(%(range)s with what is uncertain)") % {"range": span} if span else ""
+            phrase = _("Demand %(demand)s, capacity %(capacity)s, utilisation %(utilisation)s.")
+        else:
+            demand, phrase = "", _("Capacity %(capacity)s, utilisation %(utilisation)s.")
+            capacity = of or capacity if "capacity" in asked else capacity
+        capacity += f" ({of})" if of and capacity != of else ""
+        return f"{phrase % {'demand': demand, 'capacity': capacity, 'utilisation': utilisation}} {means}"
+
+    def _certain(self, f: Finding, sentence: str) -> str:
+        """Return the sentence without its brackets about a range where nothing is uncertain."""
+        ends = {None if end is None else self._units.text(end, f.unit) for end in (f.low, f.demand, f.high)}
+        return _RANGE.sub("", sentence) if len(ends) == 1 else sentence
 
     def _motion(self, motion_hash: str, name: str) -> MotionLink:
         key = (motion_hash, name)
@@ -283,8 +302,8 @@ class Describer:
         )
 
     def _number(self, name: str, e: Estimate) -> NumberView:
-        span = self._span(e.low, e.high, e.unit)
-        text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{f' ({span})' if span else ''}"
+        span = f" ({self._units.bare(e.low, e.high, e.unit)})" if self._span(e.low, e.high, e.unit) else ""
+        text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{span}"
         return NumberView(text, origin(e.origin), clean(e.note), clean(e.source))
 
     def _figures(

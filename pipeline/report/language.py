@@ -1,7 +1,7 @@
 """The language of the pages: phrases are English in the code, and looked up in the museum's catalogue when shown."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -95,13 +95,25 @@ def _(phrase: str) -> str:
     return phrase if phrases is None or not phrase else phrases.gettext(phrase)
 
 
-_SENTENCES = re.compile(r"(?<=[.!?;:]) ")
+def ngettext(one: str, many: str, number: int) -> str:
+    """Return the phrase for that number of things in the reader's language."""
+    phrases = _PHRASES.get()
+    if phrases is None:
+        return one if number == 1 else many
+    return phrases.ngettext(one, many, number)
 
 
-def said(text: str) -> str:
+_PARTS = (re.compile(r"(?<=[.!?]) "), re.compile(r"(?<=[;:]) "))
+"""Where texts are put together: of sentences, and these of clauses."""
+
+
+def said(text: str, parts: Sequence[re.Pattern[str]] = _PARTS) -> str:
     """Return a text of the run (a title, sentences with placeholders) in the reader's language.
 
-    The whole text is looked up first, then sentence by sentence: the models put theirs together.
+    The whole text is looked up first, then sentence by sentence, for the models put theirs together, then their
+    clauses.
     """
     whole = _(text)
-    return whole if whole != text else " ".join(_(part) for part in _SENTENCES.split(text))
+    if whole != text or not parts:
+        return whole
+    return " ".join(said(part, parts[1:]) for part in parts[0].split(text))

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 
 from pipeline.records import Assessment, RunRecord, Wish
-from pipeline.report.language import _, said
+from pipeline.report.language import _, ngettext, said
 from pipeline.report.text import clean, count, words
 from pipeline.report.units import Units, significant
 from pipeline.report.views import ObjectView, SurveyView, WishView
@@ -53,19 +53,19 @@ def survey_sentence(record: RunRecord) -> str:
     if record.wishes is None:
         return ""
     worth = [w for w in record.wishes if not w.waste]
-    numbers = {
-        "worth": count(len(worth)),
-        "objects": count(len({w.object_number for w in worth})),
-        "waste": count(len(record.wishes) - len(worth)),
-        "seconds": f"{float(record.settings.get(SURVEY_SECONDS, 0.0)):.1f}",
-    }
-    return (
-        _(
-            "%(worth)s measurements on %(objects)s objects would settle a verdict; %(waste)s others alone would settle "
-            "nothing. Finding this out took %(seconds)s s."
+    objects = len({w.object_number for w in worth})
+    waste = len(record.wishes) - len(worth)
+    phrase = ngettext("%(count)s measurement", "%(count)s measurements", len(worth))
+    measurements = phrase % {"count": count(len(worth))}
+    on = ngettext("on %(count)s object", "on %(count)s objects", objects) % {"count": count(objects)}
+    seconds = f"{float(record.settings.get(SURVEY_SECONDS, 0.0)):.1f}"
+    told = [_("%(measurements)s %(objects)s would settle a verdict.") % {"measurements": measurements, "objects": on}]
+    if waste:
+        others = ngettext(
+            "%(count)s other alone would settle nothing.", "%(count)s others alone would settle nothing.", waste
         )
-        % numbers
-    )
+        told.append(others % {"count": count(waste)})
+    return " ".join([*told, _("Finding this out took %(seconds)s s.") % {"seconds": seconds}])
 
 
 def _label(field: str) -> str:
@@ -91,6 +91,12 @@ def _effect(wish: Wish) -> str:
 
 
 def _gain(settles: float, unlocks: int) -> str:
-    told = [_("settles about %(verdicts)s verdicts") % {"verdicts": count(max(1, round(settles)))}] if settles else []
-    told += [_("makes %(models)s checks possible") % {"models": count(unlocks)}] if unlocks else []
+    told = []
+    if settles:
+        about = max(1, round(settles))
+        phrase = ngettext("settles about %(count)s verdict", "settles about %(count)s verdicts", about)
+        told.append(phrase % {"count": count(about)})
+    if unlocks:
+        phrase = ngettext("makes %(count)s check possible", "makes %(count)s checks possible", unlocks)
+        told.append(phrase % {"count": count(unlocks)})
     return ", ".join(told)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from itertools import groupby
 
 from pipeline.report.judging import FragilityView, RoomView, ShakingView, SpacingView
 from pipeline.report.svg import Spot
@@ -38,7 +39,7 @@ class Counts:
 class Bar:
     """A utilisation as a bar: percent of its track (the limit lies in the middle) and whether it runs off the end."""
 
-    percent: float
+    percent: int
     beyond: bool
     over: bool
 
@@ -205,6 +206,12 @@ class ObjectView:
     def passing(self) -> tuple[FindingView, ...]:
         """The findings that pass."""
         return tuple(f for f in self.findings if f.state is State.SAFE)
+
+    @property
+    def worthwhile(self) -> tuple[tuple[str, tuple[WishView, ...]], ...]:
+        """What is worth measuring, grouped by what it does, in its order."""
+        worth = (w for w in self.wishes if not w.waste)
+        return tuple((effect, tuple(group)) for effect, group in groupby(worth, key=lambda w: w.effect))
 
     @property
     def unsettled(self) -> tuple[str, ...]:

@@ -132,6 +132,6 @@ def test_what_settled_the_verdicts_adds_up() -> None:
     assert sum(d.verdicts for d in museum.decided) == len(findings)
     # The largest share of any history's demand that an error of 0.004 or of the like makes.
     assert {f.capacity_origin for f in findings} == {Origin.DERIVED}
-    assert museum.decided[0].means == "a guaranteed bound, without integration"
+    assert museum.decided[0].means == "a guaranteed bound"
     assert all(d.worst.endswith("%") for d in museum.decided[1:])
     assert Verdict.PASS in {f.verdict for f in findings}

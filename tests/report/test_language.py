@@ -223,7 +223,7 @@ def test_every_page_says_its_language_and_is_translated(pages: dict[str, etree._
 
 def test_babel_finds_phrases_in_templates_and_in_code() -> None:
     found = {phrase for phrase, _plural in phrases()}
-    assert {"What to do first", "a guaranteed bound, without integration", "%(low)s to %(high)s"} <= found
+    assert {"What to do first", "a guaranteed bound", "%(low)s to %(high)s"} <= found
     assert len(found) > 250
 
 
