@@ -1,5 +1,6 @@
 """What a page shows, as plain data in the reader's units: the museum, a gallery, an object, a finding, a measure."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import groupby
@@ -257,12 +258,46 @@ class PlaceView:
 
 
 @dataclass(frozen=True, slots=True)
-class PlanView:
-    """A gallery to scale: the drawing, its legend in rows, and how many objects have no recorded position."""
+class TightView:
+    """A line on a plan between two neighbours that may meet: from, to (pixels), and what is known of their gap."""
 
-    svg: str
+    x1: float
+    y1: float
+    x2: float
+    y2: float
+    spacing: SpacingView
+
+
+@dataclass(frozen=True, slots=True)
+class PlanView:
+    """A gallery to scale: the drawing, its legend in rows, and how many objects have no recorded position.
+
+    ground, objects : the drawing in two parts, between which lines may be drawn
+    centres         : of what stands there, by object number, in the drawing's pixels; without numbers that stand twice
+    """
+
+    ground: str
+    objects: str
     places: tuple[PlaceView, ...]
     missing: int
+    centres: Mapping[str, tuple[float, float]]
+
+    @property
+    def svg(self) -> str:
+        """The drawing without lines between neighbours."""
+        return self.ground + self.objects
+
+    def tight(self, spacings: Sequence[SpacingView]) -> tuple[TightView, ...]:
+        """Return the lines between neighbours that may meet: each pair once, as it stands at its worst level.
+
+        spacings : the worst first
+        """
+        pairs = {(s.first, s.second): s for s in reversed(spacings) if s.state != State.SAFE}
+        return tuple(
+            TightView(*self.centres[s.first], *self.centres[s.second], s)
+            for s in reversed(pairs.values())
+            if s.first in self.centres and s.second in self.centres
+        )
 
 
 @dataclass(frozen=True, slots=True)
