@@ -14,6 +14,8 @@ from pipeline.tables import Range, spread, table
 from pipeline.verdicts import judge
 
 WAX = "museum wax"
+WAX_CHECKS = ("Wax, sideways", "Wax, uplift", "Shaking that wax holds")
+"""What wax is asked, in the words of a report."""
 
 LEVER = 2.0 / 3.0
 """Moment about an edge of an elastic layer, per its area, its strength, and its distance from the edge.
@@ -95,11 +97,12 @@ def wax_checks(scene: Scene, bench: Bench, area: float) -> tuple[Check, ...]:
     strength = strengths(WAX)
     mass, half = scene.parameters["mass"], scene.parameters["half_width"]
     moment, worst = uplift_moment(scene, bench)
+    sideways_title, uplift_title, shaking_title = WAX_CHECKS
     sideways = (mass.value * bench.push, mass.high * bench.push)
     return (
-        _check("Wax, sideways", sideways, _times(strength["shear"], area, "N")),
-        _check("Wax, uplift", (moment, worst), _times(strength["tension"], LEVER * area * half.low, "N m")),
-        _check("Shaking that wax holds", (bench.push, bench.push), _times(strength["acceleration"], 1.0, "m/s2")),
+        _check(sideways_title, sideways, _times(strength["shear"], area, "N")),
+        _check(uplift_title, (moment, worst), _times(strength["tension"], LEVER * area * half.low, "N m")),
+        _check(shaking_title, (bench.push, bench.push), _times(strength["acceleration"], 1.0, "m/s2")),
     )
 
 

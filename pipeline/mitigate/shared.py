@@ -15,6 +15,12 @@ Share = Callable[[Sequence[Need], Bench, Measure], Proposal]
 
 STANDING = (Support.FREESTANDING, Support.FASTENED, Support.ISOLATED)
 
+FREE, FASTENED = "It may stand free on it.", "It must be fastened to it."
+"""How an object stands on an isolator."""
+
+IT = "it"
+"""What is put on an isolator where nothing shares it."""
+
 NAMED = 12
 """Objects of a case that a sentence names; of more it says how many."""
 
@@ -80,9 +86,9 @@ def _can_stand(scene: Scene) -> bool:
 def _ways(scene: Scene, carried: Carried) -> tuple[Way, ...]:
     ways = []
     if _can_stand(scene):
-        ways.append(Way(Trial(replace(scene), carried), "It may stand free on it."))
+        ways.append(Way(Trial(replace(scene), carried), FREE))
     if knows_section(scene):
-        ways.append(Way(Trial(held(scene), carried), "It must be fastened to it."))
+        ways.append(Way(Trial(held(scene), carried), FASTENED))
     return tuple(ways)
 
 
@@ -92,7 +98,7 @@ def company(unit: Sequence[Need], need: Need, unknown: Sequence[str]) -> str:
     unknown : numbers of objects in the case that could not be assessed
     """
     if case_of(need.scene) is None:
-        return "it"
+        return IT
     others = [other.number for other in unit if other is not need]
     with_ = f", with {listed(others)} in it," if others else ""
     open_ = f" (not checked: {listed(unknown)})" if unknown else ""

@@ -14,7 +14,7 @@ from pipeline.records.motion import Excitation
 from pipeline.records.scene import Scene
 
 Columns = dict[str, Array]
-"""Output name -> (n,) values; "error" and "note" (bit flags, see models.NOTES) are always there."""
+"""Output name -> (n,) values; "error" and "note" (bit flags, see models.common.NOTES) are always there."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Bounds:
     """What the outputs of a model lie between, for certain.
 
     outputs : output name -> (low, high), (n,) each, of the first output always; a yes or no is bounded by 0 and 1
-    note    : (n,) bit flags, see models.NOTES
+    note    : (n,) bit flags, see models.common.NOTES
     """
 
     outputs: Mapping[str, tuple[Array, Array]]
@@ -85,6 +85,7 @@ class Model:
     mark       : (one set of parameters, demand) -> (kind of chart, x, y), or None
     at_most    : the sentence that takes the place of its own where only a bound is known, which the demand is then
     fails      : what an object does whose demand exceeds the capacity, such as "slides"
+    says       : what else its findings may say that holds no number, for the catalogue of a translation
     """
 
     name: str
@@ -117,6 +118,7 @@ class Model:
     otherwise: Callable[[Scene], tuple[str, float, str] | None] = lambda _scene: None
     chart: ChartAxis | None = None
     uncharted: str = ""
+    says: tuple[str, ...] = ()
     mark: Callable[[Mapping[str, float], float], tuple[str, float, float] | None] = lambda _parameters, _demand: None
 
     @cached_property

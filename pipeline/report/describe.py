@@ -148,7 +148,7 @@ class Describer:
             page=page,
             state=state,
             value_class=clean(item.value_class),
-            object_class=said(clean(scene.object_class)),
+            object_class=words(clean(scene.object_class)),
             rule=said(clean(scene.rule)),
             support=support(scene.support),
             place=clean(item.case),

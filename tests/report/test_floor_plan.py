@@ -64,7 +64,7 @@ def test_distances_are_to_the_drawn_scale(units: Units) -> None:
 
 
 def test_a_footprint_is_to_scale_and_turned_as_it_stands() -> None:
-    """A width of azimuth 30 points (sin 30, cos 30) east and north; SVG turns with the clock, and its y points south."""
+    """A width of azimuth 30 points (sin 30, cos 30) east and north; SVG turns with the clock, its y points south."""
     view = plan()
     box = next(shapes(view)["82.AB.7"].iter("rect"))
     size = (float(box.get("width") or ""), float(box.get("height") or ""))
