@@ -3,6 +3,7 @@
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import isfinite, isnan
 
 from pipeline.records import (
@@ -101,6 +102,22 @@ def bar(utilisation: float | None) -> Bar | None:
     return Bar(round(50.0 * min(max(utilisation, 0.0), 2.0)), utilisation > 2.0, utilisation > 1.0)
 
 
+def _together(views: Sequence[MeasureView]) -> MeasureView:
+    """Return one measure for several levels: its checks name theirs."""
+    if len(views) == 1:
+        return views[0]
+
+    def named(view: MeasureView, checks: Sequence[CheckView]) -> list[CheckView]:
+        return [replace(check, title=f"{check.title} ({view.level})") for check in checks]
+
+    return replace(
+        views[0],
+        level=", ".join(view.level for view in views),
+        checks=tuple(check for view in views for check in named(view, view.checks)),
+        ended=tuple(check for view in views for check in named(view, view.ended)),
+    )
+
+
 class Describer:
     """Turns assessments of one run into views."""
 
@@ -154,7 +171,7 @@ class Describer:
             place=clean(item.case),
             lead=findings[0] if findings else None,
             findings=findings,
-            measures=tuple(self._measure(r, assessment.findings) for r in assessment.recommendations),
+            measures=self._measures(assessment),
             figures=self._figures(ordered, assessment.recommendations) if state is State.ACT else (),
             numbers=tuple(self._number(name, estimate) for name, estimate in estimates),
             assumptions=tuple(dict.fromkeys(said(clean(text)) for text in named)),
@@ -246,6 +263,14 @@ class Describer:
         if f.demand and isfinite(f.demand) and f.error < 5e-4 * abs(f.demand):
             return _("less than 0.1 %")
         return self._units.text(f.error, f.unit)
+
+    def _measures(self, assessment: Assessment) -> tuple[MeasureView, ...]:
+        """Return the measures; what is advised alike for several levels is one, with the evidence of each."""
+        alike: dict[tuple[object, ...], list[MeasureView]] = {}
+        for r in assessment.recommendations:
+            key = (r.measure, r.sentence, tuple(sorted(r.parameters.items())))
+            alike.setdefault(key, []).append(self._measure(r, assessment.findings))
+        return tuple(_together(views) for views in alike.values())
 
     def _measure(self, r: Recommendation, findings: Sequence[Finding]) -> MeasureView:
         where = f"object {r.object_number}, recommendation {r.measure}"

@@ -128,3 +128,34 @@ def test_plain_words() -> None:
     assert words("cg_height_m") == "height of the centre of gravity"
     assert short("one two three", 9) == "one two…"
     assert len(short("x" * 500, 80)) == 80
+
+
+def test_one_measure_for_two_levels_is_said_once_with_the_evidence_of_each() -> None:
+    """The same advice at both levels is one block; another parameter at one of them would be another measure."""
+    whole = builder.rocking(Item("1", "g"))
+    (first,) = whole.recommendations
+    rare = replace(first, level="rare", checks=(replace(first.checks[0], demand=4.0e6),))
+    findings = (*whole.findings, replace(whole.findings[0], level="rare"))
+    both = replace(whole, findings=findings, recommendations=(first, rare))
+    (gallery,) = compose(replace(builder.record(), assessments=(both,)), Units()).galleries
+    (measure,) = gallery.objects[0].measures
+    assert measure.level == "design, rare"
+    assert [check.title for check in measure.checks] == ["Stress at the base (design)", "Stress at the base (rare)"]
+    assert [check.title for check in measure.ended] == ["Rocking (design)", "Rocking (rare)"]
+    other = replace(both, recommendations=(first, replace(rare, parameters={"force": 641.0})))
+    (gallery,) = compose(replace(builder.record(), assessments=(other,)), Units()).galleries
+    assert [m.level for m in gallery.objects[0].measures] == ["design", "rare"]
+
+
+def test_a_range_is_told_only_where_there_is_one() -> None:
+    """Nothing uncertain: no bracket about a range that is none; what the sentence says is not said again."""
+    whole = builder.rocking(Item("1", "g"))
+    told = "It is pushed {demand} ({low} to {high}) times what lifts it."
+    for low, sentence in ((1.6, "It is pushed 1.8 (1.6 to 1.8) times what lifts it."), (1.8, "It is pushed 1.8 times")):
+        finding = replace(whole.findings[0], sentence=told, demand=1.8, low=low, high=1.8, utilisation=1.8)
+        one = replace(whole, findings=(finding,))
+        (gallery,) = compose(replace(builder.record(), assessments=(one,)), Units()).galleries
+        (view,) = gallery.objects[0].findings
+        assert view.sentence.startswith(sentence)
+        assert "Demand" not in view.numbers
+        assert view.numbers.startswith("Decided by ")
