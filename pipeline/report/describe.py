@@ -4,6 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from math import isfinite, isnan
 
 from pipeline.records import (
@@ -45,6 +46,11 @@ _RANGE = re.compile(r" \([^()]*{(?:low|high)}[^()]*\)")
 """Brackets of a sentence that tell the range of a demand."""
 
 _ORIGIN_ORDER = {Origin.MEASURED: 0, Origin.DERIVED: 1, Origin.ASSUMED: 2}
+
+
+@lru_cache(maxsize=1024)
+def _asked(sentence: str) -> frozenset[str]:
+    return frozenset(_PLACEHOLDER.findall(sentence))
 
 
 def motion_anchor(motion_hash: str) -> str:
@@ -218,7 +224,7 @@ class Describer:
         capacity = self._units.text(f.capacity, f.unit)
         of = origin(f.capacity_origin) if f.capacity_origin else ""
         # What the sentence has said is not said again.
-        asked = set(_PLACEHOLDER.findall(f.sentence))
+        asked = _asked(f.sentence)
         ranged = not span or {"low", "high"} <= asked
         if "demand" in asked and ranged and f.demand == f.utilisation:
             # Of a share of what is allowed nothing is left to say.
@@ -235,10 +241,10 @@ class Describer:
         capacity += f" ({of})" if of and capacity != of else ""
         return f"{phrase % {'demand': demand, 'capacity': capacity, 'utilisation': utilisation}} {means}"
 
-    def _certain(self, f: Finding, sentence: str) -> str:
+    @staticmethod
+    def _certain(f: Finding, sentence: str) -> str:
         """Return the sentence without its brackets about a range where nothing is uncertain."""
-        ends = {None if end is None else self._units.text(end, f.unit) for end in (f.low, f.demand, f.high)}
-        return _RANGE.sub("", sentence) if len(ends) == 1 else sentence
+        return _RANGE.sub("", sentence) if f.low == f.demand == f.high else sentence
 
     def _motion(self, motion_hash: str, name: str) -> MotionLink:
         key = (motion_hash, name)

@@ -113,6 +113,9 @@ def said(text: str, parts: Sequence[re.Pattern[str]] = _PARTS) -> str:
     The whole text is looked up first, then sentence by sentence, for the models put theirs together, then their
     clauses.
     """
+    if type(_PHRASES.get()) in (NullTranslations, type(None)):
+        # English: nothing to look up in the many texts of a page.
+        return text
     whole = _(text)
     if whole != text or not parts:
         return whole

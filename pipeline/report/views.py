@@ -209,10 +209,14 @@ class ObjectView:
         return tuple(f for f in self.findings if f.state is State.SAFE)
 
     @property
-    def worthwhile(self) -> tuple[tuple[str, tuple[WishView, ...]], ...]:
-        """What is worth measuring, grouped by what it does, in its order."""
+    def worthwhile(self) -> str:
+        """What is worth measuring, in one line: in its order, what does as much said together; "" for nothing."""
         worth = (w for w in self.wishes if not w.waste)
-        return tuple((effect, tuple(group)) for effect, group in groupby(worth, key=lambda w: w.effect))
+        parts = []
+        for effect, group in groupby(worth, key=lambda w: w.effect):
+            told = [f"{w.what} ({w.now})" if w.now else w.what for w in group]
+            parts.append(f"{', '.join(told)}: {effect}")
+        return "; ".join(parts)
 
     @property
     def unsettled(self) -> tuple[str, ...]:

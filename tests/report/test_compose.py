@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from pipeline.records import Assessment, Item, Mark
+from pipeline.records import Assessment, Item, Mark, Move, ObjectPlace, RunChanges
 from pipeline.report import ReportError, Units
 from pipeline.report.compose import compose
 from pipeline.report.ranking import urgency
+from pipeline.report.since import since_view
 from pipeline.report.text import count, short, slug, words
 from pipeline.report.views import Counts, State
 
@@ -159,3 +160,17 @@ def test_a_range_is_told_only_where_there_is_one() -> None:
         assert view.sentence.startswith(sentence)
         assert "Demand" not in view.numbers
         assert view.numbers.startswith("Decided by ")
+
+
+def test_a_gallery_without_a_name_is_said_to_have_none() -> None:
+    """What is gone, or moved into no gallery, is no sentence with a hole in it."""
+    changes = RunChanges(
+        "1", "2", (), (ObjectPlace("2", ""),), (Move("3", "", "East"), Move("4", "East", "")),
+        (), (), (), (), (), (), "2031-05-01T01:00:00",
+    )  # fmt: skip
+    lines = {line.number: line.text for _, lines, _ in since_view(changes, {}, Units()).lists for line in lines}
+    assert lines == {
+        "2": "no gallery recorded",
+        "3": "no gallery recorded → East",
+        "4": "East → no gallery recorded",
+    }
