@@ -75,8 +75,19 @@ class Analysis(_Part):
 
     fidelity: Literal["auto", "chart", "history", "reference"] = "auto"
     azimuth_step: float = Field(default=10.0, gt=0.0, le=90.0, description="degrees between directions (RotD100)")
-    fragility: bool = Field(default=True, description="from what shaking on each object on display fails")
+    fragility: bool | Literal["auto"] = Field(
+        default="auto", description="from what shaking each object on display fails; auto: unless that takes minutes"
+    )
     workers: int = Field(default=0, ge=0, le=256, description="threads; 0: as many as there are cores")
+
+
+class Execution(_Part):
+    """Where the work is done."""
+
+    processes: int = Field(default=0, ge=0, le=1024, description="of this machine; 0: as many as there are cores")
+    cluster: str = Field(
+        default="", pattern=r"^$|^(tcp|tls|ucx|ws|wss)://[^\s@]+$", description="address of a Dask scheduler"
+    )
 
 
 class Mitigation(_Part):
@@ -100,7 +111,9 @@ class Report(_Part):
 
     folder: str = Field(default="reports", description="one folder a run, and 'latest'")
     length: Literal["cm", "mm", "m", "in", "ft"] = "cm"
-    survey: bool = Field(default=True, description="find out which measurements would settle a verdict")
+    survey: bool | Literal["auto"] = Field(
+        default="auto", description="find out what is worth measuring; auto: unless that takes minutes"
+    )
     language: str = Field(default="en", pattern=r"^[A-Za-z]{2,3}([-_][A-Za-z0-9]{2,8})*$", description="of the pages")
     catalogues: str = Field(default="", description="folder of translations: <language>/LC_MESSAGES/kouros.mo")
 
@@ -114,6 +127,7 @@ class Settings(_Part):
     site: SiteFolder = SiteFolder()
     floors: Floors = Floors({})
     analysis: Analysis = Analysis()
+    execution: Execution = Execution()
     mitigation: Mitigation = Mitigation()
     charts: Charts = Charts()
     report: Report = Report()
@@ -196,10 +210,17 @@ folder = {site}
 fidelity = "auto"
 # Degrees between the directions tried for an object whose orientation is not recorded.
 azimuth_step = 10.0
-# From what shaking on each object on display fails: scales the motions, which takes some seconds for 1,000 objects.
-fragility = true
+# From what shaking each object on display fails: true, false, or "auto", which leaves it out of a collection where it
+# would take minutes; the report says so then.
+fragility = "auto"
 # Threads; 0 means as many as there are cores.
 workers = 0
+
+[execution]
+# Processes of this machine that share a large night; 0 means as many as there are cores.
+processes = 0
+# The address of a Dask cluster that works instead, such as "tcp://scheduler:8786"; its workers have Kouros installed.
+cluster = ""
 
 [mitigation]
 # A CSV file with columns of Kouros's measures.csv: rows of the same name replace Kouros's words, order and limits.
@@ -216,8 +237,9 @@ megabytes = 200
 folder = "reports"
 # cm, mm, m, in or ft
 length = "cm"
-# Each night also finds out which missing measurements would settle a verdict; it prints what that costs.
-survey = true
+# Each night also finds out which missing measurements would settle a verdict, and prints what that costs: true, false,
+# or "auto", which leaves it out of a collection where it would take minutes.
+survey = "auto"
 # The language of the pages; other than English, it needs <language>/LC_MESSAGES/kouros.mo in the folder of catalogues.
 language = "en"
 catalogues = ""

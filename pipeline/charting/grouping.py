@@ -83,14 +83,11 @@ def tabulate(
     columns: Columns = {name: np.full(along.size, np.nan) for name in (*outputs, "error", "note")}
     bounds: Columns = {name: np.full(along.size, np.nan) for name in outputs}
     found = np.zeros(along.size, dtype=bool)
-    possible = np.ones(along.size, dtype=bool)
-    for name in axis.absent:
-        possible &= np.isnan(values[name])
-    fixed = {q.name: values[q.name] for q in model.needs if q.name != axis.name}
-    for rows in _groups(fixed, np.flatnonzero(possible)):
-        alike = {n: float(v[rows[0]]) for n, v in fixed.items()}
-        if rows.size < least and not shelf.has(_identity(model, motion, alike, settings), axis):
-            continue
+    for alike, rows in groups(model, values):
+        if least:
+            key = _identity(model, motion, alike, settings)
+            if not shelf.pays(group_name(model, settings.angle, alike), key, axis, rows.size, least):
+                continue
         chart = chart_of(model, motion, alike, run, settings, shelf)
         inside = rows[chart.covers(along[rows])]
         looked = chart.look(along[inside])
@@ -104,6 +101,29 @@ def tabulate(
         columns["error"][at] = bounds[chart.outputs[0]][at]
         columns["note"][at] = looked.note[good]
     return Tabulated(columns, bounds, found)
+
+
+def groups(model: Model, values: Mapping[str, Array]) -> list[tuple[dict[str, float], NDArray[np.intp]]]:
+    """Return the rows that one chart could serve, with the parameters that they share, the largest groups first.
+
+    raises : ValueError for a model that is never tabulated
+    """
+    axis = axis_of(model)
+    possible = np.ones(values[axis.name].size, dtype=bool)
+    for name in axis.absent:
+        possible &= np.isnan(values[name])
+    fixed = {q.name: values[q.name] for q in model.needs if q.name != axis.name}
+    found = _groups(fixed, np.flatnonzero(possible))
+    return [({name: float(column[rows[0]]) for name, column in fixed.items()}, rows) for rows in found]
+
+
+def group_name(model: Model, angle: float | None, alike: Mapping[str, float]) -> str:
+    """Return the name of the rows that one chart could serve, whatever the motion.
+
+    angle : degrees that they are shaken along; None for the worst direction, or for both at once
+    alike : the parameters that they share
+    """
+    return f"{model.name} {angle} {sorted(alike.items())}"
 
 
 def _groups(fixed: Mapping[str, Array], rows: NDArray[np.intp]) -> list[NDArray[np.intp]]:

@@ -1,7 +1,7 @@
 """Where charts are kept: a few in memory, and, where a folder is given, all that were built, from night to night."""
 
 from collections import OrderedDict
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Set
 from concurrent.futures import Future
 from pathlib import Path
 from threading import Lock
@@ -17,11 +17,13 @@ KEPT = 64
 class Shelf:
     """Charts by identity; threads that want the same one at once wait for one of them to build it.
 
-    folder : where charts are kept from one process to the next; None: in memory only
+    folder   : where charts are kept from one process to the next; None: in memory only
+    admitted : names of the groups of parameters that charts are built for where there is a choice, so that what is
+               looked up does not hang on who asked before; None: whatever is there, or pays for those who ask
     """
 
-    def __init__(self, folder: Path | None = None, kept: int = KEPT) -> None:
-        self._folder, self._kept = folder, kept
+    def __init__(self, folder: Path | None = None, kept: int = KEPT, *, admitted: Set[str] | None = None) -> None:
+        self._folder, self._kept, self._admitted = folder, kept, admitted
         self._lock = Lock()
         self._charts: OrderedDict[str, Future[ResponseChart]] = OrderedDict()
 
@@ -49,6 +51,16 @@ class Shelf:
                 chart.set_exception(problem)
                 raise
         return chart.result()
+
+    def pays(self, group: str, key: str, axis: ChartAxis, asking: int, least: int) -> bool:
+        """Say whether a chart is to be used by some who could be integrated too.
+
+        group  : what they have in common, whatever the motion
+        asking : how many they are;  least : of how many it pays to build one
+        """
+        if self._admitted is not None:
+            return group in self._admitted
+        return asking >= least or self.has(key, axis)
 
     def has(self, key: str, axis: ChartAxis) -> bool:
         """Say whether the chart of that identity need not be built."""

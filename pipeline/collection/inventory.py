@@ -11,6 +11,7 @@ from sqlalchemy import (
     JSON,
     Boolean,
     Column,
+    ColumnElement,
     Connection,
     Double,
     Engine,
@@ -247,8 +248,7 @@ def return_to(engine: Engine, version: int, *, when: datetime | None = None) -> 
             known = connection.execute(select(IMPORT_BATCH.c.id).order_by(IMPORT_BATCH.c.id)).scalars().all()
             there = f"there are {known[0]} to {known[-1]}" if known else "nothing was imported yet"
             raise CollectionError(f"the inventory has no version {version}: {there}; `kouros import --versions` lists")
-        then = (ITEM.c.since <= version) & (ITEM.c.until.is_(None) | (ITEM.c.until > version))
-        items = tuple(_read(connection.execute(select(ITEM).where(then)).mappings()))
+        items = tuple(_read(connection.execute(select(ITEM).where(_at(version))).mappings()))
         found, digests = _difference(connection, items)
         kept = {name: row[name] for name in ("source", "sha256", "mapping", "museum", "credit", "rows", "rejected")}
         back = kept | _stamp(moment) | {"kind": "return", "returned_to": version}
@@ -276,6 +276,54 @@ def read_inventory(engine: Engine) -> list[Item]:
         items = list(_read(connection.execute(select(ITEM).where(ITEM.c.until.is_(None))).mappings()))
     # Sorted here and not in SQL: servers collate by the locale of their country.
     return sorted(items, key=lambda item: item.object_number)
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """An object in as much as the objects of a collection are sorted by."""
+
+    object_number: str
+    gallery: str
+    case: str
+    on_display: bool
+    digest: str
+
+
+@dataclass(frozen=True)
+class Catalogue:
+    """The objects of one version of the inventory; ``items`` reads their records of that same version.
+
+    version : the import that it is the state after; 0 where nothing was imported
+    """
+
+    engine: Engine
+    version: int
+    objects: tuple[Listed, ...]
+
+    def items(self, numbers: Sequence[str]) -> dict[str, Item]:
+        """Return the records of some objects, by number, as they were in this version."""
+        found: dict[str, Item] = {}
+        with self.engine.connect() as connection:
+            for start in range(0, len(numbers), NAMED):
+                some = ITEM.c.object_number.in_(numbers[start : start + NAMED])
+                rows = connection.execute(select(ITEM).where(_at(self.version), some)).mappings()
+                found |= {item.object_number: item for item in _read(rows)}
+        return found
+
+
+def catalogue(engine: Engine) -> Catalogue:
+    """Return the objects of the inventory as it is now, sorted by object number."""
+    with engine.begin() as connection:
+        version = connection.execute(select(func.max(IMPORT_BATCH.c.id))).scalar() or 0
+        columns = (ITEM.c.object_number, ITEM.c.gallery, ITEM.c["case"], ITEM.c.on_display, ITEM.c.digest)
+        rows = connection.execute(select(*columns).where(_at(version)))
+        objects = [Listed(*row) for row in rows.tuples()]
+    # Sorted here and not in SQL: servers collate by the locale of their country.
+    return Catalogue(engine, version, tuple(sorted(objects, key=lambda one: one.object_number)))
+
+
+def _at(version: int) -> ColumnElement[bool]:
+    return (ITEM.c.since <= version) & (ITEM.c.until.is_(None) | (ITEM.c.until > version))
 
 
 def items_named(engine: Engine, numbers: Sequence[str]) -> dict[str, Item]:

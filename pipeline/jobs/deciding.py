@@ -8,17 +8,16 @@ from datetime import UTC, date, datetime
 
 import numpy as np
 
-from pipeline.classify import classify, object_classes
-from pipeline.collection.inventory import fields_since, items_named, object_numbers
+from pipeline.classify import object_classes
+from pipeline.collection.inventory import items_named, object_numbers
 from pipeline.collection.record import digest_of
-from pipeline.jobs.doubts import now, standing
 from pipeline.jobs.workspace import UsageError, Workspace, near, site_folder
-from pipeline.mitigate.installed import Measure, Placed, installable, placed
+from pipeline.mitigate.installed import installable
 from pipeline.mitigate.means import KINDS, Isolator
 from pipeline.models import MODELS
 from pipeline.motions.manifest import load_manifest
 from pipeline.quantities import Quantity
-from pipeline.records import Basis, Decision, DecisionKind, Item, RunRecord, Standing, Verdict, in_force
+from pipeline.records import Basis, Decision, DecisionKind, Verdict, in_force
 from pipeline.store.decisions import add_decision, looked_at, read_decisions
 from pipeline.store.reuse import whole_runs
 
@@ -61,7 +60,7 @@ def decide(workspace: Workspace, wish: Wish) -> Decision:
     if item is None:
         raise UsageError(_nowhere(wish.object_number, object_numbers(engine)))
     runs = whole_runs(engine)
-    basis = looked_at(engine, runs[0], wish.object_number) if runs else ()
+    basis = looked_at(engine, runs[0], item.object_number, item.gallery) if runs else ()
     decision = replace(decision, run=runs[0] if runs else "", digest=digest_of(item))
     if wish.kind is DecisionKind.CLASS:
         return add_decision(engine, replace(decision, object_class=_class(wish.words), basis=basis))
@@ -279,26 +278,3 @@ def listed(workspace: Workspace, object_number: str | None = None, *, log: bool 
     """Return the decisions in force about an object, or about all, by id; of the log all that was ever written."""
     rows = read_decisions(workspace.engine, object_number)
     return list(rows if log else in_force(rows))
-
-
-def place(workspace: Workspace, item: Item, decisions: Decided) -> Placed:
-    """Return an object as people say that it is and stands: of the class decided, with the measures installed."""
-    mine = decisions.get(item.object_number, ())
-    classes = [d for d in mine if d.kind is DecisionKind.CLASS and d.object_class in object_classes()]
-    scene = classify(item, workspace.rules, (classes[-1].object_class, classes[-1].by) if classes else None)
-    measures = [Measure(d.measure, d.parameters, d.by) for d in mine if d.kind is DecisionKind.INSTALLED]
-    return placed(scene, measures)
-
-
-def stand(workspace: Workspace, record: RunRecord, decisions: Decided, *, whole: bool) -> tuple[Standing, ...]:
-    """Return the decisions about the objects of a run, with what is to be doubted; of a whole run, those of all.
-
-    whole : whether the run is of all objects, so that those decided about and not in it are gone
-    """
-    there = {a.scene.item.object_number for a in record.assessments}
-    wanted = [d for mine in decisions.values() for d in mine if whole or d.object_number in there]
-    engine = workspace.engine
-    items = items_named(engine, list({d.object_number for d in wanted}))
-    digests = {number: digest_of(item) for number, item in items.items()}
-    at = now(record, digests, lambda number, digest: fields_since(engine, number, digest))
-    return standing(sorted(wanted, key=lambda d: d.id), at)

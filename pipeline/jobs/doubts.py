@@ -39,10 +39,19 @@ class Now:
     today: str
 
 
-def now(record: RunRecord, digests: Mapping[str, str], changed: Callable[[str, str], Collection[str]]) -> Now:
-    """Return what decisions are held against after a run; today is the day on which it began."""
-    found = {assessment.scene.item.object_number: assessment for assessment in record.assessments}
-    return Now(found, record.motions, digests, changed, record.started[:10])
+def now(
+    assessments: Iterable[Assessment],
+    head: RunRecord,
+    digests: Mapping[str, str],
+    changed: Callable[[str, str], Collection[str]],
+) -> Now:
+    """Return what decisions are held against after a run; today is the day on which it began.
+
+    assessments : of the objects decided about
+    head        : the run, for its motions and its day
+    """
+    found = {assessment.scene.item.object_number: assessment for assessment in assessments}
+    return Now(found, head.motions, digests, changed, head.started[:10])
 
 
 def standing(decisions: Iterable[Decision], at: Now) -> tuple[Standing, ...]:

@@ -11,7 +11,8 @@ from pipeline.climb import AUTO, Climb, examine
 from pipeline.collection.inventory import read_inventory
 from pipeline.execute import Threads
 from pipeline.findings import findings
-from pipeline.jobs.deciding import decided, place
+from pipeline.jobs.deciding import Decided, decided
+from pipeline.jobs.desk import place
 from pipeline.jobs.levels import storeys
 from pipeline.jobs.nightly import named
 from pipeline.jobs.workspace import Workspace, charts_of
@@ -81,12 +82,16 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
         levels = storey.shaking
         with charts_of(settings, [m.hash for level in levels for m in level.motions]) as shelf:
             for index in storey.members:
-                one = place(workspace, items[index], decisions)
+                one = _placed(workspace, items[index], decisions)
                 one = replace(one, scene=replace(one.scene, floor=storey.name))
                 # What is advised for a case depends on all that stand in it.
-                others = [place(workspace, other, decisions) for other in _neighbours(items[index], inventory)]
+                others = [_placed(workspace, other, decisions) for other in _neighbours(items[index], inventory)]
                 out.append(_explain(one, others, levels, workspace, executor, progress, shelf))
     return out
+
+
+def _placed(workspace: Workspace, item: Item, decisions: Decided) -> Placed:
+    return place(item, workspace.rules, decisions.get(item.object_number, ()))
 
 
 def _neighbours(item: Item, inventory: Sequence[Item]) -> list[Item]:

@@ -1,7 +1,7 @@
 """The levels of shaking that each gallery feels: those of the floor that it stands on."""
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
 from pipeline.fragility.objects import Stripe
@@ -53,18 +53,35 @@ class Storey:
 def storeys(settings: Settings, site: Site, items: Sequence[Item]) -> list[Storey]:
     """Sort the objects by the floor that their gallery stands on, the ground first; each on one.
 
+    raises : as `floors_of`
+    """
+    places: dict[str, list[int]] = {}
+    for index, item in enumerate(items):
+        places.setdefault(floor_name(settings, item.gallery), []).append(index)
+    found = floors_of(settings, site, {item.gallery for item in items})
+    return [replace(storey, members=tuple(places[name])) for name, storey in found.items()]
+
+
+def floors_of(settings: Settings, site: Site, galleries: Collection[str]) -> dict[str, Storey]:
+    """Return the floors that some galleries stand on, by name, the ground first; without any objects.
+
     raises : SettingsError for a floor that the manifest does not have; MotionError for a record of a floor
     """
     known(settings, site)
-    places: dict[str, list[int]] = {}
-    for index, item in enumerate(items):
-        places.setdefault(settings.floors.of(item.gallery) or GROUND_FLOOR, []).append(index)
-    order = [name for name in (GROUND_FLOOR, *site.floors) if name in places]
+    wanted = {settings.floors.of(gallery) or GROUND_FLOOR for gallery in galleries}
     x_azimuth = site.manifest.site.x_azimuth
-    return [
-        Storey("" if name == GROUND_FLOOR else name, levels_at(site, name), tuple(places[name]), x_azimuth)
-        for name in order
-    ]
+    found = {}
+    for name in (GROUND_FLOOR, *site.floors):
+        if name in wanted:
+            said = "" if name == GROUND_FLOOR else name
+            found[said] = Storey(said, levels_at(site, name), (), x_azimuth)
+    return found
+
+
+def floor_name(settings: Settings, gallery: str) -> str:
+    """Return the name of the floor that a gallery stands on, "" for the ground."""
+    name = settings.floors.of(gallery)
+    return "" if name is None or name == GROUND_FLOOR else name
 
 
 def known(settings: Settings, site: Site) -> None:

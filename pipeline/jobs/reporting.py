@@ -1,31 +1,55 @@
 """Looking at runs that are over: render one again, compare two."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TypedDict
 
 from pipeline.jobs.workspace import UsageError, locked, open_workspace
-from pipeline.records import RunChanges
-from pipeline.report import Language, Units, language, publish, render
+from pipeline.records import RunChanges, Standing, Tally
+from pipeline.report import Language, Units, language, publish
+from pipeline.report.edition import Edition, link_to, sheet_key
+from pipeline.report.sheets import Pen
+from pipeline.report.since import mentioned
+from pipeline.report.tallies import tally, total
+from pipeline.report.views import Pointer
 from pipeline.settings import Settings
+from pipeline.store.results import load_found
 from pipeline.store.reuse import whole_runs
-from pipeline.store.runs import compare_runs, load_run
+from pipeline.store.runs import compare_runs, load_head
 
 
 def render_again(settings: Settings, run_id: str | None) -> Path:
     """Render a run from the store into a new folder; the newest of the whole collection becomes the latest report.
 
+    Nothing is computed again, and one sheet at a time is in memory.
     returns : the report's index
     """
     with locked(settings):
         workspace = open_workspace(settings)
-        whole = whole_runs(workspace.engine)
-        record = load_run(workspace.engine, run_id or (whole[0] if whole else None))
+        engine, whole = workspace.engine, whole_runs(workspace.engine)
+        head, sheets = load_head(engine, run_id or (whole[0] if whole else None))
         # As on the night itself: against the whole run before it, and a part of the collection against none.
-        at = whole.index(record.run_id) if record.run_id in whole else len(whole)
+        at = whole.index(head.run_id) if head.run_id in whole else len(whole)
         before = whole[at + 1 : at + 2]
-        changes = compare_runs(workspace.engine, before[0], record.run_id) if before else None
-        index = render(record, _free(workspace.reports / record.run_id), changes=changes, **manner(settings))
-        if [record.run_id] == whole[:1]:
+        changes = compare_runs(engine, before[0], head.run_id) if before else None
+        decisions: dict[str, list[Standing]] = {}
+        for standing in head.decisions:
+            decisions.setdefault(standing.decision.object_number, []).append(standing)
+        named = set() if changes is None else mentioned(changes)
+        links: dict[str, Pointer] = {}
+        tallies: list[Tally] = []
+        pen = Pen(replace(head, decisions=()), **manner(settings))
+        with Edition(_free(workspace.reports / head.run_id), pen) as edition:
+            for sheet in sheets:
+                found = load_found(engine, sheet.key)
+                numbers = {a.scene.item.object_number: a.scene.item.title for a in found.assessments}
+                mine = [standing for number in numbers for standing in decisions.pop(number, ())]
+                edition.add(sheet_key(pen, sheet, mine), pen.draw(sheet, found, mine))
+                tallies.append(tally(found))
+                links |= {n: link_to(sheet, n, title) for n, title in numbers.items() if n in named}
+            strangers = tuple(standing for left in decisions.values() for standing in left)
+            index = edition.finish(replace(head, decisions=strangers), total(tallies), changes, links)
+        if [head.run_id] == whole[:1]:
             publish(index.parent, workspace.reports)
         return index
 

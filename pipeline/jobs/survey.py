@@ -10,7 +10,8 @@ from pipeline.collection.inventory import Difference, add_sheet, read_inventory
 from pipeline.collection.mapping import Mapping, load_mapping
 from pipeline.collection.reading import Reading, read_items
 from pipeline.execute import Threads
-from pipeline.jobs.deciding import decided, place
+from pipeline.jobs.deciding import decided
+from pipeline.jobs.desk import place
 from pipeline.jobs.levels import storeys
 from pipeline.jobs.workspace import Workspace
 from pipeline.records import Progress, Wish
@@ -57,7 +58,8 @@ def survey(
     found: list[Wish] = []
     decisions = decided(workspace)
     for storey in storeys(settings, site, items):
-        scenes = [place(workspace, items[index], decisions).scene for index in storey.members]
+        here = [items[index] for index in storey.members]
+        scenes = [place(item, workspace.rules, decisions.get(item.object_number, ())).scene for item in here]
         shaking = storey.shaking
         _, findings = assess(scenes, shaking, executor, progress, fidelity=fidelity, azimuth_step=step, outcomes=False)
         found += wishes(scenes, findings, shaking, executor, progress, fidelity=fidelity, azimuth_step=step)

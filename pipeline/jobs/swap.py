@@ -7,17 +7,19 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
-from pipeline.collection.database import open_database
+from pipeline.collection.database import Database, open_database
+from pipeline.collection.inventory import catalogue
+from pipeline.jobs.briefing import admit, brief_for
 from pipeline.jobs.deciding import decided
-from pipeline.jobs.nightly import assess_items
-from pipeline.jobs.workspace import KEPT, open_workspace
-from pipeline.motions.manifest import GROUND_FLOOR
+from pipeline.jobs.rounds import Round
+from pipeline.jobs.workspace import KEPT, Workspace, open_workspace
 from pipeline.motions.site import Level, Site, read_site
-from pipeline.records import Progress, RunRecord, VerdictChange
+from pipeline.records import Progress, VerdictChange
 from pipeline.settings import Settings
 from pipeline.store import migrate
+from pipeline.store.results import copy, keep
 from pipeline.store.reuse import whole_runs
-from pipeline.store.runs import compare_runs, load_run, save_run
+from pipeline.store.runs import commit_run, compare_runs
 
 
 @dataclass(frozen=True)
@@ -110,25 +112,31 @@ def _verdicts(
     runs = whole_runs(workspace.engine)
     if not runs:
         return "there is no run yet whose verdicts could change; make one with `kouros run`", ()
-    last = load_run(workspace.engine, runs[0])
-    items = [assessment.scene.item for assessment in last.assessments]
-    started, decisions = datetime.now(UTC), decided(workspace)
-    if _made_on(last, before):
-        basis = f"the verdicts of the last run, {last.run_id}"
-    else:
-        basis = f"the objects of the last run, {last.run_id}, which was made on other motions: both sites were run now"
-        last = assess_items(workspace, items, items, before, started, progress, decisions)
-    other = assess_items(workspace, items, items, after, started, progress, decisions)
     with tempfile.TemporaryDirectory() as folder:
         engine = open_database(str(Path(folder) / "swap.sqlite"))
         migrate.upgrade(engine)
-        for name, record in (("before", last), ("after", other)):
-            save_run(engine, replace(record, run_id=name, decisions=()))
+        fresh = _assessed(workspace, before, "before", engine, progress)
+        _assessed(workspace, after, "after", engine, progress)
         changes = compare_runs(engine, "before", "after")
         engine.dispose()
+    basis = f"the verdicts of the last run, {runs[0]}"
+    if fresh:
+        basis += f"; {fresh:,} objects that it did not have on these motions and records were run now"
     return basis, changes.verdicts
 
 
-def _made_on(run: RunRecord, site: Site) -> bool:
-    ground = {(motion.level, motion.hash) for motion in run.motions if motion.floor in {"", GROUND_FLOOR}}
-    return ground == {(level.name, one.motion.hash) for level in site.levels for one in level.motions}
+def _assessed(workspace: Workspace, site: Site, name: str, engine: Database, progress: Progress) -> int:
+    """Keep a run of the inventory on a site's motions in a database of its own; results that are there are taken over.
+
+    returns : how many objects had no result yet
+    """
+    everything = catalogue(workspace.engine)
+    brief = brief_for(workspace, site, everything, everything.objects, datetime.now(UTC), progress)
+    night = Round(workspace, brief, everything, everything.objects, decided(workspace))
+    if night.fresh:
+        admit(brief, everything, everything.objects, site.manifest.site.x_azimuth)
+    night.assess(progress, lambda result: keep(engine, name, brief.head.started, [result]))
+    for sheet in night.sheets:
+        copy(workspace.engine, engine, sheet.key)
+    commit_run(engine, replace(brief.head, run_id=name, finished=brief.head.started), night.sheets)
+    return night.fresh

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pipeline.charting import SHELF, Shelf
 from pipeline.charts import chart_key
 from pipeline.climb import AUTO
-from pipeline.mitigate.bench import Bench, Fineness, Trial, checks, passes, why_not
+from pipeline.mitigate.bench import Bench, Carriage, Fineness, Trial, checks, passes, why_not
 from pipeline.mitigate.means import LAST, Means, Measure, own_means
 from pipeline.mitigate.measures import DISPLACEMENTS, MEASURES
 from pipeline.mitigate.offers import Need, Offer, Proposal, Way
@@ -37,6 +37,7 @@ def advise(
     fidelity: str = AUTO,
     azimuth_step: float = 10.0,
     charts: Shelf = SHELF,
+    carriage: Carriage | None = None,
 ) -> list[list[Recommendation]]:
     """Recommend a measure for each object and level at which something fails, or is open for want of room alone.
 
@@ -50,6 +51,7 @@ def advise(
     levels   : of shaking, with the motions that the findings were made under
     means    : the measures and isolators that there are; None: Kouros's own tables
     fidelity, azimuth_step, charts : as the findings were made
+    carriage : what isolators pass on, kept from one call to the next; None: for this call only
     returns  : the recommendations of each scene, in the order of the scenes and of the levels
     raises   : TableError where the last measure of the table is not removal
     """
@@ -57,13 +59,15 @@ def advise(
     if not have.measures or have.measures[-1].name != LAST:
         raise TableError("measures.csv: the last measure must always be possible (remove)")
     fineness = Fineness(fidelity, azimuth_step, charts)
+    carriage = carriage or Carriage()
     unassessed = _unassessed(scenes, findings)
     rounds = [tuple(levels), *((level,) for level in levels if len(levels) > 1)]
     advised: dict[tuple[int, str], Recommendation] = {}
     for at, some in enumerate(rounds):
         # What holds at all levels stands; the others are looked at level by level.
         stands = {key for key, found in advised.items() if found.measure != LAST}
-        search = _Search(Bench(some, have, executor, fineness), _needs(scenes, findings, some, stands), unassessed)
+        bench = Bench(some, have, executor, fineness, carriage)
+        search = _Search(bench, _needs(scenes, findings, some, stands), unassessed)
         for done, measure in enumerate(have.measures, start=1):
             search.tries(measure)
             progress.step("recommendations", at * len(have.measures) + done, len(rounds) * len(have.measures))

@@ -1,6 +1,6 @@
 """Where trials are run: what all objects under the same levels of shaking share, each computed once."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import isinf
@@ -70,6 +70,51 @@ class Fineness:
     charts: Shelf = SHELF
 
 
+@dataclass(frozen=True, eq=False)
+class Passed:
+    """An isolator under one level: its largest displacement [m], the acceleration and the level that it passes on."""
+
+    stroke: float
+    acceleration: float
+    shaking: LevelMotions
+
+
+class Ground:
+    """What a level of shaking is to all objects on the same floor, each worked out once."""
+
+    def __init__(self, level: LevelMotions) -> None:
+        self.level = level
+        self.passed: dict[Isolator, Passed] = {}
+
+    @cached_property
+    def push(self) -> float:
+        """A_max [m/s2], resultant."""
+        return self.level.combined([largest_push(m.excitation(None)) for m in self.level.motions])
+
+    @cached_property
+    def lift(self) -> float:
+        """The largest |a_h| / N: what an object's slope b/h is held against."""
+        return self.level.combined([max(lift_ratios(m.excitation(None))) for m in self.level.motions])
+
+    @cached_property
+    def shaken(self) -> Mapping[str, tuple[Array, Array]]:
+        """|a_h| and N = max(0, g + a_z) at each sample [m/s2], (n,) each, by the hash of the motion."""
+        motions = {motion.hash: motion.acceleration for motion in self.level.motions}
+        return {name: (np.hypot(*a[:2]), np.maximum(0.0, G + a[2])) for name, a in motions.items()}
+
+
+class Carriage:
+    """What isolators pass on and other things that hang on the shaking alone, kept for as long as this object lives."""
+
+    def __init__(self) -> None:
+        self._grounds: dict[Hashable, Ground] = {}
+
+    def ground(self, level: LevelMotions) -> Ground:
+        """Return what is known of a level so far."""
+        key = (level.name, level.combine, level.x_azimuth, tuple(motion.hash for motion in level.motions))
+        return self._grounds.setdefault(key, Ground(level))
+
+
 class Bench:
     """Runs the models of changed scenes under some levels of shaking, all of which a measure has to bear.
 
@@ -77,30 +122,38 @@ class Bench:
     levels the largest counts.
     """
 
-    def __init__(self, levels: Sequence[LevelMotions], means: Means, executor: Executor, fineness: Fineness) -> None:
+    def __init__(
+        self,
+        levels: Sequence[LevelMotions],
+        means: Means,
+        executor: Executor,
+        fineness: Fineness,
+        carriage: Carriage | None = None,
+    ) -> None:
         self.levels, self.means = tuple(levels), means
         self._executor, self._fineness = executor, fineness
+        carriage = carriage or Carriage()
+        self._grounds = [carriage.ground(level) for level in self.levels]
         self._carried: dict[Isolator, Carried] = {}
 
     def most(self, of: Callable[[Motion], float]) -> float:
         """Return the largest over the levels of what is combined from the motions of each."""
         return max(level.combined([of(motion) for motion in level.motions]) for level in self.levels)
 
-    @cached_property
+    @property
     def push(self) -> float:
         """A_max [m/s2], resultant."""
-        return self.most(lambda motion: largest_push(motion.excitation(None)))
+        return max(ground.push for ground in self._grounds)
 
-    @cached_property
+    @property
     def lift(self) -> float:
         """The largest |a_h| / N: what an object's slope b/h is held against."""
-        return self.most(lambda motion: max(lift_ratios(motion.excitation(None))))
+        return max(ground.lift for ground in self._grounds)
 
     @cached_property
     def shaken(self) -> Mapping[str, tuple[Array, Array]]:
         """|a_h| and N = max(0, g + a_z) at each sample [m/s2], (n,) each, by the hash of the motion."""
-        motions = {motion.hash: motion.acceleration for level in self.levels for motion in level.motions}
-        return {name: (np.hypot(*a[:2]), np.maximum(0.0, G + a[2])) for name, a in motions.items()}
+        return {name: both for ground in self._grounds for name, both in ground.shaken.items()}
 
     def run(self, trials: Sequence[Trial]) -> list[list[Finding]]:
         """Run every model of each trial's scene, equal work once, and return the findings in the order of the trials.
@@ -133,32 +186,19 @@ class Bench:
     def carried(self, kind: str) -> list[Carried]:
         """Return the isolators of a kind that stand on the floor, by the length of their stroke."""
         listed = self.means.of(kind)
-        fresh = [isolator for isolator in listed if isolator not in self._carried]
-        for isolator, one in zip(fresh, self._executor.map(self._carry, fresh), strict=True):
-            self._carried[isolator] = one
+        fresh = [(g, isolator) for g in self._grounds for isolator in listed if isolator not in g.passed]
+        for (ground, isolator), one in zip(fresh, self._executor.map(_carry, fresh), strict=True):
+            ground.passed[isolator] = one
+        for isolator in listed:
+            if isolator not in self._carried:
+                each = {ground.level.name: ground.passed[isolator] for ground in self._grounds}
+                self._carried[isolator] = Carried(
+                    isolator,
+                    {name: one.stroke for name, one in each.items()},
+                    {name: one.acceleration for name, one in each.items()},
+                    tuple(one.shaking for one in each.values()),
+                )
         return sorted((self._carried[isolator] for isolator in listed), key=lambda one: one.stroke)
-
-    def _carry(self, isolator: Isolator) -> Carried:
-        names = {"frequency": isolator.frequency, "damping": isolator.damping, "friction": isolator.friction}
-        given: dict[str, Any] = (
-            {"friction_static": isolator.friction} if isolator.kind == "friction_isolator" else names
-        )
-        model = model_named(isolator.kind)
-        strokes: dict[str, float] = {}
-        accelerations: dict[str, float] = {}
-        shaking = []
-        for level in self.levels:
-            moved, felt, passed_on = [], [], []
-            for motion in level.motions:
-                # One pass without an error estimate: it only ranks, and its own model is run again with the rest.
-                own = model.run(motion.excitation(None), prepare(model, given), 2, False)
-                passed = transmit(isolator.kind, motion, error=PASSED, **given)
-                moved.append(float(own["displacement"][0]))
-                felt.append(max(float(own["acceleration"][0]), largest_push(passed.excitation(None))))
-                passed_on.append(passed.scaled(HIDDEN, "for what its sampling may hide"))
-            strokes[level.name], accelerations[level.name] = level.combined(moved), level.combined(felt)
-            shaking.append(replace(level, motions=tuple(passed_on)))
-        return Carried(isolator, strokes, accelerations, tuple(shaking))
 
     def on_pad(self, pad: Isolator, cg_height: Sequence[float], inertia_ratio: float) -> tuple[float, float]:
         """Return the largest rotation [rad] of an object on a rotational pad, and A at its centre over A_max [-].
@@ -184,6 +224,23 @@ class Bench:
                 shares.append(float(rows["acceleration"].max()) / _push(motion))
             turns.append(level.combined(rotations))
         return max(turns), max(shares)
+
+
+def _carry(task: tuple[Ground, Isolator]) -> Passed:
+    level, isolator = task[0].level, task[1]
+    names = {"frequency": isolator.frequency, "damping": isolator.damping, "friction": isolator.friction}
+    given: dict[str, Any] = {"friction_static": isolator.friction} if isolator.kind == "friction_isolator" else names
+    model = model_named(isolator.kind)
+    strokes, accelerations, passed_on = [], [], []
+    for motion in level.motions:
+        # One pass without an error estimate: it only ranks, and its own model is run again with the rest.
+        own = model.run(motion.excitation(None), prepare(model, given), 2, False)
+        passed = transmit(isolator.kind, motion, error=PASSED, **given)
+        strokes.append(float(own["displacement"][0]))
+        accelerations.append(max(float(own["acceleration"][0]), largest_push(passed.excitation(None))))
+        passed_on.append(passed.scaled(HIDDEN, "for what its sampling may hide"))
+    shaking = replace(level, motions=tuple(passed_on))
+    return Passed(level.combined(strokes), level.combined(accelerations), shaking)
 
 
 def _push(motion: Motion) -> float:

@@ -16,6 +16,7 @@ from pipeline.records.decision import Basis, Decision, DecisionKind, Standing, i
 from pipeline.records.fragility import Fragility
 from pipeline.records.model import Bounds, ChartAxis, Columns, Model
 from pipeline.records.motion import Excitation, Motion, MotionSummary
+from pipeline.records.part import Errors, Found, Outline, Sheet, Tally, Urgent
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress, Silent
 from pipeline.records.result import Assessment, Check, Finding, Recommendation, Spacing, Verdict
@@ -39,11 +40,13 @@ __all__ = [
     "Decision",
     "DecisionChange",
     "DecisionKind",
+    "Errors",
     "Estimate",
     "Excitation",
     "Executor",
     "FieldChange",
     "Finding",
+    "Found",
     "Fragility",
     "InputChange",
     "Item",
@@ -55,6 +58,7 @@ __all__ = [
     "Move",
     "ObjectPlace",
     "Origin",
+    "Outline",
     "Problem",
     "Progress",
     "Provenance",
@@ -62,10 +66,13 @@ __all__ = [
     "RunChanges",
     "RunRecord",
     "Scene",
+    "Sheet",
     "Silent",
     "Spacing",
     "Standing",
     "Support",
+    "Tally",
+    "Urgent",
     "Verdict",
     "VerdictChange",
     "Wish",

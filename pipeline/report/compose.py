@@ -1,143 +1,110 @@
-"""A run's record becomes the views: judged, ranked and counted; nothing is computed again."""
+"""What was found about a sheet's objects becomes the view of its page, and all pages' entries become the index."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from math import inf, isnan
-from typing import Any
 
-from pipeline.records import Assessment, Recommendation, RunChanges, RunRecord, Spacing, Verdict
-from pipeline.report.decided import decisions_view
+from pipeline.records import Assessment, Recommendation, RunRecord, Sheet, Tally, Verdict
+from pipeline.report.decided import Decided, decisions_view, merged
 from pipeline.report.describe import Describer, percent
 from pipeline.report.errors import ReportError
 from pipeline.report.floor_plan import plan_view
 from pipeline.report.ground import motion_view
-from pipeline.report.judging import first_failure, room_views, shaking_view, spacing_views
-from pipeline.report.language import said
+from pipeline.report.judging import room_views, shaking_view, spacing_views
+from pipeline.report.language import ngettext, said
 from pipeline.report.numerics import decided_views, fidelities
-from pipeline.report.ranking import state_of, urgency
+from pipeline.report.ranking import urgency
 from pipeline.report.selftest import self_test_view
-from pipeline.report.since import since_view
-from pipeline.report.survey_words import errands, survey_sentence
-from pipeline.report.text import clean, slug, words
+from pipeline.report.survey_words import SURVEY_SECONDS, errands, survey_sentence
+from pipeline.report.text import clean, count, digest, slug, words
 from pipeline.report.units import Units
 from pipeline.report.views import (
     STATES,
     Counts,
     EffortView,
+    Entry,
+    GalleryRow,
     GalleryView,
+    Lead,
     MuseumView,
     ObjectView,
+    Pointer,
+    SheetView,
+    SinceView,
     State,
     TaskView,
 )
 
-STORED_PAGE = "not-on-display.html"
-"""File of the objects that are not on display; a gallery's file always ends in a hash, so the two never meet."""
+STORED = "not-on-display"
+"""Stem of the files of the objects that are not on display; a gallery's ends in a hash, so the two never meet."""
 
-EFFORTS = "efforts"
-"""The setting of a run that says what the verdicts of each model took."""
+LEADERS = 8
+"""Objects that the index names as the most urgent."""
+
+_LAST = (len(STATES), True, True, "", inf, "", "")
+"""Sorts after every object."""
 
 _HELPLESS = "\0"
 """Groups the objects for which nothing helps; no measure of a table can have this name."""
 
 
-def compose(record: RunRecord, units: Units, changes: RunChanges | None = None) -> MuseumView:
-    """Return everything that the pages show, in the order in which they show it.
+@dataclass(frozen=True, slots=True)
+class PageHead:
+    """What a gallery's page says of where it comes from; it stays as it is as long as its results do.
 
-    changes : since the run before, None where there was none
-    raises : ReportError for a sentence with an unknown placeholder, a mark on a chart that the run does not hold, or
-             two galleries whose files would have one name
+    finished : when its results were found
+    """
+
+    museum: str
+    run_id: str
+    finished: str
+    version: str
+    credit: str
+    demonstration: bool
+    started: str = ""
+
+
+def page_head(head: RunRecord, sheet: Sheet) -> PageHead:
+    """Return what the page of a sheet says of the run that found it."""
+    return PageHead(
+        museum=clean(head.museum),
+        run_id=clean(sheet.run),
+        finished=clean(sheet.made),
+        version=clean(head.version),
+        credit=clean(str(head.settings.get("credit") or "")),
+        demonstration=head.demonstration,
+    )
+
+
+@dataclass(frozen=True)
+class Composed:
+    """A gallery's page ready to be filled in, what the index says of it, and the ids of its objects."""
+
+    gallery: GalleryView
+    entry: Entry
+    anchor: Callable[[Assessment], str]
+
+
+def compose(record: RunRecord, sheet: Sheet, units: Units, *, several: bool) -> Composed:
+    """Return everything that the page of a sheet shows, in the order in which it shows it.
+
+    record  : the run with the objects, wishes, spacings and decisions of this sheet only
+    several : whether the run has several levels of shaking
+    raises  : ReportError for a sentence with an unknown placeholder or a mark on a chart that the run does not hold
     """
     describer = Describer(record, units)
-    ranked = sorted(record.assessments, key=urgency)
-    shown: dict[tuple[bool, str], list[Assessment]] = {}
-    for assessment in ranked:
-        item = assessment.scene.item
-        shown.setdefault((item.on_display, item.gallery if item.on_display else ""), []).append(assessment)
-    levels = {f.level for a in record.assessments for f in a.findings}
-    between: dict[str, list[Spacing]] = {}
-    for spacing in record.spacings:
-        between.setdefault(spacing.gallery, []).append(spacing)
-    galleries = [
-        _gallery(key, members, describer, units, between.get(key[1], ()), several=len(levels) > 1)
-        for key, members in shown.items()
-    ]
-    pages = Counter(g.page for g in galleries)
-    twins = [g.name for g in galleries if pages[g.page] > 1]
-    if twins:
-        raise ReportError(f"galleries {twins} would share one file; rename one of them in the collection's records")
-    galleries.sort(key=lambda g: (not g.on_display, -g.counts.act, -g.counts.open, -g.counts.unknown, g.name))
-    everything = {(o.page, o.anchor): o for g in galleries for o in g.objects}
-    order = [everything[_address(a, describer)] for a in ranked]
-    by_number = {a.scene.item.object_number: o for a, o in zip(ranked, order, strict=True)}
-    return MuseumView(
-        museum=clean(record.museum),
-        site=clean(record.site),
-        run_id=clean(record.run_id),
-        started=clean(record.started),
-        finished=clean(record.finished),
-        version=clean(record.version),
-        credit=clean(str(record.settings.get("credit") or "")),
-        demonstration=record.demonstration,
-        counts=_total(g.counts for g in galleries),
-        galleries=tuple(galleries),
-        first=tuple([o for o in order if o.state is State.ACT and not o.settled][:8]),
-        motions=tuple(motion_view(m, record.charts, units) for m in record.motions),
-        level_notes=tuple(clean(n) for n in record.level_notes),
-        efforts=tuple(_effort(e) for e in record.settings.get(EFFORTS) or ()),
-        self_test=self_test_view(record),
-        decided=decided_views(record),
-        fidelities=fidelities(record),
-        survey=survey_sentence(record),
-        decisions=decisions_view(order, describer.decided.strangers(record.assessments)),
-        since=None if changes is None else since_view(changes, by_number, units),
-    )
-
-
-def _effort(effort: Mapping[str, Any]) -> EffortView:
-    analyses, needing = int(effort["analyses"]), int(effort["needing_history"])
-    return EffortView(
-        said(clean(str(effort["title"]))),
-        analyses,
-        int(effort["certificate"]),
-        int(effort["chart"]),
-        int(effort["history"]),
-        f"{100.0 * needing / max(analyses, 1):.0f} %",
-    )
-
-
-def page_of(assessment: Assessment) -> str:
-    """Return the file of the page on which an object is shown."""
-    item = assessment.scene.item
-    return f"{slug(item.gallery)}.html" if item.on_display else STORED_PAGE
-
-
-def _address(assessment: Assessment, describer: Describer) -> tuple[str, str]:
-    return page_of(assessment), describer.anchor(assessment)
-
-
-def _total(counts: Iterable[Counts]) -> Counts:
-    listed = list(counts)
-    return Counts(*(sum(getattr(c, state.value) for c in listed) for state in STATES))
-
-
-def _gallery(
-    key: tuple[bool, str],
-    members: Sequence[Assessment],
-    describer: Describer,
-    units: Units,
-    spacings: Sequence[Spacing],
-    *,
-    several: bool,
-) -> GalleryView:
-    on_display, name = key
-    views = [describer.object(a, page_of(a)) for a in members]
+    members = sorted(record.assessments, key=urgency)
+    page = page_name(sheet.gallery, sheet.number, on_display=sheet.on_display)
+    views = [describer.object(a, page) for a in members]
     pairs = list(zip(members, views, strict=True))
     by_state = Counter(v.state for v in views)
-    return GalleryView(
-        name=clean(name) if on_display else "",
-        page=page_of(members[0]),
-        on_display=on_display,
+    numbers = sorted(v.number for v in views)
+    gallery = GalleryView(
+        name=clean(sheet.gallery) if sheet.on_display else "",
+        page=page,
+        on_display=sheet.on_display,
+        sheet=SheetView(page, sheet.number, sheet.of, *(numbers[:1] + numbers[-1:])),
         counts=Counts(*(by_state[state] for state in STATES)),
         tasks=_tasks(pairs, describer, units),
         objects=tuple(views),
@@ -147,11 +114,143 @@ def _gallery(
         survey=errands(pairs, describer.wishes),
         surveyed=describer.surveyed,
         plan=plan_view(pairs, units),
-        spacings=spacing_views(spacings, units) if on_display else (),
-        rooms=room_views(members, units) if on_display else (),
-        shaking=shaking_view(members) if on_display else None,
-        decisions=decisions_view(views),
+        spacings=spacing_views(record.spacings, units) if sheet.on_display else (),
+        rooms=room_views(members, units) if sheet.on_display else (),
+        shaking=shaking_view(members) if sheet.on_display else None,
+        decisions=decisions_view([(v.decisions, v.settled, pointer(v)) for v in views if v.decisions]),
     )
+    return Composed(gallery, _entry(gallery, pairs), describer.anchor)
+
+
+def _entry(gallery: GalleryView, pairs: Sequence[tuple[Assessment, ObjectView]]) -> Entry:
+    leaders = [(urgency(a), pointer(v)) for a, v in pairs if v.state is State.ACT and not v.settled]
+    return Entry(
+        name=gallery.name,
+        on_display=gallery.on_display,
+        sheet=gallery.sheet,
+        counts=gallery.counts,
+        task=_first_task(gallery),
+        leaders=tuple(leaders[:LEADERS]),
+        decisions=decisions_view([(v.decisions, v.settled, pointer(v)) for _, v in pairs if v.decisions]),
+    )
+
+
+def pointer(view: ObjectView) -> Pointer:
+    """Return an object as other pages than its own name it."""
+    return Pointer(
+        number=view.number,
+        short=view.short,
+        page=view.page,
+        anchor=view.anchor,
+        gallery=view.gallery,
+        state=view.state,
+        lead=None if view.lead is None else Lead(view.lead.title, view.lead.outcome),
+        measure=view.measures[0].sentence if view.measures else "",
+    )
+
+
+def _first_task(gallery: GalleryView) -> str:
+    if not gallery.tasks:
+        return ""
+    task = gallery.tasks[0]
+    number = len(task.objects)
+    if task.advised:
+        told = ngettext("%(title)s: %(shown)s object", "%(title)s: %(shown)s objects", number)
+    else:
+        told = ngettext(
+            "No measure found for %(shown)s object: ask an engineer",
+            "No measure found for %(shown)s objects: ask an engineer",
+            number,
+        )
+    return told % {"title": task.title, "shown": count(number)}
+
+
+def museum_view(
+    head: RunRecord, entries: Sequence[Entry], tally: Tally, units: Units, since: SinceView | None, *, workbook: bool
+) -> MuseumView:
+    """Return everything that the index, the method page and the motion page show.
+
+    head    : the run without its objects; the decisions about objects that the run does not have are told besides
+    entries : of all pages
+    tally   : of all sheets together
+    raises  : ReportError where two galleries' files would have one name
+    """
+    pages = Counter(entry.sheet.page for entry in entries)
+    twins = [entry.name for entry in entries if pages[entry.sheet.page] > 1]
+    if twins:
+        raise ReportError(f"galleries {twins} would share one file; rename one of them in the collection's records")
+    leaders = sorted((leader for entry in entries for leader in entry.leaders), key=lambda leader: leader[0])
+    strangers = decisions_view([((d,), False, None) for d in Decided(head.decisions, units).all()])
+    return MuseumView(
+        museum=clean(head.museum),
+        site=clean(head.site),
+        run_id=clean(head.run_id),
+        started=clean(head.started),
+        finished=clean(head.finished),
+        version=clean(head.version),
+        credit=clean(str(head.settings.get("credit") or "")),
+        demonstration=head.demonstration,
+        counts=_total(entry.counts for entry in entries),
+        rows=_rows(entries),
+        first=tuple(shown for _, shown in leaders[:LEADERS]),
+        motions=tuple(motion_view(m, head.charts, units) for m in head.motions),
+        level_notes=tuple(clean(n) for n in head.level_notes),
+        efforts=tuple(_effort(title, efforts) for title, efforts in tally.efforts.items()),
+        self_test=self_test_view(head),
+        decided=decided_views(tally),
+        fidelities=fidelities(tally),
+        survey=survey_sentence(tally, float(head.settings.get(SURVEY_SECONDS, 0.0))),
+        decisions=merged([*(entry.decisions for entry in entries), strangers]),
+        since=since,
+        workbook=workbook,
+    )
+
+
+def _rows(entries: Sequence[Entry]) -> tuple[GalleryRow, ...]:
+    """Gather the pages of each gallery into a row, the gallery with the most to do first."""
+    galleries: dict[tuple[bool, str], list[Entry]] = {}
+    for entry in entries:
+        galleries.setdefault((entry.on_display, entry.name), []).append(entry)
+    rows = []
+    for (on_display, name), members in galleries.items():
+        members.sort(key=lambda entry: entry.sheet.number)
+        # What comes first is what comes first on the page of the gallery's worst object.
+        worst = min(members, key=lambda entry: entry.leaders[0][0] if entry.leaders else _LAST)
+        task = worst.task or next((entry.task for entry in members if entry.task), "")
+        rows.append(
+            GalleryRow(name, on_display, tuple(e.sheet for e in members), _total(e.counts for e in members), task)
+        )
+    return tuple(
+        sorted(rows, key=lambda g: (not g.on_display, -g.counts.act, -g.counts.open, -g.counts.unknown, g.name))
+    )
+
+
+def page_name(gallery: str, number: int = 1, *, on_display: bool = True) -> str:
+    """Return the file of a gallery's page; the first one's has no number."""
+    stem = slug(gallery) if on_display else STORED
+    return f"{stem}.html" if number == 1 else f"{stem}-{number}.html"
+
+
+def anchor_of(object_number: str) -> str:
+    """Return the id of an object on its page; it stays the same from run to run."""
+    return f"o{digest(object_number, 10)}"
+
+
+def _effort(title: str, effort: Mapping[str, int]) -> EffortView:
+    analyses, needing = effort["analyses"], effort["needing_history"]
+    return EffortView(
+        said(clean(title)),
+        analyses,
+        effort["certificate"],
+        effort["chart"],
+        effort["history"],
+        f"{100.0 * needing / max(analyses, 1):.0f} %",
+    )
+
+
+def _total(counts: Iterable[Counts]) -> Counts:
+    listed = list(counts)
+    return Counts(*(sum(getattr(c, state.value) for c in listed) for state in STATES))
 
 
 def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], describer: Describer, units: Units) -> tuple[TaskView, ...]:
@@ -193,23 +292,3 @@ def _spans(advice: Sequence[Recommendation], units: Units) -> tuple[tuple[str, s
         for name, value in recommendation.parameters.items():
             values.setdefault((name, recommendation.units.get(name, "")), []).append(value)
     return tuple((words(name), units.pair(min(v), max(v), unit)) for (name, unit), v in values.items())
-
-
-def object_rows(record: RunRecord) -> list[Mapping[str, str | bool | float | None]]:
-    """Return one plain row for every object of the run, assessed or not, for the export that adds up to all."""
-    describer = Describer(record, Units())
-    return [
-        {
-            "run": record.run_id,
-            "object_number": a.scene.item.object_number,
-            "title": a.scene.item.title,
-            "gallery": a.scene.item.gallery,
-            "on_display": a.scene.item.on_display,
-            "state": state_of(a).value,
-            "object_class": a.scene.object_class,
-            "missing": "; ".join(a.scene.missing),
-            **first_failure(a),
-            "page": f"{page_of(a)}#{describer.anchor(a)}",
-        }
-        for a in record.assessments
-    ]

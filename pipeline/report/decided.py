@@ -7,7 +7,7 @@ from pipeline.records import Assessment, Decision, DecisionKind, Standing, Verdi
 from pipeline.report.language import _, said
 from pipeline.report.text import clean, words
 from pipeline.report.units import Units
-from pipeline.report.views import DecisionsView, DecisionView, ObjectView
+from pipeline.report.views import DecisionsView, DecisionView, Pointer
 
 _KINDS = (DecisionKind.ACCEPT, DecisionKind.INSTALLED, DecisionKind.CLASS, DecisionKind.VERDICT)
 
@@ -44,10 +44,9 @@ class Decided:
         bad = [f for f in assessment.findings if f.verdict is not Verdict.PASS and level in (None, f.level)]
         return bool(bad) and all(any(s.covers(f.model, f.level) for s in mine) for f in bad)
 
-    def strangers(self, assessments: Iterable[Assessment]) -> tuple[DecisionView, ...]:
-        """Return the decisions about objects that the run does not have."""
-        there = {a.scene.item.object_number for a in assessments}
-        return tuple(self._view(s) for number, mine in self._of.items() if number not in there for s in mine)
+    def all(self) -> tuple[DecisionView, ...]:
+        """Return all decisions."""
+        return tuple(self._view(s) for mine in self._of.values() for s in mine)
 
     def _view(self, standing: Standing) -> DecisionView:
         decision = standing.decision
@@ -80,19 +79,43 @@ class Decided:
         return ", ".join(part for part in parts if part)
 
 
-def decisions_view(objects: Sequence[ObjectView], strangers: Sequence[DecisionView] = ()) -> DecisionsView:
-    """Gather the decisions about objects, in their order, under the headings of a page; those in doubt come first."""
-    pairs = [(d, o) for o in objects for d in o.decisions]
-    everything: list[tuple[DecisionView, ObjectView | None]] = [*pairs, *((d, None) for d in strangers)]
-    counts: Mapping[str, int] = Counter(d.kind for d, _object in everything)
-    doubted = tuple(pair for pair in everything if pair[0].doubts)
-    groups = {kind.value: tuple(p for p in everything if p[0].kind == kind and not p[0].doubts) for kind in _KINDS}
+def decisions_view(
+    objects: Iterable[tuple[Sequence[DecisionView], bool, Pointer | None]],
+) -> DecisionsView:
+    """Gather the decisions about objects, in their order, under the headings of a page; those in doubt come first.
+
+    objects : the decisions, whether they settle the object, and the object; None where the run does not have it
+    """
+    listed = list(objects)
+    pairs = [(d, o) for decisions, _settled, o in listed for d in decisions]
+    counts: Mapping[str, int] = Counter(d.kind for d, _object in pairs)
     return DecisionsView(
         accepted=counts.get(DecisionKind.ACCEPT, 0),
         installed=counts.get(DecisionKind.INSTALLED, 0),
         classes=counts.get(DecisionKind.CLASS, 0),
         verdicts=counts.get(DecisionKind.VERDICT, 0),
-        settled=sum(o.settled for o in objects),
-        doubted=doubted,
-        groups=tuple((kind, members) for kind, members in groups.items() if members),
+        settled=sum(settled for _decisions, settled, _object in listed),
+        doubted=tuple(pair for pair in pairs if pair[0].doubts),
+        groups=_grouped([pair for pair in pairs if not pair[0].doubts]),
     )
+
+
+def merged(views: Sequence[DecisionsView]) -> DecisionsView:
+    """Return the decisions of several pages together, in the order of the pages."""
+    return DecisionsView(
+        accepted=sum(v.accepted for v in views),
+        installed=sum(v.installed for v in views),
+        classes=sum(v.classes for v in views),
+        verdicts=sum(v.verdicts for v in views),
+        settled=sum(v.settled for v in views),
+        doubted=tuple(pair for v in views for pair in v.doubted),
+        groups=_grouped([pair for v in views for _kind, members in v.groups for pair in members]),
+    )
+
+
+_Pair = tuple[DecisionView, Pointer | None]
+
+
+def _grouped(pairs: Sequence[_Pair]) -> tuple[tuple[str, tuple[_Pair, ...]], ...]:
+    groups = {kind.value: tuple(pair for pair in pairs if pair[0].kind == kind) for kind in _KINDS}
+    return tuple((kind, members) for kind, members in groups.items() if members)

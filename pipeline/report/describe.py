@@ -1,7 +1,6 @@
 """One object in words and in the reader's units."""
 
 import re
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -136,19 +135,10 @@ class Describer:
         self.wishes: dict[str, list[Wish]] = {}
         for wish in record.wishes or ():
             self.wishes.setdefault(wish.object_number, []).append(wish)
-        # Two records of one number in one gallery would share an id; the later ones are told apart by their place.
-        seen: Counter[tuple[bool, str, str]] = Counter()
-        self._twins: dict[int, int] = {}
-        for assessment in record.assessments:
-            item = assessment.scene.item
-            key = (item.on_display, item.gallery, item.object_number)
-            self._twins[id(assessment)] = seen[key]
-            seen[key] += 1
 
     def anchor(self, assessment: Assessment) -> str:
         """Return the id of the object on its page; it stays the same from run to run."""
-        twin = self._twins[id(assessment)]
-        return f"o{digest(assessment.scene.item.object_number, 10)}" + (f"-{twin + 1}" if twin else "")
+        return f"o{digest(assessment.scene.item.object_number, 10)}"
 
     def object(self, assessment: Assessment, page: str) -> ObjectView:
         """Return everything that the report says about one object.

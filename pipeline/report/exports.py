@@ -1,19 +1,25 @@
 """The findings, recommendations and objects of a run as files that other programs read.  SI throughout."""
 
 import csv
+import io
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from math import isfinite, isnan
 from pathlib import Path
 from typing import Any
 
-from pipeline.records import Finding, Recommendation, RunRecord
-from pipeline.report.compose import object_rows
+from pipeline.records import Assessment, Finding, Recommendation, RunRecord
+from pipeline.report.judging import first_failure
+from pipeline.report.ranking import state_of
 from pipeline.report.units import Units
 from pipeline.report.workbook import write_workbook
 
-_NUMBERS = ("demand", "low", "high", "capacity", "utilisation", "error")
+_NUMBERS = (
+    "demand", "low", "high", "capacity", "utilisation", "error", "median_g", "dispersion", "annual_rate",
+)  # fmt: skip
+_LISTS = ("assumptions", "parameters", "checks", "rejected")
 FINDING_COLUMNS = (
     "run",
     "object_number",
@@ -71,33 +77,70 @@ OBJECT_COLUMNS = (
 )
 
 
-def export(record: RunRecord, folder: Path, units: Units) -> None:
-    """Write findings.csv, .jsonl and .parquet, recommendations.csv and objects.csv, and all three in findings.xlsx.
+TABLES = {"findings": FINDING_COLUMNS, "recommendations": RECOMMENDATION_COLUMNS, "objects": OBJECT_COLUMNS}
+"""The exported tables, each as CSV and Parquet; findings as JSON Lines too, and all of them as one workbook."""
+
+TEXT_FILES = ("findings.csv", "findings.jsonl", "recommendations.csv", "objects.csv")
+
+WORKBOOK_ROWS = 20_000
+"""Rows of a table up to which there is a workbook; a spreadsheet holds more, but writing them takes minutes."""
+
+HEADERS = {f"{name}.csv": (",".join(columns) + "\n").encode() for name, columns in TABLES.items()}
+"""What the text files begin with."""
+
+
+@dataclass(frozen=True)
+class Fragment:
+    """What a sheet adds to the exports.
+
+    texts  : by the name of the file, the bytes that are added to it
+    tables : by the name of the table, its rows in Arrow's own format
+    """
+
+    texts: Mapping[str, bytes]
+    tables: Mapping[str, bytes]
+
+
+def fragment(record: RunRecord, run: str, page: str, anchors: Callable[[Assessment], str], units: Units) -> Fragment:
+    """Return what the objects of a sheet add to the exports.
 
     Numbers are in SI; ``unit`` names the unit of demand, low, high, capacity and error.  CSV files are UTF-8 with a
     header row; an unknown number is an empty cell and an endless one is ``inf``.  In CSV a text that starts with
     ``=``, ``+``, ``-``, ``@``, a tab or a carriage return gets a leading apostrophe, because a spreadsheet would run
     it as a formula; JSON Lines and Parquet keep the text as it is.  JSON has no infinity: it is the text "inf" there.
-    Only the sentences of recommendations.csv are in the reader's units.  objects.csv has one row for every object,
-    so that what could not be assessed is not lost.  In the workbook a text is a text whatever it begins with.
+    Only the sentences of recommendations are in the reader's units.  objects.csv has one row for every object, so that
+    what could not be assessed is not lost.
 
-    raises : FileNotFoundError if the folder does not exist
+    record : the sheet's objects
+    run    : the run that found it
     """
-    findings = [_finding(record.run_id, f) for a in record.assessments for f in a.findings]
-    recommendations = [_recommendation(record.run_id, r, units) for a in record.assessments for r in a.recommendations]
-    _write_csv(folder / "findings.csv", FINDING_COLUMNS, findings)
-    _write_csv(folder / "recommendations.csv", RECOMMENDATION_COLUMNS, recommendations)
-    objects = object_rows(record)
-    _write_csv(folder / "objects.csv", OBJECT_COLUMNS, objects)
-    lines = (json.dumps({k: _json(row[k]) for k in FINDING_COLUMNS}, allow_nan=False) for row in findings)
-    (folder / "findings.jsonl").write_text("".join(line + "\n" for line in lines), encoding="utf-8", newline="\n")
-    _write_parquet(folder / "findings.parquet", findings)
-    tables: dict[str, tuple[Sequence[str], Iterable[Mapping[str, Any]]]] = {
-        "findings": (FINDING_COLUMNS, findings),
-        "recommendations": (RECOMMENDATION_COLUMNS, recommendations),
-        "objects": (OBJECT_COLUMNS, objects),
+    rows: dict[str, Sequence[Mapping[str, Any]]] = {
+        "findings": [_finding(run, f) for a in record.assessments for f in a.findings],
+        "recommendations": [_recommendation(run, r, units) for a in record.assessments for r in a.recommendations],
+        "objects": [_object(run, a, f"{page}#{anchors(a)}") for a in record.assessments],
     }
-    write_workbook(folder / "findings.xlsx", tables, _began(record.started))
+    texts = {f"{name}.csv": _csv(TABLES[name], rows[name]) for name in TABLES}
+    lines = (json.dumps({k: _json(row[k]) for k in FINDING_COLUMNS}, allow_nan=False) for row in rows["findings"])
+    texts["findings.jsonl"] = "".join(line + "\n" for line in lines).encode()
+    return Fragment(texts, {name: _arrow(name, rows[name]) for name in TABLES})
+
+
+def workbook(folder: Path, started: str) -> bool:
+    """Write findings.xlsx from the Parquet files of a folder; nothing where it would be too long.
+
+    In the workbook a text is a text whatever it begins with.
+    returns : whether there is one
+    """
+    import pyarrow.parquet as pq
+
+    files = {name: folder / f"{name}.parquet" for name in TABLES}
+    if any(pq.read_metadata(file).num_rows > WORKBOOK_ROWS for file in files.values()):
+        return False
+    tables: dict[str, tuple[Sequence[str], Iterable[Mapping[str, Any]]]] = {
+        name: (TABLES[name], pq.read_table(file).to_pylist()) for name, file in files.items()
+    }
+    write_workbook(folder / "findings.xlsx", tables, _began(started))
+    return True
 
 
 def safe_cell(text: str) -> str:
@@ -143,12 +186,28 @@ def _recommendation(run: str, r: Recommendation, units: Units) -> dict[str, Any]
     }
 
 
-def _write_csv(path: Path, columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> None:
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(columns)
-        for row in rows:
-            writer.writerow([_cell(row[name]) for name in columns])
+def _object(run: str, a: Assessment, page: str) -> dict[str, Any]:
+    """Return the plain row of an object, assessed or not, for the export that adds up to all."""
+    item = a.scene.item
+    return {
+        "run": run,
+        "object_number": item.object_number,
+        "title": item.title,
+        "gallery": item.gallery,
+        "on_display": item.on_display,
+        "state": state_of(a).value,
+        "object_class": a.scene.object_class,
+        "missing": "; ".join(a.scene.missing),
+        **first_failure(a),
+        "page": page,
+    }
+
+
+def _csv(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> bytes:
+    stream = io.StringIO(newline="")
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerows([_cell(row[name]) for name in columns] for row in rows)
+    return stream.getvalue().encode()
 
 
 def _cell(value: object) -> str:
@@ -171,16 +230,30 @@ def _json(value: object) -> object:
     return value
 
 
-def _write_parquet(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
+def schema_of(name: str) -> Any:
+    """Return the types of the columns of a table, for Parquet."""
     import pyarrow as pa
-    import pyarrow.parquet as pq
 
-    kinds = {name: pa.float64() for name in _NUMBERS} | {"assumptions": pa.list_(pa.string())}
-    schema = pa.schema([(name, kinds.get(name, pa.string())) for name in FINDING_COLUMNS])
-    fit = [{k: _encodable(v) if isinstance(v, str) else v for k, v in row.items()} for row in rows]
-    for row in fit:
-        row["assumptions"] = [_encodable(text) for text in row["assumptions"]]
-    pq.write_table(pa.Table.from_pylist(fit, schema=schema), path)
+    kinds = {column: pa.float64() for column in _NUMBERS} | {"on_display": pa.bool_()}
+    kinds |= dict.fromkeys(_LISTS, pa.list_(pa.string()))
+    return pa.schema([(column, kinds.get(column, pa.string())) for column in TABLES[name]])
+
+
+def _arrow(name: str, rows: Sequence[Mapping[str, Any]]) -> bytes:
+    import pyarrow as pa
+
+    fit = [{column: _writable(value) for column, value in row.items()} for row in rows]
+    sink = pa.BufferOutputStream()
+    schema = schema_of(name)
+    with pa.ipc.new_stream(sink, schema) as stream:
+        stream.write_table(pa.Table.from_pylist(fit, schema=schema))
+    return bytes(sink.getvalue().to_pybytes())
+
+
+def _writable(value: Any) -> Any:
+    if isinstance(value, str):
+        return _encodable(value)
+    return [_encodable(text) for text in value] if isinstance(value, list) else value
 
 
 def _encodable(text: str) -> str:

@@ -9,10 +9,11 @@ from math import cos, hypot, isfinite, radians, sin
 from pipeline.quantities import LENGTHS
 from pipeline.records import Assessment, Item
 from pipeline.report.language import _, ngettext
+from pipeline.report.plan_views import PlaceView, PlanView
 from pipeline.report.scales import nice_step
 from pipeline.report.text import count, plain, short
 from pipeline.report.units import Units
-from pipeline.report.views import STATES, ObjectView, PlaceView, PlanView, State
+from pipeline.report.views import STATES, ObjectView, State
 
 WIDTH = 1000.0
 """Pixels of the drawing's own system; its height follows the gallery."""

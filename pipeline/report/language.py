@@ -96,11 +96,9 @@ def _(phrase: str) -> str:
 
 
 def ngettext(one: str, many: str, number: int) -> str:
-    """Return the phrase for that number of things in the reader's language."""
+    """Return the phrase for a number of things in the reader's language."""
     phrases = _PHRASES.get()
-    if phrases is None:
-        return one if number == 1 else many
-    return phrases.ngettext(one, many, number)
+    return (one if number == 1 else many) if phrases is None else phrases.ngettext(one, many, number)
 
 
 _PARTS = (re.compile(r"(?<=[.!?]) "), re.compile(r"(?<=[;:]) "))

@@ -1,10 +1,8 @@
 """What settled the verdicts of a run, and how large its numerical errors are."""
 
-from collections import Counter
-from math import isfinite
-from statistics import median
+from collections.abc import Mapping
 
-from pipeline.records import Finding, RunRecord
+from pipeline.records import Errors, Tally
 from pipeline.report.describe import decided
 from pipeline.report.language import _
 from pipeline.report.text import clean, count
@@ -14,33 +12,39 @@ from pipeline.report.views import DecidedView
 _KNOWN = ("certificate", "chart", "history")
 
 
-def decided_views(record: RunRecord) -> tuple[DecidedView, ...]:
+def decided_views(tally: Tally) -> tuple[DecidedView, ...]:
     """Return a row for each kind of calculation that settled verdicts, the cheapest first."""
-    found: dict[str, list[Finding]] = {}
-    for finding in (f for a in record.assessments for f in a.findings):
-        found.setdefault(finding.decided_by, []).append(finding)
-    total = sum(len(members) for members in found.values())
+    found = tally.decided
+    total = sum(errors.verdicts for errors in found.values())
     order = sorted(found, key=lambda by: (_KNOWN.index(by) if by in _KNOWN else len(_KNOWN), by))
     return tuple(_view(by, found[by], total) for by in order)
 
 
-def _view(by: str, members: list[Finding], total: int) -> DecidedView:
-    errors = [
-        abs(f.error / f.demand)
-        for f in members
-        if f.error is not None and f.demand and isfinite(f.error) and isfinite(f.demand)
-    ]
+def _view(by: str, errors: Errors, total: int) -> DecidedView:
+    known = bool(errors.sizes)
+    middle = f"{significant(100.0 * median(errors.sizes), 2)} %" if known else ""
     return DecidedView(
         means=decided(by),
-        verdicts=len(members),
-        share=f"{significant(100.0 * len(members) / total, 2)} %",
-        median=f"{significant(100.0 * median(errors), 2)} %" if errors else _("by proof") if by in _KNOWN[:1] else "–",
-        worst=f"{significant(100.0 * max(errors), 2)} %" if errors else "–",
+        verdicts=errors.verdicts,
+        share=f"{significant(100.0 * errors.verdicts / total, 2)} %",
+        median=middle or (_("by proof") if by in _KNOWN[:1] else "–"),
+        worst=f"{significant(100.0 * errors.worst, 2)} %" if known else "–",
     )
 
 
-def fidelities(record: RunRecord) -> str:
+def median(sizes: Mapping[str, int]) -> float:
+    """Return the median of numbers that are given with how often they occur, at least one; the lower one of two."""
+    ordered = sorted((float(size), often) for size, often in sizes.items())
+    half, seen = sum(sizes.values()) / 2.0, 0
+    for size, often in ordered:
+        seen += often
+        if seen >= half:
+            return size
+    return ordered[-1][0]
+
+
+def fidelities(tally: Tally) -> str:
     """Say how many verdicts were reached at which fidelity, such as "history 2,104, bound 310"."""
-    used = Counter(f.fidelity for a in record.assessments for f in a.findings)
+    used = sorted(tally.fidelities.items(), key=lambda pair: -pair[1])
     named = {"bound": _("Bound"), "chart": _("Chart"), "history": _("History"), "reference": _("Reference")}
-    return ", ".join(f"{named.get(name) or clean(name)} {count(number)}" for name, number in used.most_common())
+    return ", ".join(f"{named.get(name) or clean(name)} {count(number)}" for name, number in used)

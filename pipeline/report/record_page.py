@@ -14,6 +14,7 @@ from pipeline.motions.intensity import integrate
 from pipeline.motions.manifest import TargetTable
 from pipeline.quantities import Array, G
 from pipeline.report.describe import motion_anchor
+from pipeline.report.pages import environment, fill
 from pipeline.report.record_charts import (
     AT,
     KONNO_OHMACHI,
@@ -40,7 +41,6 @@ from pipeline.report.record_words import (
     sampling,
     verdict,
 )
-from pipeline.report.render import environment, fill
 from pipeline.report.text import clean
 from pipeline.report.units import Units
 

@@ -8,7 +8,7 @@ from pipeline.records import Cause, CauseKind, FieldChange, InputChange, RunChan
 from pipeline.report.language import _, said
 from pipeline.report.text import clean, count, short, words
 from pipeline.report.units import Units
-from pipeline.report.views import ChangeView, ObjectView, SinceView, TurnView
+from pipeline.report.views import ChangeView, Pointer, SinceView, TurnView
 
 MOST = 12
 """Lines of one kind that the page shows; `kouros diff --json` has all."""
@@ -28,10 +28,10 @@ def _why(kind: CauseKind) -> str:
     return told[kind]
 
 
-def since_view(changes: RunChanges, objects: Mapping[str, ObjectView], units: Units) -> SinceView:
+def since_view(changes: RunChanges, objects: Mapping[str, Pointer], units: Units) -> SinceView:
     """Return the section "since the last run".
 
-    objects : by object number, those of the page; what is gone has none
+    objects : by object number, those that `mentioned` names; what is gone has none
     """
     worse = [_turn(change, objects) for change in changes.worsened]
     fixed = [_turn(change, objects) for change in changes.fixed]
@@ -47,6 +47,15 @@ def since_view(changes: RunChanges, objects: Mapping[str, ObjectView], units: Un
         causes=(*told, *([(_("not found"), count(unknown))] if unknown else [])),
         lists=_lists(changes, objects, units),
     )
+
+
+def mentioned(changes: RunChanges) -> set[str]:
+    """Return the numbers of the objects that the section names."""
+    lists: list[Sequence[Any]] = [
+        changes.worsened, changes.fixed, changes.others, changes.added, changes.moved, changes.inputs,
+    ]  # fmt: skip
+    named = {change.object_number for found in lists for change in found[:MOST]}
+    return named | {change.decision.object_number for change in changes.decisions[:MOST]}
 
 
 def _counts(changes: RunChanges) -> list[tuple[str, int]]:
@@ -69,7 +78,7 @@ def _cut(turns: Sequence[TurnView]) -> tuple[tuple[TurnView, ...], int]:
     return tuple(turns[:MOST]), max(len(turns) - MOST, 0)
 
 
-def _turn(change: VerdictChange, objects: Mapping[str, ObjectView]) -> TurnView:
+def _turn(change: VerdictChange, objects: Mapping[str, Pointer]) -> TurnView:
     return TurnView(
         number=clean(change.object_number),
         view=objects.get(change.object_number),
@@ -88,7 +97,7 @@ def _cause(cause: Cause) -> str:
 
 
 def _lists(
-    changes: RunChanges, objects: Mapping[str, ObjectView], units: Units
+    changes: RunChanges, objects: Mapping[str, Pointer], units: Units
 ) -> tuple[tuple[str, tuple[ChangeView, ...], int], ...]:
     lists: list[tuple[str, list[ChangeView]]] = [
         (_("Other verdicts"), [_other(v, objects) for v in changes.others]),
@@ -148,11 +157,11 @@ def _verdict(verdict: str | None) -> str:
     return told[Verdict(verdict)] if verdict else _("none")
 
 
-def _change(number: str, text: str, objects: Mapping[str, ObjectView]) -> ChangeView:
+def _change(number: str, text: str, objects: Mapping[str, Pointer]) -> ChangeView:
     return ChangeView(clean(number), objects.get(number), short(text, 300))
 
 
-def _other(change: VerdictChange, objects: Mapping[str, ObjectView]) -> ChangeView:
+def _other(change: VerdictChange, objects: Mapping[str, Pointer]) -> ChangeView:
     turn = _turn(change, objects)
     text = f"{turn.model}, {_level(turn.level)}: {turn.before} → {turn.after} ({'; '.join(turn.causes)})"
     return _change(change.object_number, text, objects)

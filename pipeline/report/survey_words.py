@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from pipeline.records import Assessment, RunRecord, Wish
+from pipeline.records import Assessment, Tally, Wish
 from pipeline.report.language import _, ngettext, said
 from pipeline.report.text import clean, count, words
 from pipeline.report.units import Units, significant
@@ -48,24 +48,20 @@ def errands(
     return tuple(out)
 
 
-def survey_sentence(record: RunRecord) -> str:
+def survey_sentence(tally: Tally, seconds: float) -> str:
     """Say how many measurements would settle something, and what finding that out cost; "" where it was not asked."""
-    if record.wishes is None:
+    if not tally.surveyed:
         return ""
-    worth = [w for w in record.wishes if not w.waste]
-    objects = len({w.object_number for w in worth})
-    waste = len(record.wishes) - len(worth)
-    phrase = ngettext("%(count)s measurement", "%(count)s measurements", len(worth))
-    measurements = phrase % {"count": count(len(worth))}
-    on = ngettext("on %(count)s object", "on %(count)s objects", objects) % {"count": count(objects)}
-    seconds = f"{float(record.settings.get(SURVEY_SECONDS, 0.0)):.1f}"
+    phrase = ngettext("%(count)s measurement", "%(count)s measurements", tally.worth)
+    measurements = phrase % {"count": count(tally.worth)}
+    on = ngettext("on %(count)s object", "on %(count)s objects", tally.wished) % {"count": count(tally.wished)}
     told = [_("%(measurements)s %(objects)s would settle a verdict.") % {"measurements": measurements, "objects": on}]
-    if waste:
+    if tally.waste:
         others = ngettext(
-            "%(count)s other alone would settle nothing.", "%(count)s others alone would settle nothing.", waste
+            "%(count)s other alone would settle nothing.", "%(count)s others alone would settle nothing.", tally.waste
         )
-        told.append(others % {"count": count(waste)})
-    return " ".join([*told, _("Finding this out took %(seconds)s s.") % {"seconds": seconds}])
+        told.append(others % {"count": count(tally.waste)})
+    return " ".join([*told, _("Finding this out took %(seconds)s s.") % {"seconds": f"{seconds:.1f}"}])
 
 
 def _label(field: str) -> str:

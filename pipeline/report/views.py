@@ -1,12 +1,16 @@
 """What a page shows, as plain data in the reader's units: the museum, a gallery, an object, a finding, a measure."""
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import groupby
+from typing import TYPE_CHECKING
 
 from pipeline.report.judging import FragilityView, RoomView, ShakingView, SpacingView
 from pipeline.report.svg import Spot
+
+if TYPE_CHECKING:
+    from pipeline.report.plan_views import PlanView
+    from pipeline.report.selftest import SelfTestView
 
 
 class State(StrEnum):
@@ -231,6 +235,31 @@ class ObjectView:
 
 
 @dataclass(frozen=True, slots=True)
+class Lead:
+    """The most urgent finding of an object, as a page other than its own names it."""
+
+    title: str
+    outcome: str
+
+
+@dataclass(frozen=True, slots=True)
+class Pointer:
+    """An object as a page other than its own names it: what it is, where its entry is, what happens, what to do.
+
+    measure : the first recommendation in a sentence, "" where there is none
+    """
+
+    number: str
+    short: str
+    page: str
+    anchor: str
+    gallery: str
+    state: State
+    lead: Lead | None = None
+    measure: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class TaskView:
     """One line of "What to do first": a measure and the objects it is for, the most urgent ones first.
 
@@ -251,60 +280,6 @@ class TaskView:
 
 
 @dataclass(frozen=True, slots=True)
-class PlaceView:
-    """A row of the plan's table: the number on the plan, the object, and where it stands, in the reader's units."""
-
-    number: int
-    object: ObjectView
-    position: str
-    footprint: str
-    clearance: str
-
-
-@dataclass(frozen=True, slots=True)
-class TightView:
-    """A line on a plan between two neighbours that may meet: from, to (pixels), and what is known of their gap."""
-
-    x1: float
-    y1: float
-    x2: float
-    y2: float
-    spacing: SpacingView
-
-
-@dataclass(frozen=True, slots=True)
-class PlanView:
-    """A gallery to scale: the drawing, its legend in rows, and how many objects have no recorded position.
-
-    ground, objects : the drawing in two parts, between which lines may be drawn
-    centres         : of what stands there, by object number, in the drawing's pixels; without numbers that stand twice
-    """
-
-    ground: str
-    objects: str
-    places: tuple[PlaceView, ...]
-    missing: int
-    centres: Mapping[str, tuple[float, float]]
-
-    @property
-    def svg(self) -> str:
-        """The drawing without lines between neighbours."""
-        return self.ground + self.objects
-
-    def tight(self, spacings: Sequence[SpacingView]) -> tuple[TightView, ...]:
-        """Return the lines between neighbours that may meet: each pair once, as it stands at its worst level.
-
-        spacings : the worst first
-        """
-        pairs = {(s.first, s.second): s for s in reversed(spacings) if s.state != State.SAFE}
-        return tuple(
-            TightView(*self.centres[s.first], *self.centres[s.second], s)
-            for s in reversed(pairs.values())
-            if s.first in self.centres and s.second in self.centres
-        )
-
-
-@dataclass(frozen=True, slots=True)
 class DecisionsView:
     """The decisions of a page: how many of each kind, and each with its object (None where that is gone).
 
@@ -317,8 +292,8 @@ class DecisionsView:
     classes: int = 0
     verdicts: int = 0
     settled: int = 0
-    doubted: tuple[tuple[DecisionView, ObjectView | None], ...] = ()
-    groups: tuple[tuple[str, tuple[tuple[DecisionView, ObjectView | None], ...]], ...] = ()
+    doubted: tuple[tuple[DecisionView, Pointer | None], ...] = ()
+    groups: tuple[tuple[str, tuple[tuple[DecisionView, Pointer | None], ...]], ...] = ()
 
     def __bool__(self) -> bool:
         """Whether there is any."""
@@ -330,7 +305,7 @@ class TurnView:
     """A verdict that turned, and why; ``view`` is the object where the report has it."""
 
     number: str
-    view: ObjectView | None
+    view: Pointer | None
     gallery: str
     model: str
     level: str
@@ -344,7 +319,7 @@ class ChangeView:
     """One line of what changed: the object where it is about one, and the change in words."""
 
     number: str
-    view: ObjectView | None
+    view: Pointer | None
     text: str
 
 
@@ -365,12 +340,27 @@ class SinceView:
 
 
 @dataclass(frozen=True, slots=True)
+class SheetView:
+    """Which of its gallery's pages a page is: large galleries are cut into several.
+
+    number, of : from 1;  first, last : numbers of the objects between which it lies in the catalogue's order
+    """
+
+    page: str
+    number: int = 1
+    of: int = 1
+    first: str = ""
+    last: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class GalleryView:
-    """One gallery's page."""
+    """One gallery's page, or one of its pages."""
 
     name: str
     page: str
     on_display: bool
+    sheet: SheetView
     counts: Counts
     tasks: tuple[TaskView, ...]
     objects: tuple[ObjectView, ...]
@@ -379,7 +369,7 @@ class GalleryView:
     several_levels: bool
     survey: tuple[SurveyView, ...] = ()
     surveyed: bool = False
-    plan: PlanView | None = None
+    plan: "PlanView | None" = None
     spacings: tuple[SpacingView, ...] = ()
     rooms: tuple[RoomView, ...] = ()
     shaking: ShakingView | None = None
@@ -388,6 +378,34 @@ class GalleryView:
     def standing(self, state: State) -> tuple[ObjectView, ...]:
         """Return the objects in that state, the most urgent first."""
         return tuple(o for o in self.objects if o.state is state)
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """What the index says of a gallery's page, and of those on it that it names; kept beside the report as JSON.
+
+    task     : what is to do first there, in words, "" where nothing is advised
+    leaders  : its most urgent objects that nobody has settled, each with the key that sorts it among all
+    """
+
+    name: str
+    on_display: bool
+    sheet: SheetView
+    counts: Counts
+    task: str
+    leaders: tuple[tuple[tuple[int, bool, bool, str, float, str, str], Pointer], ...] = ()
+    decisions: DecisionsView = DecisionsView()
+
+
+@dataclass(frozen=True, slots=True)
+class GalleryRow:
+    """One gallery's row of the index, with all its pages."""
+
+    name: str
+    on_display: bool
+    sheets: tuple[SheetView, ...]
+    counts: Counts
+    task: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -412,34 +430,6 @@ class MotionView:
     others: tuple[tuple[str, str], ...]
     charts: tuple[str, ...]
     steps: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class CaseView:
-    """One case of the numerical self-test: the extreme, its truth, what came out, the limit, whether it is within."""
-
-    what: str
-    truth: str
-    result: str
-    limit: str
-    passes: bool
-
-
-@dataclass(frozen=True, slots=True)
-class SelfTestView:
-    """The last numerical self-test; outdated where the run's kernels are not those that it tested."""
-
-    when: str
-    version: str
-    kernels: str
-    machine: str
-    outdated: bool
-    cases: tuple[CaseView, ...]
-
-    @property
-    def failed(self) -> tuple[CaseView, ...]:
-        """The cases that are not within their limits."""
-        return tuple(case for case in self.cases if not case.passes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -469,11 +459,12 @@ class EffortView:
 class MuseumView:
     """The index: all galleries, ranked, with totals over all objects; ``credit`` is the source's own line.
 
+    rows       : the galleries, the one with the most to do first
+    workbook   : whether the exports include a workbook: it is left out where it would be too long
     decided    : what settled the verdicts, by kind
     fidelities : how many verdicts were asked at which fidelity, in one line
     self_test  : None where none was run before this run
     survey     : what is worth measuring in the whole museum and what asking cost, "" where it was not asked
-    self_test : None where none was run before this run
     since     : None where there was no run before
     """
 
@@ -486,14 +477,15 @@ class MuseumView:
     credit: str
     demonstration: bool
     counts: Counts
-    galleries: tuple[GalleryView, ...]
-    first: tuple[ObjectView, ...]
+    rows: tuple[GalleryRow, ...]
+    first: tuple[Pointer, ...]
     motions: tuple[MotionView, ...]
     level_notes: tuple[str, ...] = field(default=())
     efforts: tuple[EffortView, ...] = ()
-    self_test: SelfTestView | None = None
+    self_test: "SelfTestView | None" = None
     decided: tuple[DecidedView, ...] = ()
     fidelities: str = ""
     survey: str = ""
     decisions: DecisionsView = DecisionsView()
     since: SinceView | None = None
+    workbook: bool = True

@@ -1,11 +1,10 @@
 """What changed between two stored runs: objects, inputs, motions, decisions, settings and versions, and verdicts."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence, Set
 from functools import cached_property
-from typing import Any
+from typing import Any, get_type_hints
 
-from sqlalchemy import ColumnElement, Connection, and_, case, exists, func, or_, select
-from sqlalchemy.sql.expression import FromClause
+from sqlalchemy import Connection, select
 
 from pipeline.records import (
     Decision,
@@ -15,17 +14,17 @@ from pipeline.records import (
     MotionChange,
     Move,
     ObjectPlace,
+    Outline,
     RunChanges,
+    Scene,
     Verdict,
     VerdictChange,
 )
 from pipeline.store import codec
 from pipeline.store.causes import Causes, MotionKey
+from pipeline.store.results import load_found, load_outlines
 from pipeline.store.reuse import CODE, KERNELS, LEVELS, RULES
-from pipeline.store.tables import FINDING, RUN, RUN_DECISION, RUN_MOTION, RUN_SCENE
-
-_SEVERITY = {Verdict.PASS: 0, Verdict.UNDETERMINED: 1, Verdict.FAIL: 2}
-_BY_SEVERITY = {severity: verdict for verdict, severity in _SEVERITY.items()}
+from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_SHEET
 
 
 def changes(connection: Connection, old: str, new: str) -> RunChanges:
@@ -44,8 +43,8 @@ class _Comparison:
         return RunChanges(
             self.old,
             self.new,
-            added=self._only_in(self.new, self.old),
-            removed=self._only_in(self.old, self.new),
+            added=self._only_in(self._outlines[1], self._outlines[0]),
+            removed=self._only_in(*self._outlines),
             moved=self._moved(),
             inputs=self.inputs,
             verdicts=self._verdicts(),
@@ -56,42 +55,66 @@ class _Comparison:
             started=self.before["started"],
         )
 
-    def _only_in(self, run_id: str, other: str) -> tuple[ObjectPlace, ...]:
-        here, there = RUN_SCENE.alias(), RUN_SCENE.alias()
-        same = exists().where(there.c.run_id == other, there.c.object_number == here.c.object_number)
-        query = select(here.c.object_number, here.c.gallery).where(here.c.run_id == run_id, ~same)
-        places = (ObjectPlace(*row) for row in self.connection.execute(query))
+    @cached_property
+    def _keys(self) -> tuple[list[str], list[str]]:
+        """The sheets that only one of the two runs has: what both have cannot have changed."""
+        sides = []
+        for run_id in (self.old, self.new):
+            query = select(RUN_SHEET.c.key).where(RUN_SHEET.c.run_id == run_id).order_by(RUN_SHEET.c.position)
+            sides.append(list(self.connection.execute(query).scalars()))
+        before, after = (set(side) for side in sides)
+        return [key for key in sides[0] if key not in after], [key for key in sides[1] if key not in before]
+
+    @cached_property
+    def _outlines(self) -> tuple[dict[str, Outline], dict[str, Outline]]:
+        """The objects of those sheets, by number, before and after."""
+        before, after = ({o.object_number: o for o in load_outlines(self.connection, keys)} for keys in self._keys)
+        return before, after
+
+    @cached_property
+    def _both(self) -> list[tuple[Outline, Outline]]:
+        before, after = self._outlines
+        return [(before[number], now) for number, now in after.items() if number in before]
+
+    def _only_in(self, here: Mapping[str, Outline], there: Mapping[str, Outline]) -> tuple[ObjectPlace, ...]:
+        places = (ObjectPlace(o.object_number, o.gallery) for number, o in here.items() if number not in there)
         return tuple(sorted(places, key=lambda place: (place.gallery, place.object_number)))
 
-    def _in_both(self) -> tuple[FromClause, FromClause, ColumnElement[bool]]:
-        before, after = RUN_SCENE.alias(), RUN_SCENE.alias()
-        runs = and_(before.c.run_id == self.old, after.c.run_id == self.new)
-        return before, after, and_(runs, before.c.object_number == after.c.object_number)
-
     def _moved(self) -> tuple[Move, ...]:
-        before, after, same = self._in_both()
-        query = select(after.c.object_number, before.c.gallery, after.c.gallery)
-        rows = self.connection.execute(query.where(same, before.c.gallery != after.c.gallery))
-        return tuple(sorted((Move(*row) for row in rows), key=lambda move: (move.after, move.object_number)))
+        moves = (
+            Move(now.object_number, was.gallery, now.gallery) for was, now in self._both if was.gallery != now.gallery
+        )
+        return tuple(sorted(moves, key=lambda move: (move.after, move.object_number)))
 
     @cached_property
     def inputs(self) -> tuple[InputChange, ...]:
-        before, after, same = self._in_both()
-        # The columns' text is equal exactly where the values are, so that the database finds the few that differ.
-        differs = or_(*(before.c[name] != after.c[name] for name in ("item", *_SCENE)))
-        columns = [side.c[name] for name in ("item", *_SCENE) for side in (before, after)]
+        differing = {now.object_number for was, now in self._both if (was.item, was.scene) != (now.item, now.scene)}
+        if not differing:
+            return ()
+        was, now = (self._scenes(keys, differing) for keys in self._keys)
         found = []
-        for was, item, *pairs in self.connection.execute(select(*columns).where(same, differs)):
-            fields = [f for f in _differing(_plain("item", was), _plain("item", item)) if f.name not in _OTHERWISE]
-            for i, name in enumerate(_SCENE):
-                one, other = _plain(name, pairs[2 * i]), _plain(name, pairs[2 * i + 1])
+        for number, scene in now.items():
+            before = was[number]
+            items = (codec.plain(_HINTS["item"], side.item) for side in (before, scene))
+            fields = [f for f in _differing(*items) if f.name not in _OTHERWISE]
+            for name in _SCENE:
+                one, other = (codec.plain(_HINTS[name], getattr(side, name)) for side in (before, scene))
                 if name == "parameters":
                     fields += [FieldChange(f"parameters.{f.name}", f.before, f.after) for f in _differing(one, other)]
                 elif one != other:
                     fields.append(FieldChange(f"scene.{name}", one, other))
             if fields:
-                found.append(InputChange(item.object_number, item.gallery, tuple(fields)))
+                found.append(InputChange(number, scene.item.gallery, tuple(fields)))
         return tuple(sorted(found, key=lambda change: (change.gallery, change.object_number)))
+
+    def _scenes(self, keys: Sequence[str], numbers: Set[str]) -> dict[str, Scene]:
+        """Return the scenes of some objects; of a sheet without any of them only its outline is read."""
+        found: dict[str, Scene] = {}
+        for key in keys:
+            if any(outline.object_number in numbers for outline in load_outlines(self.connection, [key])):
+                scenes = (assessment.scene for assessment in load_found(self.connection, key).assessments)
+                found |= {scene.item.object_number: scene for scene in scenes if scene.item.object_number in numbers}
+        return found
 
     @cached_property
     def decisions(self) -> tuple[DecisionChange, ...]:
@@ -123,20 +146,6 @@ class _Comparison:
         return tuple(MotionChange(*key, before.get(key), after.get(key)) for key in keys)
 
     def _verdicts(self) -> tuple[VerdictChange, ...]:
-        severity = case(_SEVERITY, value=FINDING.c.verdict)
-        worst_before = func.max(case((FINDING.c.run_id == self.old, severity)))
-        worst_after = func.max(case((FINDING.c.run_id == self.new, severity)))
-        before, after, same = self._in_both()
-        named = (FINDING.c.object_number, after.c.gallery, FINDING.c.model, FINDING.c.level)
-        floors = (before.c.floor, after.c.floor)
-        query = (
-            select(*named, *floors, worst_before, worst_after)
-            .join_from(FINDING, after, FINDING.c.object_number == after.c.object_number)
-            .join(before, before.c.object_number == after.c.object_number)
-            .where(FINDING.c.run_id.in_((self.old, self.new)), same)
-            .group_by(*named, *floors)
-            .having(worst_before.is_distinct_from(worst_after))
-        )
         causes = Causes(
             self.inputs,
             self.decisions,
@@ -144,21 +153,22 @@ class _Comparison:
             _differing(_settings(self.before), _settings(self.after)),
             _differing(_versions(self.before), _versions(self.after)),
         )
-        found = (
-            VerdictChange(
-                number,
-                gallery,
-                model,
-                level,
-                _BY_SEVERITY.get(was),
-                _BY_SEVERITY.get(now),
-                causes.of(number, level, floor_was, floor_now),
-            )
-            for number, gallery, model, level, floor_was, floor_now, was, now in self.connection.execute(query)
-        )
+        found = []
+        for was, now in self._both:
+            before, after = ({(model, level): verdict for model, level, verdict in o.verdicts} for o in (was, now))
+            for model, level in dict.fromkeys([*before, *after]):
+                one, other = (side.get((model, level)) for side in (before, after))
+                if one != other:
+                    number, why = now.object_number, causes.of(now.object_number, level, was.floor, now.floor)
+                    found.append(VerdictChange(number, now.gallery, model, level, _verdict(one), _verdict(other), why))
         return tuple(sorted(found, key=lambda c: (c.gallery, c.object_number, c.level, c.model)))
 
 
+def _verdict(text: str | None) -> Verdict | None:
+    return None if text is None else Verdict(text)
+
+
+_HINTS = get_type_hints(Scene)
 _SCENE = ("support", "object_class", "models", "parameters")
 """What an object is run with besides its item; the floor has a cause of its own."""
 
@@ -169,13 +179,6 @@ _OTHERWISE = frozenset({"gallery", "provenance"})
 def _run(connection: Connection, run_id: str) -> Mapping[str, Any]:
     columns = (RUN.c.started, RUN.c.version, RUN.c.settings)
     return dict(connection.execute(select(*columns).where(RUN.c.run_id == run_id)).mappings().one())
-
-
-def _plain(column: str, value: object) -> Any:
-    return codec.plain(RUN_SCENE.c[column].type.hint, value) if column in _JSON else value  # type: ignore[attr-defined]
-
-
-_JSON = ("item", "models", "parameters")
 
 
 def _differing(was: Mapping[str, Any], now: Mapping[str, Any]) -> tuple[FieldChange, ...]:

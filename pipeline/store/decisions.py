@@ -7,8 +7,10 @@ from sqlalchemy.exc import IntegrityError
 
 from pipeline.records import Basis, Decision
 from pipeline.store.codec import StoreError
-from pipeline.store.tables import DECISION, FINDING
+from pipeline.store.results import load_found, load_outlines
+from pipeline.store.tables import DECISION, RUN_SHEET
 
+_BASIS = tuple(field.name for field in fields(Basis))
 _NAMES = tuple(field.name for field in fields(Decision))
 
 
@@ -39,10 +41,17 @@ def read_decisions(engine: Engine, object_number: str | None = None) -> tuple[De
         return tuple(Decision(*row) for row in connection.execute(wanted))
 
 
-def looked_at(engine: Engine, run_id: str, object_number: str) -> tuple[Basis, ...]:
-    """Return what a run found of an object, as a decision remembers it; nothing where the run has no such object."""
-    columns = (FINDING.c[field.name] for field in fields(Basis))
-    mine = (FINDING.c.run_id == run_id) & (FINDING.c.object_number == object_number)
+def looked_at(engine: Engine, run_id: str, object_number: str, gallery: str = "") -> tuple[Basis, ...]:
+    """Return what a run found of an object, as a decision remembers it; nothing where the run has no such object.
+
+    gallery : where it stood, so that those sheets are looked at first
+    """
+    order = RUN_SHEET.c.gallery != gallery
     with engine.connect() as connection:
-        rows = connection.execute(select(*columns).where(mine).order_by(FINDING.c.position))
-        return tuple(Basis(*row) for row in rows)
+        query = select(RUN_SHEET.c.key).where(RUN_SHEET.c.run_id == run_id).order_by(order, RUN_SHEET.c.position)
+        for key in connection.execute(query).scalars().all():
+            if any(outline.object_number == object_number for outline in load_outlines(connection, [key])):
+                found = load_found(engine, key)
+                mine = next(a for a in found.assessments if a.scene.item.object_number == object_number)
+                return tuple(Basis(*(getattr(f, name) for name in _BASIS)) for f in mine.findings)
+    return ()

@@ -17,6 +17,7 @@ from sqlalchemy import (
     ForeignKey,
     Index,
     Integer,
+    LargeBinary,
     Table,
     Text,
     UniqueConstraint,
@@ -26,36 +27,21 @@ from sqlalchemy.types import TypeDecorator, TypeEngine
 from pipeline.collection.database import METADATA
 from pipeline.collection.inventory import IMPORT_BATCH, ITEM
 from pipeline.collection.supplement import SUPPLEMENT
-from pipeline.records import (
-    Chart,
-    Decision,
-    Finding,
-    Fragility,
-    MotionSummary,
-    Recommendation,
-    Scene,
-    Spacing,
-    Standing,
-    Wish,
-)
+from pipeline.records import Chart, Decision, MotionSummary, Standing, Tally
 from pipeline.store import codec
 
 # The inventory's tables are handed on so that METADATA is whole wherever this module is imported.
 __all__ = [
     "DECISION",
-    "FINDING",
-    "FRAGILITY",
     "IMPORT_BATCH",
     "ITEM",
     "METADATA",
-    "RECOMMENDATION",
+    "RESULT",
     "RUN",
     "RUN_CHART",
     "RUN_DECISION",
     "RUN_MOTION",
-    "RUN_SCENE",
-    "RUN_WISH",
-    "SPACING",
+    "RUN_SHEET",
     "SUPPLEMENT",
 ]
 
@@ -258,70 +244,36 @@ RUN_CHART = Table(
 )
 """The charts of a run by key; the chart itself as JSON."""
 
-RUN_SCENE = Table(
-    "run_scene",
+RESULT = Table(
+    "result",
+    METADATA,
+    Column("key", Words(), primary_key=True),
+    Column("run_id", Words(), nullable=False),
+    Column("made", Words(), nullable=False),
+    Column("counts", Json(dict[str, int]), nullable=False),
+    Column("tally", Json(Tally), nullable=False),
+    Column("outline", LargeBinary(), nullable=False),
+    Column("found", LargeBinary(), nullable=False),
+)
+"""What was found about the objects of one sheet, under the digest of everything that it depends on; never changed.
+
+run_id  : the run that found it, which may be gone;  made : when, ISO 8601, UTC
+outline : of each object what comparisons need, found : everything; compressed JSON (see `results`)
+"""
+
+RUN_SHEET = Table(
+    "run_sheet",
     METADATA,
     _of_run(),
-    Column("object_number", Words(), primary_key=True),
-    Column("position", BigInteger(), nullable=False),
+    _position(),
+    Column("key", Words(), ForeignKey("result.key"), nullable=False),
     Column("gallery", Words(), nullable=False),
     Column("on_display", Boolean(), nullable=False),
-    *_columns(Scene),
-    Index(None, "run_id", "gallery"),
+    Column("number", Integer(), nullable=False),
+    Column("of", Integer(), nullable=False),
+    Index(None, "key"),
 )
-"""One row an assessed object: a column for each field of its scene, and of its item those that are searched for."""
-
-FINDING = Table(
-    "finding",
-    METADATA,
-    _of_run(),
-    _position(),
-    *_columns(Finding),
-    Index(None, "run_id", "gallery"),
-    Index(None, "run_id", "object_number"),
-)
-"""One row a finding."""
-
-RECOMMENDATION = Table(
-    "recommendation",
-    METADATA,
-    _of_run(),
-    _position(),
-    *_columns(Recommendation),
-    Index(None, "run_id", "gallery"),
-    Index(None, "run_id", "object_number"),
-)
-"""One row a recommendation."""
-
-RUN_WISH = Table(
-    "run_wish",
-    METADATA,
-    _of_run(),
-    _position(),
-    *_columns(Wish),
-    Index(None, "run_id", "object_number"),
-)
-"""One row a quantity that is worth measuring on an object, or that was asked for and would settle nothing."""
-
-FRAGILITY = Table(
-    "fragility",
-    METADATA,
-    _of_run(),
-    _position(),
-    *_columns(Fragility),
-    Index(None, "run_id", "object_number"),
-)
-"""One row a fragility curve."""
-
-SPACING = Table(
-    "spacing",
-    METADATA,
-    _of_run(),
-    _position(),
-    *_columns(Spacing),
-    Index(None, "run_id", "gallery"),
-)
-"""One row a pair of neighbours under one level."""
+"""The sheets of a run, each with its result; an unchanged sheet has the one that an earlier run found."""
 
 DECISION = Table(
     "decision",

@@ -6,18 +6,18 @@ import pytest
 
 from pipeline.records import Assessment, Item, Mark, Move, ObjectPlace, RunChanges
 from pipeline.report import ReportError, Units
-from pipeline.report.compose import compose
 from pipeline.report.ranking import urgency
 from pipeline.report.since import since_view
 from pipeline.report.text import count, short, slug, words
 from pipeline.report.views import Counts, State
 
 from . import builder
+from .shown import shown
 
 
 def test_the_four_counts_add_up_to_all_objects() -> None:
     record = builder.record()
-    museum = compose(record, Units())
+    museum = shown(record, Units())
     # 4 + 1 fail among the antiquities, 2 + 5 in the salon, 1 in store; one open; one unknown; 1 + 4 + 1 pass.
     assert museum.counts == Counts(act=13, open=1, unknown=1, safe=6)
     assert museum.counts.total == len(record.assessments)
@@ -27,7 +27,7 @@ def test_the_four_counts_add_up_to_all_objects() -> None:
 
 
 def test_urgency_overturning_and_breaking_then_value_class_then_utilisation_then_open_unknown_safe() -> None:
-    museum = compose(builder.record(), Units())
+    museum = shown(builder.record(), Units())
     gallery = next(g for g in museum.galleries if g.name == builder.GREEK)
     assert [o.number for o in gallery.objects] == [
         "79.AA.143",  # overturns at 1.82, class A
@@ -57,7 +57,7 @@ def test_an_object_with_a_missing_field_is_never_safe_and_its_failure_still_coun
         builder.record(),
         assessments=tuple(replace(a, scene=replace(a.scene, missing=missing)) for a in (passed, failed)),
     )
-    states = {o.number: o.state for o in compose(record, Units()).galleries[0].objects}
+    states = {o.number: o.state for o in shown(record, Units()).galleries[0].objects}
     assert states == {"p": State.UNKNOWN, "f": State.ACT}
 
 
@@ -68,28 +68,22 @@ def test_what_to_do_first_counts_objects_by_measure_and_spans_their_numbers() ->
         replace(a, recommendations=(replace(a.recommendations[0], parameters={"clearance_m": 0.10 + 0.02 * n}),))
         for n, a in enumerate(wide)
     )
-    (task,) = compose(replace(builder.record(), assessments=advice), Units()).galleries[0].tasks
+    (task,) = shown(replace(builder.record(), assessments=advice), Units()).galleries[0].tasks
     assert len(task.objects) == 3
     assert task.numbers == (("clearance", "10 to 14\u202fcm"),)
 
 
 def test_an_object_that_no_measure_helps_is_named_at_its_place() -> None:
-    museum = compose(builder.record(), Units())
+    museum = shown(builder.record(), Units())
     salon = next(g for g in museum.galleries if g.name == builder.PAINT)
     assert not salon.tasks[0].advised
     assert [o.number for o in salon.tasks[0].objects] == ["91.DA.4"]
 
 
 def test_objects_not_on_display_have_one_page_whatever_their_gallery() -> None:
-    (stored,) = [g for g in compose(builder.record(), Units()).galleries if not g.on_display]
+    (stored,) = [g for g in shown(builder.record(), Units()).galleries if not g.on_display]
     assert stored.page == "not-on-display.html"
     assert {o.number for o in stored.objects} == {"64.ST.1", "64.ST.2"}
-
-
-def test_twins_get_ids_of_their_own() -> None:
-    twins = tuple(builder.passing(Item("1", "g", t)) for t in "ab")
-    (gallery,) = compose(replace(builder.record(), assessments=twins), Units()).galleries
-    assert len({o.anchor for o in gallery.objects}) == 2
 
 
 def _broken(**finding: object) -> Assessment:
@@ -100,14 +94,14 @@ def _broken(**finding: object) -> Assessment:
 @pytest.mark.parametrize("values", [{"sentence": "{speed}"}, {"mark": Mark("no such chart", 1.0, 1.0)}])
 def test_what_cannot_be_shown_is_refused_by_object(values: dict[str, object]) -> None:
     with pytest.raises(ReportError, match=r"12\.3"):
-        compose(builder.record(_broken(**values)), Units())
+        shown(builder.record(_broken(**values)), Units())
 
 
 def test_a_parameter_without_a_unit_is_refused() -> None:
     whole = builder.sliding(Item("12.3", "g"))
     bare = replace(whole, recommendations=(replace(whole.recommendations[0], units={}),))
     with pytest.raises(ReportError, match="clearance_m"):
-        compose(builder.record(bare), Units())
+        shown(builder.record(bare), Units())
 
 
 @pytest.mark.parametrize(
@@ -138,13 +132,13 @@ def test_one_measure_for_two_levels_is_said_once_with_the_evidence_of_each() -> 
     rare = replace(first, level="rare", checks=(replace(first.checks[0], demand=4.0e6),))
     findings = (*whole.findings, replace(whole.findings[0], level="rare"))
     both = replace(whole, findings=findings, recommendations=(first, rare))
-    (gallery,) = compose(replace(builder.record(), assessments=(both,)), Units()).galleries
+    (gallery,) = shown(replace(builder.record(), assessments=(both,)), Units()).galleries
     (measure,) = gallery.objects[0].measures
     assert measure.level == "design, rare"
     assert [check.title for check in measure.checks] == ["Stress at the base (design)", "Stress at the base (rare)"]
     assert [check.title for check in measure.ended] == ["Rocking (design)", "Rocking (rare)"]
     other = replace(both, recommendations=(first, replace(rare, parameters={"force": 641.0})))
-    (gallery,) = compose(replace(builder.record(), assessments=(other,)), Units()).galleries
+    (gallery,) = shown(replace(builder.record(), assessments=(other,)), Units()).galleries
     assert [m.level for m in gallery.objects[0].measures] == ["design", "rare"]
 
 
@@ -155,7 +149,7 @@ def test_a_range_is_told_only_where_there_is_one() -> None:
     for low, sentence in ((1.6, "It is pushed 1.8 (1.6 to 1.8) times what lifts it."), (1.8, "It is pushed 1.8 times")):
         finding = replace(whole.findings[0], sentence=told, demand=1.8, low=low, high=1.8, utilisation=1.8)
         one = replace(whole, findings=(finding,))
-        (gallery,) = compose(replace(builder.record(), assessments=(one,)), Units()).galleries
+        (gallery,) = shown(replace(builder.record(), assessments=(one,)), Units()).galleries
         (view,) = gallery.objects[0].findings
         assert view.sentence.startswith(sentence)
         assert "Demand" not in view.numbers

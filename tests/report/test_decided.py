@@ -23,10 +23,10 @@ from pipeline.records import (
     VerdictChange,
 )
 from pipeline.report import Units, render
-from pipeline.report.compose import compose
 from pipeline.report.since import MOST
 
 from . import builder
+from .shown import shown
 
 BAD = builder.HOSTILE["H.1"] + builder.HOSTILE["H.2"]
 KIND = DecisionKind
@@ -43,10 +43,10 @@ def decided(*standing: Standing) -> RunRecord:
 
 def test_what_is_accepted_is_no_task_until_it_is_in_doubt() -> None:
     """The object's state, and with it the four numbers, are those of the computation either way."""
-    plain = compose(builder.record(), Units())
+    plain = shown(builder.record(), Units())
     made = Standing(decision("79.AA.143"))
-    accepted = compose(decided(made), Units())
-    doubted = compose(decided(replace(made, doubts=("the motion has changed",))), Units())
+    accepted = shown(decided(made), Units())
+    doubted = shown(decided(replace(made, doubts=("the motion has changed",))), Units())
     for view, listed in ((plain, True), (accepted, False), (doubted, True)):
         assert view.counts == plain.counts
         gallery = next(g for g in view.galleries if g.name == builder.GREEK)
@@ -61,7 +61,7 @@ def test_what_is_accepted_is_no_task_until_it_is_in_doubt() -> None:
     [("rocking", "", True), ("", "design", True), ("sliding", "", False), ("", "x", False)],
 )
 def test_only_what_was_accepted_is_settled(model: str, level: str, settled: bool) -> None:
-    view = compose(decided(Standing(decision("79.AA.143", model=model, level=level))), Units())
+    view = shown(decided(Standing(decision("79.AA.143", model=model, level=level))), Units())
     assert next(o for g in view.galleries for o in g.objects if o.number == "79.AA.143").settled is settled
 
 

@@ -9,8 +9,7 @@ import openpyxl
 import pyarrow.parquet as pq
 import pytest
 
-from pipeline.report import Units
-from pipeline.report.exports import export, safe_cell
+from pipeline.report.exports import safe_cell
 
 from . import builder
 
@@ -110,8 +109,3 @@ def test_formulas_in_the_collection_are_defused_and_negative_numbers_are_not(rep
     for path in report.glob("*.csv"):
         for row in _rows(path):
             assert not [v for v in row.values() if v.startswith(("=", "+", "@", "\t", "\r"))]
-
-
-def test_a_missing_folder_is_named(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError, match="nowhere"):
-        export(builder.record(), tmp_path / "nowhere", Units())

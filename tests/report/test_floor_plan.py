@@ -11,15 +11,16 @@ from lxml import etree
 
 from pipeline.records import Item, Origin, Verdict
 from pipeline.report import Units, render
-from pipeline.report.compose import compose
 from pipeline.report.floor_plan import needed_clearance
-from pipeline.report.views import GalleryView, PlanView
+from pipeline.report.plan_views import PlanView
+from pipeline.report.views import GalleryView
 
 from . import builder
+from .shown import shown
 
 
 def gallery(units: Units | None = None) -> GalleryView:
-    museum = compose(builder.record(), units or Units())
+    museum = shown(builder.record(), units or Units())
     return next(g for g in museum.galleries if g.name == builder.GREEK)
 
 
@@ -108,7 +109,7 @@ def test_the_table_says_what_the_drawing_says() -> None:
 
 
 def test_without_a_position_there_is_no_plan() -> None:
-    museum = compose(builder.record(), Units())
+    museum = shown(builder.record(), Units())
     assert [g.plan is None for g in museum.galleries] == [g.name != builder.GREEK for g in museum.galleries]
 
 
@@ -134,7 +135,7 @@ def test_a_task_counts_what_overturns_or_breaks_and_how_far_the_worst_is_beyond(
 
 
 def test_what_settled_the_verdicts_adds_up() -> None:
-    museum = compose(builder.record(), Units())
+    museum = shown(builder.record(), Units())
     findings = [f for a in builder.record().assessments for f in a.findings]
     assert sum(d.verdicts for d in museum.decided) == len(findings)
     # The largest share of any history's demand that an error of 0.004 or of the like makes.
@@ -155,7 +156,7 @@ def test_a_line_joins_neighbours_whose_gap_is_too_small(tmp_path: Path) -> None:
     )
     record = replace(builder.record(), spacings=pairs)
     index = render(record, tmp_path / "r")
-    museum = compose(record, Units())
+    museum = shown(record, Units())
     greek = next(g for g in museum.galleries if g.name == builder.GREEK)
     page = etree.parse(str(index.parent / greek.page))
     (drawing,) = (e for e in page.iter("svg") if e.get("class") == "plan")
@@ -181,13 +182,13 @@ def test_numbers_that_stand_twice_have_no_line() -> None:
         Item("79.AA.143", builder.GREEK, "Twin", base_width_m=0.5, base_depth_m=0.4, position_x_m=3.0, position_y_m=2.0)
     )
     record = replace(builder.record(twin), spacings=(builder.gap("79.AA.143", "82.AB.7", Verdict.FAIL),))
-    greek = next(g for g in compose(record, Units()).galleries if g.name == builder.GREEK)
+    greek = next(g for g in shown(record, Units()).galleries if g.name == builder.GREEK)
     assert greek.plan is not None
     assert greek.plan.tight(greek.spacings) == ()
 
 
 def test_a_plan_of_one_object_says_one() -> None:
     alone = replace(builder.record(), assessments=builder.record().assessments[:1])
-    (only,) = compose(alone, Units()).galleries
+    (only,) = shown(alone, Units()).galleries
     assert only.plan is not None
     assert "1 object at its recorded position," in only.plan.svg

@@ -8,11 +8,11 @@ from lxml import etree
 
 from pipeline.quantities import G
 from pipeline.records import Fragility, Item, Spacing, Verdict
-from pipeline.report.compose import compose
 from pipeline.report.judging import fragility_views, shaking_view, spacing_views, years
 from pipeline.report.units import Units
 
 from . import builder
+from .shown import shown
 
 CURVE = Fragility(
     "1", "rocking", "Rocking", 0.3 * G, 0.2 * G, 0.5 * G, "", 0.5, 0.4, True, 0.2, 0.25, 1, False,
@@ -106,6 +106,6 @@ def test_neighbours_that_may_meet_come_first() -> None:
 
 def test_each_gallery_has_its_own_neighbours() -> None:
     record = replace(builder.record(), spacings=(replace(PAIR, gallery=builder.PAINT),))
-    found = {g.name: len(g.spacings) for g in compose(record, Units()).galleries}
+    found = {g.name: len(g.spacings) for g in shown(record, Units()).galleries}
     assert found[builder.PAINT] == 1
     assert sum(found.values()) == 1

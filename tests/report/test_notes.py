@@ -11,14 +11,14 @@ from markupsafe import Markup
 
 from pipeline.records import Item, Mark, Verdict
 from pipeline.report import Units
-from pipeline.report.compose import compose
 from pipeline.report.notes import Notes, PageNotes
 from pipeline.report.views import GalleryView, NumberView
 
 from . import builder
+from .shown import shown
 
 SHARED, ALONE = "friction: 0.18, not measured", "mass: weighed with <its> frame"
-MUSEUM = compose(builder.record(), Units())
+MUSEUM = shown(builder.record(), Units())
 
 
 def test_what_recurs_is_listed_and_cited_and_what_does_not_stays_where_it_is() -> None:
@@ -100,5 +100,5 @@ def test_a_passing_finding_marks_no_chart() -> None:
     marked = replace(passing, mark=Mark(f"friction:{builder.HASH}", 0.2, 0.041))
     for verdict, kinds in ((Verdict.PASS, ["stability"]), (Verdict.UNDETERMINED, ["stability", "friction"])):
         both = replace(whole, findings=(failing, replace(marked, verdict=verdict)))
-        (gallery,) = compose(replace(builder.record(), assessments=(both,)), Units()).galleries
+        (gallery,) = shown(replace(builder.record(), assessments=(both,)), Units()).galleries
         assert [figure.chart.partition(":")[0] for figure in gallery.objects[0].figures] == kinds

@@ -13,9 +13,9 @@ from lxml import etree
 
 from pipeline.records import Item
 from pipeline.report import ReportError, Units, render
-from pipeline.report.compose import compose
 
 from . import builder
+from .shown import shown
 
 HTML = "{http://www.w3.org/1999/xhtml}"
 
@@ -67,7 +67,7 @@ def test_nothing_is_fetched_and_nothing_runs(report: Path) -> None:
 
 @pytest.mark.parametrize("number", builder.HOSTILE)
 def test_hostile_titles_come_out_as_text(report: Path, number: str) -> None:
-    page = _pages(report)[next(g.page for g in compose(builder.record(), Units()).galleries if g.name == builder.PAINT)]
+    page = _pages(report)[next(g.page for g in shown(builder.record(), Units()).galleries if g.name == builder.PAINT)]
     said = ["".join(e.itertext()) for e in page.iter("bdi")]
     title = builder.HOSTILE[number].replace("\x07", "\ufffd").replace("\ud800", "\ufffd")
     start = title[:40]
@@ -118,7 +118,7 @@ def test_the_screen_is_labelled_as_never_deciding_and_silence_about_approval_is_
     assert "Screening, never deciding: A_max/g = 0.70" in page
     assert "nobody answers for this motion" in page
     approved = replace(builder.motion(), approved_by="A. Engineer", approved_on="2026-01-02")
-    (view,) = compose(replace(builder.record(), motions=(approved,)), Units()).motions
+    (view,) = shown(replace(builder.record(), motions=(approved,)), Units()).motions
     assert view.approved == "A. Engineer, 2026-01-02"
 
 

@@ -5,8 +5,10 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass, replace
 from enum import StrEnum
 from typing import Any, Union, get_args, get_origin, get_type_hints
+from uuid import uuid4
 
 from hypothesis import strategies as st
+from sqlalchemy import Engine
 
 from pipeline.records import (
     Assessment,
@@ -14,6 +16,7 @@ from pipeline.records import (
     Check,
     Estimate,
     Finding,
+    Found,
     Item,
     Mark,
     MotionSummary,
@@ -21,11 +24,15 @@ from pipeline.records import (
     Recommendation,
     RunRecord,
     Scene,
+    Sheet,
     Spacing,
     Standing,
     Support,
     Verdict,
 )
+from pipeline.report.tallies import tally
+from pipeline.store.results import encode
+from pipeline.store.runs import commit_run
 
 HOSTILE = (
     "", " ", "\0", "a\0b", "\x1a0", "\x1a\x1a1\0", "'; DROP TABLE run; --", "%s %(run_id)s :run_id ?", "{demand} {0}",
@@ -162,3 +169,11 @@ def run(run_id: str, *assessments: Assessment, day: int = 1, motions: tuple[Moti
         charts={},
         motions=motions,
     )
+
+
+def save_run(engine: Engine, record: RunRecord) -> None:
+    """Keep a whole run as one sheet, as a night keeps its many."""
+    found = Found(record.assessments, record.wishes, record.spacings)
+    encoded = encode(uuid4().hex, found, tally)
+    sheet = Sheet(encoded.key, "", True, 1, 1, record.run_id, record.finished, encoded.counts)
+    commit_run(engine, replace(record, assessments=(), wishes=None, spacings=()), [sheet], [encoded])

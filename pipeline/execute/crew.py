@@ -1,0 +1,126 @@
+"""Who works on the sheets of a run: this process, processes of this machine, or the workers of a Dask cluster.
+
+All three do the same work on the same errands and hand the results back in the order of the errands, so that nothing
+depends on who was quicker.  An errand that is done twice, because a worker died, gives the same and is taken once.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+Shared = TypeVar("Shared")
+Errand = TypeVar("Errand")
+Done = TypeVar("Done")
+
+AHEAD = 3
+"""Errands that are handed out for each worker at a time: nobody waits, and memory stays bounded by them."""
+
+DEATHS = 3
+"""Workers that may die of one errand before it is given up."""
+
+
+class CrewError(RuntimeError):
+    """The workers cannot be reached, or die of an errand."""
+
+    exit_code = 1
+
+
+class Alone:
+    """Works in this process, one errand after the other."""
+
+    workers = 1
+
+    def each(
+        self, work: Callable[[Shared, Errand], Done], shared: Shared, errands: Iterable[Errand]
+    ) -> Generator[Done]:
+        """Yield what comes of each errand, in their order."""
+        for errand in errands:
+            yield work(shared, errand)
+
+
+class Dask:
+    """Works on a Dask cluster: one that was started for this run, or one of the museum's own."""
+
+    def __init__(self, client: Client, workers: int) -> None:
+        self._client, self.workers = client, workers
+
+    def each(
+        self, work: Callable[[Shared, Errand], Done], shared: Shared, errands: Iterable[Errand]
+    ) -> Generator[Done]:
+        """Yield what comes of each errand, in their order; at the end, or when nobody wants more, nothing is left.
+
+        raises : whatever an errand raises; CrewError where workers die of it
+        """
+        from distributed import KilledWorker
+
+        brief = self._client.scatter(shared, broadcast=True, hash=False)
+        waiting: deque[Future[Any]] = deque()
+        try:
+            source = iter(errands)
+            for errand in source:
+                waiting.append(self._client.submit(work, brief, errand, pure=False))
+                if len(waiting) >= AHEAD * self.workers:
+                    yield waiting.popleft().result()
+            while waiting:
+                yield waiting.popleft().result()
+        except KilledWorker as problem:
+            raise CrewError(
+                f"{DEATHS} workers died of one part of the work ({problem}); give them more memory, or fewer at a time "
+                "([execution] processes)"
+            ) from problem
+        finally:
+            self._client.cancel([*waiting, brief], force=True)
+
+
+Crew = Alone | Dask
+
+
+@contextmanager
+def crew(*, address: str = "", processes: int = 0) -> Iterator[Crew]:
+    """Call a crew together, and send it home at the end, whatever happens.
+
+    address   : of a Dask cluster's scheduler, such as "tcp://host:8786"; its workers have Kouros installed, and how it
+                is reached safely (TLS) is Dask's own configuration
+    processes : of this machine, where no address is given; 0 or 1: this process
+    raises    : CrewError where the cluster cannot be reached or has no workers
+    """
+    if not address and processes <= 1:
+        yield Alone()
+        return
+    import dask
+    from distributed import Client, LocalCluster
+
+    settings: dict[str, Any] = {"distributed.scheduler.allowed-failures": DEATHS}
+    with dask.config.set(settings):
+        if not address:
+            with (
+                LocalCluster(
+                    n_workers=processes, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+                ) as cluster,
+                Client(cluster) as client,
+            ):
+                yield Dask(client, processes)
+            return
+        try:
+            client = Client(address, timeout="10s", set_as_default=False)
+        except (OSError, TimeoutError, ValueError) as problem:
+            raise CrewError(
+                f"no Dask cluster answers at {address} ({problem}); start it, or correct its address"
+            ) from (problem)
+        with client:
+            workers = len(client.scheduler_info(n_workers=-1)["workers"])
+            if not workers:
+                raise CrewError(f"the Dask cluster at {address} has no workers; start some (`dask worker {address}`)")
+            yield Dask(client, workers)
+
+
+def cores() -> int:
+    """Return how many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -1,0 +1,177 @@
+"""What all sheets of a run share, made ready: motions and their pictures, rules, measures, and what is asked for."""
+
+import os
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from datetime import datetime
+from typing import Any, Literal
+
+import numpy as np
+
+from pipeline import __version__
+from pipeline.charting.grouping import group_name, groups
+from pipeline.charts import chart_keys, charts, picture_version
+from pipeline.classify import classify
+from pipeline.collection.inventory import Catalogue, Listed, latest_import
+from pipeline.execute import Threads
+from pipeline.jobs import selftest, tradeoff
+from pipeline.jobs.desk import Brief
+from pipeline.jobs.levels import floors_of, notes
+from pipeline.jobs.reporting import manner
+from pipeline.jobs.versions import code_digest, rules_digest
+from pipeline.jobs.workspace import CHARTS, KEPT, Workspace
+from pipeline.kernels import KERNEL_VERSION
+from pipeline.motions.site import Level, Site
+from pipeline.plan import plan
+from pipeline.records import Chart, Executor, Motion, Progress, RunRecord
+from pipeline.store.reuse import CODE, KERNELS, LEVELS, PICTURES, RULES, stored_charts
+
+FRAGILE, SURVEYED = 1e8, 2e8
+"""Objects on display times samples of all motions up to which curves, and wishes, are found unasked: some minutes."""
+
+SAMPLE = 2_000
+"""Objects that are looked at to see which response charts pay for the whole collection."""
+
+
+def brief_for(
+    workspace: Workspace,
+    site: Site,
+    catalogue: Catalogue,
+    chosen: Sequence[Listed],
+    started: datetime,
+    progress: Progress,
+) -> Brief:
+    """Make ready what all sheets of a run share; its shelf is to be tidied at the end.
+
+    catalogue : all objects of the inventory;  chosen : those that the run is of
+    raises    : SettingsError for a floor that the site does not have, MotionError for a floor's record, TableError and
+                UsageError for tables of the museum's own, ReportError for a language without a catalogue
+    """
+    settings = workspace.settings
+    written = manner(settings)  # A catalogue of phrases that is missing is said before the night's work, not after it.
+    storeys = floors_of(settings, site, {one.gallery for one in chosen})
+    motions = {m.motion.hash: m.motion for storey in storeys.values() for level in storey.levels for m in level.motions}
+    samples = sum(motion.acceleration.shape[1] for motion in motions.values())
+    shown = sum(one.on_display for one in chosen) * samples
+    fragile = _asked(settings.analysis.fragility, shown <= FRAGILE)
+    surveyed = _asked(settings.report.survey, shown <= SURVEYED)
+    info = latest_import(workspace.engine)
+    said = [_level_note(level) for level in site.levels]
+    said += notes(settings, site, {one.gallery for one in catalogue.objects})
+    if settings.analysis.fragility and not fragile:
+        said.append(_left_out("From what shaking each object fails", "[analysis] fragility = true"))
+    if settings.report.survey and not surveyed:
+        said.append(_left_out("Which measurements would settle a verdict", "[report] survey = true"))
+    tested = selftest.kept(settings.path(KEPT))
+    head = RunRecord(
+        run_id=f"{started:%Y%m%dT%H%M%S}.{started.microsecond // 1000:03d}-{os.getpid()}",
+        started=started.isoformat(timespec="milliseconds"),
+        finished="",
+        version=__version__,
+        site=site.name,
+        museum=settings.museum.name or (info.museum if info else ""),
+        level_notes=tuple(said),
+        settings=_stored_settings(workspace, site, info.credit if info else "", tested),
+        assessments=(),
+        charts={},
+        motions=tuple(summary for storey in storeys.values() for summary in storey.summaries),
+        demonstration=settings.demonstration,
+    )
+    brief = Brief(
+        head=head,
+        storeys=storeys,
+        analysis=settings.analysis,
+        rules=workspace.rules,
+        means=workspace.means,
+        surveyed=surveyed,
+        fragile=fragile,
+        kept=settings.path(KEPT) / CHARTS,
+        threads=settings.analysis.workers or Threads().workers,
+        units=written["units"],
+        tongue=settings.report.language,
+        catalogues=settings.path(settings.report.catalogues) if settings.report.catalogues else None,
+    )
+    # The pictures are made before the verdicts, which use their charts; motions that two floors share only once.
+    pictures = _charts(workspace, list(motions.values()), brief, progress)
+    measured = tradeoff.kept(settings.path(KEPT))
+    if measured is not None:
+        picture = tradeoff.picture(measured)
+        pictures[picture.key] = picture
+    brief.head = replace(head, charts=pictures)
+    return brief
+
+
+def admit(brief: Brief, catalogue: Catalogue, chosen: Sequence[Listed], x_azimuth: float) -> None:
+    """Decide which response charts are built: those that a sample of the objects says pay for all of them.
+
+    What an object is found to do must not hang on which others happen to be on its sheet, or on who asked first.
+    """
+    every = max(1, len(chosen) // SAMPLE)
+    sample = catalogue.items([one.object_number for one in chosen[::every]])
+    scenes = [classify(item, brief.rules) for item in sample.values()]
+    asking: dict[str, int] = {}
+    pays: dict[str, int] = {}
+    for work in plan(scenes, x_azimuth).work:
+        if work.model.chart is None:
+            continue
+        for angle, rows in work.by_angle(np.arange(work.size)):
+            for alike, some in groups(work.model, work.some(rows)):
+                name = group_name(work.model, angle, alike)
+                asking[name] = asking.get(name, 0) + some.size
+                pays[name] = work.model.chart.nodes
+    brief.admitted = frozenset(name for name, number in asking.items() if number * every >= pays[name])
+
+
+def _asked(wanted: bool | Literal["auto"], affordable: bool) -> bool:
+    return affordable if wanted == "auto" else bool(wanted)
+
+
+def _left_out(what: str, remedy: str) -> str:
+    return f"{what} was not found out: of so many objects and motions that takes long ({remedy} does it all the same)."
+
+
+def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: selftest.SelfTest | None) -> dict[str, Any]:
+    # Never the database's address: it may hold a password.
+    settings = workspace.settings
+    return {
+        KERNELS: KERNEL_VERSION,
+        PICTURES: picture_version(),
+        CODE: code_digest(),
+        RULES: rules_digest(settings),
+        LEVELS: {level.name: level.combine for level in site.levels},
+        "credit": credit,
+        "analysis": settings.analysis.model_dump(),
+        "length": settings.report.length,
+        "site": settings.site.folder,
+        "floors": settings.floors.model_dump(),
+        "numerics": None if tested is None else tested.plain(),
+    }
+
+
+def _charts(workspace: Workspace, motions: Sequence[Motion], brief: Brief, progress: Progress) -> dict[str, Chart]:
+    drawn: dict[str, Chart] = {}
+    executor: Executor = brief.executor
+    for done, motion in enumerate(motions):
+        progress.step("charts", done, len(motions))
+        kept = stored_charts(workspace.engine, chart_keys(motion), picture_version())
+        drawn |= kept if len(kept) == len(chart_keys(motion)) else charts(motion, executor, brief.shelf)
+    progress.step("charts", len(motions), len(motions))
+    return drawn
+
+
+def hashes(brief: Brief) -> Collection[str]:
+    """Return the hashes of the motions in use, whose charts stay although perhaps none of them is asked for."""
+    return {m.motion.hash for storey in brief.storeys.values() for level in storey.levels for m in level.motions}
+
+
+def _level_note(level: Level) -> str:
+    period = "" if level.return_period_years is None else f", return period {level.return_period_years:g} years"
+    answers = (
+        f"approved by {level.approved_by} on {level.approved_on}"
+        if level.approved_by
+        else "no engineer has approved these motions"
+    )
+    number = len(level.motions)
+    how = "1 motion" if number == 1 else f"the {level.combine} of {number} motions"
+    caution = f"; {level.caution}" if level.caution else ""
+    return f"Level {level.name}{period}: {how}{caution}; {answers}."

@@ -1,0 +1,242 @@
+"""What is done for one sheet, wherever it is done: find, judge, advise, and draw.
+
+A `Brief` holds what all sheets of a run share and goes once to whoever works; an `Errand` is one sheet.  What comes
+back depends on these two alone: the same on this machine and on another, whoever did what before.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from pipeline.assess import assess
+from pipeline.charting import Shelf
+from pipeline.classify import classify, object_classes
+from pipeline.climb import Effort
+from pipeline.execute import Threads
+from pipeline.fragility.objects import fragilities
+from pipeline.jobs.doubts import now, standing
+from pipeline.jobs.levels import Storey
+from pipeline.mitigate import Means, advise
+from pipeline.mitigate.bench import Carriage
+from pipeline.mitigate.installed import Measure, Placed, assess_above, placed
+from pipeline.models import model_named
+from pipeline.neighbours import neighbours
+from pipeline.records import (
+    Assessment,
+    Decision,
+    DecisionKind,
+    Found,
+    Fragility,
+    Item,
+    Progress,
+    RunRecord,
+    Sheet,
+    Silent,
+    Standing,
+    Support,
+)
+from pipeline.report.language import language
+from pipeline.report.sheets import Drawn, Pen
+from pipeline.report.tallies import tally
+from pipeline.report.units import Units
+from pipeline.rules import Table
+from pipeline.settings import Analysis
+from pipeline.store.results import Encoded, encode, unpacked
+from pipeline.survey import in_order, wishes
+
+
+@dataclass
+class Brief:
+    """What all sheets of a run share.
+
+    head      : the run without its objects: its motions and its charts, what pages say of it
+    storeys   : the floors by name
+    surveyed, fragile : whether to find out what is worth measuring, and from what shaking objects fail
+    admitted  : which response charts are built (see `pipeline.charting.Shelf`); None: those that pay for a sheet
+    kept      : folder in which charts are kept; None: in memory only
+    threads   : of one who works
+    """
+
+    head: RunRecord
+    storeys: Mapping[str, Storey]
+    analysis: Analysis
+    rules: Table | None
+    means: Means
+    surveyed: bool
+    fragile: bool
+    admitted: frozenset[str] | None = None
+    kept: Path | None = None
+    threads: int = 1
+    units: Units = field(default_factory=Units)
+    tongue: str = "en"
+    catalogues: Path | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        # What was made on the way is made again where it is needed.
+        made = {"shelf", "carriage", "pen", "executor"}
+        return {name: value for name, value in self.__dict__.items() if name not in made}
+
+    @cached_property
+    def shelf(self) -> Shelf:
+        """The response charts."""
+        return Shelf(self.kept, admitted=self.admitted)
+
+    @cached_property
+    def carriage(self) -> Carriage:
+        """What isolators pass on, once for all sheets."""
+        return Carriage()
+
+    @cached_property
+    def executor(self) -> Threads:
+        """Where the parts of a sheet's work run."""
+        return Threads(self.threads)
+
+    @cached_property
+    def pen(self) -> Pen:
+        """What draws the sheets.
+
+        raises : ReportError for a language without a catalogue
+        """
+        return Pen(self.head, self.units, language(self.tongue, self.catalogues))
+
+
+@dataclass(frozen=True)
+class Errand:
+    """One sheet to be worked on.
+
+    floor     : that it stands on
+    items     : its objects, where they are to be assessed; else ``found`` is what was found of them, as it is kept
+    decisions : those in force about its objects
+    digests   : of the records, by object number, of the objects decided about
+    changed   : (object number, digest of its record when it was decided about) -> the fields that changed since
+    draw      : whether its page is wanted
+    """
+
+    sheet: Sheet
+    floor: str
+    items: tuple[Item, ...] = ()
+    found: bytes | None = None
+    decisions: tuple[Decision, ...] = ()
+    digests: Mapping[str, str] = field(default_factory=dict)
+    changed: Mapping[tuple[str, str], tuple[str, ...]] = field(default_factory=dict)
+    draw: bool = True
+
+
+@dataclass(frozen=True)
+class Done:
+    """What came of an errand.
+
+    result   : where it is new
+    drawn    : the page, where it was wanted
+    standing : the decisions about its objects as they stand
+    seconds  : what finding out what is worth measuring cost
+    """
+
+    result: Encoded | None
+    drawn: Drawn | None
+    standing: tuple[Standing, ...]
+    seconds: float = 0.0
+
+
+def work(brief: Brief, errand: Errand) -> Done:
+    """Do what there is to do for a sheet.
+
+    raises : StoreError and ReportError naming the object, for what can neither be kept nor shown
+    """
+    sheet, result, seconds = errand.sheet, None, 0.0
+    if errand.found is None:
+        found, seconds = find(brief, brief.storeys[errand.floor], errand.items, errand.decisions)
+        result = encode(sheet.key, found, tally)
+    else:
+        found = unpacked(errand.found)
+    there = stand(brief.head, found, errand)
+    return Done(result, brief.pen.draw(sheet, found, there) if errand.draw else None, there, seconds)
+
+
+def stand(head: RunRecord, found: Found, errand: Errand) -> tuple[Standing, ...]:
+    """Return the decisions about the objects of a sheet, with what is to be doubted."""
+    if not errand.decisions:
+        return ()
+    at = now(found.assessments, head, errand.digests, lambda number, digest: errand.changed[number, digest])
+    return standing(sorted(errand.decisions, key=lambda d: d.id), at)
+
+
+def place(item: Item, rules: Table | None, decisions: Sequence[Decision]) -> Placed:
+    """Return an object as people say that it is and stands: of the class decided, with the measures installed.
+
+    decisions : those in force about it
+    """
+    classes = [d for d in decisions if d.kind is DecisionKind.CLASS and d.object_class in object_classes()]
+    scene = classify(item, rules, (classes[-1].object_class, classes[-1].by) if classes else None)
+    measures = [Measure(d.measure, d.parameters, d.by) for d in decisions if d.kind is DecisionKind.INSTALLED]
+    return placed(scene, measures)
+
+
+def find(
+    brief: Brief,
+    storey: Storey,
+    items: Sequence[Item],
+    decisions: Sequence[Decision],
+    progress: Progress | None = None,
+) -> tuple[Found, float]:
+    """Run everything that objects on one floor require under its motions, judge it and advise.
+
+    decisions : those in force: classes and installed measures change what is run
+    returns   : what was found, and the seconds that finding out what is worth measuring cost
+    """
+    told = progress or Silent()
+    about: dict[str, list[Decision]] = {}
+    for decision in decisions:
+        about.setdefault(decision.object_number, []).append(decision)
+    objects = [place(item, brief.rules, about.get(item.object_number, ())) for item in items]
+    scenes = [replace(one.scene, floor=storey.name) for one in objects]
+    levels, executor = storey.shaking, brief.executor
+    fidelity, step = brief.analysis.fidelity, brief.analysis.azimuth_step
+    # Few objects stand on isolators, each on its own: neither charts nor bounds of what these pass on would pay.
+    integrating = "reference" if fidelity == "reference" else "history"
+    efforts: dict[str, Effort] = {}
+    plan, findings = assess(
+        scenes, levels, executor, told, fidelity=fidelity, azimuth_step=step, charts=brief.shelf, efforts=efforts
+    )
+    above = assess_above(objects, levels, executor, told, fidelity=integrating, azimuth_step=step)
+    for at, (on_top, left_out) in enumerate(above):
+        findings[at] += on_top
+        done = {finding.title for finding in findings[at]}
+        skipped = {title: why for title, why in {**plan.skipped[at], **left_out}.items() if title not in done}
+        scenes[at] = replace(scenes[at], skipped=skipped)
+    advice = advise(
+        scenes,
+        findings,
+        levels,
+        executor,
+        told,
+        means=brief.means,
+        fidelity=fidelity,
+        azimuth_step=step,
+        charts=brief.shelf,
+        carriage=brief.carriage,
+    )
+    curves: Sequence[tuple[Fragility, ...]] = [()] * len(scenes)
+    if brief.fragile:
+        # What an isolator passes on would have to be scaled too.
+        shown = [s.item.on_display and s.support is not Support.ISOLATED for s in scenes]
+        curves = fragilities(scenes, plan.work, storey.stripes, executor, told, chosen=shown)
+    began = perf_counter()
+    wished = None
+    if brief.surveyed:
+        # Each trial is asked once: a chart would not pay.
+        wished = wishes(scenes, findings, levels, executor, told, fidelity=integrating, azimuth_step=step)
+    seconds = perf_counter() - began if brief.surveyed else 0.0
+    found = Found(
+        assessments=tuple(
+            Assessment(scene, tuple(those), tuple(advised), curve)
+            for scene, those, advised, curve in zip(scenes, findings, advice, curves, strict=True)
+        ),
+        wishes=None if wished is None else tuple(in_order(wished)),
+        spacings=tuple(neighbours(scenes, findings, levels)),
+        efforts={model_named(name).title: effort.plain() for name, effort in efforts.items()},
+    )
+    return found, seconds

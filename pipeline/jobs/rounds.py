@@ -1,0 +1,235 @@
+"""One round through the sheets of a collection: which have results, who finds the others, what becomes of all."""
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, closing
+from dataclasses import dataclass, replace
+from functools import cached_property
+from time import monotonic
+
+from pipeline.collection.inventory import Catalogue, Listed, fields_since
+from pipeline.execute.crew import Crew, cores, crew
+from pipeline.jobs.desk import Brief, Done, Errand, stand, work
+from pipeline.jobs.doubts import now, standing
+from pipeline.jobs.levels import floor_name
+from pipeline.jobs.sheets import Keys, Part, cut
+from pipeline.jobs.versions import rules_digest
+from pipeline.jobs.workspace import Workspace
+from pipeline.records import Decision, Progress, RunChanges, Sheet, Standing, Tally
+from pipeline.report.edition import Edition, Shelved, link_to, sheet_key
+from pipeline.report.since import mentioned
+from pipeline.report.tallies import total
+from pipeline.report.views import Pointer
+from pipeline.store.results import Encoded, Kept, keep, known_to, load_found, outlines_of, packed
+
+FEW = 5_000
+"""Objects whose results are to be found for which other processes do not pay: they take seconds to start."""
+
+_SECONDS = 5.0
+"""Longest time for which results wait to be stored together."""
+
+
+@dataclass
+class _Piece:
+    """A sheet and what is known of it so far.
+
+    kept  : its result, where there is one
+    there : the decisions about its objects as they stand, once there is a result
+    """
+
+    part: Part
+    floor: str
+    key: str
+    decisions: tuple[Decision, ...]
+    kept: Kept | None
+    there: tuple[Standing, ...] = ()
+
+
+class Round:
+    """The sheets of a run, and the doing of them.
+
+    fresh    : objects whose results must be found
+    sheets   : as they are stored with the run, once all is done; standing: the decisions about their objects
+    seconds  : what finding out what is worth measuring cost
+    """
+
+    def __init__(
+        self,
+        workspace: Workspace,
+        brief: Brief,
+        catalogue: Catalogue,
+        objects: Sequence[Listed],
+        decisions: Mapping[str, tuple[Decision, ...]],
+    ) -> None:
+        self.workspace, self.brief = workspace, brief
+        self._catalogue, self._decisions = catalogue, decisions
+        self._numbers = {one.object_number: one.digest for one in objects if one.object_number in decisions}
+        settings, keys = workspace.settings, Keys(brief, rules_digest(workspace.settings))
+        parts = cut(objects, settings)
+        floors = [floor_name(settings, part.objects[0].gallery) for part in parts]
+        named = [keys.of(part, floor, decisions) for part, floor in zip(parts, floors, strict=True)]
+        there = known_to(workspace.engine, named)
+        self._pieces = [
+            _Piece(part, floor, key, self._about(part), there.get(key))
+            for part, floor, key in zip(parts, floors, named, strict=True)
+        ]
+        self.fresh = sum(len(piece.part.objects) for piece in self._pieces if piece.kept is None)
+        self.seconds = 0.0
+        self._tallies: list[Tally] = []
+        self._sheets: list[Sheet] = []
+
+    @property
+    def sheets(self) -> tuple[Sheet, ...]:
+        """The sheets that are done, in order."""
+        return tuple(self._sheets)
+
+    @property
+    def standing(self) -> tuple[Standing, ...]:
+        """The decisions about the objects of the sheets that are done, as they stand."""
+        return tuple(one for piece in self._pieces for one in piece.there)
+
+    def strangers(self, *, whole: bool) -> tuple[Standing, ...]:
+        """Return the decisions about objects that the collection does not have any more.
+
+        whole : whether the run is of all objects: else what is not in it is not gone
+        """
+        if not whole:
+            return ()
+        gone = [d for number, mine in self._decisions.items() if number not in self._numbers for d in mine]
+        at = now((), self.brief.head, {}, lambda _number, _digest: ())
+        return standing(sorted(gone, key=lambda d: d.id), at)
+
+    def _about(self, part: Part) -> tuple[Decision, ...]:
+        return tuple(d for one in part.objects for d in self._decisions.get(one.object_number, ()))
+
+    # -----------------------------------------------------------------------------------------------------------------
+
+    def assess(self, progress: Progress, take: Callable[[Encoded], None] = lambda _: None) -> Tally:
+        """Find what is not known, and return the totals; nothing is stored and nothing drawn.
+
+        take : is given each new result
+        """
+        wanted = (replace(self._errand(piece), draw=False) for piece in self._pieces if piece.kept is None)
+        with self._crew(self.fresh) as hands, closing(hands.each(work, self.brief, wanted)) as done:
+            for at, piece in enumerate(self._pieces):
+                progress.step("sheets", at, len(self._pieces))
+                came = None if piece.kept is not None else next(done)
+                self._note(piece, came)
+                if came is not None and came.result is not None:
+                    take(came.result)
+        progress.step("sheets", len(self._pieces), len(self._pieces))
+        return total(self._tallies)
+
+    def edition(self) -> Edition:
+        """Return the report that the sheets go into; it is entered before `publish`, and finished after it."""
+        reports = self.workspace.reports
+        return Edition(reports / self.brief.head.run_id, self.brief.pen, Shelved.read(reports / "latest"))
+
+    def publish(self, edition: Edition, progress: Progress) -> Tally:
+        """Find what is not known, store it as it comes, put every sheet into the report, and return the totals."""
+        for piece in self._pieces:
+            if piece.kept is not None and piece.decisions:
+                found = load_found(self.workspace.engine, piece.key)
+                piece.there = stand(self.brief.head, found, self._errand(piece))
+        taken = {at for at, piece in enumerate(self._pieces) if self._drawn(edition, piece)}
+        wanted = (self._errand(piece) for at, piece in enumerate(self._pieces) if at not in taken)
+        waiting: list[Encoded] = []
+        since = monotonic()
+        todo = sum(len(piece.part.objects) for at, piece in enumerate(self._pieces) if at not in taken)
+        with self._crew(todo) as hands, closing(hands.each(work, self.brief, wanted)) as done:
+            for at, piece in enumerate(self._pieces):
+                progress.step("sheets", at, len(self._pieces))
+                came = None if at in taken else next(done)
+                sheet = self._note(piece, came)
+                key = sheet_key(edition.pen, sheet, piece.there)
+                if came is None:
+                    edition.reuse(key)
+                elif came.drawn is not None:
+                    edition.add(key, came.drawn)
+                if came is not None and came.result is not None:
+                    waiting.append(came.result)
+                if waiting and monotonic() - since > _SECONDS:
+                    self._keep(waiting)
+                    since = monotonic()
+            self._keep(waiting)
+        progress.step("sheets", len(self._pieces), len(self._pieces))
+        return total(self._tallies)
+
+    def _keep(self, waiting: list[Encoded]) -> None:
+        head = self.brief.head
+        keep(self.workspace.engine, head.run_id, head.started, waiting)
+        waiting.clear()
+
+    def _drawn(self, edition: Edition, piece: _Piece) -> bool:
+        return piece.kept is not None and edition.has(sheet_key(edition.pen, self._sheet(piece), piece.there))
+
+    def _crew(self, objects: int) -> AbstractContextManager[Crew]:
+        wanted = self.workspace.settings.execution
+        if objects <= FEW:
+            return crew()
+        if wanted.cluster:
+            return crew(address=wanted.cluster)
+        return crew(processes=wanted.processes or cores())
+
+    def _sheet(self, piece: _Piece) -> Sheet:
+        part, kept, head = piece.part, piece.kept, self.brief.head
+        run, made, counts = (head.run_id, head.started, {}) if kept is None else (kept.run, kept.made, kept.counts)
+        return Sheet(piece.key, part.gallery, part.on_display, part.number, part.of, run, made, counts)
+
+    def _errand(self, piece: _Piece) -> Errand:
+        """Return what is to be done for a sheet, with all that it takes: whoever does it has no database."""
+        digests = {number: self._numbers[number] for number in {d.object_number for d in piece.decisions}}
+        changed = {
+            (d.object_number, d.digest): tuple(fields_since(self.workspace.engine, d.object_number, d.digest))
+            for d in piece.decisions
+            if d.digest != digests[d.object_number]
+        }
+        told = Errand(self._sheet(piece), piece.floor, decisions=piece.decisions, digests=digests, changed=changed)
+        if piece.kept is not None:
+            return replace(told, found=packed(self.workspace.engine, piece.key))
+        numbers = [one.object_number for one in piece.part.objects]
+        records = self._catalogue.items(numbers)
+        return replace(told, items=tuple(records[number] for number in numbers))
+
+    def _note(self, piece: _Piece, came: Done | None) -> Sheet:
+        sheet, tally = self._sheet(piece), None if piece.kept is None else piece.kept.tally
+        if came is not None:
+            piece.there = came.standing
+            self.seconds += came.seconds
+            if came.result is not None:
+                sheet, tally = replace(sheet, counts=came.result.counts), came.result.tally
+        if tally is not None:
+            self._tallies.append(tally)
+        self._sheets.append(sheet)
+        return sheet
+
+    # -----------------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def _by_key(self) -> Mapping[str, Sheet]:
+        return {sheet.key: sheet for sheet in self._sheets}
+
+    def links(self, changes: RunChanges | None) -> dict[str, Pointer]:
+        """Return where the objects are that the index names as changed, by number."""
+        named = set() if changes is None else mentioned(changes)
+        where = {
+            one.object_number: piece.key
+            for piece in self._pieces
+            for one in piece.part.objects
+            if one.object_number in named
+        }
+        return links_to(self.workspace, where, self._by_key)
+
+
+def links_to(workspace: Workspace, where: Mapping[str, str], sheets: Mapping[str, Sheet]) -> dict[str, Pointer]:
+    """Return how the index names objects, by number.
+
+    where  : the key of the sheet that each is on;  sheets : by key
+    """
+    titles = {
+        outline.object_number: (key, outline.title)
+        for key in dict.fromkeys(where.values())
+        for outline in outlines_of(workspace.engine, [key])
+    }
+    return {
+        number: link_to(sheets[titles[number][0]], number, titles[number][1]) for number in where if number in titles
+    }

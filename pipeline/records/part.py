@@ -1,0 +1,109 @@
+"""What a run finds, sheet by sheet: a sheet holds the objects of one gallery, or a part of them where they are many."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from pipeline.records.result import Assessment, Spacing
+from pipeline.records.wish import Wish
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Everything that was found about the objects of a sheet; no other sheet has a say in it.
+
+    wishes  : what is worth measuring; None where the run did not ask
+    efforts : what the verdicts of each model took, by the title of the model (see `pipeline.climb.Effort`)
+    """
+
+    assessments: tuple[Assessment, ...]
+    wishes: tuple[Wish, ...] | None = None
+    spacings: tuple[Spacing, ...] = ()
+    efforts: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Urgent:
+    """An object on display that fails, as a list of the worst shows it, with the key that sorts it among others."""
+
+    order: tuple[int, bool, bool, str, float, str, str]
+    object_number: str
+    title: str
+    gallery: str
+    outcome: str
+
+
+@dataclass(frozen=True, slots=True)
+class Errors:
+    """Numerical errors of verdicts of one kind: how many verdicts, and the relative errors that are known.
+
+    sizes : error over demand, in two digits as "1.2e-05" -> how often
+    """
+
+    verdicts: int
+    sizes: Mapping[str, int]
+    worst: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """What a sheet adds to the totals of a run.
+
+    states   : objects by state: act, open, unknown (cannot be assessed), safe
+    shown    : objects on display
+    measures : recommendations by title
+    missing  : why objects could not be assessed, with how many of each
+    first    : the worst objects on display, the worst first
+    worth, waste, wished : measurements that would settle something, that would not, and the objects of the former
+    """
+
+    states: Mapping[str, int]
+    shown: int
+    measures: Mapping[str, int]
+    missing: Mapping[str, int]
+    first: tuple[Urgent, ...]
+    decided: Mapping[str, Errors]
+    fidelities: Mapping[str, int]
+    efforts: Mapping[str, Mapping[str, int]]
+    surveyed: bool
+    worth: int = 0
+    waste: int = 0
+    wished: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """One object in as much as two runs are compared by.
+
+    item, scene : digests of the record, and of what else it was run with
+    verdicts    : model, level and the worst verdict of each
+    """
+
+    object_number: str
+    title: str
+    gallery: str
+    floor: str
+    item: str
+    scene: str
+    verdicts: tuple[tuple[str, str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """A sheet of a run: which objects it is of, and under which key its result is stored.
+
+    key          : of everything that the result depends on
+    gallery      : "" for objects that are not on display
+    number, of   : the how manieth of its gallery's sheets, from 1
+    run, made    : the run that found its result, perhaps an earlier one, and when (ISO 8601, UTC)
+    """
+
+    key: str
+    gallery: str
+    on_display: bool
+    number: int
+    of: int
+    run: str
+    made: str
+    counts: Mapping[str, int]

@@ -1,0 +1,271 @@
+"""A report put together from its sheets: pages, exports and index, built aside and named when it is whole.
+
+What an earlier report holds of a sheet that has not changed is taken from there: its page by a link to the same file,
+its rows of the exports by copying their bytes.  A report remembers in ``.sheets.json`` what of it is which sheet's.
+"""
+
+import os
+import shutil
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass, field
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Any, Self
+
+from markupsafe import Markup
+from pydantic import TypeAdapter, ValidationError
+
+from pipeline.records import RunChanges, RunRecord, Sheet, Standing, Tally
+from pipeline.report.compose import anchor_of, museum_view, page_name
+from pipeline.report.errors import ReportError
+from pipeline.report.exports import HEADERS, TABLES, TEXT_FILES, schema_of, workbook
+from pipeline.report.language import speaking
+from pipeline.report.pages import environment, fill
+from pipeline.report.sheets import Drawn, Pen, drawn
+from pipeline.report.since import since_view
+from pipeline.report.text import clean, short
+from pipeline.report.traces import trace
+from pipeline.report.views import Entry, Pointer, State
+from pipeline.resources import digest_of, resource
+
+SHEETS = ".sheets.json"
+"""File of a report that says what of it is which sheet's."""
+
+_BLOCK = 1 << 22
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """Where a report holds a sheet.
+
+    key    : of everything that its page and its rows depend on
+    texts  : by file, where its bytes begin and how many they are
+    tables : by table, the row group; None where it has no rows
+    """
+
+    key: str
+    entry: Entry
+    texts: Mapping[str, tuple[int, int]]
+    tables: Mapping[str, int | None]
+
+
+@dataclass(frozen=True)
+class Shelved:
+    """An earlier report, as far as its sheets can be used again."""
+
+    folder: Path
+    sheets: Mapping[str, Placed] = field(default_factory=dict)
+
+    @classmethod
+    def read(cls, folder: Path) -> "Shelved":
+        """Return what a report holds; nothing where it holds none, or says so in a way that is not understood."""
+        try:
+            listed = _adapter().validate_json((folder / SHEETS).read_bytes())
+            if all(folder.joinpath(name).is_file() for name in (*TEXT_FILES, *(f"{name}.parquet" for name in TABLES))):
+                return cls(folder, {placed.key: placed for placed in listed})
+        except (OSError, ValidationError):
+            pass
+        return cls(folder)
+
+    def get(self, key: str) -> Placed | None:
+        """Return where a sheet is, if its page is there."""
+        placed = self.sheets.get(key)
+        return placed if placed is not None and (self.folder / placed.entry.sheet.page).is_file() else None
+
+
+@cache
+def _adapter() -> TypeAdapter[list[Placed]]:
+    return TypeAdapter(list[Placed])
+
+
+@cache
+def _code() -> str:
+    """Everything that draws a page: the code of the report, the templates."""
+    templates = sha256()
+    for file in sorted(resource("templates").rglob("*")):
+        if file.is_file():
+            templates.update(file.name.encode() + b"\0" + file.read_bytes())
+    return digest_of("report", "records") + templates.hexdigest()
+
+
+def sheet_key(pen: Pen, sheet: Sheet, decisions: Sequence[Standing]) -> str:
+    """Return the digest of everything that a sheet's page and rows depend on."""
+    head = pen.head
+    shared = (
+        _code(), repr(pen.units), pen.language.code, head.museum, head.settings.get("credit"), head.version,
+        head.demonstration, [(m.hash, m.name, m.level, m.floor, m.approved_by, m.approved_on) for m in head.motions],
+        sorted(head.charts),
+    )  # fmt: skip
+    own = (sheet.key, sheet.run, sheet.made, sheet.gallery, sheet.on_display, sheet.number, sheet.of, list(decisions))
+    return sha256(repr((shared, own)).encode("utf-8", "surrogatepass")).hexdigest()
+
+
+class Edition:
+    """A report that is being put together; leaving the block without `finish` removes all of it.
+
+    folder  : a new folder; it appears only when everything in it is written
+    earlier : reports whose sheets may be used again
+    raises  : ReportError if the folder exists
+    """
+
+    def __init__(self, folder: Path, pen: Pen, earlier: Shelved | None = None) -> None:
+        if folder.exists():
+            raise ReportError(f"{folder} exists already; a report never overwrites another: name a new folder")
+        self.folder, self.pen = folder, pen
+        self._earlier = earlier or Shelved(folder)
+        self._partial = folder.with_name(f".{folder.name}.{os.getpid()}.partial")
+        self._placed: list[Placed] = []
+        self._stack = ExitStack()
+        self._texts: dict[str, IO[bytes]] = {}
+        self._old_texts: dict[str, IO[bytes]] = {}
+        self._tables: dict[str, Any] = {}
+        self._old_tables: dict[str, Any] = {}
+        self._groups = dict.fromkeys(TABLES, 0)
+
+    def __enter__(self) -> Self:
+        import pyarrow.parquet as pq
+
+        self._partial.mkdir(parents=True)
+        self._stack.callback(shutil.rmtree, self._partial, ignore_errors=True)
+        for name in TEXT_FILES:
+            self._texts[name] = self._stack.enter_context((self._partial / name).open("wb"))
+            self._texts[name].write(HEADERS.get(name, b""))
+        for name in TABLES:
+            writer = pq.ParquetWriter(self._partial / f"{name}.parquet", schema_of(name), compression="zstd")
+            self._tables[name] = self._stack.enter_context(writer)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._stack.close()
+
+    def has(self, key: str) -> bool:
+        """Say whether the earlier report has a sheet."""
+        return self._earlier.get(key) is not None
+
+    def reuse(self, key: str) -> bool:
+        """Take a sheet from the earlier report; say whether it was there."""
+        placed = self._earlier.get(key)
+        if placed is None:
+            return False
+        page = placed.entry.sheet.page
+        _same(self._earlier.folder / page, self._partial / page)
+        texts = {name: self._copied(name, *where) for name, where in placed.texts.items()}
+        tables = {name: self._grouped(name, group) for name, group in placed.tables.items()}
+        self._placed.append(Placed(key, placed.entry, texts, tables))
+        return True
+
+    def add(self, key: str, made: Drawn) -> None:
+        """Add a sheet that was drawn for this report."""
+        (self._partial / made.entry.sheet.page).write_bytes(made.page)
+        texts = {name: self._appended(name, content) for name, content in made.fragment.texts.items()}
+        tables = {name: self._table(name, content) for name, content in made.fragment.tables.items()}
+        self._placed.append(Placed(key, made.entry, texts, tables))
+
+    def _appended(self, name: str, content: bytes) -> tuple[int, int]:
+        stream = self._texts[name]
+        start = stream.tell()
+        stream.write(content)
+        return start, len(content)
+
+    def _copied(self, name: str, start: int, length: int) -> tuple[int, int]:
+        source, target = self._old_texts.get(name), self._texts[name]
+        if source is None:
+            source = self._old_texts[name] = self._stack.enter_context((self._earlier.folder / name).open("rb"))
+        source.seek(start)
+        began, left = target.tell(), length
+        while left:
+            block = source.read(min(left, _BLOCK))
+            if not block:
+                raise ReportError(f"{source.name} is shorter than its report says; remove that report, and run again")
+            target.write(block)
+            left -= len(block)
+        return began, length
+
+    def _table(self, name: str, content: bytes) -> int | None:
+        import pyarrow as pa
+
+        return self._group(name, pa.ipc.open_stream(content).read_all())
+
+    def _grouped(self, name: str, group: int | None) -> int | None:
+        import pyarrow.parquet as pq
+
+        if group is None:
+            return None
+        if name not in self._old_tables:
+            file = pq.ParquetFile(self._earlier.folder / f"{name}.parquet")
+            self._old_tables[name] = self._stack.enter_context(file)
+        return self._group(name, self._old_tables[name].read_row_group(group))
+
+    def _group(self, name: str, table: Any) -> int | None:
+        if table.num_rows == 0:
+            return None
+        self._tables[name].write_table(table, row_group_size=table.num_rows)
+        self._groups[name] += 1
+        return self._groups[name] - 1
+
+    def finish(self, head: RunRecord, tally: Tally, changes: RunChanges | None, links: Mapping[str, Pointer]) -> Path:
+        """Write the index and the pages that all share, and give the report its name.
+
+        head    : the run as it ended, without its objects; its decisions are those about objects that it does not have
+        tally   : of all sheets together
+        changes : since the run before, for the index; None where there was none
+        links   : the objects that the index names as changed, by number
+        returns : the path of index.html
+        raises  : ReportError where two galleries' files would have one name
+        """
+        for stream in (*self._texts.values(), *self._tables.values()):
+            stream.close()
+        has_book = workbook(self._partial, head.started)
+        for name, text in self._shared(head, tally, changes, links, has_book=has_book):
+            (self._partial / name).write_text(text, encoding="utf-8", newline="\n")
+        (self._partial / SHEETS).write_bytes(_adapter().dump_json(self._placed))
+        self._partial.rename(self.folder)
+        return self.folder / "index.html"
+
+    def _shared(
+        self,
+        head: RunRecord,
+        tally: Tally,
+        changes: RunChanges | None,
+        links: Mapping[str, Pointer],
+        *,
+        has_book: bool,
+    ) -> list[tuple[str, str]]:
+        pen = self.pen
+        with speaking(pen.language):
+            since = None if changes is None else since_view(changes, links, pen.units)
+            entries = [placed.entry for placed in self._placed]
+            museum = museum_view(head, entries, tally, pen.units, since, workbook=has_book)
+            env = environment(pen.language)
+            shared: dict[str, Any] = {"museum": museum, "units": pen.units, "State": State}
+            traces = {
+                view.anchor: Markup(trace(motion, pen.units, view.anchor))  # noqa: S704 - svg.py escapes all text itself
+                for view, motion in zip(museum.motions, head.motions, strict=True)
+            }
+            shaken = drawn([key for motion in museum.motions for key in motion.charts], pen.drawings)
+            hashes = [motion.hash[:16] for motion in head.motions]
+            measured = drawn([key for key in pen.drawings if not any(h in key for h in hashes)], pen.drawings)
+            return [
+                ("index.html", fill(env, "index.html", shared | {"here": "index"})),
+                ("method.html", fill(env, "method.html", shared | measured | {"here": "method"})),
+                ("motion.html", fill(env, "motion.html", shared | shaken | {"here": "motion", "traces": traces})),
+            ]
+
+
+def _same(source: Path, target: Path) -> None:
+    # A link costs nothing, and pages are never changed; a file system without links gets a copy.
+    with suppress(OSError):
+        os.link(source, target)
+        return
+    shutil.copyfile(source, target)
+
+
+def link_to(sheet: Sheet, object_number: str, title: str) -> Pointer:
+    """Return an object of a sheet as the index names it, of which only number and title are known."""
+    page = page_name(sheet.gallery, sheet.number, on_display=sheet.on_display)
+    return Pointer(clean(object_number), short(title, 80), page, anchor_of(object_number), "", State.ACT)
