@@ -48,6 +48,9 @@ SCAN_LIMIT = 16
 AZIMUTH_STEP = 10.0
 """Degrees between the directions of which the worst counts when the orientation is unknown (RotD100)."""
 
+Answer = dict[str, NDArray[Any] | list[str]]
+"""A table as columns by name."""
+
 
 def respond(
     model: str,
@@ -81,21 +84,51 @@ def respond(
     """
     import pandas as pd
 
+    table = answer(
+        model,
+        motion,
+        fidelity=fidelity,
+        angle=angle,
+        tail=tail,
+        azimuth_step=azimuth_step,
+        tolerance=tolerance,
+        charts=charts,
+        **parameters,
+    )
+    return pd.DataFrame(table)
+
+
+def answer(
+    model: str,
+    motion: Motion,
+    *,
+    fidelity: str = "history",
+    angle: float | None = 0.0,
+    tail: float | None = None,
+    azimuth_step: float = AZIMUTH_STEP,
+    tolerance: float = TOLERANCE,
+    charts: Shelf = SHELF,
+    **parameters: Any,
+) -> Answer:
+    """Return the table of ``respond`` as columns, for a caller that does not wait for pandas.
+
+    returns : the columns, (n,) each, by name and in the table's order
+    raises  : as ``respond``
+    """
     row = model_named(model)
     if fidelity not in FIDELITIES:
         raise ValueError(f"there is no fidelity {fidelity!r}; choose from {', '.join(FIDELITIES)}")
     values = prepare(row, parameters)
-    came: Any = fidelity
     if fidelity == "chart":
         columns, angles, looked = run_chart(row, motion, values, angle, tail, azimuth_step, tolerance, charts)
-        came = np.where(looked, "chart", "history")
+        came = ["chart" if found else "history" for found in looked]
     else:
         columns, angles = run_model(row, motion, values, fidelity, angle, tail, azimuth_step)
-    note = columns["note"]
-    table = pd.DataFrame({q.name: _typed(q, columns[q.name]) for q in row.gives})
+        came = [fidelity] * angles.size
+    table: Answer = {q.name: _typed(q, columns[q.name]) for q in row.gives}
     table["error"] = columns["error"]
     table["fidelity"] = came
-    table["note"] = [words(bits) for bits in note]
+    table["note"] = [words(bits) for bits in columns["note"]]
     table["angle"] = angles
     if fidelity == "bound":
         table["low"], table["high"] = columns["low"], columns["high"]

@@ -18,9 +18,11 @@ from pipeline.jobs.reporting import compare, render_again
 from pipeline.jobs.workspace import CHARTS, KEPT, LockedError, UsageError, locked
 from pipeline.motions import read_site
 from pipeline.motions.errors import MotionError
+from pipeline.report.tallies import total
 from pipeline.resources import resource
 from pipeline.settings import Settings, SettingsError, load_settings, template
-from pipeline.store.runs import list_runs, load_run
+from pipeline.store.results import known_to
+from pipeline.store.runs import list_runs, load_head, load_run
 
 SILENT = Console(quiet=True)
 COLUMNS = "object_number,gallery,title,height_m,width_m,depth_m"
@@ -74,8 +76,13 @@ def own_site(folder: Path) -> Path:
 
 def test_the_demonstration_accounts_for_every_object(demo_folder: Path) -> None:
     """2,000 rows: 1,374 on display in 34 galleries, 626 not; each in exactly one state."""
-    record = load_run(open_database(demo_folder / "kouros.sqlite"))
-    summary = summarise(record)
+    engine = open_database(demo_folder / "kouros.sqlite")
+    head, sheets = load_head(engine)
+    record = load_run(engine)
+    kept = known_to(engine, [sheet.key for sheet in sheets])
+    summary = summarise(head, sheets, total(result.tally for result in kept.values()))
+    assert head.assessments == ()
+    assert len(sheets) == len(kept) == 35  # what is not on display has a sheet of its own
     assert (summary.objects, summary.on_display, summary.galleries) == (2000, 1374, 34)
     assert summary.act + summary.open + summary.safe + summary.cannot == 2000
     assert summary.assessed + summary.cannot == 2000

@@ -1,6 +1,7 @@
 """The package as others meet it: lazy names, floors, and a wheel that carries its files."""
 
 import itertools
+import os
 import re
 import subprocess
 import sys
@@ -11,13 +12,16 @@ from pathlib import Path
 import pytest
 
 import pipeline
+from pipeline.kernels import cache_folder
 from pipeline.resources import resource
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
-def python(code: str, folder: Path) -> str:
-    done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True)
+def python(code: str, folder: Path, **places: str) -> str:
+    environment = {**os.environ, **places}
+    words = [sys.executable, "-c", code]
+    done = subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True, check=True)
     return done.stdout.strip()
 
 
@@ -41,6 +45,21 @@ def test_help_does_not_wait_for_compilers() -> None:
     heavy = "pandas", "numba", "obspy", "sqlalchemy", "scipy"
     code = f"import sys, pipeline.cli; print([m for m in {heavy} if m in sys.modules])"
     assert python(code, ROOT) == "[]"
+
+
+def test_a_warm_response_loads_the_compiler_and_nothing_else_that_is_heavy(tmp_path: Path) -> None:
+    """With its motion kept: loading these takes longer than what is computed.  A first time needs some of them."""
+    heavy = "pandas", "pyarrow", "obspy", "scipy.signal", "sqlalchemy", "jinja2", "rich", "pipeline.settings"
+    code = (
+        "import sys; from pipeline.cli import kouros; "
+        "kouros.main(['respond', 'sliding', 'friction_static=0.1', '--json'], standalone_mode=False); "
+        f"print([m for m in {heavy} if m in sys.modules])"
+    )
+    # Motions are kept in a folder of this test, machine code where it always is.
+    places = {"KOUROS_CACHE": str(tmp_path), "NUMBA_CACHE_DIR": cache_folder()}
+    first, again = (python(code, ROOT, **places).splitlines()[-1] for _ in range(2))
+    assert "obspy" in first
+    assert again == "[]"
 
 
 def test_the_wheel_carries_schemas_templates_and_the_demo_site(tmp_path: Path) -> None:

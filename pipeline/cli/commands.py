@@ -2,12 +2,13 @@
 
 import json
 from dataclasses import asdict
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from pipeline.cli.console import listed, summary_lines, tradeoff_lines
+from pipeline.cli.console import listed, response_lines, summary_lines, tradeoff_lines
 from pipeline.cli.deciding import decide
 from pipeline.cli.explaining import print_explanation
 from pipeline.cli.importing import import_
@@ -287,10 +288,15 @@ def respond(
 
     # Only charts are kept anywhere.
     settings = options.settings() if fidelity == "chart" and Path(options.config).exists() else None
-    table = respond_on_site(
+    rows = respond_on_site(
         model, parameters, site, through=through, angle=angle, fidelity=fidelity, tail=tail, settings=settings
     )
-    click.echo(table.to_json(orient="records", indent=2) if as_json else table.to_string(index=False))
+    if as_json:
+        # JSON has no word for what is not a number.
+        plain = [{k: None if isinstance(v, float) and not isfinite(v) else v for k, v in r.items()} for r in rows]
+        click.echo(json.dumps(plain, indent=2))
+        return
+    click.echo("\n".join(response_lines(rows)))
 
 
 @click.command()

@@ -1,7 +1,8 @@
 """What a person sees: progress bars on a terminal, plain lines elsewhere, one screen at the end."""
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from math import isnan
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -165,3 +166,30 @@ def listed(title: str, lines: Sequence[str], most: int = 10) -> None:
         print(f"  {title}: {line}")
     if len(lines) > most:
         print(f"  {title}: and {len(lines) - most:,} more (--json lists all)")
+
+
+def aligned(head: Sequence[str], cells: Sequence[Sequence[str]], words: Collection[int] = ()) -> list[str]:
+    """Return a table as lines: columns of numbers to the right, the columns ``words`` to the left."""
+    widths = [max(map(len, column)) for column in zip(head, *cells, strict=True)]
+    return [
+        "  ".join(
+            f"{cell:<{w}}" if i in words else f"{cell:>{w}}"
+            for i, (cell, w) in enumerate(zip(line, widths, strict=True))
+        ).rstrip()
+        for line in (head, *cells)
+    ]
+
+
+def response_lines(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return the rows of `respond` as a table; what is not known is empty."""
+    names = list(rows[0])
+    words = {i for i, name in enumerate(names) if isinstance(rows[0][name], str)}
+    return aligned(names, [[_cell(row[name]) for name in names] for row in rows], words)
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return "" if isnan(value) else f"{value:.6g}"
+    return printable(str(value))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pipeline.cli.console import aligned
 from pipeline.cli.options import Options, as_json
 
 if TYPE_CHECKING:
@@ -75,15 +76,7 @@ def _table(rows: "Sequence[MotionRow]") -> list[str]:
         ]
         for row in rows
     ]
-    widths = [max(len(line[i]) for line in (head, *cells)) for i in range(len(head))]
-    words = {0, 1, 2, len(head) - 1}
-    return [
-        "  ".join(
-            f"{cell:<{w}}" if i in words else f"{cell:>{w}}"
-            for i, (cell, w) in enumerate(zip(line, widths, strict=True))
-        ).rstrip()
-        for line in (head, *cells)
-    ]
+    return aligned(head, cells, words={0, 1, 2, len(head) - 1})
 
 
 @motions.command()

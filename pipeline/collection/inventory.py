@@ -317,7 +317,7 @@ def catalogue(engine: Engine) -> Catalogue:
         version = connection.execute(select(func.max(IMPORT_BATCH.c.id))).scalar() or 0
         columns = (ITEM.c.object_number, ITEM.c.gallery, ITEM.c["case"], ITEM.c.on_display, ITEM.c.digest)
         rows = connection.execute(select(*columns).where(_at(version)))
-        objects = [Listed(*row) for row in rows.tuples()]
+        objects = [Listed(*tuple(row)) for row in rows]
     # Sorted here and not in SQL: servers collate by the locale of their country.
     return Catalogue(engine, version, tuple(sorted(objects, key=lambda one: one.object_number)))
 

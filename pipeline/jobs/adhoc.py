@@ -1,14 +1,16 @@
 """One model on one site, ad hoc."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from pipeline.jobs.workspace import KEPT, UsageError, charts_of, site_folder
 from pipeline.records import Motion
-from pipeline.settings import Settings
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from pipeline.settings import Settings
 
 
 def respond_on_site(
@@ -20,8 +22,8 @@ def respond_on_site(
     angle: str,
     fidelity: str,
     tail: float | None,
-    settings: Settings | None = None,
-) -> "pd.DataFrame":
+    settings: "Settings | None" = None,
+) -> list[dict[str, Any]]:
     """Run one model under every motion of a site, as it comes through a chain of supports.
 
     parameters : "name=value" or "name=value,value,..." in SI
@@ -29,34 +31,32 @@ def respond_on_site(
     angle      : degrees, or "worst"
     settings   : of the workspace in which charts and processed motions are kept; None keeps motions in the user's
                  cache, and no charts
-    returns    : the table of `respond` with the parameters and the motion in front
+    returns    : the rows of `respond`'s table with the motion and the parameters in front, for each motion
     raises     : UsageError for words that are not name=value, ValueError as `respond`
     """
-    import pandas as pd
-
-    from pipeline.response import cascade, respond
+    from pipeline.response import answer, cascade
 
     given: dict[str, Any] = dict(_parsed(word) for word in parameters)
     direction = None if angle == "worst" else _number("angle", angle)
-    tables = []
+    rows: list[dict[str, Any]] = []
     chain = [_support(word) for word in through]
     with charts_of(settings) as charts:
         for ground in _motions(site, settings):
             motion = cascade(chain, ground)
-            table = respond(model, motion, fidelity=fidelity, angle=direction, tail=tail, charts=charts, **given)
-            rows = len(table)
-            for at, (name, values) in enumerate(given.items()):
-                table.insert(at, name, values * rows if len(values) == 1 else values)
-            table.insert(0, "motion", motion.name)
-            tables.append(table)
-    return pd.concat(tables, ignore_index=True)
+            found = answer(model, motion, fidelity=fidelity, angle=direction, tail=tail, charts=charts, **given)
+            size = len(found["note"])
+            columns = {"motion": [motion.name] * size}
+            columns |= {name: values * size if len(values) == 1 else values for name, values in given.items()}
+            columns |= {name: np.asarray(values).tolist() for name, values in found.items()}
+            rows += [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    return rows
 
 
-def _motions(site: str, settings: Settings | None) -> Sequence[Motion]:
+def _motions(site: str, settings: "Settings | None") -> Sequence[Motion]:
     from pipeline.kernels import user_cache
     from pipeline.motions.site import read_motion, read_site
 
-    folder = site_folder(Settings(), site)
+    folder = site_folder(Path(), site)
     if settings is None:
         return read_motion(folder, kept=user_cache("motions"))
     # Processed once for the nights and for this.

@@ -162,7 +162,7 @@ def _concerning(workspace: Workspace, wish: Wish, basis: Sequence[Basis]) -> Non
         _of(wish.model, (model.name for model in MODELS), "model")
     if wish.level:
         settings = workspace.settings
-        manifest = load_manifest(site_folder(settings, settings.site.folder))
+        manifest = load_manifest(site_folder(settings.home, settings.site.folder))
         _of(wish.level, (level.name for level in manifest.level), "level")
     if (wish.model or wish.level) and basis:
         there = {(b.model, b.level) for b in basis}

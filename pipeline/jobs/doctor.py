@@ -86,7 +86,7 @@ def _motions(settings: Settings) -> tuple[str, str]:
     from pipeline.motions.site import levels_at, read_site
     from pipeline.quantities import G
 
-    site = read_site(site_folder(settings, settings.site.folder))
+    site = read_site(site_folder(settings.home, settings.site.folder))
     peaks = [f"{m.motion.name} {m.measures['pga'] / G:.2f} g" for level in site.levels for m in level.motions]
     text = f"{site.name} ({site.folder}): {', '.join(peaks)}"
     known(settings, site)

@@ -165,7 +165,7 @@ def desk(settings: Settings | None, site: str | None) -> Path:
     raises : UsageError where neither names one
     """
     if site is not None:
-        return site_folder(settings or Settings(), site)
+        return site_folder(Path() if settings is None else settings.home, site)
     if settings is None:
         raise UsageError("name a site's folder, or 'demo'; or run this beside kouros.toml, which names one")
-    return site_folder(settings, settings.site.folder)
+    return site_folder(settings.home, settings.site.folder)

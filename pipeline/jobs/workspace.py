@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pipeline.resources import resource
-from pipeline.rules import Table, with_own
-from pipeline.settings import Settings
 
 if TYPE_CHECKING:
     from pipeline.charting import Shelf
     from pipeline.collection.database import Database
     from pipeline.mitigate import Means
     from pipeline.motions.site import Site
+    from pipeline.rules import Table
+    from pipeline.settings import Settings
 
 KEPT = ".kouros-kept"
 """Folder beside the settings in which processed motions, charts and measurements are kept between nights."""
@@ -41,15 +41,17 @@ class UsageError(ValueError):
 class Workspace:
     """Open settings: the database is at the newest schema, the folders are known."""
 
-    settings: Settings
+    settings: "Settings"
     engine: "Database"
 
     @cached_property
-    def rules(self) -> Table | None:
+    def rules(self) -> "Table | None":
         """The rules of classification, where the museum has some of its own.
 
         raises : UsageError for a file that is not there, TableError for one that cannot be used
         """
+        from pipeline.rules import with_own
+
         path = self._own(self.settings.collection.rules, "[collection] rules names the file of your own rules")
         return None if path is None else with_own(path)
 
@@ -75,7 +77,7 @@ class Workspace:
         from pipeline.motions.site import read_site
 
         settings = self.settings
-        return read_site(site_folder(settings, settings.site.folder), kept=settings.path(KEPT))
+        return read_site(site_folder(settings.home, settings.site.folder), kept=settings.path(KEPT))
 
     def _own(self, name: str, remedy: str) -> Path | None:
         if not name:
@@ -97,12 +99,12 @@ def near(name: str, known: Collection[str]) -> str:
     return f"; did you mean {' or '.join(map(repr, close))}?" if close else ""
 
 
-def site_folder(settings: Settings, name: str) -> Path:
-    """Return a site's folder: the bundled one for "demo", else relative to the settings."""
-    return resource("site_motions", "demo") if name == "demo" else settings.path(name)
+def site_folder(home: Path, name: str) -> Path:
+    """Return a site's folder: the bundled one for "demo", else relative to a home, the folder of the settings."""
+    return resource("site_motions", "demo") if name == "demo" else home / Path(name).expanduser()
 
 
-def open_workspace(settings: Settings) -> Workspace:
+def open_workspace(settings: "Settings") -> Workspace:
     """Open the database, bringing its tables to the newest schema."""
     from pipeline.collection.database import open_database
     from pipeline.store import migrate
@@ -113,7 +115,7 @@ def open_workspace(settings: Settings) -> Workspace:
 
 
 @contextmanager
-def locked(settings: Settings) -> Iterator[None]:
+def locked(settings: "Settings") -> Iterator[None]:
     """Hold the lock of this workspace: one run at a time.
 
     raises : LockedError at once where another process holds it
@@ -135,7 +137,7 @@ def locked(settings: Settings) -> Iterator[None]:
 
 
 @contextmanager
-def charts_of(settings: Settings | None, using: Collection[str] = ()) -> Iterator["Shelf"]:
+def charts_of(settings: "Settings | None", using: Collection[str] = ()) -> Iterator["Shelf"]:
     """Lend the shelf of the workspace's response charts, and tidy it up at the end; None: one in memory only.
 
     using : hashes of motions in use, whose charts stay although perhaps none of them is asked for

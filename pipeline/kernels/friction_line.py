@@ -322,51 +322,6 @@ def _follow(
     return abs(_coast(u, v, s, body, series, tail, out))
 
 
-@kernel
-def friction_line_one(
-    x: Array,
-    z: Array,
-    ratio: Array,
-    maxima: Array,
-    pushes: Array,
-    dt: float,
-    w: float,
-    zeta: float,
-    mu_s: float,
-    mu_k: float,
-    tail: float,
-    out: Array,
-    history: Array,
-) -> float:
-    """Integrate one body and return its residual displacement |u| [m].
-
-    x, z           : (n,) m/s2
-    ratio, maxima  : from kernels.quiet, of this very motion; pushes: block maxima of |x|
-    out            : (4,) receives max |u| [m], path [m], max transmitted acceleration [m/s2], flags
-    history        : (m, 2) receives u and the absolute acceleration at the samples, as long as it is; rows after the
-                     record follow the body on without excitation
-    """
-    out[:] = 0.0
-    if x.shape[0] < 2:
-        return 0.0
-    return _follow(
-        x,
-        z,
-        ratio,
-        maxima,
-        pushes,
-        dt,
-        w,
-        zeta,
-        mu_s,
-        mu_k,
-        tail,
-        np.empty((2, TERMS)),
-        out,
-        history,
-    )
-
-
 @inner
 def _coast(u: float, v: float, s: float, body: Body, series: Array, tail: float, out: Array) -> float:
     # After the record: no excitation, full weight, until the body rests for good, the tail ends, or the cap.
@@ -413,14 +368,23 @@ def friction_line_batch(
     mu_k: Array,
     tail: float,
     results: Array,
+    history: Array,
 ) -> None:
-    """Fill results (m, 5): max |u|, residual, path [m], max transmitted acceleration [m/s2], flags."""
-    nothing = np.empty((0, 2))
-    out = np.empty(4)
+    """Fill results (m, 5): max |u|, residual |u|, path [m], max transmitted acceleration [m/s2], flags.
+
+    x, z           : (n,) m/s2
+    ratio, maxima  : from kernels.quiet, of this very motion; pushes: block maxima of |x|
+    w, ... mu_k    : (m,)
+    history        : (k, 2) receives u and the absolute acceleration of a single body at the samples, as long as it is;
+                     rows after the record follow the body on without excitation
+    """
+    results[:, :] = 0.0
+    if x.shape[0] < 2:
+        return
+    series, out = np.empty((2, TERMS)), np.empty(4)
     for k in range(w.shape[0]):
-        residual = friction_line_one(
-            x, z, ratio, maxima, pushes, dt, w[k], zeta[k], mu_s[k], mu_k[k], tail, out, nothing
-        )
+        out[:] = 0.0
+        residual = _follow(x, z, ratio, maxima, pushes, dt, w[k], zeta[k], mu_s[k], mu_k[k], tail, series, out, history)
         results[k, 0], results[k, 1], results[k, 2], results[k, 3], results[k, 4] = (
             out[0],
             residual,

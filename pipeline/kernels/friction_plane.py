@@ -320,65 +320,6 @@ def _follow(
     return math.hypot(state[0], state[1])
 
 
-@kernel
-def friction_plane_one(
-    x: Array,
-    y: Array,
-    z: Array,
-    ratio: Array,
-    maxima: Array,
-    push: Array,
-    pushes: Array,
-    dt: float,
-    peak: float,
-    w: float,
-    zeta: float,
-    mu_s: float,
-    mu_k: float,
-    tail: float,
-    rtol: float,
-    longest: float,
-    out: Array,
-    history: Array,
-) -> float:
-    """Integrate one body and return its residual displacement |u| [m].
-
-    x, y, z        : (n,) m/s2;  peak: the largest of push = |a_h|;  pushes: block maxima of push
-    ratio, maxima  : from kernels.quiet, of this very motion
-    rtol           : tolerance of the velocity in each step, relative to the scale of speeds
-    longest        : longest step as a share of a sample interval
-    out            : (4,) receives max |u| [m], path [m], max transmitted acceleration [m/s2], flags
-    history        : (m, 4) receives ux, uy and the absolute accelerations at the samples, as long as it is; rows after
-                     the record follow the body on without excitation
-    """
-    out[:] = 0.0
-    if x.shape[0] < 2 or peak == 0.0:
-        return 0.0
-    # Grips are divided by: a denormal friction is none.
-    return _follow(
-        x,
-        y,
-        z,
-        ratio,
-        maxima,
-        push,
-        pushes,
-        dt,
-        peak,
-        w,
-        zeta,
-        mu_s,
-        mu_k if mu_k >= 1e-300 else 0.0,
-        tail,
-        rtol,
-        longest,
-        np.zeros(8),
-        np.zeros(8),
-        out,
-        history,
-    )
-
-
 @inner
 def _coast(
     state: Array,
@@ -450,31 +391,50 @@ def friction_plane_batch(
     rtol: float,
     longest: float,
     results: Array,
+    history: Array,
 ) -> None:
-    """Fill results (m, 5): max |u|, residual, path [m], max transmitted acceleration [m/s2], flags."""
-    nothing = np.empty((0, 4))
-    out = np.empty(4)
+    """Fill results (m, 5): max |u|, residual |u|, path [m], max transmitted acceleration [m/s2], flags.
+
+    x, y, z        : (n,) m/s2;  peak: the largest of push = |a_h|;  pushes: block maxima of push
+    ratio, maxima  : from kernels.quiet, of this very motion
+    w, ... mu_k    : (m,)
+    rtol           : tolerance of the velocity in each step, relative to the scale of speeds
+    longest        : longest step as a share of a sample interval
+    history        : (k, 4) receives ux, uy and the absolute accelerations of a single body at the samples, as long as
+                     it is; rows after the record follow the body on without excitation
+    """
+    moving = x.shape[0] > 1 and peak > 0.0
+    state, load, out = np.empty(8), np.empty(8), np.empty(4)
     for k in range(w.shape[0]):
-        residual = friction_plane_one(
-            x,
-            y,
-            z,
-            ratio,
-            maxima,
-            push,
-            pushes,
-            dt,
-            peak,
-            w[k],
-            zeta[k],
-            mu_s[k],
-            mu_k[k],
-            tail,
-            rtol,
-            longest,
-            out,
-            nothing,
-        )
+        residual = 0.0
+        for j in range(8):
+            state[j], load[j] = 0.0, 0.0
+        for j in range(4):
+            out[j] = 0.0
+        if moving:
+            residual = _follow(
+                x,
+                y,
+                z,
+                ratio,
+                maxima,
+                push,
+                pushes,
+                dt,
+                peak,
+                w[k],
+                zeta[k],
+                mu_s[k],
+                # Grips are divided by: a denormal friction is none.
+                mu_k[k] if mu_k[k] >= 1e-300 else 0.0,
+                tail,
+                rtol,
+                longest,
+                state,
+                load,
+                out,
+                history,
+            )
         results[k, 0], results[k, 1], results[k, 2], results[k, 3], results[k, 4] = (
             out[0],
             residual,

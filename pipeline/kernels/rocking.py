@@ -353,39 +353,6 @@ def _follow(
 
 
 @kernel
-def rocking_one(
-    x: Array,
-    z: Array,
-    ratio: Array,
-    maxima: Array,
-    dt: float,
-    peak: float,
-    body: Array,
-    initial: float,
-    tail: float,
-    until: float,
-    refine: int,
-    out: Array,
-    history: Array,
-) -> None:
-    """Integrate one body.
-
-    x, z           : (n,) m/s2;  peak: the largest |x|
-    ratio, maxima  : from kernels.quiet, of this very motion
-    body           : alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]; 1 is the edge towards +axis
-    initial        : rad, released from rest
-    until          : s, after which a body that has calmed down is no longer followed; infinite: it always is
-    out            : (7,) receives max ratio, overturned (0, 1), time of overturning, time of uplift [s] (-1: never),
-                     impacts, flags, the last time above NEAR [s] (to a sample or a step)
-    history        : (m, 1) receives theta at the samples, as long as it is
-    """
-    out[:] = 0.0
-    out[2] = -1.0
-    out[3] = -1.0
-    _follow(x, z, ratio, maxima, dt, peak, body, initial, tail, until, refine, np.zeros(5), out, history)
-
-
-@kernel
 def rocking_batch(
     x: Array,
     z: Array,
@@ -399,8 +366,24 @@ def rocking_batch(
     until: Array,
     refine: int,
     results: Array,
+    history: Array,
 ) -> None:
-    """Fill results (m, 7) as in rocking_one for m bodies, bodies (m, 6), until (m,)."""
-    nothing = np.empty((0, 1))
+    """Fill results (m, 7) of m bodies.
+
+    x, z           : (n,) m/s2;  peak: the largest |x|
+    ratio, maxima  : from kernels.quiet, of this very motion
+    bodies         : (m, 6): alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]; 1 is the edge towards +axis
+    initial        : (m,) rad, released from rest
+    until          : (m,) s, after which a body that has calmed down is no longer followed; infinite: it always is
+    results        : max ratio, overturned (0, 1), time of overturning, time of uplift [s] (-1: never), impacts, flags,
+                     the last time above NEAR [s] (to a sample or a step)
+    history        : (k, 1) receives theta of a single body at the samples, as long as it is
+    """
+    state = np.empty(5)
     for k in range(bodies.shape[0]):
-        rocking_one(x, z, ratio, maxima, dt, peak, bodies[k], initial[k], tail, until[k], refine, results[k], nothing)
+        body, out = bodies[k], results[k]
+        for j in range(5):
+            state[j] = 0.0
+        for j in range(7):
+            out[j] = -1.0 if j in (2, 3) else 0.0
+        _follow(x, z, ratio, maxima, dt, peak, body, initial[k], tail, until[k], refine, state, out, history)

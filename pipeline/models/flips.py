@@ -38,11 +38,19 @@ JUMP = (0.005, 0.05)
 """The same over HALFWAY, from which it is a jump."""
 
 
-def integrate(motion: Excitation, body: Array, initial: Array, refine: int, until: Array | None = None) -> Array:
+def integrate(
+    motion: Excitation,
+    body: Array,
+    initial: Array,
+    refine: int,
+    until: Array | None = None,
+    history: Array | None = None,
+) -> Array:
     """Return what `kernels.rocking.rocking_batch` finds, (n, 7).
 
     body  : (n, 6), initial : (n,) rad, refine : as in that kernel
     until : (n,) s, after which a body that has calmed down is not followed; None: every body is, to the end
+    history : (k, 1), receives the angle of a single body at the samples; None: nobody asks
     """
     quiet = Quiet(motion)
     results = np.empty((body.shape[0], 7))
@@ -60,6 +68,7 @@ def integrate(motion: Excitation, body: Array, initial: Array, refine: int, unti
         ends,
         refine,
         results,
+        np.empty((0, 1)) if history is None else history,
     )
     return results
 

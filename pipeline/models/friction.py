@@ -1,13 +1,13 @@
 """What the three models on dry friction share: sliding, the friction isolator, the horizontal isolator."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from pipeline.kernels.bounds import slip_bounds_batch
-from pipeline.kernels.friction_line import friction_line_batch, friction_line_one
-from pipeline.kernels.friction_plane import friction_plane_batch, friction_plane_one
+from pipeline.kernels.friction_line import friction_line_batch
+from pipeline.kernels.friction_plane import friction_plane_batch
 from pipeline.models.common import ROUNDING, SENSITIVE, Quiet, after_record, contact_lost, lift_ratios
 from pipeline.quantities import Array
 from pipeline.records import Bounds, Columns, Excitation
@@ -37,9 +37,7 @@ def stick_slip(
     arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta, mu_s, mu_k)]
     results = np.empty((arrays[0].size, 5))
     if motion.y is None:
-        friction_line_batch(
-            quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.pushes, quiet.dt, *arrays, quiet.tail, results
-        )
+        _line(quiet, arrays, quiet.tail, results, np.empty((0, 2)))
         error = ROUNDING * np.maximum(results[:, 0], results[:, 2])
         felt = ROUNDING * results[:, 3]
     else:
@@ -47,22 +45,7 @@ def stick_slip(
         tolerance, longest = _steps(w, refine)
         passes = ((10.0 * tolerance, 2.0 * longest, coarse), (tolerance, longest, results))
         for rtol, most, out in passes if estimate else passes[1:]:
-            friction_plane_batch(
-                quiet.x,
-                quiet.y,
-                quiet.z,
-                quiet.ratio,
-                quiet.maxima,
-                quiet.push,
-                quiet.pushes,
-                quiet.dt,
-                quiet.peak,
-                *arrays,
-                quiet.tail,
-                rtol,
-                most,
-                out,
-            )
+            _plane(quiet, arrays, quiet.tail, (rtol, most), out, np.empty((0, 4)))
         # The difference of two peaks may vanish by chance, that of two ends or paths too: hardly all three at once.
         apart = np.abs(results - coarse)
         error = 2.0 * apart[:, :3].sum(axis=1) + ROUNDING * results[:, 2]
@@ -80,6 +63,35 @@ def stick_slip(
         "acceleration_error": felt,
         "note": note,
     }
+
+
+def _line(quiet: Quiet, bodies: Sequence[Array], tail: float, results: Array, history: Array) -> None:
+    # bodies: w, zeta, mu_s, mu_k
+    friction_line_batch(
+        quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.pushes, quiet.dt, *bodies, tail, results, history
+    )
+
+
+def _plane(
+    quiet: Quiet, bodies: Sequence[Array], tail: float, steps: tuple[float, float], results: Array, history: Array
+) -> None:
+    # bodies: w, zeta, mu_s, mu_k;  steps: as from _steps
+    friction_plane_batch(
+        quiet.x,
+        quiet.y,
+        quiet.z,
+        quiet.ratio,
+        quiet.maxima,
+        quiet.push,
+        quiet.pushes,
+        quiet.dt,
+        quiet.peak,
+        *bodies,
+        tail,
+        *steps,
+        results,
+        history,
+    )
 
 
 def _moves(motion: Excitation, times: float, mu_s: Array) -> Array:
@@ -130,34 +142,14 @@ def slip_bounds(motion: Excitation, mu_s: Array, mu_k: Array, *outputs: str) -> 
 def stick_slip_trace(motion: Excitation, w: float, zeta: float, mu_s: float, mu_k: float) -> Columns:
     """Return u_x, u_y [m] and the absolute accelerations a_x, a_y [m/s2] of one body at the samples, (n,) each."""
     quiet = Quiet(motion)
-    out = np.empty(4)
+    arrays = [np.array([p]) for p in (w, zeta, mu_s, mu_k)]
+    results, samples = np.empty((1, 5)), quiet.x.size + after_record(motion)
     if motion.y is None:
-        line = np.zeros((quiet.x.size + after_record(motion), 2))
-        friction_line_one(
-            quiet.x, quiet.z, quiet.ratio, quiet.maxima, quiet.pushes, quiet.dt, w, zeta, mu_s, mu_k, 0.0, out, line
-        )
-        still = np.zeros(line.shape[0])
-        return {"u_x": line[:, 0], "u_y": still, "a_x": line[:, 1], "a_y": still}
-    plane = np.zeros((quiet.x.size + after_record(motion), 4))
-    friction_plane_one(
-        quiet.x,
-        quiet.y,
-        quiet.z,
-        quiet.ratio,
-        quiet.maxima,
-        quiet.push,
-        quiet.pushes,
-        quiet.dt,
-        quiet.peak,
-        w,
-        zeta,
-        mu_s,
-        mu_k,
-        0.0,
-        *_steps(np.array([w]), 2),
-        out,
-        plane,
-    )
+        line = np.zeros((samples, 2))
+        _line(quiet, arrays, 0.0, results, line)
+        return {"u_x": line[:, 0], "u_y": np.zeros(samples), "a_x": line[:, 1], "a_y": np.zeros(samples)}
+    plane = np.zeros((samples, 4))
+    _plane(quiet, arrays, 0.0, _steps(arrays[0], 2), results, plane)
     return {"u_x": plane[:, 0], "u_y": plane[:, 1], "a_x": plane[:, 2], "a_y": plane[:, 3]}
 
 

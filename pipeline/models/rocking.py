@@ -7,14 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.kernels import flags
-from pipeline.kernels.rocking import NEAR, OVERTURNED, STEP, rocking_one
+from pipeline.kernels.rocking import NEAR, OVERTURNED, STEP
 from pipeline.models.common import (
     ILL,
     NO_HISTORY,
     NUDGE,
     ROUNDING,
     SENSITIVE,
-    Quiet,
     broadcast,
     contact_lost,
     largest_push,
@@ -166,24 +165,9 @@ def _say(row: Mapping[str, float], parameters: Mapping[str, float]) -> str:
 
 
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
-    quiet = Quiet(motion)
-    body = bodies({k: np.array([v]) for k, v in parameters.items()})[0]
+    body = bodies({k: np.array([v]) for k, v in parameters.items()})
     history = np.zeros((motion.x.size, 1))
-    rocking_one(
-        quiet.x,
-        quiet.z,
-        quiet.ratio,
-        quiet.maxima,
-        quiet.dt,
-        quiet.peak,
-        body,
-        parameters["initial_rotation"],
-        0.0,
-        np.inf,
-        4,
-        np.empty(7),
-        history,
-    )
+    integrate(replace(motion, tail=0.0), body, np.array([parameters["initial_rotation"]]), 4, history=history)
     return {"rotation": history[:, 0]}
 
 

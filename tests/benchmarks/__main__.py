@@ -1,12 +1,12 @@
 """Kouros beside its peers, beside C, and by itself: `python -m tests.benchmarks [peers] [native] [models] [charts]
-[auto] [night]`.
+[auto] [night] [starts]`.
 
 Machines are noisy: read the ratios of one run, not the times.
 """
 
 import sys
 
-from tests.benchmarks import auto, charts, general, models, multibody, native, night, opensees, spectra
+from tests.benchmarks import auto, charts, general, models, multibody, native, night, opensees, spectra, starts
 from tests.benchmarks.common import FAR, HEADING, OBJECTS, marked
 
 
@@ -38,6 +38,7 @@ PARTS = {
     "charts": charts.lookups,
     "auto": auto.auto,
     "night": night.night,
+    "starts": starts.starts,
 }
 
 
