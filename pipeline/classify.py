@@ -65,7 +65,7 @@ def _range(object_class: str, kind: str) -> Range:
 def _clearance_of(object_class: str) -> Estimate:
     span = _range(object_class, "clearance")
     low, value, high = (100.0 * v for v in (span.low, span.value, span.high))
-    note = f"clearance to neighbour, wall or edge: {value:g} cm ({low:g} to {high:g})"
+    note = f"clearance: {value:g} cm ({low:g} to {high:g}) to neighbour, wall or edge"
     note += f", assumed for: {_classes()[object_class]['title'].lower()}"
     return _assumed(span.value, span.low, span.high, "m", note, span.source)
 

@@ -92,12 +92,12 @@ class Demands:
         return self._whole(output)[self._slot[rows]]
 
     def told(self, row: int) -> dict[str, float]:
-        """Return all outputs of one row, with "error" and "note"; zeros where it was neither looked up nor integrated.
+        """Return all outputs of one row, with their errors and "note".
 
-        Where the certificate is the demand, that is the demand.
+        Zeros where it was neither looked up nor integrated.  Where the certificate is the demand, that is the demand.
         """
         model, at = self.work.model, int(self._slot[row])
-        names = (*(q.name for q in model.gives), "error", "note")
+        names = (*(q.name for q in model.gives), "error", *model.errors.values(), "note")
         out = {name: float(self._whole(name)[at]) if at >= 0 else 0.0 for name in names}
         if at < 0:
             out["note"] = float(self.note[row])
@@ -211,7 +211,7 @@ def chart(found: Demands, rows: Indices, charts: Shelf, azimuth_step: float, *, 
         )
         there = looked.found
         columns = {name: column[there] for name, column in looked.columns.items()}
-        columns["error"] = looked.bounds[model.demand][there]
+        columns |= {model.error_of(o): looked.bounds[o][there] for o in (model.gives[0].name, model.demand)}
         errors = {
             output: CHART_SAFETY * looked.bounds[output][there] + HISTORY_ERROR * columns[output]
             for output in found.low

@@ -158,6 +158,8 @@ class _Rows:
         outcome, sentence = model.outcome(told, parameters)
         step = Step(found.step[row])
         certain = step is Step.BOUND or (model.exact and self._output == model.demand)
+        # A yes or no is off by nothing, or sensitive, which its note says.
+        exactly = certain or model.output(self._output).unit == "bool"
         fidelity = self._climb.integrated if step is Step.HISTORY else step.name.lower()
         rows, columns = self._screens[at]
         place = int(np.searchsorted(rows, row))
@@ -169,7 +171,7 @@ class _Rows:
             model.say_screen(screened, parameters) if columns else "",
             words(told["note"]),
             "bound" if certain else fidelity,
-            0.0 if certain else told["error"],
+            0.0 if exactly else told[model.error_of(self._output)],
         )
 
 

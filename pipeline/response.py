@@ -242,8 +242,8 @@ def run_chart(
     if rest.any():
         others = {name: column[rest] for name, column in values.items()}
         integrated, angles[rest] = run_model(model, motion, others, "history", angle, tail, azimuth_step)
-        for name, column in integrated.items():
-            columns[name][rest] = column
+        for name in columns:
+            columns[name][rest] = integrated[name]
     return columns, angles, looked
 
 

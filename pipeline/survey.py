@@ -127,7 +127,8 @@ class _Trial:
 
 
 def _trials(scene: Scene, findings: Sequence[Finding]) -> list[_Trial]:
-    still = {(f.model, f.level) for f in findings if f.verdict is Verdict.UNDETERMINED}
+    # What stands on an isolator is judged on what that passes on, and is not tried here.
+    still = {(f.model, f.level) for f in findings if f.verdict is Verdict.UNDETERMINED and f.model in scene.models}
     if not still:
         return []
     out = []

@@ -8,6 +8,7 @@ import pytest
 from pipeline.assess import LevelMotions, assess, judge
 from pipeline.classify import classify
 from pipeline.execute import Threads
+from pipeline.mitigate import changed
 from pipeline.models import MODELS
 from pipeline.motions import read_motion
 from pipeline.plan import plan
@@ -212,3 +213,44 @@ def test_the_number_of_workers_changes_nothing(motion: Motion) -> None:
     scenes = [classify(replace(VASE, object_number=str(i), height_m=0.1 + 0.01 * i)) for i in range(40)]
     level = [LevelMotions("design", "max", (motion,))]
     assert assess(scenes, level, Threads(1), Silent())[1] == assess(scenes, level, Threads(2), Silent())[1]
+
+
+@pytest.mark.parametrize(
+    ("measure", "parameters", "given"),
+    [
+        ("friction_isolator", {"friction": 0.05, "clearance": 0.3}, {"friction_static": 0.05}),
+        (
+            "horizontal_isolator",
+            {"frequency": 0.5, "damping": 0.02, "friction": 0.05, "stroke": 0.3},
+            {"frequency": 0.5, "damping": 0.02, "friction": 0.05},
+        ),
+    ],
+)
+def test_the_error_of_a_finding_is_that_of_its_demand(
+    motion: Motion, measure: str, parameters: dict[str, float], given: dict[str, float]
+) -> None:
+    """An isolator is held against its stroke: the error is in m, and covers what the reference still moves it by.
+
+    That of the acceleration it passes on is another one: through the spring alone it is w^2 times as large.
+    """
+    scene = changed(classify(VASE), measure, parameters)
+    level = LevelMotions("design", "max", (motion,))
+    _, (fine,) = assess([scene], [level], Threads(1), Silent(), fidelity="reference")
+    _, (found,) = assess([scene], [level], Threads(1), Silent(), fidelity="history")
+    (history,), (reference,) = (f for f in found if f.unit == "m"), (f for f in fine if f.unit == "m")
+    assert history.demand is not None
+    assert reference.demand is not None
+    assert history.error is not None
+    off = abs(history.demand - reference.demand)
+    assert off <= history.error
+    passed_on = respond(measure, motion, **given)["error"].iloc[0]  # type: ignore[arg-type]
+    assert history.error * (2.0 * np.pi * parameters.get("frequency", 0.0)) ** 2 <= passed_on
+
+
+def test_whether_it_fell_has_no_error(motion: Motion) -> None:
+    """A yes or a no: the error of how far it tipped is not its own."""
+    robust = replace(VASE, susceptible=False, width_m=0.05, depth_m=0.05, base_width_m=0.05, base_depth_m=0.05)
+    (found,) = run([classify(robust)], motion)
+    fell = next(f for f in found if f.demand_name == "overturned")
+    assert fell.decided_by == "history"
+    assert fell.error == 0.0

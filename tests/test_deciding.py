@@ -20,7 +20,18 @@ from pipeline.jobs.reporting import render_again
 from pipeline.jobs.workspace import UsageError, Workspace, open_workspace
 from pipeline.mitigate.installed import Measure, installable, placed
 from pipeline.motions import read_motion
-from pipeline.records import Assessment, Decision, DecisionKind, Finding, Item, RunRecord, Support, Verdict, in_force
+from pipeline.records import (
+    Assessment,
+    Basis,
+    Decision,
+    DecisionKind,
+    Finding,
+    Item,
+    RunRecord,
+    Support,
+    Verdict,
+    in_force,
+)
 from pipeline.response import respond, transmit
 from pipeline.settings import load_settings
 from pipeline.store.codec import StoreError
@@ -335,3 +346,89 @@ def test_hostile_words_reach_the_page_as_text(museum: Path) -> None:
     assert "the object is no longer in the inventory" in pages["index.html"]
     # A gallery has one script of its own, to sort and filter; none comes from what people wrote.
     assert all(page.count("<script") <= 1 and "<script>alert" not in page for page in pages.values())
+
+
+SPRINGS = "generic 0.5 Hz, friction 0.05"
+
+
+def test_an_isolator_is_installed_by_its_name_in_the_catalogue(museum: Path) -> None:
+    """The numbers are those of the row of isolators.csv; its stroke is as long as its place allows, so it is said."""
+    row = next(r for r in table("isolators") if r["name"] == SPRINGS)
+    made = say(museum, "1", KIND.INSTALLED, "horizontal_isolator", f"isolator={SPRINGS}", "stroke_m=0.9")
+    own = {name: float(row[name]) for name in ("frequency", "damping", "friction")}
+    assert made.parameters == {**own, "stroke": 0.9}
+    assert made.product == SPRINGS
+    assert SPRINGS in made.matter
+
+
+def test_a_museums_own_isolator_has_its_own_stroke(museum: Path) -> None:
+    """Of its 25 cm a place may give less, not more; nothing else of the maker's can be said otherwise."""
+    text = "name,kind,frequency,damping,friction,stroke,source\nOurs,horizontal_isolator,0.45,0.05,0.08,0.25,maker\n"
+    (museum / "ours.csv").write_text(text, encoding="utf-8")
+    edit(museum / "kouros.toml", 'catalogue = ""', 'catalogue = "ours.csv"')
+    whole = say(museum, "1", KIND.INSTALLED, "horizontal_isolator", "isolator=Ours")
+    assert whole.parameters == {"frequency": 0.45, "damping": 0.05, "friction": 0.08, "stroke": 0.25}
+    less = say(museum, "1", KIND.INSTALLED, "horizontal_isolator", "isolator=Ours", "stroke_m=0.2", "product=No. 4")
+    assert (less.parameters["stroke"], less.product) == (0.2, "No. 4")
+    for words, message in (
+        (["stroke_m=0.3"], "stroke_m=0.3, but 'Ours' has 0.25 in the catalogue: leave it out"),
+        (["friction=0.1"], "friction=0.1, but 'Ours' has 0.08 in the catalogue"),
+    ):
+        with pytest.raises(UsageError, match=message):
+            say(museum, "1", KIND.INSTALLED, "horizontal_isolator", "isolator=Ours", *words)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["horizontal_isolator", "isolator=generic 0.5 Hz friction 0.05"], "did you mean 'generic 0.5 Hz, friction 0."),
+        (["horizontal_isolator", f"isolator={HOSTILE}"], "it has 'generic 0.35 Hz, friction 0.05', "),
+        (["horizontal_isolator", "isolator=low-friction pad"], "is a friction_isolator, not a horizontal_isolator"),
+        (["horizontal_isolator", f"isolator={SPRINGS}"], "horizontal_isolator needs stroke_m"),
+        (["clearance", f"isolator={SPRINGS}"], "no parameter of clearance 'isolator'; use one of clearance_m, product"),
+        (["clearance", "clearance_m=0.1", "clearance_m=0.2"], "clearance_m is said twice; say it once"),
+        (["fasten", f"product={'n' * 201}"], "product has 201 characters; at most 200 are kept"),
+    ],
+)
+def test_an_isolator_that_cannot_be_is_refused(museum: Path, words: list[str], message: str) -> None:
+    with pytest.raises(UsageError, match=message):
+        say(museum, "1", KIND.INSTALLED, *words)
+    assert listed(opened(museum)) == []
+
+
+def test_what_is_fastened_to_an_isolator_stays_on_it() -> None:
+    """A measure on an object that stands on an isolator changes the object; the isolator moves as before."""
+    vase = classify(Item("1", "G", object_name="vase", height_m=0.4, width_m=0.2, depth_m=0.2, mass_kg=3.0))
+    springs = Measure(
+        "horizontal_isolator", {"frequency": 0.5, "damping": 0.02, "friction": 0.05, "stroke": 0.3}, "decided by Ann"
+    )
+    room = Measure("clearance", {"clearance": 0.123}, "decided by Ann")
+    stands = placed(vase, [springs, Measure("fasten", {}, "decided by Ann"), room])
+    assert stands.scene.support is Support.ISOLATED
+    assert stands.scene.parameters == placed(vase, [springs]).scene.parameters
+    assert stands.above is not None
+    assert stands.above.support is Support.FASTENED
+    assert stands.above.parameters["clearance"].value == 0.123
+    pad = Measure("friction_isolator", {"friction": 0.05, "clearance": 0.3}, "decided by Ann")
+    other = placed(vase, [springs, pad])
+    assert other.isolator == "friction_isolator"
+    assert other.above is not None
+    assert other.above.support is Support.FREESTANDING
+
+
+def test_no_end_of_a_utilisation_is_written_as_a_number(ran: Path) -> None:
+    """Where contact is lost the utilisation is endless: a reader sees the sign for it, and no word of a program."""
+    record = load_run(open_database(ran / "kouros.sqlite"))
+    seen = found(record, "1")
+    basis = tuple(
+        Basis(
+            f.model, f.title, f.level, f.demand, f.capacity, f.unit, f.utilisation, f.verdict, f.motion, f.motion_hash
+        )
+        for f in seen.findings
+    )
+    worse = replace(seen, findings=tuple(replace(f, utilisation=float("inf")) for f in seen.findings))
+    decision = Decision(1, "1", KIND.ACCEPT, "Ann", "2031-05-01", "because", "", digest="d", basis=basis)
+    at = Now({"1": worse}, record.motions, {"1": "d"}, lambda _n, _d: (), "2031-05-02")
+    ((only,),) = (standing([decision], at),)
+    assert any(text.endswith(" then, ∞ now") for text in only.doubts)
+    assert not any("inf" in text for text in only.doubts)

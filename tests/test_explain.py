@@ -10,7 +10,10 @@ from pipeline.cli.commands import run as command
 from pipeline.cli.console import Console
 from pipeline.cli.options import Options
 from pipeline.collection.database import open_database
+from pipeline.jobs.deciding import Wish, decide
 from pipeline.jobs.nightly import run
+from pipeline.jobs.workspace import open_workspace
+from pipeline.records import DecisionKind
 from pipeline.settings import Settings
 from pipeline.store.runs import list_runs, load_run
 from tests.test_jobs import workspace
@@ -82,3 +85,26 @@ def test_an_unknown_object_is_refused_with_close_ones(museum: Settings) -> None:
     assert isinstance(problem, UsageError)
     assert problem.exit_code == 2
     assert "did you mean '1'" in str(problem)
+
+
+def test_what_stands_on_an_installed_isolator_is_explained_as_the_night_judged_it(tmp_path: Path) -> None:
+    """The isolator's own demand, and the object's own models on what it passes on; a reason steers no terminal."""
+    settings = workspace(tmp_path, ROWS)
+    run(settings, Console(quiet=True))
+    words = ["isolator=generic 0.5 Hz, friction 0.05", "stroke_m=0.9"]
+    wish = Wish("1", DecisionKind.INSTALLED, ["horizontal_isolator", *words], why="bought \x1b[31m in May", who="Ann")
+    decide(open_workspace(settings), wish)
+    run(settings, Console(quiet=True))
+    (night,) = [a for a in load_run(open_database(settings.database)).assessments if a.scene.item.object_number == "1"]
+    assert {f.model for f in night.findings} == {"horizontal_isolator", "rocking", "sliding"}
+    result = explained(settings, "1", "--json")
+    (one,) = json.loads(result.stdout)
+    assert [(r["finding"]["model"], r["finding"]["demand"]) for r in one["reasonings"]] == [
+        (f.model, f.demand) for f in night.findings
+    ]
+    assert one["scene"]["skipped"] == dict(night.scene.skipped)
+    assert [a["measure"] for a in one["advice"]] == [r.measure for r in night.recommendations]
+    spoken = explained(settings, "1")
+    assert spoken.exit_code == 0
+    assert "\x1b" not in spoken.stdout
+    assert "isolator passes on" in spoken.stdout

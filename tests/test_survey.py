@@ -17,6 +17,7 @@ from pipeline.collection.reading import Reading
 from pipeline.execute import Threads
 from pipeline.jobs.survey import LENGTH_UNITS, read_sheet
 from pipeline.jobs.workspace import open_workspace
+from pipeline.mitigate.installed import Measure, placed
 from pipeline.quantities import G
 from pipeline.records import ITEM_FIELDS, Item, Motion, Origin, Support, Verdict, Wish
 from pipeline.report.survey_sheet import HEADER_ROW, column_name, sheet_title, write_survey
@@ -178,3 +179,16 @@ def test_a_filled_in_number_says_which_sheet_it_is_from(tmp_path: Path) -> None:
         "0.25 m",
         "sheet ours.csv",
     )
+
+
+def test_what_is_open_on_an_isolator_is_not_tried_without_it() -> None:
+    """Its models run on what the isolator passes on; tried on the floor, nothing would come of it but a wrong waste."""
+    springs = Measure(
+        "horizontal_isolator", {"frequency": 0.5, "damping": 0.02, "friction": 0.05, "stroke": 0.3}, "Ann"
+    )
+    stands = placed(classify(BOX), [springs])
+    _, (own,) = assess([stands.scene], LEVELS, Threads(1), Silent())
+    _, (free,) = assess([classify(BOX)], LEVELS, Threads(1), Silent())
+    above = [f for f in free if f.verdict is Verdict.UNDETERMINED]
+    assert above
+    assert wishes([stands.scene], [[*own, *above]], LEVELS, Threads(1), Silent()) == []

@@ -49,7 +49,8 @@ def decide(
     \b
     accept                          the risk is accepted; the computed verdict stays, and the decision beside it
     verdict pass|fail --model M     the person's verdict, beside the computed one
-    installed MEASURE NAME=VALUE... a measure is in place, in SI units: the next run computes the object with it
+    installed MEASURE NAME=VALUE... a measure is in place, in SI units: the next run computes the object with it;
+                                    isolator=NAME takes the numbers of an isolator from the museum's catalogue
     class CLASS                     the object is of this class: the next run takes it as such
     withdraw ID                     an earlier decision ends
 
@@ -57,6 +58,7 @@ def decide(
 
     \b
     Example: kouros decide 1922.9 installed clearance clearance_m=0.1 --why "moved on Monday"
+    Example: kouros decide 1922.9 installed horizontal_isolator isolator="our 0.5 Hz" stroke_m=0.2 --why "bought in May"
     Example: kouros decide 1922.9 accept --model sliding --until 2032-01-01 --why "case is rebuilt next year"
     Example: kouros decide --list
     """

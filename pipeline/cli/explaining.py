@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pipeline.cli.console import printable
 from pipeline.cli.options import Options
 
 if TYPE_CHECKING:
@@ -26,14 +27,15 @@ def print_explanation(settings: "Settings", number: str, options: Options, as_js
     if as_json:
         click.echo(json.dumps([json_ready(asdict(one)) for one in explained], indent=2, default=str))
     else:
-        click.echo("\n\n".join("\n".join(explanation_lines(one)) for one in explained))
+        # What a record, a manifest or a person's reason holds must not steer a terminal.
+        click.echo("\n\n".join("\n".join(map(printable, explanation_lines(one))) for one in explained))
 
 
 def explanation_lines(explained: "Explanation") -> Iterator[str]:
     """Yield the reasoning for one object, line by line."""
     scene = explained.scene
     item = scene.item
-    yield f"{_clean(item.object_number)}  {_clean(item.title)}  ({_clean(item.gallery)})"
+    yield f"{item.object_number}  {item.title}  ({item.gallery})"
     yield f"  class    {scene.object_class}, by rule {scene.rule}"
     yield f"  support  {scene.support.value}" + (f", on floor {scene.floor}" if scene.floor else "")
     for missing in scene.missing:
@@ -44,7 +46,7 @@ def explanation_lines(explained: "Explanation") -> Iterator[str]:
     if scene.skipped:
         yield "  not run"
         for title, why in scene.skipped.items():
-            yield f"    {title}: {_clean(why)}"
+            yield f"    {title}: {why}"
     for reasoning in explained.reasonings:
         yield from _reasoning(reasoning)
     for advice in explained.advice:
@@ -77,6 +79,10 @@ def _taken(taken: "Taken") -> str:
 def _advice(advice: "Recommendation") -> Iterator[str]:
     values = ", ".join(f"{name} {_number(v)} {advice.units[name]}" for name, v in advice.parameters.items())
     yield f"  advice, {advice.level}: {advice.title}" + (f" ({values})" if values else "")
+    from pipeline.mitigate.advise import ONLY_HERE
+
+    if advice.sentence.endswith(ONLY_HERE):
+        yield f"    {ONLY_HERE}"
     for check in advice.checks:
         state = "passes" if check.passes else "fails"
         yield f"    {check.title}: {_number(check.demand)} of {_number(check.capacity)} {check.unit}, {state}"
@@ -86,15 +92,10 @@ def _advice(advice: "Recommendation") -> Iterator[str]:
 
 def _estimate(estimate: "Estimate") -> str:
     span = f" ({_number(estimate.low)} to {_number(estimate.high)})" if estimate.low < estimate.high else ""
-    why = f": {_clean(estimate.note)}" if estimate.note else ""
+    why = f": {estimate.note}" if estimate.note else ""
     source = f" [{estimate.source}]" if estimate.source else ""
     return f"{_number(estimate.value)} {estimate.unit}{span}, {estimate.origin.value}{why}{source}"
 
 
 def _number(value: float | None) -> str:
     return "not known" if value is None else f"{value:.4g}"
-
-
-def _clean(text: str) -> str:
-    # What a record holds must not steer a terminal.
-    return "".join(c if c.isprintable() else " " for c in text)

@@ -13,6 +13,7 @@ from pipeline.collection.inventory import items_named, object_numbers
 from pipeline.collection.record import digest_of
 from pipeline.jobs.workspace import UsageError, Workspace, near, site_folder
 from pipeline.mitigate.installed import installable
+from pipeline.mitigate.means import KINDS, Isolator
 from pipeline.models import MODELS
 from pipeline.motions.manifest import load_manifest
 from pipeline.quantities import Quantity
@@ -22,6 +23,9 @@ from pipeline.store.reuse import whole_runs
 
 WHO_VARIABLE = "KOUROS_WHO"
 """Environment variable with the name of the person who decides, where it is not that of the account."""
+
+ISOLATOR = "isolator"
+"""The word that names a row of the catalogue where a measure is an isolator."""
 
 WHO_LIMIT, WHY_LIMIT = 200, 2000
 """Characters of a name and of a reason."""
@@ -61,7 +65,7 @@ def decide(workspace: Workspace, wish: Wish) -> Decision:
     if wish.kind is DecisionKind.CLASS:
         return add_decision(engine, replace(decision, object_class=_class(wish.words), basis=basis))
     if wish.kind is DecisionKind.INSTALLED:
-        return add_decision(engine, replace(_installed(decision, wish.words), basis=basis))
+        return add_decision(engine, replace(_installed(workspace, decision, wish.words), basis=basis))
     _concerning(workspace, wish, basis)
     if wish.kind is DecisionKind.VERDICT:
         decision = replace(decision, verdict=_verdict(wish, basis))
@@ -178,28 +182,67 @@ def _verdict(wish: Wish, basis: Sequence[Basis]) -> Verdict:
     return Verdict(_of(_one(wish.words, "pass or fail"), (Verdict.PASS, Verdict.FAIL), "verdict"))
 
 
-def _installed(decision: Decision, words: Sequence[str]) -> Decision:
+def _installed(workspace: Workspace, decision: Decision, words: Sequence[str]) -> Decision:
     measures = installable()
     if not words:
         raise UsageError(f"say what is installed: one of {', '.join(measures)}")
     measure = _of(words[0], measures, "measure that can be installed")
     wanted = {_key(q): q for q in measures[measure]}
+    texts = _named(words[1:], (*wanted, "product", *((ISOLATOR,) if measure in KINDS else ())), measure)
     parameters: dict[str, float] = {}
-    product = ""
-    for word in words[1:]:
-        name, equals, text = word.partition("=")
-        if not equals:
-            raise UsageError(f"{word!r} is no parameter; write NAME=VALUE, as clearance_m=0.1")
-        if name == "product":
-            product = text.strip()[:WHO_LIMIT]
-            continue
-        quantity = wanted[_of(name, [*wanted, "product"], f"parameter of {measure}")]
-        parameters[quantity.name] = _number(quantity, name, text)
+    product = texts.pop("product", "")
+    if ISOLATOR in texts:
+        isolator = _isolator(workspace, measure, texts.pop(ISOLATOR))
+        parameters, product = _own(isolator, wanted.values()), product or isolator.name
+    if len(product) > WHO_LIMIT:
+        raise UsageError(f"product has {len(product)} characters; at most {WHO_LIMIT} are kept: say it shorter")
+    for name, text in texts.items():
+        quantity = wanted[name]
+        value = _number(quantity, name, text)
+        own = parameters.get(quantity.name, value)
+        # Where it stands there may be less room than it could use; all else is its maker's.
+        if value > own or (value != own and quantity.name != "stroke"):
+            raise UsageError(
+                f"{name}={text}, but {product!r} has {own:g} in the catalogue: leave it out, or correct it"
+            )
+        parameters[quantity.name] = value
     lost = [f"{key} ({q.meaning})" for key, q in wanted.items() if q.name not in parameters]
     if lost:
         raise UsageError(f"{measure} needs {' and '.join(lost)}: write NAME=VALUE for each, in SI units")
     units = {q.name: q.unit for q in wanted.values()}
     return replace(decision, measure=measure, parameters=parameters, units=units, product=product)
+
+
+def _named(words: Sequence[str], known: Sequence[str], measure: str) -> dict[str, str]:
+    """Return the words NAME=VALUE of a measure as texts by name, each said once."""
+    texts: dict[str, str] = {}
+    for word in words:
+        name, equals, text = word.partition("=")
+        if not equals:
+            raise UsageError(f"{word!r} is no parameter; write NAME=VALUE, as clearance_m=0.1")
+        if _of(name, known, f"parameter of {measure}") in texts:
+            raise UsageError(f"{name} is said twice; say it once")
+        texts[name] = text.strip()
+    return texts
+
+
+def _isolator(workspace: Workspace, kind: str, name: str) -> Isolator:
+    """Return an isolator of that kind from the museum's catalogue."""
+    listed = {isolator.name: isolator for isolator in workspace.means.isolators}
+    mine = [isolator.name for isolator in listed.values() if isolator.kind == kind]
+    found = listed.get(name)
+    if found is None:
+        there = f"it has {', '.join(map(repr, mine))}" if mine else f"it has no {kind}"
+        raise UsageError(f"there is no isolator {name!r} in the catalogue{near(name, mine) or f'; {there}'}")
+    if found.kind != kind:
+        raise UsageError(f"{name!r} is a {found.kind}, not a {kind}: install it as that")
+    return found
+
+
+def _own(isolator: Isolator, quantities: Iterable[Quantity]) -> dict[str, float]:
+    """Return what a catalogue says of an isolator; a stroke that is as long as its place allows must be said."""
+    told = {name: getattr(isolator, name, None) for name in (q.name for q in quantities)}
+    return {name: float(value) for name, value in told.items() if value is not None and np.isfinite(value)}
 
 
 def _key(quantity: Quantity) -> str:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
+from math import isinf
 
 from pipeline.classify import object_classes
 from pipeline.records import (
@@ -101,11 +102,15 @@ def _judged(decision: Decision, assessment: Assessment) -> Iterable[str]:
         elif _SEVERITY[finding.verdict] > _SEVERITY[basis.verdict]:
             yield f"{where}: {basis.verdict} then, {finding.verdict} now"
         elif _more(decision, basis, finding):
-            yield f"{where}: utilisation {basis.utilisation:.2f} then, {finding.utilisation:.2f} now"
+            yield f"{where}: utilisation {_written(basis.utilisation)} then, {_written(finding.utilisation)} now"
     if decision.kind is DecisionKind.ACCEPT:
         for key, finding in found.items():
             if key not in looked_at and finding.verdict is not Verdict.PASS and decision.concerns(*key[:2]):
                 yield f"{finding.title}, level {finding.level}: {finding.verdict} now, and was not looked at then"
+
+
+def _written(utilisation: float | None) -> str:
+    return "∞" if utilisation is None or isinf(utilisation) else f"{utilisation:.2f}"
 
 
 def _more(decision: Decision, basis: Basis, finding: Finding) -> bool:

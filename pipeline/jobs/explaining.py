@@ -17,11 +17,13 @@ from pipeline.jobs.levels import storeys
 from pipeline.jobs.nightly import named
 from pipeline.jobs.workspace import Workspace, charts_of
 from pipeline.mitigate import advise
+from pipeline.mitigate.installed import Placed, assess_above
+from pipeline.models import model_named
 from pipeline.plan import Work, plan
 from pipeline.quantities import Array
 from pipeline.records import Estimate, Executor, Finding, Item, Progress, Recommendation, Scene
 from pipeline.settings import Settings
-from pipeline.verdicts import LevelMotions
+from pipeline.verdicts import LevelMotions, capacity_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +48,10 @@ class Taken:
 
 @dataclass(frozen=True, slots=True)
 class Reasoning:
-    """One model under one level: the steps in the order in which they were taken, and what came of them."""
+    """One model under one level: the steps in the order in which they were taken, and what came of them.
+
+    taken : none of what stands on an isolator, which is integrated under what that passes on
+    """
 
     finding: Finding
     capacity: Estimate
@@ -77,15 +82,16 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
         levels = storey.shaking
         with charts_of(settings, [m.hash for level in levels for m in level.motions]) as shelf:
             for index in storey.members:
-                scene = replace(_placed(workspace, items[index], decisions), floor=storey.name)
+                one = _placed(workspace, items[index], decisions)
+                one = replace(one, scene=replace(one.scene, floor=storey.name))
                 # What is advised for a case depends on all that stand in it.
                 others = [_placed(workspace, other, decisions) for other in _neighbours(items[index], inventory)]
-                out.append(_explain(scene, others, levels, workspace, executor, progress, shelf))
+                out.append(_explain(one, others, levels, workspace, executor, progress, shelf))
     return out
 
 
-def _placed(workspace: Workspace, item: Item, decisions: Decided) -> Scene:
-    return place(item, workspace.rules, decisions.get(item.object_number, ())).scene
+def _placed(workspace: Workspace, item: Item, decisions: Decided) -> Placed:
+    return place(item, workspace.rules, decisions.get(item.object_number, ()))
 
 
 def _neighbours(item: Item, inventory: Sequence[Item]) -> list[Item]:
@@ -94,8 +100,8 @@ def _neighbours(item: Item, inventory: Sequence[Item]) -> list[Item]:
 
 
 def _explain(
-    scene: Scene,
-    others: Sequence[Scene],
+    one: Placed,
+    others: Sequence[Placed],
     levels: Sequence[LevelMotions],
     workspace: Workspace,
     executor: Executor,
@@ -103,14 +109,28 @@ def _explain(
     shelf: Shelf,
 ) -> Explanation:
     settings = workspace.settings
-    todo = plan([scene], levels[0].x_azimuth)
-    scene = replace(scene, skipped=todo.skipped[0])
-    reasonings = [_reason(work, scene, level, settings, executor, shelf) for level in levels for work in todo.work]
+    todo = plan([one.scene], levels[0].x_azimuth)
+    reasonings = [_reason(work, one.scene, level, settings, executor, shelf) for level in levels for work in todo.work]
     how = settings.analysis
     fineness: dict[str, Any] = {"fidelity": how.fidelity, "azimuth_step": how.azimuth_step, "charts": shelf}
-    around = assess(others, levels, executor, progress, **fineness)[1] if others else []
-    found = [[r.finding for r in reasonings], *around]
-    advice = advise([scene, *others], found, levels, executor, progress, means=workspace.means, **fineness)
+    integrated = {"fidelity": "reference" if how.fidelity == "reference" else "history"}
+    on_top = [
+        assess_above([each], levels, executor, progress, azimuth_step=how.azimuth_step, **integrated)[0]
+        for each in (one, *others)
+    ]
+    if one.above is not None:
+        above = one.above
+        reasonings += [Reasoning(f, capacity_of(model_named(f.model), above)[1], ()) for f in on_top[0][0]]
+    done = {r.finding.title for r in reasonings}
+    left_out = {title: why for title, why in {**todo.skipped[0], **on_top[0][1]}.items() if title not in done}
+    scene = replace(one.scene, skipped=left_out)
+    scenes = [scene, *(other.scene for other in others)]
+    around = assess(scenes[1:], levels, executor, progress, **fineness)[1] if others else []
+    found = [
+        [r.finding for r in reasonings],
+        *([*own, *above_it] for own, (above_it, _) in zip(around, on_top[1:], strict=True)),
+    ]
+    advice = advise(scenes, found, levels, executor, progress, means=workspace.means, **fineness)
     return Explanation(scene, tuple(reasonings), tuple(advice[0]))
 
 
@@ -142,6 +162,7 @@ def _reason(
     for found, bound in zip(examined.climb.found, bounds, strict=True):
         low, high = bound[case.output]
         exact = work.model.exact and case.output == work.model.demand
+        no_error = exact or work.model.output(case.output).unit == "bool"
         for row in dict.fromkeys(work.spans.rows.ravel().tolist()):
             # Only `auto` asks for bounds besides certificates.
             if analysis.fidelity == AUTO or low[row] == high[row]:
@@ -151,7 +172,7 @@ def _reason(
             for at, row in enumerate(rows.tolist()):
                 # Where the certificate is the demand, a history only tells what happens after.
                 value = float(low[row]) if exact else float(columns[case.output][at])
-                error = 0.0 if exact else float(columns["error"][at])
+                error = 0.0 if no_error else float(columns[work.model.error_of(case.output)][at])
                 off = error if fidelity == "chart" else 0.0
                 one = {name: float(column[at]) for name, column in columns.items()}
                 told = work.model.outcome(one, {name: float(v[row]) for name, v in work.values.items()})[1]

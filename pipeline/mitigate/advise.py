@@ -1,14 +1,14 @@
 """From what fails to what helps: the least intrusive measure of the table that passes when its models are run again."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from pipeline.charting import SHELF, Shelf
 from pipeline.charts import chart_key
 from pipeline.climb import AUTO
 from pipeline.mitigate.bench import Bench, Carriage, Fineness, Trial, checks, passes, why_not
-from pipeline.mitigate.means import Means, Measure, own_means
+from pipeline.mitigate.means import LAST, Means, Measure, own_means
 from pipeline.mitigate.measures import DISPLACEMENTS, MEASURES
 from pipeline.mitigate.offers import Need, Offer, Proposal, Way
 from pipeline.mitigate.shared import SHARED, case_of, company
@@ -18,6 +18,9 @@ from pipeline.verdicts import LevelMotions
 
 ROOM = ("clearance", "rubber_pads", "restrain")
 """Measures worth advising where only the assumed room leaves the verdict open."""
+
+ONLY_HERE = "At another level of shaking it is not enough, and nothing that was tried is enough at all of them."
+"""Follows the sentence of a measure that holds at one level only."""
 
 Unit = tuple[Need, ...]
 """Objects that one measure is for: one, or all that share a support."""
@@ -36,43 +39,69 @@ def advise(
     charts: Shelf = SHELF,
     carriage: Carriage | None = None,
 ) -> list[list[Recommendation]]:
-    """Recommend one measure for each object and level at which something fails, or is open for want of room alone.
+    """Recommend a measure for each object and level at which something fails, or is open for want of room alone.
 
-    A measure is a changed scene, and it passes where every model of that scene passes under all motions of the level,
+    A measure is a changed scene, and it passes where every model of that scene passes under all motions of all levels,
     whatever its uncertain inputs are within their ranges.  So an object whose sliding fails while its rocking is open
-    is not told to keep clear: what is advised also keeps it from rocking.  Where nothing fails and something else than
-    room is open, nothing is advised: a measurement settles that (`pipeline.survey`).
+    is not told to keep clear: what is advised also keeps it from rocking.  And what is advised for a weak level is
+    built for the strong one too: one measure for all of them.  Only where there is none is one sought for each level
+    alone, and its sentence says so.  Where nothing fails and something else than room is open, nothing is advised: a
+    measurement settles that (`pipeline.survey`).
 
     levels   : of shaking, with the motions that the findings were made under
     means    : the measures and isolators that there are; None: Kouros's own tables
     fidelity, azimuth_step, charts : as the findings were made
     carriage : what isolators pass on, kept from one call to the next; None: for this call only
-    returns  : the recommendations of each scene, in the order of the scenes
+    returns  : the recommendations of each scene, in the order of the scenes and of the levels
     raises   : TableError where the last measure of the table is not removal
     """
     have = means or own_means()
-    if not have.measures or have.measures[-1].name != "remove":
+    if not have.measures or have.measures[-1].name != LAST:
         raise TableError("measures.csv: the last measure must always be possible (remove)")
-    out: list[list[Recommendation]] = [[] for _ in scenes]
-    for at, level in enumerate(levels):
-        bench = Bench(level, have, executor, Fineness(fidelity, azimuth_step, charts), carriage)
-        search = _Search(bench, _needs(scenes, findings, level.name), _unassessed(scenes, findings))
+    fineness = Fineness(fidelity, azimuth_step, charts)
+    carriage = carriage or Carriage()
+    unassessed = _unassessed(scenes, findings)
+    rounds = [tuple(levels), *((level,) for level in levels if len(levels) > 1)]
+    advised: dict[tuple[int, str], Recommendation] = {}
+    for at, some in enumerate(rounds):
+        # What holds at all levels stands; the others are looked at level by level.
+        stands = {key for key, found in advised.items() if found.measure != LAST}
+        bench = Bench(some, have, executor, fineness, carriage)
+        search = _Search(bench, _needs(scenes, findings, some, stands), unassessed)
         for done, measure in enumerate(have.measures, start=1):
             search.tries(measure)
-            progress.step("recommendations", at * len(have.measures) + done, len(levels) * len(have.measures))
-        for index, recommendation in search.recommended.items():
-            out[index].append(recommendation)
-    return out
+            progress.step("recommendations", at * len(have.measures) + done, len(rounds) * len(have.measures))
+        alone = len(some) < len(levels)
+        advised |= {key: _alone(found) if alone else found for key, found in search.recommended.items()}
+    return [
+        [advised[index, level.name] for level in levels if (index, level.name) in advised]
+        for index in range(len(scenes))
+    ]
 
 
-def _needs(scenes: Sequence[Scene], findings: Sequence[Sequence[Finding]], level: str) -> list[Need]:
+def _alone(found: Recommendation) -> Recommendation:
+    return found if found.measure == LAST else replace(found, sentence=f"{found.sentence} {ONLY_HERE}")
+
+
+def _needs(
+    scenes: Sequence[Scene],
+    findings: Sequence[Sequence[Finding]],
+    levels: Sequence[LevelMotions],
+    stands: Container[tuple[int, str]],
+) -> list[Need]:
+    """Return the objects with findings at these levels; for those that stand already nothing more is wanted."""
+    names = [level.name for level in levels]
     out = []
     for index, (scene, found) in enumerate(zip(scenes, findings, strict=True)):
-        here = tuple(f for f in found if f.level == level)
+        here = tuple(f for f in found if f.level in names)
+        wanted = [name for name in names if _wanted([f for f in here if f.level == name])] if _wanted(here) else []
         if here:
-            wanted = any(f.verdict is Verdict.FAIL for f in here) or _for_room_alone(here)
-            out.append(Need(index, scene, here, wanted))
+            out.append(Need(index, scene, here, tuple(name for name in wanted if (index, name) not in stands)))
     return out
+
+
+def _wanted(findings: Sequence[Finding]) -> bool:
+    return any(f.verdict is Verdict.FAIL for f in findings) or _for_room_alone(findings)
 
 
 def _for_room_alone(findings: Sequence[Finding]) -> bool:
@@ -93,21 +122,22 @@ def _unassessed(
 
 @dataclass
 class _Search:
-    """The objects of one level that still need something, and what was tried for them.
+    """The objects that still need something under the levels of a bench, and what was tried for them.
 
     unassessed  : numbers of what no model could be run for, by the case that it stands in
-    recommended : by the place of the scene
+    recommended : by the place of the scene and the name of the level
     """
 
     bench: Bench
     needs: Sequence[Need]
     unassessed: Mapping[tuple[str, str], tuple[str, ...]]
-    recommended: dict[int, Recommendation] = field(default_factory=dict)
+    recommended: dict[tuple[int, str], Recommendation] = field(default_factory=dict)
     rejected: dict[int, list[str]] = field(default_factory=dict)
+    helped: set[int] = field(default_factory=set)
 
     def tries(self, measure: Measure) -> None:
         """Try a measure on everything that still needs one: all first offers together, then all second ones."""
-        pending = [need for need in self.needs if need.wanted and need.index not in self.recommended]
+        pending = [need for need in self.needs if need.wanted and need.index not in self.helped]
         # What is only open for want of room is no reason to take it off display.
         pending = [n for n in pending if measure.name in ROOM or any(f.verdict is Verdict.FAIL for f in n.findings)]
         open_: list[tuple[Unit, Proposal, Iterator[Offer]]] = []
@@ -146,7 +176,7 @@ class _Search:
             results = {id(trial): next(found) for trial in offer.every}
             stands = [next((w for w in ways if passes(results[id(w.trial)])), None) for _, ways in offer.stands]
             failing = [trial for trial in offer.trials if not passes(results[id(trial)])]
-            held = all(check.passes for check in offer.checks)
+            held = all(check.passes for _, check in offer.checks)
             if not failing and held and all(way is not None for way in stands):
                 self._recommend(unit, measure, offer, [way for way in stands if way is not None], results)
                 continue
@@ -156,7 +186,7 @@ class _Search:
 
     def _reject(self, unit: Unit, measure: Measure, reason: str) -> None:
         for need in unit:
-            if need.wanted and need.index not in self.recommended:
+            if need.wanted and need.index not in self.helped:
                 self.rejected.setdefault(need.index, []).append(f"{measure.title}: {reason}")
 
     def _recommend(
@@ -182,25 +212,30 @@ class _Search:
                 unknown = self.unassessed.get(case, ()) if case is not None else ()
                 words |= {"what": company(unit, need, unknown), "how": ways[at].said}
             numbers = {**offer.numbers, **offer.finish(ran)}
-            self.recommended[need.index] = Recommendation(
-                object_number=need.number,
-                gallery=need.scene.item.gallery,
-                level=self.bench.level.name,
-                measure=measure.name,
-                title=measure.title,
-                sentence=_sentence(measure.sentence, words),
-                parameters={name: value for name, (value, _) in numbers.items()},
-                units={name: unit_ for name, (_, unit_) in numbers.items()},
-                checks=(*offer.checks, *checks(ran, need.findings)),
-                rejected=tuple(self.rejected.get(need.index, ())),
-                mark=self._mark(offer, ran, measure.title),
-                source=measure.source,
-            )
+            self.helped.add(need.index)
+            for level in need.levels:
+                here = [f for f in ran if f.level == level]
+                before = [f for f in need.findings if f.level == level]
+                self.recommended[need.index, level] = Recommendation(
+                    object_number=need.number,
+                    gallery=need.scene.item.gallery,
+                    level=level,
+                    measure=measure.name,
+                    title=measure.title,
+                    sentence=_sentence(measure.sentence, words),
+                    parameters={name: value for name, (value, _) in numbers.items()},
+                    units={name: unit_ for name, (_, unit_) in numbers.items()},
+                    checks=(*(check for of, check in offer.checks if of in ("", level)), *checks(here, before)),
+                    rejected=tuple(self.rejected.get(need.index, ())),
+                    mark=self._mark(offer, here, measure.title, level),
+                    source=measure.source,
+                )
 
-    def _mark(self, offer: Offer, ran: Sequence[Finding], title: str) -> Mark | None:
-        if offer.mark is not None:
-            kind, x, y = offer.mark
-            return Mark(chart_key(kind, self.bench.level.motions[0]), x, y, title)
+    def _mark(self, offer: Offer, ran: Sequence[Finding], title: str, level: str) -> Mark | None:
+        if level in offer.marks:
+            kind, x, y = offer.marks[level]
+            motions = next(one.motions for one in self.bench.levels if one.name == level)
+            return Mark(chart_key(kind, motions[0]), x, y, title)
         marks = [f.mark for f in ran if f.model == offer.mark_of and f.mark is not None]
         return replace(marks[0], label=title) if marks else None
 
@@ -208,7 +243,7 @@ class _Search:
 def _said(failing: Sequence[Trial], offer: Offer, results: Mapping[int, Sequence[Finding]]) -> str:
     if failing:
         return why_not(failing[0].scene, results[id(failing[0])])
-    short: list[Check] = [check for check in offer.checks if not check.passes]
+    short: list[Check] = [check for _, check in offer.checks if not check.passes]
     return f"{short[0].title.lower()} is not enough" if short else ""
 
 

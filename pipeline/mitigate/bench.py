@@ -1,8 +1,9 @@
-"""Where trials are run: what all objects under one level of shaking share, each computed once."""
+"""Where trials are run: what all objects under the same levels of shaking share, each computed once."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import isinf
 from typing import Any
 
 import numpy as np
@@ -29,17 +30,27 @@ HIDDEN = 1.005
 
 @dataclass(frozen=True, eq=False)
 class Carried:
-    """An isolator under the motions of a level, run once for all that may stand on it.
+    """An isolator under the motions of some levels, run once for all that may stand on it.
 
-    stroke       : m, its largest displacement
-    acceleration : m/s2, the largest horizontal acceleration passed on
-    shaking      : the level as what stands on it feels it
+    strokes       : m, its largest displacement, by level
+    accelerations : m/s2, the largest horizontal acceleration passed on, by level
+    shaking       : the levels as what stands on it feels them
     """
 
     isolator: Isolator
-    stroke: float
-    acceleration: float
-    shaking: LevelMotions
+    strokes: Mapping[str, float]
+    accelerations: Mapping[str, float]
+    shaking: tuple[LevelMotions, ...]
+
+    @property
+    def stroke(self) -> float:
+        """Its largest displacement at any level [m]."""
+        return max(self.strokes.values())
+
+    @property
+    def acceleration(self) -> float:
+        """The largest horizontal acceleration that it passes on at any level [m/s2]."""
+        return max(self.accelerations.values())
 
 
 @dataclass(frozen=True)
@@ -59,12 +70,21 @@ class Fineness:
     charts: Shelf = SHELF
 
 
+@dataclass(frozen=True, eq=False)
+class Passed:
+    """An isolator under one level: its largest displacement [m], the acceleration and the level that it passes on."""
+
+    stroke: float
+    acceleration: float
+    shaking: LevelMotions
+
+
 class Ground:
     """What a level of shaking is to all objects on the same floor, each worked out once."""
 
     def __init__(self, level: LevelMotions) -> None:
         self.level = level
-        self.carried: dict[Isolator, Carried] = {}
+        self.passed: dict[Isolator, Passed] = {}
 
     @cached_property
     def push(self) -> float:
@@ -77,9 +97,10 @@ class Ground:
         return self.level.combined([max(lift_ratios(m.excitation(None))) for m in self.level.motions])
 
     @cached_property
-    def shaken(self) -> list[tuple[Array, Array]]:
-        """|a_h| and N = max(0, g + a_z) at each sample [m/s2], (n,) each, of each motion."""
-        return [(np.hypot(*m.acceleration[:2]), np.maximum(0.0, G + m.acceleration[2])) for m in self.level.motions]
+    def shaken(self) -> Mapping[str, tuple[Array, Array]]:
+        """|a_h| and N = max(0, g + a_z) at each sample [m/s2], (n,) each, by the hash of the motion."""
+        motions = {motion.hash: motion.acceleration for motion in self.level.motions}
+        return {name: (np.hypot(*a[:2]), np.maximum(0.0, G + a[2])) for name, a in motions.items()}
 
 
 class Carriage:
@@ -95,38 +116,44 @@ class Carriage:
 
 
 class Bench:
-    """Runs the models of changed scenes under one level of shaking.
+    """Runs the models of changed scenes under some levels of shaking, all of which a measure has to bear.
 
-    What is said of the level is combined from its motions as its findings are: the largest, or the mean.
+    What is said of a level is combined from its motions as its findings are: the largest, or the mean.  Of several
+    levels the largest counts.
     """
 
     def __init__(
         self,
-        level: LevelMotions,
+        levels: Sequence[LevelMotions],
         means: Means,
         executor: Executor,
         fineness: Fineness,
         carriage: Carriage | None = None,
     ) -> None:
-        self.level, self.means = level, means
+        self.levels, self.means = tuple(levels), means
         self._executor, self._fineness = executor, fineness
-        self._ground = (carriage or Carriage()).ground(level)
-        self._carried = self._ground.carried
+        carriage = carriage or Carriage()
+        self._grounds = [carriage.ground(level) for level in self.levels]
+        self._carried: dict[Isolator, Carried] = {}
+
+    def most(self, of: Callable[[Motion], float]) -> float:
+        """Return the largest over the levels of what is combined from the motions of each."""
+        return max(level.combined([of(motion) for motion in level.motions]) for level in self.levels)
 
     @property
     def push(self) -> float:
         """A_max [m/s2], resultant."""
-        return self._ground.push
+        return max(ground.push for ground in self._grounds)
 
     @property
     def lift(self) -> float:
         """The largest |a_h| / N: what an object's slope b/h is held against."""
-        return self._ground.lift
+        return max(ground.lift for ground in self._grounds)
 
-    @property
-    def shaken(self) -> list[tuple[Array, Array]]:
-        """|a_h| and N = max(0, g + a_z) at each sample [m/s2], (n,) each, of each motion."""
-        return self._ground.shaken
+    @cached_property
+    def shaken(self) -> Mapping[str, tuple[Array, Array]]:
+        """|a_h| and N = max(0, g + a_z) at each sample [m/s2], (n,) each, by the hash of the motion."""
+        return {name: both for ground in self._grounds for name, both in ground.shaken.items()}
 
     def run(self, trials: Sequence[Trial]) -> list[list[Finding]]:
         """Run every model of each trial's scene, equal work once, and return the findings in the order of the trials.
@@ -144,7 +171,7 @@ class Bench:
             fidelity = "history" if on is not None and fidelity == "chart" else fidelity
             _, found = assess(
                 [trials[at].scene for at in members],
-                [self.level if on is None else on.shaking],
+                self.levels if on is None else on.shaking,
                 self._executor,
                 Silent(),
                 fidelity=fidelity,
@@ -156,57 +183,64 @@ class Bench:
                 out[at] = findings
         return out
 
-    def slide(self, friction: float) -> float:
-        """Return the sliding displacement [m] at a friction."""
-        return self.level.combined(
-            [float(respond("sliding", m, friction_static=friction)["displacement"].iloc[0]) for m in self.level.motions]
-        )
-
     def carried(self, kind: str) -> list[Carried]:
         """Return the isolators of a kind that stand on the floor, by the length of their stroke."""
         listed = self.means.of(kind)
-        fresh = [isolator for isolator in listed if isolator not in self._carried]
-        for isolator, one in zip(fresh, self._executor.map(self._carry, fresh), strict=True):
-            self._carried[isolator] = one
+        fresh = [(g, isolator) for g in self._grounds for isolator in listed if isolator not in g.passed]
+        for (ground, isolator), one in zip(fresh, self._executor.map(_carry, fresh), strict=True):
+            ground.passed[isolator] = one
+        for isolator in listed:
+            if isolator not in self._carried:
+                each = {ground.level.name: ground.passed[isolator] for ground in self._grounds}
+                self._carried[isolator] = Carried(
+                    isolator,
+                    {name: one.stroke for name, one in each.items()},
+                    {name: one.acceleration for name, one in each.items()},
+                    tuple(one.shaking for one in each.values()),
+                )
         return sorted((self._carried[isolator] for isolator in listed), key=lambda one: one.stroke)
-
-    def _carry(self, isolator: Isolator) -> Carried:
-        names = {"frequency": isolator.frequency, "damping": isolator.damping, "friction": isolator.friction}
-        given: dict[str, Any] = (
-            {"friction_static": isolator.friction} if isolator.kind == "friction_isolator" else names
-        )
-        model = model_named(isolator.kind)
-        strokes, accelerations, passed_on = [], [], []
-        for motion in self.level.motions:
-            # One pass without an error estimate: it only ranks, and its own model is run again with the rest.
-            own = model.run(motion.excitation(None), prepare(model, given), 2, False)
-            passed = transmit(isolator.kind, motion, error=PASSED, **given)
-            strokes.append(float(own["displacement"][0]))
-            accelerations.append(max(float(own["acceleration"][0]), largest_push(passed.excitation(None))))
-            passed_on.append(passed.scaled(HIDDEN, "for what its sampling may hide"))
-        shaking = replace(self.level, motions=tuple(passed_on))
-        return Carried(isolator, self.level.combined(strokes), self.level.combined(accelerations), shaking)
 
     def on_pad(self, pad: Isolator, cg_height: Sequence[float], inertia_ratio: float) -> tuple[float, float]:
         """Return the largest rotation [rad] of an object on a rotational pad, and A at its centre over A_max [-].
 
         cg_height : what its height may be; the largest of each output counts
         """
-        rotations, shares = [], []
-        for motion in self.level.motions:
-            rows = respond(
-                "rotational_isolator",
-                motion,
-                angle=None,
-                azimuth_step=self._fineness.azimuth_step,
-                frequency=pad.frequency,
-                damping=pad.damping,
-                cg_height=list(cg_height),
-                inertia_ratio=inertia_ratio,
-            )
-            rotations.append(float(rows["rotation"].max()))
-            shares.append(float(rows["acceleration"].max()) / _push(motion))
-        return self.level.combined(rotations), max(shares)
+        turns: list[float] = []
+        shares: list[float] = []
+        for level in self.levels:
+            rotations = []
+            for motion in level.motions:
+                rows = respond(
+                    "rotational_isolator",
+                    motion,
+                    angle=None,
+                    azimuth_step=self._fineness.azimuth_step,
+                    frequency=pad.frequency,
+                    damping=pad.damping,
+                    cg_height=list(cg_height),
+                    inertia_ratio=inertia_ratio,
+                )
+                rotations.append(float(rows["rotation"].max()))
+                shares.append(float(rows["acceleration"].max()) / _push(motion))
+            turns.append(level.combined(rotations))
+        return max(turns), max(shares)
+
+
+def _carry(task: tuple[Ground, Isolator]) -> Passed:
+    level, isolator = task[0].level, task[1]
+    names = {"frequency": isolator.frequency, "damping": isolator.damping, "friction": isolator.friction}
+    given: dict[str, Any] = {"friction_static": isolator.friction} if isolator.kind == "friction_isolator" else names
+    model = model_named(isolator.kind)
+    strokes, accelerations, passed_on = [], [], []
+    for motion in level.motions:
+        # One pass without an error estimate: it only ranks, and its own model is run again with the rest.
+        own = model.run(motion.excitation(None), prepare(model, given), 2, False)
+        passed = transmit(isolator.kind, motion, error=PASSED, **given)
+        strokes.append(float(own["displacement"][0]))
+        accelerations.append(max(float(own["acceleration"][0]), largest_push(passed.excitation(None))))
+        passed_on.append(passed.scaled(HIDDEN, "for what its sampling may hide"))
+    shaking = replace(level, motions=tuple(passed_on))
+    return Passed(level.combined(strokes), level.combined(accelerations), shaking)
 
 
 def _push(motion: Motion) -> float:
@@ -244,6 +278,8 @@ def why_not(scene: Scene, findings: Sequence[Finding]) -> str:
     times, finding = max(worst, key=lambda pair: pair[0])
     if finding.fidelity == "bound" and finding.error:
         return f"{finding.title.lower()} may still be more than is allowed"
+    if finding.high is not None and isinf(finding.high):
+        return f"nothing limits {finding.title.lower()} then"
     if times == float("inf"):
         return f"nothing would be left of what {finding.title.lower()} is allowed"
     best = finding.utilisation or 0.0

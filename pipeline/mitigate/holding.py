@@ -8,11 +8,14 @@ import numpy as np
 
 from pipeline.mitigate.bench import Bench
 from pipeline.models.stress import FLEXIBLE_STRESS
-from pipeline.records import Check, Estimate, Finding, Origin, Scene, Verdict
+from pipeline.records import Check, Estimate, Finding, Motion, Origin, Scene, Verdict
+from pipeline.response import respond
 from pipeline.tables import Range, spread, table
 from pipeline.verdicts import judge
 
 WAX = "museum wax"
+WAX_CHECKS = ("Wax, sideways", "Wax, uplift", "Shaking that wax holds")
+"""What wax is asked, in the words of a report."""
 
 LEVER = 2.0 / 3.0
 """Moment about an edge of an elastic layer, per its area, its strength, and its distance from the edge.
@@ -37,9 +40,23 @@ def force_and_moment(scene: Scene, bench: Bench, findings: Sequence[Finding]) ->
 
     findings : of the object held at its base; a flexible one pushes by its pseudo-acceleration
     """
-    pushes = [f.mark.y for f in findings if f.model == FLEXIBLE_STRESS.name and f.mark is not None]
-    force = scene.parameters["mass"].high * max([bench.push, *pushes])
+    bends = any(f.model == FLEXIBLE_STRESS.name for f in findings)
+    push = max(bench.push, _pseudo_acceleration(scene, bench)) if bends else bench.push
+    force = scene.parameters["mass"].high * push
     return force, force * scene.parameters["cg_height"].high
+
+
+def _pseudo_acceleration(scene: Scene, bench: Bench) -> float:
+    """Return the largest that its oscillator feels [m/s2], in any direction, one uncertain input at a time."""
+    f, zeta = scene.parameters["frequency"], scene.parameters["damping"]
+    frequencies = [f.value, f.low, f.high, f.value, f.value]
+    dampings = [zeta.value, zeta.value, zeta.value, zeta.low, zeta.high]
+
+    def largest(motion: Motion) -> float:
+        rows = respond("oscillator", motion, angle=None, frequency=frequencies, damping=dampings)
+        return float(rows["pseudo_acceleration"].max())
+
+    return bench.most(largest)
 
 
 def uplift_moment(scene: Scene, bench: Bench) -> tuple[float, float]:
@@ -51,8 +68,11 @@ def uplift_moment(scene: Scene, bench: Bench) -> tuple[float, float]:
     mass, cg, half = p["mass"], p["cg_height"], p["half_width"]
 
     def moment(m: float, h: float, b: float) -> float:
-        each = [float(np.max(m * (push * h - weight * b))) for push, weight in bench.shaken]
-        return max(0.0, bench.level.combined(each))
+        def largest(motion: Motion) -> float:
+            push, weight = bench.shaken[motion.hash]
+            return float(np.max(m * (push * h - weight * b)))
+
+        return max(0.0, bench.most(largest))
 
     best = moment(mass.value, cg.value, half.value)
     ends = ((mass.high, cg.value, half.value), (mass.value, cg.high, half.value), (mass.value, cg.value, half.low))
@@ -77,11 +97,12 @@ def wax_checks(scene: Scene, bench: Bench, area: float) -> tuple[Check, ...]:
     strength = strengths(WAX)
     mass, half = scene.parameters["mass"], scene.parameters["half_width"]
     moment, worst = uplift_moment(scene, bench)
+    sideways_title, uplift_title, shaking_title = WAX_CHECKS
     sideways = (mass.value * bench.push, mass.high * bench.push)
     return (
-        _check("Wax, sideways", sideways, _times(strength["shear"], area, "N")),
-        _check("Wax, uplift", (moment, worst), _times(strength["tension"], LEVER * area * half.low, "N m")),
-        _check("Shaking that wax holds", (bench.push, bench.push), _times(strength["acceleration"], 1.0, "m/s2")),
+        _check(sideways_title, sideways, _times(strength["shear"], area, "N")),
+        _check(uplift_title, (moment, worst), _times(strength["tension"], LEVER * area * half.low, "N m")),
+        _check(shaking_title, (bench.push, bench.push), _times(strength["acceleration"], 1.0, "m/s2")),
     )
 
 

@@ -93,23 +93,27 @@ class Placed:
 def placed(scene: Scene, measures: Sequence[Measure]) -> Placed:
     """Return an object with its measures in place, one after the other.
 
-    A measure whose change needs what is not known of the object changes nothing, and the scene's assumptions say so.
+    What is done to an object that stands on an isolator is done to it, not to the isolator.  A measure whose change
+    needs what is not known of the object changes nothing, and the scene's assumptions say so.
     """
     stands = Placed(scene)
     for measure in measures:
-        before = stands.scene
+        before = stands.scene if stands.above is None else stands.above
         try:
             after = changed(before, measure.name, measure.parameters)
         except KeyError as unknown:
             said = f"{measure.name} is installed ({measure.words}), but is not computed: {unknown} is not known"
-            stands = replace(stands, scene=replace(before, assumptions=(*before.assumptions, said)))
+            scene = replace(stands.scene, assumptions=(*stands.scene.assumptions, said))
+            stands = replace(stands, scene=scene)
             continue
         after = _told(before, after, measure.words)
         if measure.name in ISOLATORS:
             # What is on a rotational isolator is mounted on it; on another it stands as it stood.
             stands = Placed(after, held(before) if measure.name == "rotational_isolator" else before, measure.name)
+        elif stands.above is not None:
+            stands = replace(stands, above=_needing(after))
         else:
-            stands = replace(stands, scene=_needing(after))
+            stands = Placed(_needing(after))
     return stands
 
 

@@ -61,7 +61,7 @@ def keep_clear(need: Need, bench: Bench, measure: Measure) -> Proposal:  # noqa:
     allowed = measure.limit_high if need.scene.support in (Support.HUNG, Support.SUSPENDED) else measure.limit
     if room > allowed:
         return refused(f"it would need {100 * room:.0f} cm of room, more than the {100 * allowed:.0f} cm allowed")
-    numbers = {"clearance": (room, "m"), "movement": (max(f.demand or 0.0 for f in moving), "m")}
+    numbers = {"clearance": (room, "m"), "movement": (most, "m")}
     capacity = on_floor(need, measure, numbers).parameters["clearance"]
     checks = []
     for f in need.findings:
@@ -70,7 +70,7 @@ def keep_clear(need: Need, bench: Bench, measure: Measure) -> Proposal:  # noqa:
         if f.model in DISPLACEMENTS:
             judged = judge(demand, f.low or 0.0, f.high or 0.0, capacity)
             passes, used, limit = judged.verdict is Verdict.PASS, judged.utilisation, judged.capacity
-        checks.append(Check(f.model, f.title, demand, f.unit, limit, used, passes, f.demand))
+        checks.append((f.level, Check(f.model, f.title, demand, f.unit, limit, used, passes, f.demand)))
     return Proposal((Offer(numbers, checks=tuple(checks)),))
 
 
@@ -128,9 +128,9 @@ def _needs_grip(need: Need) -> Proposal | None:
 def wax(need: Need, bench: Bench, measure: Measure) -> Proposal:
     """Hold it by museum wax: it neither rocks nor slides while the wax holds, and its section bears the push."""
     scene = need.scene
-    if scene.support is not Support.FREESTANDING or "half_width" not in scene.parameters:
+    if scene.support is not Support.FREESTANDING:
         return FREE
-    if not knows_section(scene):
+    if not knows_section(scene) or not {"half_width", "cg_height"} <= set(scene.parameters):
         return UNKNOWN_SECTION
     held_up_to = strengths("museum wax")["acceleration"].low
     if bench.push > held_up_to:
@@ -140,14 +140,17 @@ def wax(need: Need, bench: Bench, measure: Measure) -> Proposal:
         return refused(f"it would need {1e4 * area:.3g} cm2 of wax; its footing has room for {1e4 * room:.3g} cm2")
     numbers = {"area": (area, "m2")}
     finish = partial(_holds, scene, bench)
-    return _one(need, measure, numbers, finish=finish, checks=wax_checks(scene, bench, area))
+    checks = tuple(("", check) for check in wax_checks(scene, bench, area))
+    return _one(need, measure, numbers, finish=finish, checks=checks)
 
 
 def ballast(need: Need, bench: Bench, measure: Measure) -> Proposal:
     """Lower its centre of gravity by ballast: as much as the push asks for, run again with all that is uncertain."""
     scene = need.scene
-    if scene.support is not Support.FREESTANDING or not {"half_width", "cg_height", "mass"} <= set(scene.parameters):
+    if scene.support is not Support.FREESTANDING:
         return FREE
+    if not {"half_width", "cg_height", "mass"} <= set(scene.parameters):
+        return refused("its base, its mass or its centre of gravity is not known")
     if not _rocks(need):
         return refused("it does not rock: a lower centre of gravity does not help")
     if measure.classes and scene.object_class not in measure.classes:
@@ -174,8 +177,10 @@ def wide_base(need: Need, bench: Bench, measure: Measure) -> Proposal:
     Its critical section bears the push, as that of a clamped object does.
     """
     scene = need.scene
-    if scene.support is not Support.FREESTANDING or not {"half_width", "cg_height"} <= set(scene.parameters):
+    if scene.support is not Support.FREESTANDING:
         return FREE
+    if not {"half_width", "cg_height"} <= set(scene.parameters):
+        return refused("its base or its centre of gravity is not known")
     if not _rocks(need):
         return refused("it does not rock: a wider base does not help")
     if not knows_section(scene):
@@ -210,10 +215,13 @@ def restrain(need: Need, bench: Bench, measure: Measure) -> Proposal:  # noqa: A
     mass = scene.parameters.get("mass")
     if mass is None:
         return refused("its mass is not known, so the force on the fixings cannot be given")
-    (swing,) = (f for f in need.findings if f.model == "swing")
-    check = Check("swing", swing.title, 0.0, swing.unit, swing.capacity or 0.0, 0.0, True, swing.demand)
+    checks = tuple(
+        (f.level, Check("swing", f.title, 0.0, f.unit, f.capacity or 0.0, 0.0, True, f.demand))
+        for f in need.findings
+        if f.model == "swing"
+    )
     trials = (Trial(held(scene)),) if knows_section(scene) else ()
-    return Proposal((Offer({"force": (mass.high * bench.push, "N")}, trials, checks=(check,)),))
+    return Proposal((Offer({"force": (mass.high * bench.push, "N")}, trials, checks=checks),))
 
 
 def low_friction_pad(need: Need, bench: Bench, measure: Measure) -> Proposal:
@@ -237,8 +245,8 @@ def low_friction_pad(need: Need, bench: Bench, measure: Measure) -> Proposal:
         trials = [Trial(upright), Trial(on_floor(need, measure, numbers))]
         if knows_section(scene):
             trials.append(Trial(held(scene), carried))
-        mark = ("sliding", pad.friction, carried.stroke)
-        offers.append(Offer(numbers, tuple(trials), mark=mark))
+        marks = {level: ("sliding", pad.friction, moved) for level, moved in carried.strokes.items()}
+        offers.append(Offer(numbers, tuple(trials), marks=marks))
     if not offers:
         return refused("no low-friction pad keeps to the room that there is")
     return Proposal(tuple(offers))
@@ -325,7 +333,7 @@ def _one(
     numbers: Numbers,
     *,
     finish: Callable[[Sequence[Finding]], Numbers],
-    checks: tuple[Check, ...] = (),
+    checks: tuple[tuple[str, Check], ...] = (),
     mark_of: str = "",
 ) -> Proposal:
     trial = Trial(on_floor(need, measure, numbers))

@@ -16,17 +16,22 @@ def _nothing(_findings: Sequence[Finding]) -> Numbers:
 
 @dataclass(frozen=True, eq=False)
 class Need:
-    """An object under one level of shaking.
+    """An object under the levels of shaking that a measure is sought for.
 
     index    : its place among the scenes
-    findings : at that level
-    wanted   : whether something is to be advised for it; the others only share a support with what needs it
+    findings : at those levels
+    levels   : names of those at which something is to be advised for it
     """
 
     index: int
     scene: Scene
     findings: tuple[Finding, ...]
-    wanted: bool
+    levels: tuple[str, ...]
+
+    @property
+    def wanted(self) -> bool:
+        """Whether something is to be advised for it; the others only share a support with what needs it."""
+        return bool(self.levels)
 
     @property
     def number(self) -> str:
@@ -49,20 +54,21 @@ class Offer:
     numbers : what it is
     trials  : all of which must pass
     stands  : of each object on a shared support the ways to stand there, one of which must pass
-    checks  : evidence that no model gives: strengths, and demands against another capacity
+    checks  : evidence that no trial gives: strengths, and demands against another capacity; each with the name of
+              the level that it is of, "" for all
     words   : what the sentence asks for that is no number
     finish  : numbers that only the findings of the trials tell
-    mark    : (kind of chart, x, y), or None
+    marks   : (kind of chart, x, y), by level
     mark_of : model whose finding says where it lies on a chart; "" for none
     """
 
     numbers: Numbers
     trials: tuple[Trial, ...] = ()
     stands: tuple[tuple[Need, tuple[Way, ...]], ...] = ()
-    checks: tuple[Check, ...] = ()
+    checks: tuple[tuple[str, Check], ...] = ()
     words: Mapping[str, str] = field(default_factory=dict)
     finish: Callable[[Sequence[Finding]], Numbers] = _nothing
-    mark: tuple[str, float, float] | None = None
+    marks: Mapping[str, tuple[str, float, float]] = field(default_factory=dict)
     mark_of: str = ""
 
     @property

@@ -15,6 +15,12 @@ Share = Callable[[Sequence[Need], Bench, Measure], Proposal]
 
 STANDING = (Support.FREESTANDING, Support.FASTENED, Support.ISOLATED)
 
+FREE, FASTENED = "It may stand free on it.", "It must be fastened to it."
+"""How an object stands on an isolator."""
+
+IT = "it"
+"""What is put on an isolator where nothing shares it."""
+
 NAMED = 12
 """Objects of a case that a sentence names; of more it says how many."""
 
@@ -52,8 +58,8 @@ def horizontal_isolator(unit: Sequence[Need], bench: Bench, measure: Measure) ->
         }
         moving = on_floor(unit[0], measure, numbers)
         stands = tuple((need, _ways(need.scene, carried)) for need in unit)
-        mark = ("isolator", isolator.frequency, carried.acceleration)
-        offers.append(Offer(numbers, (Trial(moving),), stands, mark=mark))
+        marks = {level: ("isolator", isolator.frequency, felt) for level, felt in carried.accelerations.items()}
+        offers.append(Offer(numbers, (Trial(moving),), stands, marks=marks))
     if not offers:
         longest = f" and none under {100 * measure.limit:.0f} cm" if isfinite(measure.limit) else ""
         return refused(f"the catalogue has no horizontal isolator that keeps to its stroke{longest}")
@@ -64,6 +70,9 @@ def horizontal_isolator(unit: Sequence[Need], bench: Bench, measure: Measure) ->
 def _standing(scene: Scene) -> str:
     if scene.support not in STANDING:
         return "it does not stand"
+    if {"stroke", "rotation_limit"} & set(scene.parameters):
+        # The frequency and the damping are the isolator's then, and its own are not at hand.
+        return "it stands on an isolator already: have that one changed"
     if not knows_section(scene) and not _can_stand(scene):
         return "neither its base nor its critical section is known"
     return ""
@@ -77,9 +86,9 @@ def _can_stand(scene: Scene) -> bool:
 def _ways(scene: Scene, carried: Carried) -> tuple[Way, ...]:
     ways = []
     if _can_stand(scene):
-        ways.append(Way(Trial(replace(scene), carried), "It may stand free on it."))
+        ways.append(Way(Trial(replace(scene), carried), FREE))
     if knows_section(scene):
-        ways.append(Way(Trial(held(scene), carried), "It must be fastened to it."))
+        ways.append(Way(Trial(held(scene), carried), FASTENED))
     return tuple(ways)
 
 
@@ -89,7 +98,7 @@ def company(unit: Sequence[Need], need: Need, unknown: Sequence[str]) -> str:
     unknown : numbers of objects in the case that could not be assessed
     """
     if case_of(need.scene) is None:
-        return "it"
+        return IT
     others = [other.number for other in unit if other is not need]
     with_ = f", with {listed(others)} in it," if others else ""
     open_ = f" (not checked: {listed(unknown)})" if unknown else ""

@@ -17,7 +17,7 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
     out = stick_slip(motion, free, free, mu_s, kinetic(parameters), refine, estimate)
     # The error of the first output: friction passes on exactly mu N while slipping and the base's own while at rest,
     # but when it slips and rests is not known exactly.
-    out["error"] = out.pop("acceleration_error")
+    out["displacement_error"], out["error"] = out["error"], out.pop("acceleration_error")
     del out["path_length"]
     return out
 
@@ -55,6 +55,7 @@ FRICTION_ISOLATOR = Model(
     trace=_trace,
     bound=_bound,
     chart=FRICTION_AXIS,
+    errors={"displacement": "displacement_error"},
     demand="displacement",
     capacity="clearance",
     applies=_applies,

@@ -16,7 +16,8 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
     w = 2.0 * np.pi * parameters["frequency"]
     out = stick_slip(motion, w, parameters["damping"], mu, mu, refine, estimate)
     # The kernel's error is of the displacement; the acceleration follows it through the spring and the dashpot.
-    out["error"] = out["error"] * w * (w + 2.0 * parameters["damping"] * w) + out.pop("acceleration_error")
+    moved = out["displacement_error"] = out["error"]
+    out["error"] = moved * w * (w + 2.0 * parameters["damping"] * w) + out.pop("acceleration_error")
     del out["path_length"]
     return out
 
@@ -51,6 +52,7 @@ HORIZONTAL_ISOLATOR = Model(
     run=_run,
     trace=_trace,
     chart=ChartAxis("frequency", 0.1, 10.0, nodes=330),
+    errors={"displacement": "displacement_error"},
     demand="displacement",
     capacity="stroke",
     applies=_applies,

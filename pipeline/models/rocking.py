@@ -193,11 +193,15 @@ def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
     return Bounds(bounds, contact_lost(motion, uplift.size))
 
 
+HARMLESS = "Rocking itself does not harm it, as the museum says; it fails if it falls over."
+OVERTURNS, ROCKS = "overturns", "rocks"
+
+
 def _outcome(row: Mapping[str, float], _parameters: Mapping[str, float]) -> tuple[str, str]:
     if row["overturned"]:
-        return "overturns", f"In this motion it falls over after {row['overturning_time']:.1f} s."
+        return OVERTURNS, f"In this motion it falls over after {row['overturning_time']:.1f} s."
     if row["rotation_ratio"] > 0.0:
-        return "rocks", (
+        return ROCKS, (
             f"It comes back: it tips by at most {100.0 * row['rotation_ratio']:.0f} % of its critical angle and lands "
             f"{row['impacts']:.0f} times."
         )
@@ -212,7 +216,7 @@ def _overturning(scene: Scene) -> tuple[str, float, str] | None:
     # An object that rocking itself does not harm fails when it falls over.
     if scene.item.susceptible is not False:
         return None
-    return "overturned", HALF, "Rocking itself does not harm it, as the museum says; it fails if it falls over."
+    return "overturned", HALF, HARMLESS
 
 
 def _applies(scene: Scene) -> str:
@@ -269,8 +273,9 @@ ROCKING = Model(
     symmetric=_symmetric,
     uncharted="its outcomes flip back and forth, so that it is never tabulated",
     sentence=(
-        "The largest horizontal push is {demand} times what lifts an edge of this object (the range of its uncertain "
-        "measures gives {low} to {high}); from 1 on it rocks."
+        "The largest horizontal push is {demand} ({low} to {high}) times what lifts an edge of this object; from 1 on "
+        "it rocks."
     ),
-    fails="rocks",
+    fails=ROCKS,
+    says=(HARMLESS, OVERTURNS),
 )

@@ -128,10 +128,7 @@ def _holds(scene: Scene, flexible: bool) -> str:
     return ""
 
 
-_SENTENCE = (
-    "Held at its base, its critical section reaches {demand} (the range of its uncertain measures gives {low} to "
-    "{high}); {capacity} is allowed."
-)
+_SENTENCE = "Held at its base, its critical section reaches {demand} ({low} to {high}); {capacity} is allowed."
 
 STRESS = Model(
     name="stress",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -14,7 +14,7 @@ from pipeline.records.motion import Excitation
 from pipeline.records.scene import Scene
 
 Columns = dict[str, Array]
-"""Output name -> (n,) values; "error" and "note" (bit flags, see models.NOTES) are always there."""
+"""Output name -> (n,) values; "error" and "note" (bit flags, see models.common.NOTES) are always there."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Bounds:
     """What the outputs of a model lie between, for certain.
 
     outputs : output name -> (low, high), (n,) each, of the first output always; a yes or no is bounded by 0 and 1
-    note    : (n,) bit flags, see models.NOTES
+    note    : (n,) bit flags, see models.common.NOTES
     """
 
     outputs: Mapping[str, tuple[Array, Array]]
@@ -59,6 +59,7 @@ class Model:
     directions : 1 (along an angle), 2 (both horizontal directions) or 0 (the parameter `directions` says)
     run        : (excitation, parameters, refine, estimate) -> columns; parameters are broadcast (n,) arrays, refine
                  divides the standard step; without estimate the error is left out (NaN) and the cost is a third
+    errors     : output -> column of `run` with its own error, where `error` is not of the same unit
     demand     : which output is set against the capacity
     capacity   : parameter of the scene that the demand is held against, or a constant
     applies    : scene -> "" where the model applies, else the reason why not; it may look at the support, the isolator,
@@ -84,6 +85,7 @@ class Model:
     mark       : (one set of parameters, demand) -> (kind of chart, x, y), or None
     at_most    : the sentence that takes the place of its own where only a bound is known, which the demand is then
     fails      : what an object does whose demand exceeds the capacity, such as "slides"
+    says       : what else its findings may say that holds no number, for the catalogue of a translation
     """
 
     name: str
@@ -101,6 +103,7 @@ class Model:
     sentence: str
     fails: str
     at_most: str = ""
+    errors: Mapping[str, str] = field(default_factory=dict)
     axes: tuple[Mapping[str, str], ...] = ({}, {})
     symmetric: Callable[[Mapping[str, Array]], bool] = lambda _: True
     screen: Callable[[Excitation, Mapping[str, Array]], Columns] | None = None
@@ -115,6 +118,7 @@ class Model:
     otherwise: Callable[[Scene], tuple[str, float, str] | None] = lambda _scene: None
     chart: ChartAxis | None = None
     uncharted: str = ""
+    says: tuple[str, ...] = ()
     mark: Callable[[Mapping[str, float], float], tuple[str, float, float] | None] = lambda _parameters, _demand: None
 
     @cached_property
@@ -122,6 +126,10 @@ class Model:
         """All parameters of a scene that it may be run with."""
         own = (other for axis in self.axes for other in axis.values())
         return (*(q.name for q in self.needs), *own)
+
+    def error_of(self, output: str) -> str:
+        """Return the name of the column that holds the error of an output."""
+        return self.errors.get(output, "error")
 
     def output(self, name: str) -> Quantity:
         """Return the output of that name.

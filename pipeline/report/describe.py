@@ -1,6 +1,9 @@
 """One object in words and in the reader's units."""
 
+import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import lru_cache
 from math import isfinite, isnan
 
 from pipeline.records import (
@@ -37,7 +40,16 @@ from pipeline.report.views import (
     State,
 )
 
+_PLACEHOLDER = re.compile(r"{(\w+)}")
+_RANGE = re.compile(r" \([^()]*{(?:low|high)}[^()]*\)")
+"""Brackets of a sentence that tell the range of a demand."""
+
 _ORIGIN_ORDER = {Origin.MEASURED: 0, Origin.DERIVED: 1, Origin.ASSUMED: 2}
+
+
+@lru_cache(maxsize=1024)
+def _asked(sentence: str) -> frozenset[str]:
+    return frozenset(_PLACEHOLDER.findall(sentence))
 
 
 def motion_anchor(motion_hash: str) -> str:
@@ -64,9 +76,9 @@ def percent(utilisation: float | None) -> str:
 def decided(by: str) -> str:
     """Say in words what settled a verdict."""
     told = {
-        "certificate": _("a guaranteed bound, without integration"),
-        "chart": _("the response chart of this motion"),
-        "history": _("a time history of this object"),
+        "certificate": _("a guaranteed bound"),
+        "chart": _("the response chart"),
+        "history": _("a time history"),
     }
     return told.get(by) or clean(by)
 
@@ -92,7 +104,23 @@ def bar(utilisation: float | None) -> Bar | None:
     """Return the bar of a utilisation: its track spans 0 to 2, and the limit, 1, lies in the middle."""
     if utilisation is None or isnan(utilisation):
         return None
-    return Bar(round(50.0 * min(max(utilisation, 0.0), 2.0), 1), utilisation > 2.0, utilisation > 1.0)
+    return Bar(round(50.0 * min(max(utilisation, 0.0), 2.0)), utilisation > 2.0, utilisation > 1.0)
+
+
+def _together(views: Sequence[MeasureView]) -> MeasureView:
+    """Return one measure for several levels: its checks name theirs."""
+    if len(views) == 1:
+        return views[0]
+
+    def named(view: MeasureView, checks: Sequence[CheckView]) -> list[CheckView]:
+        return [replace(check, title=f"{check.title} ({view.level})") for check in checks]
+
+    return replace(
+        views[0],
+        level=", ".join(view.level for view in views),
+        checks=tuple(check for view in views for check in named(view, view.checks)),
+        ended=tuple(check for view in views for check in named(view, view.ended)),
+    )
 
 
 class Describer:
@@ -133,13 +161,13 @@ class Describer:
             page=page,
             state=state,
             value_class=clean(item.value_class),
-            object_class=said(clean(scene.object_class)),
+            object_class=words(clean(scene.object_class)),
             rule=said(clean(scene.rule)),
             support=support(scene.support),
             place=clean(item.case),
             lead=findings[0] if findings else None,
             findings=findings,
-            measures=tuple(self._measure(r, assessment.findings) for r in assessment.recommendations),
+            measures=self._measures(assessment),
             figures=self._figures(ordered, assessment.recommendations) if state is State.ACT else (),
             numbers=tuple(self._number(name, estimate) for name, estimate in estimates),
             assumptions=tuple(dict.fromkeys(said(clean(text)) for text in named)),
@@ -167,7 +195,7 @@ class Describer:
             level=clean(f.level),
             state=finding_state(f),
             outcome=said(clean(f.outcome)),
-            sentence=clean(self._units.fill(said(f.sentence), values, where)),
+            sentence=clean(self._units.fill(self._certain(f, said(f.sentence)), values, where)),
             numbers=self._sums(f, utilisation),
             utilisation=utilisation,
             bar=bar(f.utilisation),
@@ -181,18 +209,32 @@ class Describer:
     def _sums(self, f: Finding, utilisation: str) -> str:
         span = self._span(f.low, f.high, f.unit)
         error = "" if f.fidelity == "bound" else self._error(f)
-        demand, capacity = self._units.text(f.demand, f.unit), self._units.text(f.capacity, f.unit)
-        if f.fidelity == "bound" and f.error:
-            demand = _("at most %(demand)s") % {"demand": demand}
-        demand += " " + _("(%(range)s with what is uncertain)") % {"range": span} if span else ""
-        capacity += f" ({origin(f.capacity_origin)})" if f.capacity_origin else ""
-        sums = {"demand": demand, "capacity": capacity, "utilisation": utilisation}
         by = {"means": decided(f.decided_by), "error": error}
-        return (
-            _("Demand %(demand)s, capacity %(capacity)s, utilisation %(utilisation)s.") % sums
-            + " "
-            + (_("Decided by %(means)s, error %(error)s.") if error else _("Decided by %(means)s.")) % by
-        )
+        means = (_("Decided by %(means)s, error %(error)s.") if error else _("Decided by %(means)s.")) % by
+        capacity = self._units.text(f.capacity, f.unit)
+        of = origin(f.capacity_origin) if f.capacity_origin else ""
+        # What the sentence has said is not said again.
+        asked = _asked(f.sentence)
+        ranged = not span or {"low", "high"} <= asked
+        if "demand" in asked and ranged and f.demand == f.utilisation:
+            # Of a share of what is allowed nothing is left to say.
+            return means
+        if "demand" not in asked or not ranged:
+            demand = self._units.text(f.demand, f.unit)
+            if f.fidelity == "bound" and f.error:
+                demand = _("at most %(demand)s") % {"demand": demand}
+            demand += " " + _("(%(range)s with what is uncertain)") % {"range": span} if span else ""
+            phrase = _("Demand %(demand)s, capacity %(capacity)s, utilisation %(utilisation)s.")
+        else:
+            demand, phrase = "", _("Capacity %(capacity)s, utilisation %(utilisation)s.")
+            capacity = of or capacity if "capacity" in asked else capacity
+        capacity += f" ({of})" if of and capacity != of else ""
+        return f"{phrase % {'demand': demand, 'capacity': capacity, 'utilisation': utilisation}} {means}"
+
+    @staticmethod
+    def _certain(f: Finding, sentence: str) -> str:
+        """Return the sentence without its brackets about a range where nothing is uncertain."""
+        return _RANGE.sub("", sentence) if f.low == f.demand == f.high else sentence
 
     def _motion(self, motion_hash: str, name: str) -> MotionLink:
         key = (motion_hash, name)
@@ -217,6 +259,14 @@ class Describer:
         if f.demand and isfinite(f.demand) and f.error < 5e-4 * abs(f.demand):
             return _("less than 0.1 %")
         return self._units.text(f.error, f.unit)
+
+    def _measures(self, assessment: Assessment) -> tuple[MeasureView, ...]:
+        """Return the measures; what is advised alike for several levels is one, with the evidence of each."""
+        alike: dict[tuple[object, ...], list[MeasureView]] = {}
+        for r in assessment.recommendations:
+            key = (r.measure, r.sentence, tuple(sorted(r.parameters.items())))
+            alike.setdefault(key, []).append(self._measure(r, assessment.findings))
+        return tuple(_together(views) for views in alike.values())
 
     def _measure(self, r: Recommendation, findings: Sequence[Finding]) -> MeasureView:
         where = f"object {r.object_number}, recommendation {r.measure}"
@@ -273,8 +323,8 @@ class Describer:
         )
 
     def _number(self, name: str, e: Estimate) -> NumberView:
-        span = self._span(e.low, e.high, e.unit)
-        text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{f' ({span})' if span else ''}"
+        span = f" ({self._units.bare(e.low, e.high, e.unit)})" if self._span(e.low, e.high, e.unit) else ""
+        text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{span}"
         return NumberView(text, origin(e.origin), clean(e.note), clean(e.source))
 
     def _figures(

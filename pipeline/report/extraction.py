@@ -1,9 +1,22 @@
-"""Phrases of the tables, for the catalogue of a translation: what a report shows of a CSV file's columns."""
+"""Phrases for the catalogue of a translation: what a report shows of tables, of models and of measures."""
 
 import csv
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import fields
 from io import TextIOWrapper
 from typing import IO
+
+from pipeline.classify import object_classes
+from pipeline.mitigate.advise import ONLY_HERE
+from pipeline.mitigate.holding import WAX_CHECKS
+from pipeline.mitigate.installed import ON_TOP, PARAMETERS
+from pipeline.mitigate.means import TERMS
+from pipeline.mitigate.shared import FASTENED, FREE, IT
+from pipeline.models import MODELS
+from pipeline.models.common import NOTES
+from pipeline.records import Item
+from pipeline.report.text import bare
+from pipeline.tables import table
 
 _Found = tuple[int, str, str, list[str]]
 
@@ -23,3 +36,46 @@ def table_phrases(
     rows = csv.DictReader(TextIOWrapper(file, encoding="utf-8", newline=""))
     for row in rows:
         yield from ((rows.line_num, "_", row[name], []) for name in wanted if row.get(name))
+
+
+def run_phrases(
+    file: IO[bytes],  # noqa: ARG001 - the rows are asked, not their source
+    keywords: Collection[str],  # noqa: ARG001
+    comment_tags: Collection[str],  # noqa: ARG001
+    options: Mapping[str, str],  # noqa: ARG001
+) -> Iterator[_Found]:
+    """Yield what a run may store and a report then says: of each model, of the measures' evidence, and the names.
+
+    Named in babel.cfg for the registry of the models.
+    """
+    for phrase in dict.fromkeys((*_of_models(), *_of_measures(), *_names())):
+        if phrase:
+            yield 1, "_", phrase, []
+
+
+def _of_models() -> Iterator[str]:
+    for model in MODELS:
+        yield from (model.title, model.sentence, model.at_most, model.fails, *model.says)
+    yield from NOTES.values()
+    yield ON_TOP
+
+
+def _of_measures() -> Iterator[str]:
+    """Yield the sentences of measures.csv with their words put in, and what is added to them."""
+    for row in table("measures"):
+        sentence = row["sentence"]
+        if "{surface}" in sentence:
+            surfaces = dict.fromkeys(pair["surface_material"].lower() for pair in table("friction"))
+            yield from (sentence.replace("{surface}", surface) for surface in surfaces)
+        if "{what}" in sentence:
+            yield sentence.replace("{what}", IT).replace(" {how}", "")
+    yield from (FREE, FASTENED, ONLY_HERE, *WAX_CHECKS)
+
+
+def _names() -> Iterator[str]:
+    """Yield fields, parameters, models, measures and classes as they are said in plain words."""
+    quantities = [q for model in MODELS for q in (*model.needs, *model.gives)]
+    quantities += [q for several in PARAMETERS.values() for q in several]
+    names = [field.name for field in fields(Item)] + [q.name for q in quantities] + [m.name for m in MODELS]
+    names += [*TERMS, *(name for terms in TERMS.values() for name in terms.gives), *object_classes()]
+    yield from (bare(name) for name in names)

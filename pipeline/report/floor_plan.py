@@ -1,5 +1,6 @@
 """A gallery seen from above, to scale: footprints where they stand, the space that each needs, and its verdict."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -7,11 +8,12 @@ from math import cos, hypot, isfinite, radians, sin
 
 from pipeline.quantities import LENGTHS
 from pipeline.records import Assessment, Item
-from pipeline.report.language import _
+from pipeline.report.language import _, ngettext
+from pipeline.report.plan_views import PlaceView, PlanView
 from pipeline.report.scales import nice_step
 from pipeline.report.text import count, plain, short
 from pipeline.report.units import Units
-from pipeline.report.views import STATES, ObjectView, PlaceView, PlanView, State
+from pipeline.report.views import STATES, ObjectView, State
 
 WIDTH = 1000.0
 """Pixels of the drawing's own system; its height follows the gallery."""
@@ -31,7 +33,10 @@ PLAN_PATTERNS = (
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """Where one object stands: centre (m), half width and half depth (m, None: not recorded), turn, needed room (m)."""
+    """Where one object stands: centre (m), half width and half depth (m, None: not recorded), needed room (m).
+
+    turn : degrees with the clock from a width that points east
+    """
 
     number: int
     view: ObjectView
@@ -57,7 +62,7 @@ def plan_view(pairs: Sequence[tuple[Assessment, ObjectView]], units: Units) -> P
         return None
     places = [_place(number, a, view) for number, (a, view) in enumerate(stand, start=1)]
     rows = tuple(_row(place, a, units) for place, (a, _view) in zip(places, stand, strict=True))
-    return PlanView(_draw(places, units), rows, len(pairs) - len(stand))
+    return _draw(places, units, rows, len(pairs) - len(stand))
 
 
 def needed_clearance(assessment: Assessment) -> float:
@@ -96,7 +101,9 @@ def _place(number: int, assessment: Assessment, view: ObjectView) -> _Place:
     x, y = _position(item) or (0.0, 0.0)
     size = _footprint(item)
     half = None if size is None else (0.5 * size[0], 0.5 * size[1])
-    return _Place(number, view, x, y, half, item.orientation_deg or 0.0, needed_clearance(assessment))
+    # A width that points east lies across the drawing as it is.
+    turn = 0.0 if item.orientation_deg is None else item.orientation_deg - 90.0
+    return _Place(number, view, x, y, half, turn, needed_clearance(assessment))
 
 
 def _row(place: _Place, assessment: Assessment, units: Units) -> PlaceView:
@@ -111,7 +118,7 @@ def _row(place: _Place, assessment: Assessment, units: Units) -> PlaceView:
     )
 
 
-def _draw(places: Sequence[_Place], units: Units) -> str:
+def _draw(places: Sequence[_Place], units: Units, rows: tuple[PlaceView, ...], missing: int) -> PlanView:
     west, east = min(p.x - p.reach for p in places), max(p.x + p.reach for p in places)
     south, north = min(p.y - p.reach for p in places), max(p.y + p.reach for p in places)
     across, up = max(east - west, 1.0), max(north - south, 1.0)
@@ -126,22 +133,25 @@ def _draw(places: Sequence[_Place], units: Units) -> str:
     # The least urgent are drawn first, so that what must be acted on is never hidden.
     shapes = "".join(_shape(p, *at(p.x, p.y), scale) for p in reversed(places))
     tally = {state: sum(p.view.state is state for p in places) for state in STATES}
-    told = _(
-        "%(count)s objects at their recorded positions, north up; the plan shows %(width)s by %(depth)s. "
-        "%(act)s to act on, %(open)s open, %(unknown)s cannot be assessed, %(safe)s safe. "
-        "The table below says the same."
-    ) % {
-        "count": count(len(places)),
-        "width": units.text(across, "m"),
-        "depth": units.text(up, "m"),
-        **{state.value: count(number) for state, number in tally.items()},
-    }
+    phrase = ngettext(
+        "%(count)s object at its recorded position, north up; the plan shows %(width)s by %(depth)s.",
+        "%(count)s objects at their recorded positions, north up; the plan shows %(width)s by %(depth)s.",
+        len(places),
+    )
+    size = {"count": count(len(places)), "width": units.text(across, "m"), "depth": units.text(up, "m")}
+    states = _("%(act)s to act on, %(open)s open, %(unknown)s cannot be assessed, %(safe)s safe.")
+    verdicts = states % {state.value: count(number) for state, number in tally.items()}
+    told = " ".join((phrase % size, verdicts, _("The table below says the same.")))
     heading = escape(_("Plan of the gallery, to scale"))
-    return (
+    ground = (
         f'<svg class="plan" viewBox="0 0 {WIDTH:.0f} {height:.0f}" role="group" aria-labelledby="plant pland">'
         f'<title id="plant">{heading}</title><desc id="pland">{escape(told)}</desc>'
-        f"<defs>{PLAN_PATTERNS}</defs>{rings}{shapes}{_bar(scale, height, units)}{_north(height)}</svg>"
+        f"<defs>{PLAN_PATTERNS}</defs>{rings}"
     )
+    twice = Counter(p.view.number for p in places)
+    centres = {p.view.number: at(p.x, p.y) for p in places if twice[p.view.number] == 1}
+    objects = f"{shapes}{_bar(scale, height, units)}{_north(height)}</svg>"
+    return PlanView(ground, objects, rows, missing, centres)
 
 
 def _ring(place: _Place, x: float, y: float, scale: float) -> str:
@@ -156,8 +166,8 @@ def _ring(place: _Place, x: float, y: float, scale: float) -> str:
 
 
 def _turned(place: _Place, x: float, y: float) -> str:
-    # A turn from x towards y is against the clock, and the drawing's y points down.
-    return f' transform="rotate({-place.turn:.6g} {x:.1f} {y:.1f})"' if place.turn and place.half else ""
+    # With the clock, as SVG turns and as azimuths count.
+    return f' transform="rotate({place.turn:.6g} {x:.1f} {y:.1f})"' if place.turn and place.half else ""
 
 
 def _shape(place: _Place, x: float, y: float, scale: float) -> str:

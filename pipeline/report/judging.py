@@ -10,8 +10,8 @@ from markupsafe import Markup
 from pipeline.fragility.published import all_published
 from pipeline.quantities import G
 from pipeline.records import Assessment, Fragility, Spacing, Support, Verdict
-from pipeline.records.fragility import ABOVE
-from pipeline.report.language import _, said
+from pipeline.records.fragility import ABOVE, BELOW
+from pipeline.report.language import _, ngettext, said
 from pipeline.report.svg import path
 from pipeline.report.text import clean, count
 from pipeline.report.units import Units, significant
@@ -73,8 +73,7 @@ class ShakingView:
     note : why nothing is said of how often that comes; "" where it is said of some
     """
 
-    objects: str
-    median: str
+    sentence: str
     rows: tuple[tuple[str, str, str], ...]
     note: str
 
@@ -82,7 +81,10 @@ class ShakingView:
 def fragility_views(assessment: Assessment, *, drawn: bool) -> tuple[FragilityView, ...]:
     """Return the curves of an object, what fails first to begin with; only that one is drawn."""
     number = clean(assessment.scene.item.object_number)
-    return tuple(_view(f, number if drawn and i == 0 else "") for i, f in enumerate(assessment.fragilities))
+    # Of what is only bounded there is no curve.
+    return tuple(
+        _view(f, number if drawn and i == 0 and not f.bound else "") for i, f in enumerate(assessment.fragilities)
+    )
 
 
 def _view(f: Fragility, draw: str) -> FragilityView:
@@ -109,7 +111,7 @@ def _view(f: Fragility, draw: str) -> FragilityView:
 
 
 def _sources(f: Fragility) -> str:
-    motions = _("1 motion") if f.motions == 1 else _("%(count)s motions") % {"count": f.motions}
+    motions = ngettext("%(count)s motion", "%(count)s motions", f.motions) % {"count": count(f.motions)}
     # That few motions cannot tell it is said once a gallery.
     record = _("stated") if f.stated else _("of %(motions)s") % {"motions": motions}
     return _("Dispersion %(whole)s: records %(record)s (%(how)s), measures %(inputs)s, model %(model)s.") % {
@@ -150,14 +152,17 @@ def _picture(f: Fragility, number: str) -> Markup:
     """Return the probability of failing against the peak acceleration of the floor, 0 to 2 g."""
     # Closer together where curves are steep.
     steps = [_MOST * (i / (_POINTS - 1)) ** 2 for i in range(_POINTS)]
-    curve = path([(round(_across(a)), round(_FLOOR - 52.0 * f.probability(a))) for a in steps])
+    points = [(round(_across(a)), round(_FLOOR - 52.0 * f.probability(a))) for a in steps]
+    # From where it is certain on it is one line.
+    rising = next((i for i, (_x, y) in enumerate(points) if y == points[-1][1]), len(points) - 1) + 1
+    curve = path([*points[:rising], points[-1]] if rising < len(points) else points)
     beside = f"M{_across(f.published_median):.0f} 6V{_FLOOR:.0f}" if f.published_median is not None else ""
     title = f"{clean(number)}: {said(clean(f.title))}"
     at = [
         _("%(probability)s at %(acceleration)s") % {"probability": f"{f.probability(a):.0%}", "acceleration": in_g(a)}
         for a in _TOLD
     ]
-    told = _("Probability of failure at a peak acceleration of the floor:") + " " + ", ".join(at)
+    told = _("Probability of failure:") + " " + ", ".join(at)
     return Markup(
         '<svg class="chart curve" viewBox="0 0 {wide} {high}" role="img"><title>{title}</title><desc>{told}.</desc>'
         '<path class="ax" d="M10 6V{floor}H200"/>'
@@ -180,11 +185,23 @@ def shaking_view(members: Sequence[Assessment]) -> ShakingView | None:
     if not free:
         return None
     middle = median(inf if f.bound == ABOVE else f.median for f in free)
-    least = max(f.median for f in free)
-    text = in_g(middle) if isfinite(middle) else _("above %(least)s") % {"least": in_g(least)}
+    if isfinite(middle):
+        phrase = ngettext(
+            "The one object that stands free fails from about %(at)s of peak acceleration of its floor on.",
+            "Half of the %(count)s objects that stand free fail below %(at)s of peak acceleration of their floor.",
+            len(free),
+        )
+    else:
+        # Each of these bounds is below its own median, and so is their median below that of the medians.
+        middle = median(0.0 if f.bound == BELOW else f.median for f in free)
+        phrase = ngettext(
+            "The one object that stands free stands at %(at)s of peak acceleration at least.",
+            "Half of the %(count)s objects that stand free stand at %(at)s of peak acceleration at least.",
+            len(free),
+        )
     rows = tuple((said(p.what), in_g(p.median), p.source) for p in all_published())
     note = "" if any(f.annual_rate is not None for f in free) else free[0].note
-    return ShakingView(count(len(free)), text, rows, said(clean(note)))
+    return ShakingView(phrase % {"count": count(len(free)), "at": in_g(middle)}, rows, said(clean(note)))
 
 
 def spacing_views(spacings: Sequence[Spacing], units: Units) -> tuple[SpacingView, ...]:

@@ -1,7 +1,7 @@
 """The language of the pages: phrases are English in the code, and looked up in the museum's catalogue when shown."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -101,13 +101,20 @@ def ngettext(one: str, many: str, number: int) -> str:
     return (one if number == 1 else many) if phrases is None else phrases.ngettext(one, many, number)
 
 
-_SENTENCES = re.compile(r"(?<=[.!?;:]) ")
+_PARTS = (re.compile(r"(?<=[.!?]) "), re.compile(r"(?<=[;:]) "))
+"""Where texts are put together: of sentences, and these of clauses."""
 
 
-def said(text: str) -> str:
+def said(text: str, parts: Sequence[re.Pattern[str]] = _PARTS) -> str:
     """Return a text of the run (a title, sentences with placeholders) in the reader's language.
 
-    The whole text is looked up first, then sentence by sentence: the models put theirs together.
+    The whole text is looked up first, then sentence by sentence, for the models put theirs together, then their
+    clauses.
     """
+    if type(_PHRASES.get()) in (NullTranslations, type(None)):
+        # English: nothing to look up in the many texts of a page.
+        return text
     whole = _(text)
-    return whole if whole != text else " ".join(_(part) for part in _SENTENCES.split(text))
+    if whole != text or not parts:
+        return whole
+    return " ".join(said(part, parts[1:]) for part in parts[0].split(text))

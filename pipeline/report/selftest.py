@@ -1,12 +1,40 @@
 """What the method page says of the last numerical self-test."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from pipeline.records import RunRecord
 from pipeline.report.language import _
 from pipeline.report.text import clean
-from pipeline.report.views import CaseView, SelfTestView
+
+
+@dataclass(frozen=True, slots=True)
+class CaseView:
+    """One case of the numerical self-test: the extreme, its truth, what came out, the limit, whether it is within."""
+
+    what: str
+    truth: str
+    result: str
+    limit: str
+    passes: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SelfTestView:
+    """The last numerical self-test; outdated where the run's kernels are not those that it tested."""
+
+    when: str
+    version: str
+    kernels: str
+    machine: str
+    outdated: bool
+    cases: tuple[CaseView, ...]
+
+    @property
+    def failed(self) -> tuple[CaseView, ...]:
+        """The cases that are not within their limits."""
+        return tuple(case for case in self.cases if not case.passes)
 
 
 def self_test_view(record: RunRecord) -> SelfTestView | None:

@@ -105,11 +105,18 @@ def _lists(
         (
             _("Gone"),
             [
-                _change(p.object_number, _("was in %(gallery)s") % {"gallery": p.gallery}, objects)
+                _change(
+                    p.object_number,
+                    _("was in %(gallery)s") % {"gallery": p.gallery} if p.gallery else _named(""),
+                    objects,
+                )
                 for p in changes.removed
             ],
         ),
-        (_("Moved"), [_change(m.object_number, f"{m.before} → {m.after}", objects) for m in changes.moved]),
+        (
+            _("Moved"),
+            [_change(m.object_number, f"{_named(m.before)} → {_named(m.after)}", objects) for m in changes.moved],
+        ),
         (_("Otherwise changed"), [_change(i.object_number, _fields(i, units), objects) for i in changes.inputs]),
         (
             _("Motions"),
@@ -131,6 +138,10 @@ def _lists(
         (_("Versions"), [_change("", _field(f, units), objects) for f in changes.versions]),
     ]
     return tuple((title, tuple(found[:MOST]), max(len(found) - MOST, 0)) for title, found in lists if found)
+
+
+def _named(gallery: str) -> str:
+    return gallery or _("no gallery recorded")
 
 
 def _floor(name: str) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 
 from pipeline.records import Assessment, Tally, Wish
-from pipeline.report.language import _, said
+from pipeline.report.language import _, ngettext, said
 from pipeline.report.text import clean, count, words
 from pipeline.report.units import Units, significant
 from pipeline.report.views import ObjectView, SurveyView, WishView
@@ -52,19 +52,16 @@ def survey_sentence(tally: Tally, seconds: float) -> str:
     """Say how many measurements would settle something, and what finding that out cost; "" where it was not asked."""
     if not tally.surveyed:
         return ""
-    numbers = {
-        "worth": count(tally.worth),
-        "objects": count(tally.wished),
-        "waste": count(tally.waste),
-        "seconds": f"{seconds:.1f}",
-    }
-    return (
-        _(
-            "%(worth)s measurements on %(objects)s objects would settle a verdict; %(waste)s others alone would settle "
-            "nothing. Finding this out took %(seconds)s s."
+    phrase = ngettext("%(count)s measurement", "%(count)s measurements", tally.worth)
+    measurements = phrase % {"count": count(tally.worth)}
+    on = ngettext("on %(count)s object", "on %(count)s objects", tally.wished) % {"count": count(tally.wished)}
+    told = [_("%(measurements)s %(objects)s would settle a verdict.") % {"measurements": measurements, "objects": on}]
+    if tally.waste:
+        others = ngettext(
+            "%(count)s other alone would settle nothing.", "%(count)s others alone would settle nothing.", tally.waste
         )
-        % numbers
-    )
+        told.append(others % {"count": count(tally.waste)})
+    return " ".join([*told, _("Finding this out took %(seconds)s s.") % {"seconds": f"{seconds:.1f}"}])
 
 
 def _label(field: str) -> str:
@@ -90,6 +87,12 @@ def _effect(wish: Wish) -> str:
 
 
 def _gain(settles: float, unlocks: int) -> str:
-    told = [_("settles about %(verdicts)s verdicts") % {"verdicts": count(max(1, round(settles)))}] if settles else []
-    told += [_("makes %(models)s checks possible") % {"models": count(unlocks)}] if unlocks else []
+    told = []
+    if settles:
+        about = max(1, round(settles))
+        phrase = ngettext("settles about %(count)s verdict", "settles about %(count)s verdicts", about)
+        told.append(phrase % {"count": count(about)})
+    if unlocks:
+        phrase = ngettext("makes %(count)s check possible", "makes %(count)s checks possible", unlocks)
+        told.append(phrase % {"count": count(unlocks)})
     return ", ".join(told)

@@ -21,6 +21,9 @@ _LETTER = 6.3
 _LEAD = 24.0
 """Pixels between the end of a curve and its name in the margin from which a line leads there."""
 
+_BARE = "b"
+"""Follows the id of the symbol that has no names of zones."""
+
 _TONES = {"safe": "zs", "warn": "zw", "danger": "zd"}
 _DASHES = ("", "7 4", "2 3", "9 3 2 3", "12 5")
 
@@ -86,18 +89,26 @@ class Drawing:
     # -- the symbol ---------------------------------------------------------------------------------------------------
 
     def symbol(self) -> str:
-        """Return the chart without marks as a <symbol>, to be put once into a page."""
+        """Return the chart without marks, to be put once into a page: a <symbol>, and one without its zones' names."""
         return self._symbol
 
     @cached_property
     def _symbol(self) -> str:
-        parts = [f'<symbol id="{self.ident}" viewBox="0 0 {WIDTH} {HEIGHT}">']
-        parts += [self._zone(zone) for zone in self.chart.zones]
-        parts += self._grid()
-        parts += [self._curve(curve, i) for i, curve in enumerate(self.chart.curves)]
-        parts += self._curve_labels()
-        parts.append("</symbol>")
-        return "".join(parts)
+        frame = f'viewBox="0 0 {WIDTH} {HEIGHT}"'
+        inner = "".join(
+            (
+                *map(self._zone, self.chart.zones),
+                *self._grid(),
+                *(self._curve(curve, i) for i, curve in enumerate(self.chart.curves)),
+                *self._curve_labels(),
+            )
+        )
+        labels = self._zone_labels(())
+        if labels:
+            # Its zones are named where no mark is in the way; else a figure names them elsewhere, on the bare one.
+            bare = f"{self.ident}{_BARE}"
+            inner = f'<symbol id="{bare}" {frame}>{inner}</symbol><use href="#{bare}"/>{labels}'
+        return f'<symbol id="{self.ident}" {frame}>{inner}</symbol>'
 
     def _points(self, shape: Curve | Zone) -> list[tuple[float, float]]:
         pairs = zip(shape.x, shape.y, strict=True)
@@ -128,6 +139,13 @@ class Drawing:
             if place:
                 parts.append(f'<text class="zl" x="{place[0]:.0f}" y="{place[1] + 4:.0f}">{escape(label)}</text>')
         return "".join(parts)
+
+    def _zones(self, taken: Sequence[tuple[float, float]]) -> str:
+        """Return the chart below the marks: where one is in the way of a zone's name, the names are moved."""
+        labels = self._zone_labels(taken)
+        if labels == self._zone_labels(()):
+            return f'<use href="#{self.ident}"/>'
+        return f'<use href="#{self.ident}{_BARE}"/>{labels}'
 
     def _grid(self) -> list[str]:
         middle_x, middle_y = (self.x.start + self.x.end) / 2, (self.y.start + self.y.end) / 2
@@ -192,20 +210,20 @@ class Drawing:
         """
         shown = [s for s in spots if not (isnan(s.x) or isnan(s.y))]
         title = plain(said(self.chart.title)) + (f": {plain(short(subject, 60))}" if subject else "")
-        told = " ".join(self.say(s) for s in shown)
+        told = " ".join(self.say(s, subject) for s in shown)
         if subject and not shown:
             told = _("Nothing is marked: the object’s place is not known.")
         elif not subject:
             told = self._contents
-        axes = {"x": plain(self.axis_label("x")), "y": plain(self.axis_label("y"))}
-        read = (_("Horizontal: %(x)s. Vertical: %(y)s.") % axes + " " + told).rstrip()
+        if not shown:
+            axes = {"x": plain(self.axis_label("x")), "y": plain(self.axis_label("y"))}
+            told = (_("Horizontal: %(x)s. Vertical: %(y)s.") % axes + " " + told).rstrip()
         marks = "".join(self._spot(s, self._label_line(s, shown)) for s in shown)
         taken = [(self.x.at(s.x * self._fx), self.y.at(s.y * self._fy)) for s in shown]
         return (
             f'<svg class="chart" viewBox="0 0 {WIDTH} {HEIGHT}" role="img">'
-            f"<title>{escape(title)}</title><desc>{escape(read)}</desc>"
-            f'<use href="#{self.ident}"/>'
-            f"{self._zone_labels(taken)}{marks}</svg>"
+            f"<title>{escape(title)}</title><desc>{escape(told)}</desc>"
+            f"{self._zones(taken)}{marks}</svg>"
         )
 
     @cached_property
@@ -215,11 +233,16 @@ class Drawing:
         told = [_("Lines: %(names)s.") % {"names": lines}] if lines else []
         return " ".join(told + ([_("Zones: %(names)s.") % {"names": zones}] if zones else []))
 
-    def say(self, spot: Spot) -> str:
-        """Tell in words and numbers where a mark lies, in which zone, and whether it is off the chart."""
+    def say(self, spot: Spot, subject: str = "") -> str:
+        """Tell in words and numbers where a mark lies, in which zone, and whether it is off the chart.
+
+        subject : what the chart is about, which is not named again
+        """
         x, y = self.units.text(spot.x, self.chart.x.unit), self.units.text(spot.y, self.chart.y.unit)
         zone = next((z.label for z in self.chart.zones if inside(spot.x, spot.y, z.x, z.y)), "")
-        told = [_("%(mark)s at %(x)s across and %(y)s up") % {"mark": plain(spot.label), "x": x, "y": y}]
+        names = {"across": plain(said(self.chart.x.label)), "up": plain(said(self.chart.y.label))}
+        at = _("%(across)s %(x)s, %(up)s %(y)s") % {"x": x, "y": y, **names}
+        told = [at if spot.label == plain(subject) else f"{plain(spot.label)}: {at}"]
         told += [_('in the zone "%(zone)s"') % {"zone": plain(said(zone))}] if zone else []
         told += [_("beyond the edge of the chart")] if self._off(spot) != (0, 0) else []
         return ", ".join(told) + "."

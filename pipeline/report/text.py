@@ -42,14 +42,15 @@ def count(number: int) -> str:
 
 def words(name: str) -> str:
     """Say a field or parameter in plain words: "base_width_m" becomes "base width"."""
-    return _(_bare(name))
+    return _(bare(name))
 
 
 @lru_cache(maxsize=4096)
-def _bare(name: str) -> str:
-    bare = _UNIT_SUFFIX.sub("", name)
-    bare = "height of the centre of gravity" if bare == "cg_height" else bare
-    return bare.replace("_", " ").strip() or name
+def bare(name: str) -> str:
+    """Return the plain words in English: what a catalogue is asked for."""
+    plainly = _UNIT_SUFFIX.sub("", name)
+    plainly = "height of the centre of gravity" if plainly == "cg_height" else plainly
+    return plainly.replace("_", " ").strip() or name
 
 
 def digest(text: str, length: int = 8) -> str:

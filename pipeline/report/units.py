@@ -109,6 +109,11 @@ class Units:
         first = self.number(low, unit) if isfinite(high) else self.text(low, unit)
         return _("%(low)s to %(high)s") % {"low": first, "high": self.text(high, unit)}
 
+    def bare(self, low: float, high: float, unit: str) -> str:
+        """Write a range without its unit, which stands before it: "9 to 14"; one number where both read the same."""
+        first, last = self.number(low, unit), self.number(high, unit)
+        return last if first == last else _("%(low)s to %(high)s") % {"low": first, "high": last}
+
     def fill(self, sentence: str, values: Mapping[str, tuple[float | None, str]], where: str) -> str:
         """Fill the {placeholders} of a sentence with numbers in the reader's units.
 

@@ -2,9 +2,15 @@
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from itertools import groupby
+from typing import TYPE_CHECKING
 
 from pipeline.report.judging import FragilityView, RoomView, ShakingView, SpacingView
 from pipeline.report.svg import Spot
+
+if TYPE_CHECKING:
+    from pipeline.report.plan_views import PlanView
+    from pipeline.report.selftest import SelfTestView
 
 
 class State(StrEnum):
@@ -38,7 +44,7 @@ class Counts:
 class Bar:
     """A utilisation as a bar: percent of its track (the limit lies in the middle) and whether it runs off the end."""
 
-    percent: float
+    percent: int
     beyond: bool
     over: bool
 
@@ -207,6 +213,16 @@ class ObjectView:
         return tuple(f for f in self.findings if f.state is State.SAFE)
 
     @property
+    def worthwhile(self) -> str:
+        """What is worth measuring, in one line: in its order, what does as much said together; "" for nothing."""
+        worth = (w for w in self.wishes if not w.waste)
+        parts = []
+        for effect, group in groupby(worth, key=lambda w: w.effect):
+            told = [f"{w.what} ({w.now})" if w.now else w.what for w in group]
+            parts.append(f"{', '.join(told)}: {effect}")
+        return "; ".join(parts)
+
+    @property
     def unsettled(self) -> tuple[str, ...]:
         """What the open findings assume: measuring it settles them."""
         return tuple(dict.fromkeys(text for f in self.findings if f.state is State.OPEN for text in f.assumptions))
@@ -261,26 +277,6 @@ class TaskView:
     def grave(self) -> int:
         """How many of the objects overturn or break."""
         return sum(o.grave for o in self.objects)
-
-
-@dataclass(frozen=True, slots=True)
-class PlaceView:
-    """A row of the plan's table: the number on the plan, the object, and where it stands, in the reader's units."""
-
-    number: int
-    object: ObjectView
-    position: str
-    footprint: str
-    clearance: str
-
-
-@dataclass(frozen=True, slots=True)
-class PlanView:
-    """A gallery to scale: the drawing, its legend in rows, and how many objects have no recorded position."""
-
-    svg: str
-    places: tuple[PlaceView, ...]
-    missing: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -373,7 +369,7 @@ class GalleryView:
     several_levels: bool
     survey: tuple[SurveyView, ...] = ()
     surveyed: bool = False
-    plan: PlanView | None = None
+    plan: "PlanView | None" = None
     spacings: tuple[SpacingView, ...] = ()
     rooms: tuple[RoomView, ...] = ()
     shaking: ShakingView | None = None
@@ -437,34 +433,6 @@ class MotionView:
 
 
 @dataclass(frozen=True, slots=True)
-class CaseView:
-    """One case of the numerical self-test: the extreme, its truth, what came out, the limit, whether it is within."""
-
-    what: str
-    truth: str
-    result: str
-    limit: str
-    passes: bool
-
-
-@dataclass(frozen=True, slots=True)
-class SelfTestView:
-    """The last numerical self-test; outdated where the run's kernels are not those that it tested."""
-
-    when: str
-    version: str
-    kernels: str
-    machine: str
-    outdated: bool
-    cases: tuple[CaseView, ...]
-
-    @property
-    def failed(self) -> tuple[CaseView, ...]:
-        """The cases that are not within their limits."""
-        return tuple(case for case in self.cases if not case.passes)
-
-
-@dataclass(frozen=True, slots=True)
 class DecidedView:
     """How many verdicts one kind of calculation settled, their share, and their numerical errors."""
 
@@ -514,7 +482,7 @@ class MuseumView:
     motions: tuple[MotionView, ...]
     level_notes: tuple[str, ...] = field(default=())
     efforts: tuple[EffortView, ...] = ()
-    self_test: SelfTestView | None = None
+    self_test: "SelfTestView | None" = None
     decided: tuple[DecidedView, ...] = ()
     fidelities: str = ""
     survey: str = ""

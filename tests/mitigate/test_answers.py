@@ -250,3 +250,27 @@ def test_a_change_is_what_its_recommendation_says(motion: Motion) -> None:
         _, (found,) = assess([scene], [level], Threads(1), Silent(), fidelity="history")
         assert found
         assert all(f.verdict is Verdict.PASS for f in found)
+
+
+def test_up_to_is_the_far_end_of_the_range(motion: Motion) -> None:
+    """Whose friction is not measured slides at most as far as at the low end of its friction: that is what is said."""
+    unsure = replace(BLOCK, friction=None, clearance_m=0.001)
+    low = classify(unsure).parameters["friction_static"].low
+    advice = solve(unsure, motion)
+    most = float(respond("sliding", motion, friction_static=low)["displacement"].iloc[0])
+    assert advice.measure == "clearance"
+    assert advice.parameters["movement"] == pytest.approx(most)
+    assert advice.parameters["clearance"] == pytest.approx(np.ceil(110.0 * most) / 100.0)
+
+
+def test_a_mount_holds_a_flexible_object_at_the_low_end_of_its_damping(motion: Motion) -> None:
+    """Its damping may be 1 %: the mount bears the mass times the pseudo-acceleration then, in its worst direction."""
+    bending = replace(TOWER, frequency_hz=4.0)
+    damping = classify(bending).parameters["damping"]
+    assert (damping.low, damping.value) == (0.01, 0.02)
+    advice = solve(bending, motion)
+    assert advice.measure == "fasten"
+    at = respond("oscillator", motion, angle=None, frequency=4.0, damping=[damping.low, damping.value])
+    least_damped, best = at["pseudo_acceleration"]
+    assert least_damped > 1.02 * best
+    assert advice.parameters["force"] == pytest.approx(20.0 * least_damped)

@@ -15,6 +15,7 @@ from pipeline.records import (
     Recommendation,
     RunRecord,
     Scene,
+    Spacing,
     Support,
     Verdict,
     Wish,
@@ -360,6 +361,11 @@ PLACES = {
     "96.AC.77": (5.0, 4.5, None),
 }
 """Where objects of the first gallery stand: metres east, metres north, degrees; one of them stands nowhere."""
+
+
+def gap(first: str, second: str, verdict: Verdict, level: str = "design") -> Spacing:
+    """Return the gap of 5 cm between two objects of the first gallery, with any verdict."""
+    return Spacing(GREEK, level, first, second, 0.05, 0.06, 0.02, 0.08, 0.06, 0.2, verdict, "history", "quake")
 
 
 def wish(number: str, gallery: str, field: str, **values: object) -> Wish:

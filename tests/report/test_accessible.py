@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+
+from pipeline.records import Verdict
+from pipeline.report import render
+
+from . import builder
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
@@ -67,3 +73,15 @@ def test_opened_details_violate_nothing_either(browser: Chrome, report: Path) ->
         assert violations(browser, opened) == []
     finally:
         opened.unlink()
+
+
+def test_lines_between_neighbours_violate_nothing(browser: Chrome, tmp_path: Path) -> None:
+    """The plan with a line of either kind, and the table of gaps below it."""
+    pairs = (
+        builder.gap("79.AA.143", "82.AB.7", Verdict.FAIL),
+        builder.gap("83.AC.10", "82.AB.7", Verdict.UNDETERMINED),
+    )
+    index = render(replace(builder.record(), spacings=pairs), tmp_path / "r")
+    page = next(index.parent.glob("gallery-101*.html"))
+    assert page.read_text(encoding="utf-8").count('role="img" d="M') == 2
+    assert violations(browser, page) == []

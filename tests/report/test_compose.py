@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from pipeline.records import Assessment, Item, Mark
+from pipeline.records import Assessment, Item, Mark, Move, ObjectPlace, RunChanges
 from pipeline.report import ReportError, Units
 from pipeline.report.ranking import urgency
+from pipeline.report.since import since_view
 from pipeline.report.text import count, short, slug, words
 from pipeline.report.views import Counts, State
 
@@ -122,3 +123,48 @@ def test_plain_words() -> None:
     assert words("cg_height_m") == "height of the centre of gravity"
     assert short("one two three", 9) == "one two…"
     assert len(short("x" * 500, 80)) == 80
+
+
+def test_one_measure_for_two_levels_is_said_once_with_the_evidence_of_each() -> None:
+    """The same advice at both levels is one block; another parameter at one of them would be another measure."""
+    whole = builder.rocking(Item("1", "g"))
+    (first,) = whole.recommendations
+    rare = replace(first, level="rare", checks=(replace(first.checks[0], demand=4.0e6),))
+    findings = (*whole.findings, replace(whole.findings[0], level="rare"))
+    both = replace(whole, findings=findings, recommendations=(first, rare))
+    (gallery,) = shown(replace(builder.record(), assessments=(both,)), Units()).galleries
+    (measure,) = gallery.objects[0].measures
+    assert measure.level == "design, rare"
+    assert [check.title for check in measure.checks] == ["Stress at the base (design)", "Stress at the base (rare)"]
+    assert [check.title for check in measure.ended] == ["Rocking (design)", "Rocking (rare)"]
+    other = replace(both, recommendations=(first, replace(rare, parameters={"force": 641.0})))
+    (gallery,) = shown(replace(builder.record(), assessments=(other,)), Units()).galleries
+    assert [m.level for m in gallery.objects[0].measures] == ["design", "rare"]
+
+
+def test_a_range_is_told_only_where_there_is_one() -> None:
+    """Nothing uncertain: no bracket about a range that is none; what the sentence says is not said again."""
+    whole = builder.rocking(Item("1", "g"))
+    told = "It is pushed {demand} ({low} to {high}) times what lifts it."
+    for low, sentence in ((1.6, "It is pushed 1.8 (1.6 to 1.8) times what lifts it."), (1.8, "It is pushed 1.8 times")):
+        finding = replace(whole.findings[0], sentence=told, demand=1.8, low=low, high=1.8, utilisation=1.8)
+        one = replace(whole, findings=(finding,))
+        (gallery,) = shown(replace(builder.record(), assessments=(one,)), Units()).galleries
+        (view,) = gallery.objects[0].findings
+        assert view.sentence.startswith(sentence)
+        assert "Demand" not in view.numbers
+        assert view.numbers.startswith("Decided by ")
+
+
+def test_a_gallery_without_a_name_is_said_to_have_none() -> None:
+    """What is gone, or moved into no gallery, is no sentence with a hole in it."""
+    changes = RunChanges(
+        "1", "2", (), (ObjectPlace("2", ""),), (Move("3", "", "East"), Move("4", "East", "")),
+        (), (), (), (), (), (), "2031-05-01T01:00:00",
+    )  # fmt: skip
+    lines = {line.number: line.text for _, lines, _ in since_view(changes, {}, Units()).lists for line in lines}
+    assert lines == {
+        "2": "no gallery recorded",
+        "3": "no gallery recorded → East",
+        "4": "East → no gallery recorded",
+    }

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from lxml import etree
 
 from pipeline.records import Item, Origin, Verdict
-from pipeline.report import Units
+from pipeline.report import Units, render
 from pipeline.report.floor_plan import needed_clearance
-from pipeline.report.views import GalleryView, PlanView
+from pipeline.report.plan_views import PlanView
+from pipeline.report.views import GalleryView
 
 from . import builder
 from .shown import shown
@@ -61,12 +64,17 @@ def test_distances_are_to_the_drawn_scale(units: Units) -> None:
     assert ((x2 - x0) / scale, (y0 - y2) / scale) == pytest.approx((3.0, 2.2), abs=0.01)
 
 
-def test_a_footprint_is_to_scale_and_turned_against_the_clock() -> None:
+def test_a_footprint_is_to_scale_and_turned_as_it_stands() -> None:
+    """A width of azimuth 30 points (sin 30, cos 30) east and north; SVG turns with the clock, its y points south."""
     view = plan()
     box = next(shapes(view)["82.AB.7"].iter("rect"))
     size = (float(box.get("width") or ""), float(box.get("height") or ""))
     assert size == pytest.approx((0.5 * metre(view), 0.4 * metre(view)), abs=0.2)
-    assert (box.get("transform") or "").startswith("rotate(-30 ")  # SVG turns with the clock
+    turn = math.radians(float((box.get("transform") or "").removeprefix("rotate(").split(" ")[0]))
+    east, north = math.cos(turn), -math.sin(turn)
+    assert (east, north) == pytest.approx((0.5, math.sqrt(0.75)))
+    east_facing = next(shapes(view)["85.AA.40"].iter("rect"))
+    assert east_facing.get("transform") is None  # its azimuth is 90
     assert next(shapes(view)["73.AA.33"].iter("path")).get("class") == "po pc"  # no footprint: a cross
 
 
@@ -132,6 +140,55 @@ def test_what_settled_the_verdicts_adds_up() -> None:
     assert sum(d.verdicts for d in museum.decided) == len(findings)
     # The largest share of any history's demand that an error of 0.004 or of the like makes.
     assert {f.capacity_origin for f in findings} == {Origin.DERIVED}
-    assert museum.decided[0].means == "a guaranteed bound, without integration"
+    assert museum.decided[0].means == "a guaranteed bound"
     assert all(d.worst.endswith("%") for d in museum.decided[1:])
     assert Verdict.PASS in {f.verdict for f in findings}
+
+
+def test_a_line_joins_neighbours_whose_gap_is_too_small(tmp_path: Path) -> None:
+    """From centre to centre, once a pair as at its worst level; none where they keep apart or one stands nowhere."""
+    pairs = (
+        builder.gap("79.AA.143", "82.AB.7", Verdict.UNDETERMINED),
+        builder.gap("79.AA.143", "82.AB.7", Verdict.FAIL, "rare"),
+        builder.gap("83.AC.10", "82.AB.7", Verdict.UNDETERMINED),
+        builder.gap("83.AC.10", "85.AA.40", Verdict.PASS),
+        builder.gap("71.AB.9", "85.AA.40", Verdict.FAIL),
+    )
+    record = replace(builder.record(), spacings=pairs)
+    index = render(record, tmp_path / "r")
+    museum = shown(record, Units())
+    greek = next(g for g in museum.galleries if g.name == builder.GREEK)
+    page = etree.parse(str(index.parent / greek.page))
+    (drawing,) = (e for e in page.iter("svg") if e.get("class") == "plan")
+    lines = [e for e in drawing.iter("path") if (e.get("class") or "").startswith("gap ")]
+    assert [e.get("class") for e in lines] == ["gap act", "gap open"]
+    assert greek.plan is not None
+    where = {number: centre(link) for number, link in shapes(greek.plan).items() if list(link.iter("rect"))}
+    for line, (first, second) in zip(lines, (("79.AA.143", "82.AB.7"), ("83.AC.10", "82.AB.7")), strict=True):
+        ends = [float(n) for n in (line.get("d") or "").strip("M").replace("L", " ").split()]
+        assert ends == pytest.approx([*where[first], *where[second]], abs=0.2)
+        assert line.get("role") == "img"
+        assert (line.findtext("title") or "").startswith(f"{first}, {second}: ")
+    text = " ".join("".join(page.getroot().itertext()).split())
+    assert "gap between neighbours too small" in text
+    assert "gap between neighbours may be too small" in text
+    keys = [e.get("class") for ul in page.iter("ul") if ul.get("class") == "key" for e in ul.iter("path")]
+    assert keys == ["gap act", "gap open"]
+
+
+def test_numbers_that_stand_twice_have_no_line() -> None:
+    """Two records of one number: nobody knows which of them the pair means."""
+    twin = builder.rocking(
+        Item("79.AA.143", builder.GREEK, "Twin", base_width_m=0.5, base_depth_m=0.4, position_x_m=3.0, position_y_m=2.0)
+    )
+    record = replace(builder.record(twin), spacings=(builder.gap("79.AA.143", "82.AB.7", Verdict.FAIL),))
+    greek = next(g for g in shown(record, Units()).galleries if g.name == builder.GREEK)
+    assert greek.plan is not None
+    assert greek.plan.tight(greek.spacings) == ()
+
+
+def test_a_plan_of_one_object_says_one() -> None:
+    alone = replace(builder.record(), assessments=builder.record().assessments[:1])
+    (only,) = shown(alone, Units()).galleries
+    assert only.plan is not None
+    assert "1 object at its recorded position," in only.plan.svg

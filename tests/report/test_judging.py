@@ -71,11 +71,26 @@ def test_the_median_of_a_gallery_knows_what_never_fails() -> None:
     members = [of(replace(CURVE, median=m * G, bound=b)) for m, b in ((0.2, ""), (2.1, "above"), (2.1, "above"))]
     view = shaking_view(members)  # type: ignore[arg-type]
     assert view is not None
-    assert view.median == "above 2.1\u202fg"
+    assert view.sentence.startswith("Half of the 3 objects that stand free stand at 2.1\u202fg of peak acceleration")
     two = shaking_view(members[:1])  # type: ignore[arg-type]
     assert two is not None
-    assert two.median == "0.2\u202fg"
+    assert two.sentence.startswith("The one object that stands free fails from about 0.2\u202fg of peak")
     assert shaking_view([]) is None
+
+
+def test_a_bound_of_half_a_gallery_is_no_more_than_the_bounds_allow() -> None:
+    """Two that stand at 0.5 g at least, one at 2.1 g at least: half stand at 0.5 g, and nobody knows more."""
+    members = [of(replace(CURVE, median=m * G, bound="above")) for m in (0.5, 0.5, 2.1)]
+    view = shaking_view(members)  # type: ignore[arg-type]
+    assert view is not None
+    assert "stand at 0.5\u202fg of peak" in view.sentence
+
+
+def test_what_is_only_bounded_has_no_curve() -> None:
+    """Of an object that fails at the least that was tried the probability at half a g is not that of a curve."""
+    for bound in ("above", "below"):
+        (view,) = fragility_views(of(replace(CURVE, bound=bound)), drawn=True)  # type: ignore[arg-type]
+        assert not view.picture
 
 
 def test_neighbours_that_may_meet_come_first() -> None:

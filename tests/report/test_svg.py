@@ -103,7 +103,7 @@ def test_a_mark_is_drawn_where_the_data_say() -> None:
 def test_the_text_alternative_names_the_mark_in_numbers_and_its_zone() -> None:
     told = _figure(Spot(0.1, 3.5, "it")).findtext("desc")
     assert told is not None
-    assert 'it at 10\u202fcm across and 0.357\u202fg up, in the zone "falls <i>"' in told
+    assert 'it: Across 10\u202fcm, Up 0.357\u202fg, in the zone "falls <i>"' in told
     assert "10\u202fcm" not in (_figure(Spot(0.1, 3.5, "it"), units=Units("in")).findtext("desc") or "")
 
 
