@@ -60,7 +60,8 @@ class Dask:
         """
         from distributed import KilledWorker
 
-        brief = self._client.scatter(shared, broadcast=True, hash=False)
+        # As a task, which is done again where the worker that held it died; what is scattered would be lost.
+        brief = self._client.submit(_given, shared, pure=False)
         waiting: deque[Future[Any]] = deque()
         try:
             source = iter(errands)
@@ -77,6 +78,10 @@ class Dask:
             ) from problem
         finally:
             self._client.cancel([*waiting, brief], force=True)
+
+
+def _given(shared: Shared) -> Shared:
+    return shared
 
 
 Crew = Alone | Dask
@@ -101,8 +106,9 @@ def crew(*, address: str = "", processes: int = 0) -> Iterator[Crew]:
     with dask.config.set(settings):
         if not address:
             with (
+                # Any free port for the web page that nobody looks at: 8787 may be taken.
                 LocalCluster(
-                    n_workers=processes, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+                    n_workers=processes, threads_per_worker=1, processes=True, dashboard_address=":0", silence_logs=50
                 ) as cluster,
                 Client(cluster) as client,
             ):

@@ -16,7 +16,7 @@ from pipeline.jobs.rounds import Round
 from pipeline.jobs.standing import mark_good, mark_running
 from pipeline.jobs.workspace import UsageError, Workspace, locked, near, open_workspace
 from pipeline.motions.site import Site
-from pipeline.records import Progress, RunChanges, RunRecord, Sheet, Tally
+from pipeline.records import Progress, RunChanges, RunRecord, Sheet, Standing, Tally, Urgent
 from pipeline.report import publish
 from pipeline.report.survey_words import SURVEY_SECONDS
 from pipeline.settings import Settings
@@ -239,7 +239,7 @@ def summarise(head: RunRecord, sheets: Sequence[Sheet], found: Tally) -> Summary
         findings=sum(sheet.counts["findings"] for sheet in sheets),
         measures=found.measures,
         missing=found.missing,
-        first=[f"{u.object_number}  {u.title[:48]}  ({u.gallery}): {u.outcome}" for u in found.first],
+        first=[f"{u.object_number}  {u.title[:48]}  ({u.gallery}): {u.outcome}" for u in _unsettled(head, found)],
         worth=found.worth if found.surveyed else None,
         survey_seconds=float(head.settings.get(SURVEY_SECONDS, 0.0)),
         decisions=dict(Counter(s.decision.kind.value for s in head.decisions)),
@@ -251,3 +251,15 @@ def summarise(head: RunRecord, sheets: Sequence[Sheet], found: Tally) -> Summary
         ],
         efforts=[{"title": title, **effort} for title, effort in found.efforts.items()],
     )
+
+
+def _unsettled(head: RunRecord, found: Tally, most: int = 5) -> list[Urgent]:
+    """Return the worst objects of which not everything is accepted or overruled beyond doubt."""
+    about: dict[str, list[Standing]] = {}
+    for standing in head.decisions:
+        about.setdefault(standing.decision.object_number, []).append(standing)
+    return [
+        one
+        for one in found.first
+        if not all(any(s.covers(*bad) for s in about.get(one.object_number, ())) for bad in one.open)
+    ][:most]

@@ -25,13 +25,17 @@ class Found:
 
 @dataclass(frozen=True, slots=True)
 class Urgent:
-    """An object on display that fails, as a list of the worst shows it, with the key that sorts it among others."""
+    """An object on display that fails, as a list of the worst shows it, with the key that sorts it among others.
+
+    open : model and level of each of its findings that does not pass
+    """
 
     order: tuple[int, bool, bool, str, float, str, str]
     object_number: str
     title: str
     gallery: str
     outcome: str
+    open: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

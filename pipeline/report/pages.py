@@ -18,6 +18,8 @@ def environment(language: Language | None = None) -> Environment:
     env = Environment(
         loader=FileSystemLoader(resource("templates")),
         autoescape=True,
+        # Templates do not change while a report is written: nobody need look.
+        auto_reload=False,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -8,8 +8,8 @@ from pipeline.records import Assessment, Errors, Finding, Found, Tally, Urgent, 
 from pipeline.report.ranking import finding_order, state_of, urgency
 from pipeline.report.views import STATES, State
 
-MOST = 5
-"""Objects that a list of the worst names."""
+MOST = 50
+"""Objects that are kept as the worst: more than a list names, for some of them may be settled by people."""
 
 
 def tally(found: Found) -> Tally:
@@ -56,7 +56,8 @@ def total(tallies: Iterable[Tally]) -> Tally:
 def _urgent(assessment: Assessment) -> Urgent:
     item = assessment.scene.item
     worst = min((f for f in assessment.findings if f.verdict is Verdict.FAIL), key=finding_order)
-    return Urgent(urgency(assessment), item.object_number, item.title, item.gallery, worst.outcome)
+    bad = dict.fromkeys((f.model, f.level) for f in assessment.findings if f.verdict is not Verdict.PASS)
+    return Urgent(urgency(assessment), item.object_number, item.title, item.gallery, worst.outcome, tuple(bad))
 
 
 def _worst(urgent: Iterable[Urgent]) -> tuple[Urgent, ...]:

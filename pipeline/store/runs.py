@@ -6,7 +6,7 @@ from itertools import islice
 from operator import attrgetter
 from typing import Any
 
-from sqlalchemy import Connection, Engine, Row, Table, delete, insert, select, update
+from sqlalchemy import Connection, Engine, Row, Table, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
 from pipeline.records import Chart, MotionSummary, RunChanges, RunRecord, Sheet, Standing, Verdict
@@ -28,7 +28,6 @@ __all__ = [
     "load_head",
     "load_run",
     "mark_finished",
-    "prune_runs",
 ]
 
 _CHUNK = 2_000
@@ -172,29 +171,6 @@ def compare_runs(engine: Engine, old: str, new: str) -> RunChanges:
         for run_id in (old, new):
             _head(connection, run_id)
         return changes(connection, old, new)
-
-
-def prune_runs(engine: Engine, keep: int) -> tuple[str, ...]:
-    """Remove all but the newest finished runs, and the unfinished ones that are older than the oldest of those.
-
-    keep    : how many finished runs stay, at least 1
-    returns : the runs that were removed, oldest first
-    raises  : StoreError for keep below 1: the last report is never lost
-    """
-    if keep < 1:
-        raise StoreError(f"keep is {keep}; at least 1 run must stay, so that there is always a report")
-    with speaking(engine, "no run was removed"), engine.begin() as connection:
-        rows = connection.execute(select(RUN.c.run_id, RUN.c.status).order_by(*_newest_first())).all()
-        finished = [place for place, row in enumerate(rows) if row.status == FINISHED]
-        if len(finished) < keep:
-            return ()
-        gone = tuple(row.run_id for row in reversed(rows[finished[keep - 1] + 1 :]))
-        for run_id in gone:
-            connection.execute(delete(RUN).where(RUN.c.run_id == run_id))
-        # What no run holds; what an interrupted run left behind is taken up by the next one, before any pruning.
-        held = select(RUN_SHEET.c.key)
-        connection.execute(delete(RESULT).where(RESULT.c.key.not_in(held)))
-        return gone
 
 
 # ---------------------------------------------------------------------------------------------------------------------

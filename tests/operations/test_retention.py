@@ -15,7 +15,7 @@ from pipeline.jobs.workspace import LockedError, Workspace, locked, open_workspa
 from pipeline.report import publish
 from pipeline.settings import Retention, Settings
 from pipeline.store.reuse import SELECTION
-from pipeline.store.runs import list_runs, save_run
+from pipeline.store.runs import commit_run, list_runs
 from tests.report import builder
 
 NOW = datetime.now(UTC)
@@ -42,7 +42,7 @@ def night(
         wishes=None,
         settings={SELECTION: part},
     )
-    save_run(workspace.engine, record)
+    commit_run(workspace.engine, record, [])
     if report and finished:
         folder = workspace.reports / run_id
         folder.mkdir(parents=True)

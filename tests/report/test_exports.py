@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from pipeline.report.exports import safe_cell
+from pipeline.report.render import sheets_of
 
 from . import builder
 
@@ -18,7 +19,8 @@ CONTRACT = {
     *("run", "object_number", "gallery", "level", "model", "demand", "unit", "low", "high", "capacity", "utilisation"),
     *("verdict", "fidelity", "error", "decided_by", "motion", "motion_hash", "assumptions", "version"),
 }
-FINDINGS = [f for a in builder.record().assessments for f in a.findings]
+FINDINGS = [f for _sheet, found in sheets_of(builder.record()) for a in found.assessments for f in a.findings]
+"""In the order of the sheets, which is that of the files."""
 
 
 def _rows(path: Path) -> list[dict[str, str]]:

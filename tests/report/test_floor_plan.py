@@ -135,7 +135,7 @@ def test_a_task_counts_what_overturns_or_breaks_and_how_far_the_worst_is_beyond(
 
 
 def test_what_settled_the_verdicts_adds_up() -> None:
-    museum = shown(builder.record(), Units())
+    museum = shown(builder.record(), Units()).museum
     findings = [f for a in builder.record().assessments for f in a.findings]
     assert sum(d.verdicts for d in museum.decided) == len(findings)
     # The largest share of any history's demand that an error of 0.004 or of the like makes.

@@ -13,10 +13,13 @@ from run_samples import RUNS, assessment, finding, motion, run, save_run
 from sqlalchemy import Engine, delete, func, select
 
 from pipeline.collection.database import open_database
-from pipeline.records import Chart, Estimate, Origin, RunRecord, Verdict
+from pipeline.records import Chart, Estimate, Found, Origin, RunRecord, Verdict
+from pipeline.report.tallies import tally
 from pipeline.store.codec import StoreError
 from pipeline.store.migrate import upgrade
-from pipeline.store.runs import latest_run_id, list_runs, load_run, prune_runs
+from pipeline.store.pruning import remove_runs
+from pipeline.store.results import encode, keep
+from pipeline.store.runs import commit_run, latest_run_id, list_runs, load_head, load_run
 from pipeline.store.tables import RESULT, RUN, RUN_CHART, RUN_MOTION, RUN_SHEET
 
 TABLES = (RUN, RUN_MOTION, RUN_CHART, RUN_SHEET, RESULT)
@@ -186,26 +189,19 @@ def test_the_list_counts(engine: Engine) -> None:
     }
 
 
-def test_pruning_removes_all_of_the_oldest_runs(engine: Engine) -> None:
-    for day in range(1, 5):
-        save_run(engine, run(f"r{day}", assessment("1", finding("1")), day=day, motions=(motion("malibu", "ab"),)))
-    assert prune_runs(engine, keep=9) == ()
-    assert prune_runs(engine, keep=2) == ("r1", "r2")
-    # Each run has one row in each table but that of charts.
-    assert rows(engine) == {name: 0 if name == "run_chart" else 2 for name in NOTHING}
-    assert [one.run_id for one in list_runs(engine)] == ["r4", "r3"]
-    with pytest.raises(StoreError, match="at least 1"):
-        prune_runs(engine, keep=0)
-
-
-def test_pruning_never_removes_the_last_report_for_an_unfinished_run(engine: Engine) -> None:
-    save_run(engine, run("good", day=1))
-    save_run(engine, replace(run("cut", day=2), finished=""))
-    save_run(engine, replace(run("long cut", day=0), finished=""))
-    assert prune_runs(engine, keep=2) == ()
-    assert prune_runs(engine, keep=1) == ("long cut",)
-    assert [one.run_id for one in list_runs(engine)] == ["cut", "good"]
-    assert latest_run_id(engine) == "good"
+def test_what_two_runs_share_stays_until_both_are_gone(engine: Engine) -> None:
+    """And what no run holds, as an interrupted one leaves behind, goes."""
+    one = run("one", assessment("1", finding("1")))
+    save_run(engine, one)
+    _, sheets = load_head(engine, "one")
+    commit_run(engine, replace(one, run_id="two", assessments=()), sheets)
+    stray = encode("stray", Found((assessment("2"),)), tally)
+    keep(engine, "cut off", "2031-05-01T00:00:00+00:00", [stray])
+    remove_runs(engine, ["one", "never there"])
+    assert rows(engine) == NOTHING | {"run": 1, "run_motion": 0, "run_sheet": 1, "result": 1}
+    assert load_run(engine, "two").assessments == one.assessments
+    remove_runs(engine, ["two"])
+    assert rows(engine) == NOTHING
 
 
 def test_a_run_that_lost_rows_is_not_shown_as_whole(engine: Engine) -> None:
