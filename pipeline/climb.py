@@ -284,7 +284,8 @@ class Climb:
             self.executor.map(lambda one: chart(one[1], one[0], self.charts, self.azimuth_step, thrifty=thrifty), fresh)
             return 0
         how = self.integrated
-        return sum(integrate(found, some, self.executor, how, self.azimuth_step) for some, found in fresh)
+        before = self.charts.histories
+        return sum(integrate(found, some, self.executor, how, self.azimuth_step, before) for some, found in fresh)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.charting import Shelf
+from pipeline.charting.histories import Histories, history_key
 from pipeline.plan import Indices, Work
 from pipeline.quantities import Array
 from pipeline.records import Columns, Executor, Model, Motion
@@ -184,16 +185,39 @@ def _run(task: _RunTask) -> Columns:
     return run_model(model, motion, values, fidelity, angle, None, azimuth_step)[0]
 
 
-def integrate(found: Demands, rows: Indices, executor: Executor, fidelity: str, azimuth_step: float) -> int:
-    """Integrate some rows, in chunks on the executor; return how many there were."""
+def integrate(
+    found: Demands,
+    rows: Indices,
+    executor: Executor,
+    fidelity: str,
+    azimuth_step: float,
+    histories: Histories | None = None,
+) -> int:
+    """Integrate some rows, in chunks on the executor; return how many there were.
+
+    histories : those that were run before, which are taken over; None: all are run
+    """
     work = found.work
-    parts = [(angle, group[i : i + CHUNK]) for angle, group in work.by_angle(rows) for i in range(0, group.size, CHUNK)]
+    parts: list[tuple[float | None, Indices, str]] = []
+    for angle, group in work.by_angle(rows):
+        key = history_key(work.model.name, found.motion.hash, angle, fidelity, azimuth_step)
+        left = group if histories is None else _recalled(found, group, key, histories)
+        parts += [(angle, left[i : i + CHUNK], key) for i in range(0, left.size, CHUNK)]
     tasks: list[_RunTask] = [
-        (work.model, found.motion, angle, work.some(chunk), fidelity, azimuth_step) for angle, chunk in parts
+        (work.model, found.motion, angle, work.some(chunk), fidelity, azimuth_step) for angle, chunk, _ in parts
     ]
-    for (_, chunk), columns in zip(parts, executor.map(_run, tasks), strict=True):
+    for (_, chunk, key), columns in zip(parts, executor.map(_run, tasks), strict=True):
         found.settle(chunk, columns, Step.HISTORY)
+        if histories is not None:
+            histories.note(key, work.some(chunk), columns)
     return int(rows.size)
+
+
+def _recalled(found: Demands, rows: Indices, key: str, histories: Histories) -> Indices:
+    """Settle the rows that were run before, and return the others."""
+    there, columns = histories.recall(key, found.work.some(rows))
+    found.settle(rows[there], columns, Step.HISTORY)
+    return rows[~there]
 
 
 def chart(found: Demands, rows: Indices, charts: Shelf, azimuth_step: float, *, thrifty: bool) -> None:

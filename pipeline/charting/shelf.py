@@ -1,11 +1,13 @@
 """Where charts are kept: a few in memory, and, where a folder is given, all that were built, from night to night."""
 
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Set
+from collections.abc import Callable, Collection, Iterator, Set
 from concurrent.futures import Future
+from contextlib import contextmanager
 from pathlib import Path
 from threading import Lock
 
+from pipeline.charting.histories import Histories
 from pipeline.charting.keeping import keep, prune, recall
 from pipeline.charting.response_chart import ResponseChart
 from pipeline.records import ChartAxis
@@ -24,6 +26,7 @@ class Shelf:
 
     def __init__(self, folder: Path | None = None, kept: int = KEPT, *, admitted: Set[str] | None = None) -> None:
         self._folder, self._kept, self._admitted = folder, kept, admitted
+        self.histories: Histories | None = None
         self._lock = Lock()
         self._charts: OrderedDict[str, Future[ResponseChart]] = OrderedDict()
 
@@ -51,6 +54,17 @@ class Shelf:
                 chart.set_exception(problem)
                 raise
         return chart.result()
+
+    @contextmanager
+    def remembering(self, file: Path | None) -> Iterator[None]:
+        """Take over the histories that are kept in a file, and keep there those that are used until the end."""
+        self.histories = None if file is None else Histories(file)
+        try:
+            yield
+            if self.histories is not None:
+                self.histories.keep()
+        finally:
+            self.histories = None
 
     def pays(self, group: str, key: str, axis: ChartAxis, asking: int, least: int) -> bool:
         """Say whether a chart is to be used by some who could be integrated too.

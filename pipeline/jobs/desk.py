@@ -7,6 +7,7 @@ back depends on these two alone: the same on this machine and on another, whoeve
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from hashlib import sha256
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -47,6 +48,9 @@ from pipeline.settings import Analysis
 from pipeline.store.results import Encoded, encode, unpacked
 from pipeline.survey import in_order, wishes
 
+HISTORIES = "histories"
+"""Folder beside that of the charts for the histories of each sheet."""
+
 
 @dataclass
 class Brief:
@@ -83,6 +87,13 @@ class Brief:
     def shelf(self) -> Shelf:
         """The response charts."""
         return Shelf(self.kept, admitted=self.admitted)
+
+    def memory(self, sheet: Sheet, floor: str) -> Path | None:
+        """Return the file in which the histories of a sheet are kept from night to night."""
+        if self.kept is None:
+            return None
+        name = repr((sheet.gallery, sheet.on_display, sheet.number, floor)).encode("utf-8", "surrogatepass")
+        return self.kept.parent / HISTORIES / f"{sha256(name).hexdigest()[:32]}.npz"
 
     @cached_property
     def carriage(self) -> Carriage:
@@ -148,7 +159,8 @@ def work(brief: Brief, errand: Errand) -> Done:
     """
     sheet, result, seconds = errand.sheet, None, 0.0
     if errand.found is None:
-        found, seconds = find(brief, brief.storeys[errand.floor], errand.items, errand.decisions)
+        with brief.shelf.remembering(brief.memory(sheet, errand.floor)):
+            found, seconds = find(brief, brief.storeys[errand.floor], errand.items, errand.decisions)
         result = encode(sheet.key, found, tally)
     else:
         found = unpacked(errand.found)

@@ -1,8 +1,11 @@
 """The museum's records -> Kouros's inventory, with a log of what was read, refused and changed."""
 
 import csv
+import hashlib
 import json
+import os
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,13 +13,14 @@ from typing import Any
 from pipeline.collection.guess import Guess, guess
 from pipeline.collection.inventory import Difference, difference, held, latest_import, replace_inventory, return_to
 from pipeline.collection.limits import Limits
-from pipeline.collection.mapping import load_mapping, preset_names
+from pipeline.collection.mapping import Mapping, load_mapping, preset_names
 from pipeline.collection.reading import Reading, read_items
 from pipeline.collection.sources.opening import is_database
 from pipeline.collection.suspicion import Suspicion
-from pipeline.jobs.workspace import Workspace
+from pipeline.jobs.workspace import KEPT, Workspace
 from pipeline.records import Item, Problem
 from pipeline.report.exports import safe_cell
+from pipeline.resources import digest_of
 from pipeline.settings import Settings
 
 LOGS = "imports"
@@ -127,6 +131,57 @@ def import_collection(
     log = workspace.settings.path(LOGS) / f"{after.id:05d}-{after.imported_at[:10]}.csv"
     _write_log(log, reading, changes)
     return Imported(reading, changes, log=log)
+
+
+def unchanged(workspace: Workspace, source: str, mapping: str) -> bool:
+    """Say whether a file is the one that the inventory is the state of, byte for byte, and would be read alike.
+
+    source : as in the settings; a database must be read to know
+    raises : MappingError for a mapping that cannot be used
+    """
+    if is_database(source):
+        return False
+    try:
+        told = json.loads(_mark(workspace).read_text(encoding="utf-8"))
+        return bool(told == _seen(workspace, source, mapping))
+    except (OSError, ValueError):
+        return False
+
+
+def remember(workspace: Workspace, source: str, mapping: str) -> None:
+    """Note which file the inventory is the state of, so that it is not read again as long as it is the same."""
+    if is_database(source):
+        return
+    file = _mark(workspace)
+    aside = file.with_name(f".{file.name}.{os.getpid()}")
+    with suppress(OSError):
+        # Without the note the next night reads the source, and that is all.
+        file.parent.mkdir(parents=True, exist_ok=True)
+        aside.write_text(json.dumps(_seen(workspace, source, mapping)), encoding="utf-8")
+        aside.replace(file)
+
+
+def _mark(workspace: Workspace) -> Path:
+    return workspace.settings.path(KEPT) / "source.json"
+
+
+def _seen(workspace: Workspace, source: str, mapping: str) -> dict[str, Any]:
+    path = workspace.settings.path(source)
+    with path.open("rb") as binary:
+        content = hashlib.file_digest(binary, "sha256").hexdigest()
+    info = latest_import(workspace.engine)
+    return {
+        "source": str(path),
+        "sha256": content,
+        "mapping": hashlib.sha256(_mapping(workspace, mapping).model_dump_json().encode()).hexdigest(),
+        "code": digest_of("collection", "records", kinds=(".py", ".csv", ".toml")),
+        "limits": workspace.settings.limits.model_dump_json(),
+        "version": None if info is None else info.id,
+    }
+
+
+def _mapping(workspace: Workspace, mapping: str) -> Mapping:
+    return load_mapping(mapping if mapping in preset_names() else workspace.settings.path(mapping))
 
 
 def go_back(workspace: Workspace, version: int) -> Difference:

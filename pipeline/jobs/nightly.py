@@ -7,13 +7,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from pipeline.collection.inventory import catalogue
+from pipeline.collection.inventory import catalogue, latest_import
 from pipeline.jobs.briefing import admit, brief_for, hashes
 from pipeline.jobs.deciding import decided
-from pipeline.jobs.importing import import_collection, source_of
+from pipeline.jobs.importing import import_collection, remember, source_of, unchanged
 from pipeline.jobs.outcome import write_summary
+from pipeline.jobs.retention import sweep
 from pipeline.jobs.rounds import Round
-from pipeline.jobs.standing import mark_good, mark_running
+from pipeline.jobs.standing import Status, mark_good, mark_running, status
 from pipeline.jobs.workspace import UsageError, Workspace, locked, near, open_workspace
 from pipeline.motions.site import Site
 from pipeline.records import Progress, RunChanges, RunRecord, Sheet, Standing, Tally, Urgent
@@ -92,16 +93,18 @@ def run(
 
     What has not changed is not found again: results are kept by a digest of everything that they depend on.
     dry_run : assess and summarise, but store and publish nothing
-    resume  : go on with the inventory as it is, without reading the museum's source again
+    resume  : go on where a run was cut off: with the inventory as that run had read it, if it got so far
     raises  : errors with an `exit_code`: settings 2, motions 4, collection 5, lock 6, shrunk 7
     """
     chosen = selection or Selection()
     with locked(settings):
         started = datetime.now(UTC)
+        cut_off = status(settings)
         if not (chosen or dry_run):
             mark_running(settings)
+        sweep(settings)
         workspace = open_workspace(settings)
-        if not resume:
+        if not (resume and _was_read(workspace, cut_off)):
             _refresh(workspace, progress, dry_run=dry_run)
         everything = catalogue(workspace.engine)
         objects = named(everything.objects, galleries=chosen.galleries, objects=chosen.objects)
@@ -156,15 +159,24 @@ def _ended(night: Round, chosen: Selection) -> RunRecord:
     return replace(head, finished=finished, settings={**head.settings, **more}, decisions=night.standing)
 
 
+def _was_read(workspace: Workspace, cut_off: Status | None) -> bool:
+    """Say whether the run that was cut off had brought the museum's source into the inventory."""
+    info = latest_import(workspace.engine)
+    return info is not None and cut_off is not None and cut_off.stale and info.imported_at >= cut_off.since
+
+
 def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None:
     wanted = workspace.settings.collection
     if not wanted.source:
         return
     progress.step("collection", 0, 1)
-    source = source_of(workspace, wanted.source)
-    import_collection(
-        workspace, source, wanted.mapping, shrink_limit=wanted.shrink_limit, dry_run=dry_run, nightly=True
-    )
+    if not unchanged(workspace, wanted.source, wanted.mapping):
+        source = source_of(workspace, wanted.source)
+        import_collection(
+            workspace, source, wanted.mapping, shrink_limit=wanted.shrink_limit, dry_run=dry_run, nightly=True
+        )
+        if not dry_run:
+            remember(workspace, wanted.source, wanted.mapping)
     progress.step("collection", 1, 1)
 
 

@@ -62,6 +62,13 @@ def prune(settings: Settings, *, dry_run: bool = False) -> Pruned:
         return Pruned(tuple(runs), tuple(sorted(folder.name for folder in folders)), tuple(kept))
 
 
+def sweep(settings: Settings) -> None:
+    """Remove what is left of reports that were never finished; the caller holds the lock."""
+    for folder in list(_inside(settings.path(settings.report.folder))):
+        if _LEFTOVER.fullmatch(folder.name):
+            _remove(folder)
+
+
 def _sacred(workspace: Workspace) -> frozenset[str]:
     """Return the runs that stay whatever the limits say."""
     good = last_good(workspace.settings)

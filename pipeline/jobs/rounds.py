@@ -167,7 +167,10 @@ class Round:
         if objects <= FEW:
             return crew()
         if wanted.cluster:
+            # Its workers may not see our folders.
+            self.brief = replace(self.brief, kept=None, threads=1)
             return crew(address=wanted.cluster)
+        self.brief = replace(self.brief, threads=1)
         return crew(processes=wanted.processes or cores())
 
     def _sheet(self, piece: _Piece) -> Sheet:

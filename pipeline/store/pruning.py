@@ -12,8 +12,8 @@ def remove_runs(engine: Engine, run_ids: Iterable[str]) -> None:
 
     run_ids : one that is not there is passed by
 
-    What an interrupted run found belongs to no run, and is lost here: a good run came after it.  The space is used again
-    by later runs; an SQLite file does not become smaller by itself.
+    What an interrupted run found belongs to no run, and is lost here: a good run came after it.  The space is used
+    again by later runs; an SQLite file does not become smaller by itself.
     """
     for run_id in run_ids:
         with engine.begin() as connection:

@@ -1,0 +1,118 @@
+"""Histories that were run on an earlier night, row for row, so that one changed motion costs only its own.
+
+What a history gives depends on the model, its parameters, the motion and how finely it is run, and on nothing else; a
+night that must judge a sheet again because something changed finds here all that did not.
+"""
+
+import hashlib
+import json
+import os
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from threading import get_ident
+from typing import Any
+from zipfile import BadZipFile
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.charting.keeping import code_version
+from pipeline.quantities import Array
+from pipeline.records import Columns
+
+_UNREADABLE = (OSError, ValueError, KeyError, BadZipFile, EOFError, TypeError)
+
+
+class Histories:
+    """The histories of one sheet: those that were kept, and those that are used or run now, which are kept again.
+
+    file : where they are kept; what is damaged, or was written by other code, counts as nothing
+    """
+
+    def __init__(self, file: Path) -> None:
+        self._file = file
+        self._old = _read(file)
+        self._places: dict[str, dict[bytes, int]] = {}
+        self._used: dict[str, dict[bytes, Array]] = {}
+        self._names: dict[str, tuple[str, ...]] = {}
+
+    def recall(self, key: str, values: Mapping[str, Array]) -> tuple[NDArray[np.bool_], Columns]:
+        """Return which rows are there, and the columns of those.
+
+        key    : of everything but the parameters (see `history_key`)
+        values : the parameters, (n,) each
+        """
+        rows = _rows(values)
+        if key not in self._old:
+            return np.zeros(len(rows), dtype=bool), {}
+        names, table = self._old[key]
+        width = len(values)
+        if key not in self._places:
+            self._places[key] = {row.tobytes(): at for at, row in enumerate(np.ascontiguousarray(table[:, :width]))}
+        at = np.array([self._places[key].get(row, -1) for row in rows], dtype=np.intp)
+        there = at >= 0
+        found = table[at[there], width:]
+        columns = {name: np.ascontiguousarray(found[:, i]) for i, name in enumerate(names)}
+        self._note(key, [row for row, is_there in zip(rows, there.tolist(), strict=True) if is_there], columns)
+        return there, columns
+
+    def note(self, key: str, values: Mapping[str, Array], columns: Columns) -> None:
+        """Take down histories that were run now."""
+        self._note(key, _rows(values), columns)
+
+    def _note(self, key: str, rows: list[bytes], columns: Columns) -> None:
+        if not rows:
+            return
+        self._names[key] = tuple(columns)
+        table = np.column_stack([np.asarray(column, dtype=np.float64) for column in columns.values()])
+        self._used.setdefault(key, {}).update(zip(rows, table, strict=True))
+
+    def keep(self) -> None:
+        """Write what was used, atomically; a folder that cannot be written only costs the next night its time."""
+        tables = {}
+        for number, (key, used) in enumerate(self._used.items()):
+            parameters = np.frombuffer(b"".join(used), dtype=np.float64).reshape(len(used), -1)
+            tables[f"t{number}"] = np.hstack([parameters, np.array(list(used.values()))])
+            tables[f"k{number}"] = np.array(json.dumps([key, *self._names[key]]))
+        aside = self._file.with_name(f".{self._file.stem}-{os.getpid()}-{get_ident()}.npz")
+        try:
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            arrays: dict[str, Any] = {"code": np.array(_code()), **tables}
+            np.savez(aside, **arrays)
+            aside.replace(self._file)
+        except OSError:
+            with suppress(OSError):
+                aside.unlink(missing_ok=True)
+
+
+def history_key(*parts: object) -> str:
+    """Return the name of everything that a history depends on besides its parameters."""
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
+
+
+def _code() -> str:
+    return code_version()
+
+
+def _rows(values: Mapping[str, Array]) -> list[bytes]:
+    # Bit for bit, so that NaN (not given) equals NaN.
+    matrix = np.ascontiguousarray(np.column_stack(list(values.values())), dtype=np.float64)
+    return [row.tobytes() for row in matrix]
+
+
+def _read(file: Path) -> dict[str, tuple[tuple[str, ...], Array]]:
+    found = {}
+    try:
+        with np.load(file, allow_pickle=False) as kept:
+            if str(kept["code"]) != _code():
+                return {}
+            for number in range((len(kept.files) - 1) // 2):
+                key, *names = json.loads(str(kept[f"k{number}"]))
+                table = kept[f"t{number}"]
+                if table.ndim != 2 or table.dtype != np.float64 or table.shape[1] < len(names):
+                    raise ValueError("its tables do not fit")
+                found[str(key)] = (tuple(map(str, names)), table)
+    except _UNREADABLE:
+        return {}
+    return found

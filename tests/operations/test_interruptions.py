@@ -1,0 +1,201 @@
+"""Nights that are killed, run out of disk, or lose their database: a whole report stays, nothing is lost or doubled.
+
+The museum had a good night; then its records changed, and the second night is disturbed.  After that the published
+report must be whole, last night's or tonight's, and the run that is resumed must find what an undisturbed one finds.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+import random
+import shutil
+import signal
+import sqlite3
+import subprocess
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+from lxml import html
+
+from pipeline.collection.database import open_database
+from pipeline.records import RunRecord
+from pipeline.store.runs import list_runs, load_run
+from tests.test_jobs import COLUMNS
+
+from .conftest import command, environment, within
+
+KILLS = int(os.environ.get("KOUROS_KILLS", "4"))
+"""How many runs are killed; `make soak` kills fifty."""
+
+ROOMS, EACH = 6, 5
+
+
+def rows(height: float) -> list[str]:
+    """Thirty vases in six rooms, of which every second one has another height tonight."""
+    columns = COLUMNS.split(",")
+    out = []
+    for room in range(ROOMS):
+        for n in range(EACH):
+            told = {
+                columns[0]: f"{room}.{n}", columns[1]: f"Room {room}", columns[2]: "Vase",
+                columns[3]: f"{(height if n % 2 else 0.4) + 0.05 * n:.3f}", columns[4]: "0.15", columns[5]: "0.15",
+            }  # fmt: skip
+            out.append(",".join(told.get(column, "") for column in columns))
+    return out
+
+
+@dataclass(frozen=True)
+class Nights:
+    """A museum after its first good night, with tonight's records in place; what an undisturbed night would find."""
+
+    folder: Path
+    before: dict[str, dict[str, str]]
+    after: dict[str, dict[str, str]]
+    record: RunRecord
+    seconds: float
+
+
+def objects(report: Path) -> dict[str, dict[str, str]]:
+    """Return the rows of objects.csv by object number, without the run that found them."""
+    with (report / "objects.csv").open(encoding="utf-8", newline="") as stream:
+        listed = [row | {"run": ""} for row in csv.DictReader(stream)]
+    found = {row["object_number"]: row for row in listed}
+    assert len(found) == len(listed)
+    return found
+
+
+def last(folder: Path) -> RunRecord:
+    """Return what the last finished run found, without what tells one night from another."""
+    record = load_run(open_database(str(folder / "kouros.sqlite")))
+    kept = {name: value for name, value in record.settings.items() if name != "survey_seconds"}
+    return replace(record, run_id="", started="", finished="", settings=kept)
+
+
+@pytest.fixture(scope="session")
+def nights(tmp_path_factory: pytest.TempPathFactory, shaking: Path) -> Nights:
+    from tests.test_jobs import workspace
+
+    folder = tmp_path_factory.mktemp("interrupted") / "museum"
+    folder.mkdir()
+    workspace(folder, rows(0.4), site=str(shaking))
+    assert within(folder, "run").returncode in (0, 3)
+    before = objects(folder / "reports" / "latest")
+    (folder / "export.csv").write_text("\n".join([COLUMNS, *rows(0.9)]) + "\n", encoding="utf-8")
+    undisturbed = Path(shutil.copytree(folder, folder.parent / "undisturbed", symlinks=True))
+    start = time.monotonic()
+    ran = subprocess.run(
+        command("run"), cwd=undisturbed, env=environment({}), capture_output=True, text=True, check=False
+    )
+    seconds = time.monotonic() - start
+    assert ran.returncode in (0, 3), ran.stderr
+    after = objects(undisturbed / "reports" / "latest")
+    assert before != after
+    return Nights(folder, before, after, last(undisturbed), seconds)
+
+
+@pytest.fixture
+def museum(nights: Nights, tmp_path: Path) -> Path:
+    """A copy of that museum, to be disturbed."""
+    return Path(shutil.copytree(nights.folder, tmp_path / "museum", symlinks=True))
+
+
+def whole(folder: Path, nights: Nights) -> bool:
+    """Check that the published report is whole, and say whether it is tonight's."""
+    report = (folder / "reports" / "latest").resolve()
+    found = objects(report)
+    assert found in (nights.before, nights.after)
+    for page in report.glob("*.html"):
+        tree = html.fromstring(page.read_bytes())
+        for link in tree.xpath("//a/@href"):
+            target = link.partition("#")[0]
+            assert not target or (report / target).is_file(), f"{page.name}: {link}"
+    for name in ("findings.csv", "findings.jsonl", "findings.parquet", "findings.xlsx", "recommendations.csv"):
+        assert (report / name).stat().st_size > 0
+    return found == nights.after
+
+
+def resumes(folder: Path, nights: Nights) -> None:
+    """Check that the run is finished by --resume, with what an undisturbed night finds, once."""
+    done = within(folder, "run", "--resume")
+    assert done.returncode in (0, 3), done.stderr
+    assert whole(folder, nights)
+    assert last(folder) == nights.record
+    finished = [run for run in list_runs(open_database(str(folder / "kouros.sqlite"))) if run.status == "finished"]
+    assert len(finished) in (2, 3)  # three where the kill came after the report was published
+    assert not [p.name for p in (folder / "reports").iterdir() if p.name.endswith(".partial")]
+    again = within(folder, "run")
+    assert "0 objects new, 0 gone, 0 moved, 0 changed; 0 verdicts worse, 0 fixed, 0 other" in again.stdout
+
+
+@pytest.mark.parametrize("number", range(KILLS))
+def test_a_kill_at_any_moment(museum: Path, nights: Nights, number: int) -> None:
+    """SIGKILL, at moments spread over the run by chance with a fixed seed; the later half of it is where it writes."""
+    moment = random.Random(20_261_121 + number).uniform(0.25, 1.1) * nights.seconds
+    process = subprocess.Popen(
+        command("run"),
+        cwd=museum,
+        env=environment({}),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    try:
+        process.wait(moment)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+    whole(museum, nights)
+    resumes(museum, nights)
+
+
+@pytest.fixture(scope="session")
+def small_disk(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A file system of a few megabytes, as only root may make one."""
+    folder = tmp_path_factory.mktemp("small")
+    made = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=24m", "tmpfs", str(folder)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if made.returncode:
+        pytest.skip(f"no small disk can be made here: {made.stderr.strip() or 'mount was refused'}")
+    yield folder
+    subprocess.run(["umount", "--lazy", str(folder)], check=False)
+
+
+@pytest.mark.parametrize("room", [0, 40_000, 150_000, 400_000, 700_000])
+def test_a_full_disk_at_any_stage(nights: Nights, small_disk: Path, room: int) -> None:
+    """With so many bytes left the run fails earlier or later, says so, and leaves last night's report as it was."""
+    folder = small_disk / "museum"
+    shutil.rmtree(folder, ignore_errors=True)
+    (small_disk / "filling").unlink(missing_ok=True)
+    shutil.copytree(nights.folder, folder, symlinks=True)
+    state = os.statvfs(small_disk)
+    with (small_disk / "filling").open("wb") as stream:
+        stream.write(b"\0" * max(0, state.f_bavail * state.f_frsize - room))
+    done = within(folder, "run")
+    if done.returncode in (0, 3):
+        assert whole(folder, nights)
+    else:
+        assert "space" in done.stderr or "full" in done.stderr, done.stderr
+        assert "Traceback" not in done.stderr
+        assert not whole(folder, nights)
+    (small_disk / "filling").unlink()
+    resumes(folder, nights)
+
+
+def test_a_locked_database_is_named_and_the_report_stays(museum: Path, nights: Nights) -> None:
+    with sqlite3.connect(museum / "kouros.sqlite", isolation_level=None) as other:
+        other.execute("BEGIN EXCLUSIVE")
+        done = within(museum, "run")
+        assert done.returncode not in (0, 3)
+        assert "locked" in done.stderr
+        assert "Traceback" not in done.stderr
+        assert objects(museum / "reports" / "latest") == nights.before
+        other.execute("ROLLBACK")
+    resumes(museum, nights)
