@@ -14,6 +14,7 @@ from pipeline.classify import classify
 from pipeline.cli.console import Console
 from pipeline.collection.database import open_database
 from pipeline.execute import Threads
+from pipeline.jobs import sheets
 from pipeline.jobs.nightly import run
 from pipeline.jobs.workspace import CHARTS, KEPT
 from pipeline.motions.synthesis import band_limited_random
@@ -77,14 +78,16 @@ def test_a_night_by_charts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         assert abs(one.demand - other.demand) <= one.error
         if one.decided_by == "chart":
             assert one.error > 0.0
-    # The second night reads what the first one kept, and changes nothing of it.
+    # A night of other code judges anew, reads the charts that the first one kept, and changes nothing of them.
     with monkeypatch.context() as patch:
         patch.setattr(ResponseChart, "build", refuse)
+        patch.setattr(sheets, "_code", lambda: "other code")
         assert findings(settings) == looked
     assert {file.name: file.read_bytes() for file in charts.iterdir()} == kept
     # A damaged chart is said, and the night goes on as if there were none.
     for file in charts.iterdir():
         file.write_bytes(b"damaged")
+    monkeypatch.setattr(sheets, "_code", lambda: "another code again")
     with pytest.warns(ChartWarning, match="is built again"):
         assert findings(settings) == looked
     assert "the response chart" in "".join(

@@ -10,7 +10,7 @@ from sqlalchemy import create_engine, make_url, text
 from pipeline import classify
 from pipeline.cli.differing import plain_changes
 from pipeline.collection.database import database_url
-from pipeline.jobs import nightly
+from pipeline.jobs import briefing, sheets
 from pipeline.jobs.deciding import Wish, decide
 from pipeline.jobs.nightly import run
 from pipeline.jobs.reporting import compare
@@ -149,8 +149,9 @@ def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.
     assert not changes.inputs
 
     # Version: another Kouros assumes other room.
-    monkeypatch.setattr(nightly, "__version__", "9.9")
-    monkeypatch.setattr(nightly, "code_digest", lambda: "another")
+    monkeypatch.setattr(briefing, "__version__", "9.9")
+    monkeypatch.setattr(briefing, "code_digest", lambda: "another")
+    monkeypatch.setattr(sheets, "_code", lambda: "another")
     monkeypatch.setattr(
         classify, "_clearance_of", lambda _: Estimate(1e-9, "m", Origin.ASSUMED, 1e-9, 1e-9, "no room", "")
     )

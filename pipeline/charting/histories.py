@@ -27,12 +27,13 @@ _UNREADABLE = (OSError, ValueError, KeyError, BadZipFile, EOFError, TypeError)
 class Histories:
     """The histories of one sheet: those that were kept, and those that are used or run now, which are kept again.
 
-    file : where they are kept; what is damaged, or was written by other code, counts as nothing
+    file : where they are kept; None: nowhere, and only what is asked for twice is run once.  What is damaged, or was
+           written by other code, counts as nothing
     """
 
-    def __init__(self, file: Path) -> None:
+    def __init__(self, file: Path | None = None) -> None:
         self._file = file
-        self._old = _read(file)
+        self._old = {} if file is None else _read(file)
         self._places: dict[str, dict[bytes, int]] = {}
         self._used: dict[str, dict[bytes, Array]] = {}
         self._names: dict[str, tuple[str, ...]] = {}
@@ -44,34 +45,33 @@ class Histories:
         values : the parameters, (n,) each
         """
         rows = _rows(values)
-        if key not in self._old:
-            return np.zeros(len(rows), dtype=bool), {}
-        names, table = self._old[key]
-        width = len(values)
-        if key not in self._places:
-            self._places[key] = {row.tobytes(): at for at, row in enumerate(np.ascontiguousarray(table[:, :width]))}
-        at = np.array([self._places[key].get(row, -1) for row in rows], dtype=np.intp)
-        there = at >= 0
-        found = table[at[there], width:]
-        columns = {name: np.ascontiguousarray(found[:, i]) for i, name in enumerate(names)}
-        self._note(key, [row for row, is_there in zip(rows, there.tolist(), strict=True) if is_there], columns)
-        return there, columns
+        used = self._used.setdefault(key, {})
+        if key in self._old:
+            names, table = self._old[key]
+            self._names[key] = names
+            if key not in self._places:
+                parameters = np.ascontiguousarray(table[:, : len(values)])
+                self._places[key] = {row.tobytes(): at for at, row in enumerate(parameters)}
+            places = self._places[key]
+            used.update((row, table[places[row], len(values) :]) for row in rows if row in places and row not in used)
+        there = np.array([row in used for row in rows], dtype=bool)
+        if not there.any():
+            return there, {}
+        found = np.array([used[row] for row in rows if row in used])
+        return there, {name: np.ascontiguousarray(found[:, i]) for i, name in enumerate(self._names[key])}
 
     def note(self, key: str, values: Mapping[str, Array], columns: Columns) -> None:
         """Take down histories that were run now."""
-        self._note(key, _rows(values), columns)
-
-    def _note(self, key: str, rows: list[bytes], columns: Columns) -> None:
-        if not rows:
-            return
         self._names[key] = tuple(columns)
         table = np.column_stack([np.asarray(column, dtype=np.float64) for column in columns.values()])
-        self._used.setdefault(key, {}).update(zip(rows, table, strict=True))
+        self._used.setdefault(key, {}).update(zip(_rows(values), table, strict=True))
 
     def keep(self) -> None:
         """Write what was used, atomically; a folder that cannot be written only costs the next night its time."""
+        if self._file is None:
+            return
         tables = {}
-        for number, (key, used) in enumerate(self._used.items()):
+        for number, (key, used) in enumerate((key, used) for key, used in self._used.items() if used):
             parameters = np.frombuffer(b"".join(used), dtype=np.float64).reshape(len(used), -1)
             tables[f"t{number}"] = np.hstack([parameters, np.array(list(used.values()))])
             tables[f"k{number}"] = np.array(json.dumps([key, *self._names[key]]))

@@ -57,12 +57,14 @@ class Shelf:
 
     @contextmanager
     def remembering(self, file: Path | None) -> Iterator[None]:
-        """Take over the histories that are kept in a file, and keep there those that are used until the end."""
-        self.histories = None if file is None else Histories(file)
+        """Take over the histories that are kept in a file, and keep there those that are used until the end.
+
+        file : None: until the end only
+        """
+        self.histories = histories = Histories(file)
         try:
             yield
-            if self.histories is not None:
-                self.histories.keep()
+            histories.keep()
         finally:
             self.histories = None
 

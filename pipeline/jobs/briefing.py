@@ -16,7 +16,7 @@ from pipeline.classify import classify
 from pipeline.collection.inventory import Catalogue, Listed, latest_import
 from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
-from pipeline.jobs.desk import Brief
+from pipeline.jobs.desk import Brief, ChartErrand
 from pipeline.jobs.levels import floors_of, notes
 from pipeline.jobs.reporting import manner
 from pipeline.jobs.versions import code_digest, rules_digest
@@ -24,7 +24,8 @@ from pipeline.jobs.workspace import CHARTS, KEPT, Workspace
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.motions.site import Level, Site
 from pipeline.plan import plan
-from pipeline.records import Chart, Executor, Motion, Progress, RunRecord
+from pipeline.records import Chart, Executor, Model, Motion, Progress, RunRecord
+from pipeline.rules import Table
 from pipeline.store.reuse import CODE, KERNELS, LEVELS, PICTURES, RULES, stored_charts
 
 FRAGILE, SURVEYED = 1e8, 2e8
@@ -102,16 +103,32 @@ def brief_for(
     return brief
 
 
-def admit(brief: Brief, catalogue: Catalogue, chosen: Sequence[Listed], x_azimuth: float) -> None:
-    """Decide which response charts are built: those that a sample of the objects says pay for all of them.
+def admit(brief: Brief, catalogue: Catalogue, chosen: Sequence[Listed], x_azimuth: float) -> list[ChartErrand]:
+    """Decide which response charts are used (see `popular`), and return those to be built before the sheets."""
+    found = popular(catalogue, chosen, brief.rules, x_azimuth)
+    brief.admitted = frozenset(found)
+    shaking = {m.motion.hash: m.motion for storey in brief.storeys.values() for v in storey.levels for m in v.motions}
+    return [
+        ChartErrand(model.name, motion, angle, alike)
+        for _, (model, angle, alike) in sorted(found.items())
+        for motion in shaking.values()
+    ]
+
+
+Group = tuple[Model, float | None, dict[str, float]]
+"""What one chart under each motion serves: the model, the direction, the parameters that all who ask share."""
+
+
+def popular(catalogue: Catalogue, chosen: Sequence[Listed], rules: Table | None, x_azimuth: float) -> dict[str, Group]:
+    """Return the groups of parameters whose charts pay for a collection, as a sample of its objects says, by name.
 
     What an object is found to do must not hang on which others happen to be on its sheet, or on who asked first.
     """
     every = max(1, len(chosen) // SAMPLE)
     sample = catalogue.items([one.object_number for one in chosen[::every]])
-    scenes = [classify(item, brief.rules) for item in sample.values()]
+    scenes = [classify(item, rules) for item in sample.values()]
     asking: dict[str, int] = {}
-    pays: dict[str, int] = {}
+    found: dict[str, Group] = {}
     for work in plan(scenes, x_azimuth).work:
         if work.model.chart is None:
             continue
@@ -119,8 +136,12 @@ def admit(brief: Brief, catalogue: Catalogue, chosen: Sequence[Listed], x_azimut
             for alike, some in groups(work.model, work.some(rows)):
                 name = group_name(work.model, angle, alike)
                 asking[name] = asking.get(name, 0) + some.size
-                pays[name] = work.model.chart.nodes
-    brief.admitted = frozenset(name for name, number in asking.items() if number * every >= pays[name])
+                found[name] = (work.model, angle, alike)
+    return {
+        name: group
+        for name, group in found.items()
+        if group[0].chart is not None and asking[name] * every >= group[0].chart.nodes
+    }
 
 
 def _asked(wanted: bool | Literal["auto"], affordable: bool) -> bool:

@@ -32,6 +32,7 @@ from pipeline.records import (
     Found,
     Fragility,
     Item,
+    Motion,
     Progress,
     RunRecord,
     Sheet,
@@ -43,6 +44,7 @@ from pipeline.report.language import language
 from pipeline.report.sheets import Drawn, Pen
 from pipeline.report.tallies import tally
 from pipeline.report.units import Units
+from pipeline.response import DECIDES, response_chart
 from pipeline.rules import Table
 from pipeline.settings import Analysis
 from pipeline.store.results import Encoded, encode, unpacked
@@ -134,6 +136,34 @@ class Errand:
     digests: Mapping[str, str] = field(default_factory=dict)
     changed: Mapping[tuple[str, str], tuple[str, ...]] = field(default_factory=dict)
     draw: bool = True
+
+
+@dataclass(frozen=True)
+class ChartErrand:
+    """A response chart to be built.
+
+    angle : degrees that what asks for it is shaken along; None for the worst direction, or for both at once
+    alike : the parameters that all who ask for it share
+    """
+
+    model: str
+    motion: Motion
+    angle: float | None
+    alike: Mapping[str, float]
+
+
+def build(brief: Brief, errand: ChartErrand) -> None:
+    """Put a chart on the shelf, where it is not there yet, so that all who work find it."""
+    given = {name: value for name, value in errand.alike.items() if value == value}  # noqa: PLR0124 - NaN: not given
+    response_chart(
+        errand.model,
+        errand.motion,
+        angle=errand.angle,
+        azimuth_step=brief.analysis.azimuth_step,
+        tolerance=DECIDES,
+        charts=brief.shelf,
+        **given,
+    )
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,10 @@ from typing import Any
 from pipeline.assess import assess
 from pipeline.charting import Shelf
 from pipeline.climb import AUTO, Climb, examine
-from pipeline.collection.inventory import read_inventory
+from pipeline.collection.inventory import catalogue, read_inventory
 from pipeline.execute import Threads
 from pipeline.findings import findings
+from pipeline.jobs.briefing import popular
 from pipeline.jobs.deciding import Decided, decided
 from pipeline.jobs.desk import place
 from pipeline.jobs.levels import storeys
@@ -73,14 +74,16 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
     raises : UsageError for an object that the inventory does not have, with close ones; errors as a run
     """
     settings = workspace.settings
-    inventory = read_inventory(workspace.engine)
+    everything, inventory = catalogue(workspace.engine), read_inventory(workspace.engine)
     items = named(inventory, objects=(number,))
     site = workspace.site()
     executor, decisions = Threads(settings.analysis.workers or None), decided(workspace)
     out = []
     for storey in storeys(settings, site, items):
         levels = storey.shaking
-        with charts_of(settings, [m.hash for level in levels for m in level.motions]) as shelf:
+        # The charts that a night uses, so that the reasons are those of the night.
+        charted = popular(everything, everything.objects, workspace.rules, storey.x_azimuth)
+        with charts_of(settings, [m.hash for level in levels for m in level.motions], charted) as shelf:
             for index in storey.members:
                 one = _placed(workspace, items[index], decisions)
                 one = replace(one, scene=replace(one.scene, floor=storey.name))

@@ -113,7 +113,7 @@ def run(
         try:
             night = Round(workspace, brief, everything, objects, decided(workspace))
             if night.fresh:
-                admit(brief, everything, objects, site.manifest.site.x_azimuth)
+                night.charts = admit(brief, everything, objects, site.manifest.site.x_azimuth)
             return _hold(night, progress, chosen, dry_run=dry_run)
         finally:
             limits = settings.charts

@@ -1,6 +1,6 @@
 """One round through the sheets of a collection: which have results, who finds the others, what becomes of all."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -8,7 +8,7 @@ from time import monotonic
 
 from pipeline.collection.inventory import Catalogue, Listed, fields_since
 from pipeline.execute.crew import Crew, cores, crew
-from pipeline.jobs.desk import Brief, Done, Errand, stand, work
+from pipeline.jobs.desk import Brief, ChartErrand, Done, Errand, build, stand, work
 from pipeline.jobs.doubts import now, standing
 from pipeline.jobs.levels import floor_name
 from pipeline.jobs.sheets import Keys, Part, cut
@@ -50,6 +50,7 @@ class Round:
     fresh    : objects whose results must be found
     sheets   : as they are stored with the run, once all is done; standing: the decisions about their objects
     seconds  : what finding out what is worth measuring cost
+    charts   : response charts that are built before the sheets
     """
 
     def __init__(
@@ -74,6 +75,7 @@ class Round:
         ]
         self.fresh = sum(len(piece.part.objects) for piece in self._pieces if piece.kept is None)
         self.seconds = 0.0
+        self.charts: Sequence[ChartErrand] = ()
         self._tallies: list[Tally] = []
         self._sheets: list[Sheet] = []
 
@@ -109,7 +111,7 @@ class Round:
         take : is given each new result
         """
         wanted = (replace(self._errand(piece), draw=False) for piece in self._pieces if piece.kept is None)
-        with self._crew(self.fresh) as hands, closing(hands.each(work, self.brief, wanted)) as done:
+        with self._crew(self.fresh) as hands, closing(self._each(hands, wanted, progress)) as done:
             for at, piece in enumerate(self._pieces):
                 progress.step("sheets", at, len(self._pieces))
                 came = None if piece.kept is not None else next(done)
@@ -135,7 +137,7 @@ class Round:
         waiting: list[Encoded] = []
         since = monotonic()
         todo = sum(len(piece.part.objects) for at, piece in enumerate(self._pieces) if at not in taken)
-        with self._crew(todo) as hands, closing(hands.each(work, self.brief, wanted)) as done:
+        with self._crew(todo) as hands, closing(self._each(hands, wanted, progress)) as done:
             for at, piece in enumerate(self._pieces):
                 progress.step("sheets", at, len(self._pieces))
                 came = None if at in taken else next(done)
@@ -153,6 +155,13 @@ class Round:
             self._keep(waiting)
         progress.step("sheets", len(self._pieces), len(self._pieces))
         return total(self._tallies)
+
+    def _each(self, hands: Crew, wanted: Iterable[Errand], progress: Progress) -> Generator[Done]:
+        """Yield what comes of each errand; charts that many ask for are built before, each by one."""
+        if self.charts and self.brief.kept is not None:
+            for at, _ in enumerate(hands.each(build, self.brief, self.charts)):
+                progress.step("response charts", at + 1, len(self.charts))
+        yield from hands.each(work, self.brief, wanted)
 
     def _keep(self, waiting: list[Encoded]) -> None:
         head = self.brief.head

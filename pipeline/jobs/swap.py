@@ -134,7 +134,7 @@ def _assessed(workspace: Workspace, site: Site, name: str, engine: Database, pro
     brief = brief_for(workspace, site, everything, everything.objects, datetime.now(UTC), progress)
     night = Round(workspace, brief, everything, everything.objects, decided(workspace))
     if night.fresh:
-        admit(brief, everything, everything.objects, site.manifest.site.x_azimuth)
+        night.charts = admit(brief, everything, everything.objects, site.manifest.site.x_azimuth)
     night.assess(progress, lambda result: keep(engine, name, brief.head.started, [result]))
     for sheet in night.sheets:
         copy(workspace.engine, engine, sheet.key)

@@ -137,17 +137,20 @@ def locked(settings: "Settings") -> Iterator[None]:
 
 
 @contextmanager
-def charts_of(settings: "Settings | None", using: Collection[str] = ()) -> Iterator["Shelf"]:
+def charts_of(
+    settings: "Settings | None", using: Collection[str] = (), admitted: Collection[str] | None = None
+) -> Iterator["Shelf"]:
     """Lend the shelf of the workspace's response charts, and tidy it up at the end; None: one in memory only.
 
-    using : hashes of motions in use, whose charts stay although perhaps none of them is asked for
+    using    : hashes of motions in use, whose charts stay although perhaps none of them is asked for
+    admitted : see `Shelf`
     """
     from pipeline.charting import Shelf
 
     if settings is None:
         yield Shelf()
         return
-    shelf = Shelf(settings.path(KEPT) / CHARTS)
+    shelf = Shelf(settings.path(KEPT) / CHARTS, admitted=None if admitted is None else frozenset(admitted))
     try:
         yield shelf
     finally:
