@@ -26,6 +26,7 @@ def assess(
     charts: Shelf = SHELF,
     outcomes: bool = True,
     efforts: MutableMapping[str, Effort] | None = None,
+    needing: Sequence[MutableMapping[str, int]] | None = None,
 ) -> tuple[Plan, list[list[Finding]]]:
     """Run everything the scenes require under every motion and judge it.
 
@@ -34,6 +35,7 @@ def assess(
     charts    : where charts are found and kept
     outcomes  : whether to find numbers beyond the verdict: what fails, by how much, and what it does then
     efforts   : what the verdicts took is added here, by the name of the model
+    needing   : for how many of each scene's analyses any history was run is added here, by the name of the model
     returns   : the plan (with the reasons for models not run) and the findings of each scene, in their order
     """
     todo = plan(scenes, levels[0].x_azimuth)
@@ -55,8 +57,12 @@ def assess(
             )
             for case, known in examined.cases:
                 made = findings(examined.climb, case, known, scenes)
-                for index, finding in zip(work.scenes[case.analyses].tolist(), made, strict=True):
+                where = work.scenes[case.analyses]
+                for index, finding in zip(where.tolist(), made, strict=True):
                     found[index].append(finding)
+                if needing is not None:
+                    for index in where[examined.climb.needed(case)].tolist():
+                        needing[index][work.model.name] = needing[index].get(work.model.name, 0) + 1
             if efforts is not None:
                 efforts.setdefault(work.model.name, Effort()).add(examined.climb.effort)
             done += len(level.motions)

@@ -203,8 +203,12 @@ class Climb:
         """Add up by what the analyses of a case were decided, and how many needed any history."""
         for step in Step:
             self.effort.decided[step] += int(np.count_nonzero(self.decided[case.analyses] == step))
+        self.effort.needing += int(np.count_nonzero(self.needed(case)))
+
+    def needed(self, case: Case) -> Mask:
+        """Return for which analyses of a case any history was run."""
         steps = [case.spans.furthest(found.step) for found in self.found]
-        self.effort.needing += int(np.count_nonzero(np.max(steps, axis=0) == Step.HISTORY))
+        return np.asarray(np.max(steps, axis=0) == Step.HISTORY)
 
     def _with(self, rows: Sequence[Indices]) -> list[tuple[Indices, Demands]]:
         return list(zip(rows, self.found, strict=True))

@@ -15,7 +15,6 @@ from typing import Any
 from pipeline.assess import assess
 from pipeline.charting import Shelf
 from pipeline.classify import classify, object_classes
-from pipeline.climb import Effort
 from pipeline.execute import Threads
 from pipeline.fragility.objects import fragilities
 from pipeline.jobs.doubts import now, standing
@@ -23,7 +22,6 @@ from pipeline.jobs.levels import Storey
 from pipeline.mitigate import Means, advise
 from pipeline.mitigate.bench import Carriage
 from pipeline.mitigate.installed import Measure, Placed, assess_above, placed
-from pipeline.models import model_named
 from pipeline.neighbours import neighbours
 from pipeline.records import (
     Assessment,
@@ -90,11 +88,12 @@ class Brief:
         """The response charts."""
         return Shelf(self.kept, admitted=self.admitted)
 
-    def memory(self, sheet: Sheet, floor: str) -> Path | None:
-        """Return the file in which the histories of a sheet are kept from night to night."""
+    def memory(self, batch: Sequence["Errand"]) -> Path | None:
+        """Return the file in which the histories of some sheets are kept from night to night."""
         if self.kept is None:
             return None
-        name = repr((sheet.gallery, sheet.on_display, sheet.number, floor)).encode("utf-8", "surrogatepass")
+        sheets = [(e.sheet.gallery, e.sheet.on_display, e.sheet.number, e.floor) for e in batch]
+        name = repr(sheets).encode("utf-8", "surrogatepass")
         return self.kept.parent / HISTORIES / f"{sha256(name).hexdigest()[:32]}.npz"
 
     @cached_property
@@ -182,20 +181,53 @@ class Done:
     seconds: float = 0.0
 
 
-def work(brief: Brief, errand: Errand) -> Done:
-    """Do what there is to do for a sheet.
+def work(brief: Brief, batch: Sequence[Errand]) -> tuple[Done, ...]:
+    """Do what there is to do for some sheets of one floor; what must be found is found together, which is quicker.
 
     raises : StoreError and ReportError naming the object, for what can neither be kept nor shown
     """
-    sheet, result, seconds = errand.sheet, None, 0.0
-    if errand.found is None:
-        with brief.shelf.remembering(brief.memory(sheet, errand.floor)):
-            found, seconds = find(brief, brief.storeys[errand.floor], errand.items, errand.decisions)
-        result = encode(sheet.key, found, tally)
-    else:
-        found = unpacked(errand.found)
-    there = stand(brief.head, found, errand)
-    return Done(result, brief.pen.draw(sheet, found, there) if errand.draw else None, there, seconds)
+    fresh = [errand for errand in batch if errand.found is None]
+    seconds = 0.0
+    results: dict[str, tuple[Found, Encoded]] = {}
+    if fresh:
+        items = [item for errand in fresh for item in errand.items]
+        decisions = [decision for errand in fresh for decision in errand.decisions]
+        with brief.shelf.remembering(brief.memory(fresh)):
+            whole, seconds = find(brief, brief.storeys[fresh[0].floor], items, decisions)
+        for errand, found in zip(fresh, parted(whole, [len(errand.items) for errand in fresh]), strict=True):
+            results[errand.sheet.key] = (found, encode(errand.sheet.key, found, tally))
+    done = []
+    for errand in batch:
+        known = errand.found
+        found = results[errand.sheet.key][0] if known is None else unpacked(known)
+        result = results[errand.sheet.key][1] if known is None else None
+        there = stand(brief.head, found, errand)
+        drawn = brief.pen.draw(errand.sheet, found, there) if errand.draw else None
+        done.append(Done(result, drawn, there, seconds))
+        seconds = 0.0
+    return tuple(done)
+
+
+def parted(whole: Found, sizes: Sequence[int]) -> list[Found]:
+    """Part what was found about the objects of several sheets; a pair of neighbours belongs where its first object is.
+
+    sizes : how many of the objects, in order, each sheet has
+    """
+    out, start = [], 0
+    for size in sizes:
+        mine = whole.assessments[start : start + size]
+        start += size
+        numbers = {a.scene.item.object_number for a in mine}
+        wished = None if whole.wishes is None else tuple(w for w in whole.wishes if w.object_number in numbers)
+        out.append(
+            Found(
+                assessments=mine,
+                wishes=wished,
+                spacings=tuple(s for s in whole.spacings if s.first in numbers),
+                needing={number: whole.needing[number] for number in numbers if number in whole.needing},
+            )
+        )
+    return out
 
 
 def stand(head: RunRecord, found: Found, errand: Errand) -> tuple[Standing, ...]:
@@ -239,9 +271,9 @@ def find(
     fidelity, step = brief.analysis.fidelity, brief.analysis.azimuth_step
     # Few objects stand on isolators, each on its own: neither charts nor bounds of what these pass on would pay.
     integrating = "reference" if fidelity == "reference" else "history"
-    efforts: dict[str, Effort] = {}
+    needing: list[dict[str, int]] = [{} for _ in scenes]
     plan, findings = assess(
-        scenes, levels, executor, told, fidelity=fidelity, azimuth_step=step, charts=brief.shelf, efforts=efforts
+        scenes, levels, executor, told, fidelity=fidelity, azimuth_step=step, charts=brief.shelf, needing=needing
     )
     above = assess_above(objects, levels, executor, told, fidelity=integrating, azimuth_step=step)
     for at, (on_top, left_out) in enumerate(above):
@@ -279,6 +311,6 @@ def find(
         ),
         wishes=None if wished is None else tuple(in_order(wished)),
         spacings=tuple(neighbours(scenes, findings, levels)),
-        efforts={model_named(name).title: effort.plain() for name, effort in efforts.items()},
+        needing={scene.item.object_number: counts for scene, counts in zip(scenes, needing, strict=True) if counts},
     )
     return found, seconds

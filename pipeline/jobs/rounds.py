@@ -1,6 +1,6 @@
 """One round through the sheets of a collection: which have results, who finds the others, what becomes of all."""
 
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -23,6 +23,9 @@ from pipeline.store.results import Encoded, Kept, keep, known_to, load_found, ou
 
 FEW = 5_000
 """Objects whose results are to be found for which other processes do not pay: they take seconds to start."""
+
+BATCH = 4_000
+"""Objects, about, that one worker works on together: each model is called once for all of them under each motion."""
 
 _SECONDS = 5.0
 """Longest time for which results wait to be stored together."""
@@ -110,7 +113,8 @@ class Round:
 
         take : is given each new result
         """
-        wanted = (replace(self._errand(piece), draw=False) for piece in self._pieces if piece.kept is None)
+        todo = [piece for piece in self._pieces if piece.kept is None]
+        wanted = (tuple(replace(self._errand(piece), draw=False) for piece in batch) for batch in _batches(todo))
         with self._crew(self.fresh) as hands, closing(self._each(hands, wanted, progress)) as done:
             for at, piece in enumerate(self._pieces):
                 progress.step("sheets", at, len(self._pieces))
@@ -133,10 +137,11 @@ class Round:
                 found = load_found(self.workspace.engine, piece.key)
                 piece.there = stand(self.brief.head, found, self._errand(piece))
         taken = {at for at, piece in enumerate(self._pieces) if self._drawn(edition, piece)}
-        wanted = (self._errand(piece) for at, piece in enumerate(self._pieces) if at not in taken)
+        left = [piece for at, piece in enumerate(self._pieces) if at not in taken]
+        wanted = (tuple(self._errand(piece) for piece in batch) for batch in _batches(left))
         waiting: list[Encoded] = []
         since = monotonic()
-        todo = sum(len(piece.part.objects) for at, piece in enumerate(self._pieces) if at not in taken)
+        todo = sum(len(piece.part.objects) for piece in left)
         with self._crew(todo) as hands, closing(self._each(hands, wanted, progress)) as done:
             for at, piece in enumerate(self._pieces):
                 progress.step("sheets", at, len(self._pieces))
@@ -156,12 +161,13 @@ class Round:
         progress.step("sheets", len(self._pieces), len(self._pieces))
         return total(self._tallies)
 
-    def _each(self, hands: Crew, wanted: Iterable[Errand], progress: Progress) -> Generator[Done]:
-        """Yield what comes of each errand; charts that many ask for are built before, each by one."""
+    def _each(self, hands: Crew, wanted: Iterable[tuple[Errand, ...]], progress: Progress) -> Generator[Done]:
+        """Yield what comes of each sheet; charts that many ask for are built before, each by one."""
         if self.charts and self.brief.kept is not None:
             for at, _ in enumerate(hands.each(build, self.brief, self.charts)):
                 progress.step("response charts", at + 1, len(self.charts))
-        yield from hands.each(work, self.brief, wanted)
+        for done in hands.each(work, self.brief, wanted):
+            yield from done
 
     def _keep(self, waiting: list[Encoded]) -> None:
         head = self.brief.head
@@ -230,6 +236,19 @@ class Round:
             if one.object_number in named
         }
         return links_to(self.workspace, where, self._by_key)
+
+
+def _batches(pieces: Iterable[_Piece]) -> Iterator[list[_Piece]]:
+    """Yield what is worked on together: sheets of one floor, in their order, that have a result or have none."""
+    batch: list[_Piece] = []
+    for piece in pieces:
+        alike = batch and (batch[0].floor, batch[0].kept is None) == (piece.floor, piece.kept is None)
+        if batch and (not alike or sum(len(p.part.objects) for p in batch) + len(piece.part.objects) > BATCH):
+            yield batch
+            batch = []
+        batch.append(piece)
+    if batch:
+        yield batch
 
 
 def links_to(workspace: Workspace, where: Mapping[str, str], sheets: Mapping[str, Sheet]) -> dict[str, Pointer]:

@@ -9,7 +9,7 @@ from pipeline.charts import chart_key
 from pipeline.climb import AUTO
 from pipeline.mitigate.bench import Bench, Carriage, Fineness, Trial, checks, passes, why_not
 from pipeline.mitigate.means import LAST, Means, Measure, own_means
-from pipeline.mitigate.measures import DISPLACEMENTS, MEASURES
+from pipeline.mitigate.measures import DISPLACEMENTS, MEASURES, TOGETHER
 from pipeline.mitigate.offers import Need, Offer, Proposal, Way
 from pipeline.mitigate.shared import SHARED, case_of, company
 from pipeline.records import Check, Executor, Finding, Mark, Progress, Recommendation, Scene, Verdict
@@ -140,6 +140,8 @@ class _Search:
         pending = [need for need in self.needs if need.wanted and need.index not in self.helped]
         # What is only open for want of room is no reason to take it off display.
         pending = [n for n in pending if measure.name in ROOM or any(f.verdict is Verdict.FAIL for f in n.findings)]
+        if measure.name in TOGETHER:
+            TOGETHER[measure.name](pending, self.bench, measure)
         open_: list[tuple[Unit, Proposal, Iterator[Offer]]] = []
         for unit in self._units(pending, measure):
             proposal = (

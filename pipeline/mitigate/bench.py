@@ -15,7 +15,7 @@ from pipeline.models import model_named
 from pipeline.models.common import largest_push, lift_ratios
 from pipeline.quantities import Array, G
 from pipeline.records import Check, Executor, Finding, Motion, Scene, Silent, Verdict
-from pipeline.response import prepare, respond, transmit
+from pipeline.response import answer, prepare, transmit
 from pipeline.verdicts import LevelMotions, capacity_of
 
 PASSED = 0.03
@@ -135,6 +135,7 @@ class Bench:
         carriage = carriage or Carriage()
         self._grounds = [carriage.ground(level) for level in self.levels]
         self._carried: dict[Isolator, Carried] = {}
+        self._on_pads: dict[tuple[Isolator, tuple[float, ...], float], tuple[float, float]] = {}
 
     def most(self, of: Callable[[Motion], float]) -> float:
         """Return the largest over the levels of what is combined from the motions of each."""
@@ -205,25 +206,43 @@ class Bench:
 
         cg_height : what its height may be; the largest of each output counts
         """
-        turns: list[float] = []
-        shares: list[float] = []
-        for level in self.levels:
+        key = (pad, tuple(cg_height), inertia_ratio)
+        if key not in self._on_pads:
+            self.on_pads(pad, [(cg_height, inertia_ratio)])
+        return self._on_pads[key]
+
+    def on_pads(self, pad: Isolator, objects: Sequence[tuple[Sequence[float], float]]) -> None:
+        """Run many objects on a pad together, for `on_pad` to be asked about each: one by one costs ten times as much.
+
+        objects : what the height of its centre may be, and its inertia ratio, of each
+        """
+        fresh = list(dict.fromkeys((tuple(cg), ratio) for cg, ratio in objects))
+        if not fresh:
+            return
+        heights = [height for cg, _ in fresh for height in cg]
+        ratios = [ratio for cg, ratio in fresh for _ in cg]
+        starts = np.cumsum([0, *(len(cg) for cg, _ in fresh)])[:-1]
+        turns = np.zeros((len(self.levels), len(fresh)))
+        shares = np.zeros(len(fresh))
+        for at, level in enumerate(self.levels):
             rotations = []
             for motion in level.motions:
-                rows = respond(
+                rows = answer(
                     "rotational_isolator",
                     motion,
                     angle=None,
                     azimuth_step=self._fineness.azimuth_step,
                     frequency=pad.frequency,
                     damping=pad.damping,
-                    cg_height=list(cg_height),
-                    inertia_ratio=inertia_ratio,
+                    cg_height=heights,
+                    inertia_ratio=ratios,
                 )
-                rotations.append(float(rows["rotation"].max()))
-                shares.append(float(rows["acceleration"].max()) / _push(motion))
-            turns.append(level.combined(rotations))
-        return max(turns), max(shares)
+                rotations.append(np.maximum.reduceat(np.asarray(rows["rotation"]), starts))
+                most = np.maximum.reduceat(np.asarray(rows["acceleration"]), starts)
+                shares = np.maximum(shares, most / _push(motion))
+            turns[at] = level.over(rotations)
+        for one, turn, share in zip(fresh, turns.max(axis=0).tolist(), shares.tolist(), strict=True):
+            self._on_pads[(pad, *one)] = (turn, share)
 
 
 def _carry(task: tuple[Ground, Isolator]) -> Passed:

@@ -9,7 +9,7 @@ from pipeline.classify import material_of
 from pipeline.mitigate.bench import Bench, Trial
 from pipeline.mitigate.changes import changed, held, knows_section
 from pipeline.mitigate.holding import footing, force_and_moment, strengths, wax_area, wax_checks
-from pipeline.mitigate.means import Measure
+from pipeline.mitigate.means import Isolator, Measure
 from pipeline.mitigate.offers import Need, Numbers, Offer, Proposal, refused
 from pipeline.models.stress import STRESS
 from pipeline.quantities import G
@@ -267,11 +267,7 @@ def rotational_isolator(need: Need, bench: Bench, measure: Measure) -> Proposal:
     cg = scene.parameters["cg_height"]
     offers = []
     for pad in bench.means.of("rotational_isolator"):
-        numbers: dict[str, tuple[float, str]] = {
-            "frequency": (pad.frequency, "Hz"),
-            "damping": (pad.damping, "-"),
-            "rotation_limit": (measure.limit, "rad"),
-        }
+        numbers = _turning_numbers(pad, measure)
         turning = on_floor(need, measure, numbers)
         ratio = turning.parameters["inertia_ratio"].value
         rotation, share = bench.on_pad(pad, (cg.low, cg.value, cg.high), ratio)
@@ -283,6 +279,28 @@ def rotational_isolator(need: Need, bench: Bench, measure: Measure) -> Proposal:
     if not offers:
         return refused("the catalogue has no rotational isolator")
     return Proposal(tuple(offers), "on none of the pads does it turn and bend little enough")
+
+
+def _turning_numbers(pad: Isolator, measure: Measure) -> dict[str, tuple[float, str]]:
+    return {
+        "frequency": (pad.frequency, "Hz"),
+        "damping": (pad.damping, "-"),
+        "rotation_limit": (measure.limit, "rad"),
+    }
+
+
+def turn_together(needs: Sequence[Need], bench: Bench, measure: Measure) -> None:
+    """Run all objects that a rotational isolator will be proposed for on its pads at once."""
+    for pad in bench.means.of("rotational_isolator"):
+        numbers, objects = _turning_numbers(pad, measure), []
+        for need in needs:
+            scene = need.scene
+            stands = scene.support in (Support.FREESTANDING, Support.FASTENED)
+            if stands and knows_section(scene) and "cg_height" in scene.parameters and not STRESS.applies(held(scene)):
+                cg = scene.parameters["cg_height"]
+                ratio = on_floor(need, measure, numbers).parameters["inertia_ratio"].value
+                objects.append(((cg.low, cg.value, cg.high), ratio))
+        bench.on_pads(pad, objects)
 
 
 def strengthen(need: Need, bench: Bench, measure: Measure) -> Proposal:
@@ -356,3 +374,6 @@ MEASURES: Mapping[str, Propose] = {
     "remove": remove,
 }
 """What each row of measures.csv that acts on one object proposes."""
+
+TOGETHER: Mapping[str, Callable[[Sequence[Need], Bench, Measure], None]] = {"rotational_isolator": turn_together}
+"""What is run for all objects at once, before each of them is proposed something: the proposals find it done."""

@@ -14,13 +14,13 @@ class Found:
     """Everything that was found about the objects of a sheet; no other sheet has a say in it.
 
     wishes  : what is worth measuring; None where the run did not ask
-    efforts : what the verdicts of each model took, by the title of the model (see `pipeline.climb.Effort`)
+    needing : by object number and name of the model, for how many of its analyses any history was run
     """
 
     assessments: tuple[Assessment, ...]
     wishes: tuple[Wish, ...] | None = None
     spacings: tuple[Spacing, ...] = ()
-    efforts: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    needing: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +59,7 @@ class Tally:
     measures : recommendations by title
     missing  : why objects could not be assessed, with how many of each
     first    : the worst objects on display, the worst first
+    efforts  : by the title of each model, by what its verdicts were decided
     worth, waste, wished : measurements that would settle something, that would not, and the objects of the former
     """
 

@@ -26,7 +26,7 @@ def tally(found: Found) -> Tally:
         first=_worst(_urgent(a) for a in found.assessments if state_of(a) is State.ACT and a.scene.item.on_display),
         decided=_decided(findings),
         fidelities=dict(Counter(f.fidelity for f in findings)),
-        efforts=found.efforts,
+        efforts=_efforts(found),
         surveyed=found.wishes is not None,
         worth=len(worth),
         waste=len(found.wishes or ()) - len(worth),
@@ -78,6 +78,25 @@ def _decided(findings: Iterable[Finding]) -> dict[str, Errors]:
         # Two digits are what a page shows.
         out[by] = Errors(len(those), dict(Counter(f"{size:.1e}" for size in sizes)), max(sizes, default=0.0))
     return out
+
+
+def _efforts(found: Found) -> dict[str, dict[str, int]]:
+    """Count by model what its verdicts were decided by, and for how many any history was run."""
+    out: dict[str, dict[str, int]] = {}
+    titles: dict[str, str] = {}
+    for finding in (f for a in found.assessments for f in a.findings):
+        titles[finding.model] = finding.title
+        counts = out.setdefault(finding.title, dict.fromkeys(("analyses", *_BY, "needing_history"), 0))
+        counts["analyses"] += 1
+        if finding.decided_by in _BY:
+            counts[finding.decided_by] += 1
+    for needing in found.needing.values():
+        for model, often in needing.items():
+            out[titles[model]]["needing_history"] += often
+    return out
+
+
+_BY = ("certificate", "chart", "history")
 
 
 def _all_decided(tallies: Iterable[Tally]) -> dict[str, Errors]:
