@@ -6,7 +6,7 @@ Machines are noisy: read the ratios of one run, not the times.
 
 import sys
 
-from tests.benchmarks import auto, charts, general, models, multibody, native, night, opensees, spectra, starts
+from tests.benchmarks import auto, charts, general, models, multibody, native, night, opensees, scale, spectra, starts
 from tests.benchmarks.common import FAR, HEADING, OBJECTS, marked
 
 
@@ -38,6 +38,7 @@ PARTS = {
     "charts": charts.lookups,
     "auto": auto.auto,
     "night": night.night,
+    "scale": scale.scale,
     "starts": starts.starts,
 }
 
