@@ -75,7 +75,8 @@ class Shelf:
         asking : how many they are;  least : of how many it pays to build one
         """
         if self._admitted is not None:
-            return group in self._admitted
+            # Of those whom a measure would change only they themselves can tell; what the shelf holds has no say.
+            return group in self._admitted or asking >= least
         return asking >= least or self.has(key, axis)
 
     def has(self, key: str, axis: ChartAxis) -> bool:

@@ -74,13 +74,23 @@ def largest_push(motion: Excitation) -> float:
     return float(np.max(np.abs(motion.x) if motion.y is None else np.hypot(motion.x, motion.y)))
 
 
+_STRONGEST = 64
+"""Samples that already tell most of the peaks along all directions."""
+
+
 def smallest_push(motion: Excitation) -> float:
     """Return a lower bound of A_max [m/s2] along any direction; along the one of the excitation it is A_max itself."""
     if motion.y is None:
         return largest_push(motion)
     half = np.radians(0.25)
     turns = np.arange(0.0, np.pi, 2.0 * half)
-    peaks = np.array([np.max(np.abs(np.cos(t) * motion.x + np.sin(t) * motion.y)) for t in turns])
+    directions = np.column_stack([np.cos(turns), np.sin(turns)])
+    pushes = np.stack([motion.x, motion.y])
+    radius = np.hypot(motion.x, motion.y)
+    strongest = np.argpartition(radius, -min(_STRONGEST, radius.size))[-_STRONGEST:]
+    least = np.abs(directions @ pushes[:, strongest]).max(axis=1).min()
+    # A sample that is weaker than that is the peak along no direction.
+    peaks = np.abs(directions @ pushes[:, radius >= least]).max(axis=1)
     # Half a step away the sample with the peak along t still pushes by its cosine, less what it pushes across t.
     across = np.sqrt(np.maximum(0.0, largest_push(motion) ** 2 - peaks**2))
     return max(0.0, float(np.min(np.cos(half) * peaks - np.sin(half) * across)))
