@@ -36,8 +36,9 @@ lint: $(STAMP)
 bench: $(PEERS)  ## costs beside peers and beside C, ns per object and sample of each model, the stages of a night
 	$(BIN)/python -m tests.benchmarks
 
-soak: $(STAMP)  ## what is too long for every day: each reader of records fed damaged files for two minutes
+soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for two minutes each, fifty nights killed
 	KOUROS_FUZZ_SECONDS=120 $(BIN)/python -m pytest --numprocesses 2 tests/motions/formats/test_fuzz.py -k damage
+	KOUROS_KILLS=50 $(BIN)/python -m pytest --numprocesses 2 tests/operations/test_interruptions.py -k kill
 
 # In environments of their own: what audits and what schedules must not decide which versions Kouros is tested with.
 audit:  ## known vulnerabilities of the pinned versions; needs the network, and says so and fails where it has none

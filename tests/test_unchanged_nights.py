@@ -10,6 +10,7 @@ import pytest
 from lxml import html
 from sqlalchemy import func, select
 
+from pipeline import demands
 from pipeline.cli.console import Console
 from pipeline.collection.database import open_database
 from pipeline.collection.inventory import Listed
@@ -212,3 +213,49 @@ def test_a_page_whose_report_was_tampered_with_is_drawn_again(settings: Settings
     assert (summary.fresh, summary.objects) == (0, 12)
     assert summary.report is not None
     assert len(list(summary.report.parent.glob("room-*.html"))) == 3
+
+
+def test_one_changed_motion_runs_its_own_histories_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two motions one changes: no history of the other is run again, and a first night would find the same."""
+    made = museum(tmp_path / "two", rows())
+    file = made.home / "kouros.toml"
+    file.write_text(file.read_text(encoding="utf-8").replace('fragility = "auto"', "fragility = false"), "utf-8")
+    made = load_settings(file)
+    manifest = made.home / "site" / "manifest.toml"
+    head, record = manifest.read_text(encoding="utf-8").split("[[level.record]]")
+    other = record.replace('name = "Ridgecrest', 'name = "weaker Ridgecrest')
+    text = f"{head}[[level.record]]{record}[[level.record]]{other}"
+    first, second = text.replace("scale_to_pga_g = 0.7", "scale_to_pga_g = 0.5"), text
+    manifest.write_text(first.replace("scale_to_pga_g = 0.5", "scale_to_pga_g = 0.7", 1), encoding="utf-8")
+    ran: list[str] = []
+    true = demands._run
+
+    def noted(task: demands._RunTask) -> demands.Columns:
+        ran.append(task[1].hash)
+        return true(task)
+
+    monkeypatch.setattr(demands, "_run", noted)
+    assert night(made).fresh == 12
+    before = {motion.name: motion.hash for motion in found(made).motions}
+    assert set(ran) == set(before.values())
+    ran.clear()
+    manifest.write_text(
+        second.replace("scale_to_pga_g = 0.7", "scale_to_pga_g = 0.6", 2).replace(
+            "scale_to_pga_g = 0.6", "scale_to_pga_g = 0.7", 1
+        ),
+        encoding="utf-8",
+    )
+    summary = night(made)
+    after = {motion.name: motion.hash for motion in found(made).motions}
+    changed = {name for name in before if before[name] != after[name]}
+    assert len(changed) == 1
+    assert summary.fresh == 12
+    # What isolators pass on is run for its own sake: those are motions of their own.
+    assert not {before[name] for name in before if name not in changed} & set(ran)
+    assert after[changed.pop()] in ran
+    again = Path(
+        shutil.copytree(made.home, tmp_path / "again", ignore=shutil.ignore_patterns("*.sqlite", "reports", ".kouros*"))
+    )
+    fresh = load_settings(again / "kouros.toml")
+    assert night(fresh).fresh == 12
+    assert found(made).assessments == found(fresh).assessments

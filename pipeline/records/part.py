@@ -100,7 +100,7 @@ class Sheet:
 
     key          : of everything that the result depends on
     gallery      : "" for objects that are not on display
-    number, of   : the how manieth of its gallery's sheets, from 1
+    number, of   : which of its gallery's sheets it is, from 1, and how many there are
     run, made    : the run that found its result, perhaps an earlier one, and when (ISO 8601, UTC)
     """
 
