@@ -138,6 +138,8 @@ class Round:
                 piece.there = stand(self.brief.head, found, self._errand(piece))
         taken = {at for at, piece in enumerate(self._pieces) if self._drawn(edition, piece)}
         left = [piece for at, piece in enumerate(self._pieces) if at not in taken]
+        keys = [sheet_key(edition.pen, self._sheet(piece), piece.there) for piece in self._pieces]
+        repeated = not left and edition.repeat(keys)
         wanted = (tuple(self._errand(piece) for piece in batch) for batch in _batches(left))
         waiting: list[Encoded] = []
         since = monotonic()
@@ -149,7 +151,8 @@ class Round:
                 sheet = self._note(piece, came)
                 key = sheet_key(edition.pen, sheet, piece.there)
                 if came is None:
-                    edition.reuse(key)
+                    if not repeated:
+                        edition.reuse(key)
                 elif came.drawn is not None:
                     edition.add(key, came.drawn)
                 if came is not None and came.result is not None:

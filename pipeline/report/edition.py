@@ -21,7 +21,7 @@ from pydantic import TypeAdapter, ValidationError
 from pipeline.records import RunChanges, RunRecord, Sheet, Standing, Tally
 from pipeline.report.compose import anchor_of, museum_view, page_name
 from pipeline.report.errors import ReportError
-from pipeline.report.exports import HEADERS, TABLES, TEXT_FILES, schema_of, workbook
+from pipeline.report.exports import HEADERS, TABLES, TEXT_FILES, WORKBOOK, schema_of, workbook
 from pipeline.report.language import speaking
 from pipeline.report.pages import environment, fill
 from pipeline.report.sheets import Drawn, Pen, drawn
@@ -118,6 +118,7 @@ class Edition:
         self._earlier = earlier or Shelved(folder)
         self._partial = folder.with_name(f".{folder.name}.{os.getpid()}.partial")
         self._placed: list[Placed] = []
+        self._repeated = False
         self._stack = ExitStack()
         self._texts: dict[str, IO[bytes]] = {}
         self._old_texts: dict[str, IO[bytes]] = {}
@@ -146,6 +147,25 @@ class Edition:
     def has(self, key: str) -> bool:
         """Say whether the earlier report has a sheet."""
         return self._earlier.get(key) is not None
+
+    def repeat(self, keys: Sequence[str]) -> bool:
+        """Take everything from the earlier report, if these are all of its sheets; say whether they are."""
+        earlier = self._earlier
+        if not keys or list(earlier.sheets) != list(keys) or not all(self.has(key) for key in keys):
+            return False
+        for stream in (*self._texts.values(), *self._tables.values()):
+            stream.close()
+        for name in (*TEXT_FILES, *(f"{name}.parquet" for name in TABLES)):
+            (self._partial / name).unlink()
+            _same(earlier.folder / name, self._partial / name)
+        if (earlier.folder / WORKBOOK).is_file():
+            _same(earlier.folder / WORKBOOK, self._partial / WORKBOOK)
+        for placed in earlier.sheets.values():
+            page = placed.entry.sheet.page
+            _same(earlier.folder / page, self._partial / page)
+        self._placed = list(earlier.sheets.values())
+        self._repeated = True
+        return True
 
     def reuse(self, key: str) -> bool:
         """Take a sheet from the earlier report; say whether it was there."""
@@ -220,7 +240,7 @@ class Edition:
         """
         for stream in (*self._texts.values(), *self._tables.values()):
             stream.close()
-        has_book = workbook(self._partial, head.started)
+        has_book = (self._partial / WORKBOOK).is_file() if self._repeated else workbook(self._partial, head.started)
         for name, text in self._shared(head, tally, changes, links, has_book=has_book):
             (self._partial / name).write_text(text, encoding="utf-8", newline="\n")
         (self._partial / SHEETS).write_bytes(_adapter().dump_json(self._placed))

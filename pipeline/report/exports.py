@@ -83,6 +83,8 @@ TABLES = {"findings": FINDING_COLUMNS, "recommendations": RECOMMENDATION_COLUMNS
 
 TEXT_FILES = ("findings.csv", "findings.jsonl", "recommendations.csv", "objects.csv")
 
+WORKBOOK = "findings.xlsx"
+
 WORKBOOK_ROWS = 20_000
 """Rows of a table up to which there is a workbook; a spreadsheet holds more, but writing them takes minutes."""
 
@@ -140,7 +142,7 @@ def workbook(folder: Path, started: str) -> bool:
     tables: dict[str, tuple[Sequence[str], Iterable[Mapping[str, Any]]]] = {
         name: (TABLES[name], pq.read_table(file).to_pylist()) for name, file in files.items()
     }
-    write_workbook(folder / "findings.xlsx", tables, _began(started))
+    write_workbook(folder / WORKBOOK, tables, _began(started))
     return True
 
 
