@@ -28,7 +28,7 @@ from tests.test_jobs import COLUMNS
 
 from .conftest import command, environment, within
 
-KILLS = int(os.environ.get("KOUROS_KILLS", "4"))
+KILLS = int(os.environ.get("KOUROS_KILLS", "2"))
 """How many runs are killed; `make soak` kills fifty."""
 
 ROOMS, EACH = 6, 5
@@ -168,7 +168,7 @@ def small_disk(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     subprocess.run(["umount", "--lazy", str(folder)], check=False)
 
 
-@pytest.mark.parametrize("room", [0, 40_000, 150_000, 400_000, 700_000])
+@pytest.mark.parametrize("room", [0, 150_000, 500_000])
 def test_a_full_disk_at_any_stage(nights: Nights, small_disk: Path, room: int) -> None:
     """With so many bytes left the run fails earlier or later, says so, and leaves last night's report as it was."""
     folder = small_disk / "museum"
