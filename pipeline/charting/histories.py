@@ -78,7 +78,7 @@ class Histories:
         aside = self._file.with_name(f".{self._file.stem}-{os.getpid()}-{get_ident()}.npz")
         try:
             self._file.parent.mkdir(parents=True, exist_ok=True)
-            arrays: dict[str, Any] = {"code": np.array(_code()), **tables}
+            arrays: dict[str, Any] = {"code": np.array(code_version()), **tables}
             np.savez(aside, **arrays)
             aside.replace(self._file)
         except OSError:
@@ -91,10 +91,6 @@ def history_key(*parts: object) -> str:
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
-def _code() -> str:
-    return code_version()
-
-
 def _rows(values: Mapping[str, Array]) -> list[bytes]:
     # Bit for bit, so that NaN (not given) equals NaN.
     matrix = np.ascontiguousarray(np.column_stack(list(values.values())), dtype=np.float64)
@@ -105,7 +101,7 @@ def _read(file: Path) -> dict[str, tuple[tuple[str, ...], Array]]:
     found = {}
     try:
         with np.load(file, allow_pickle=False) as kept:
-            if str(kept["code"]) != _code():
+            if str(kept["code"]) != code_version():
                 return {}
             for number in range((len(kept.files) - 1) // 2):
                 key, *names = json.loads(str(kept[f"k{number}"]))

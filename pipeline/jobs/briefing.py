@@ -1,7 +1,7 @@
 """What all sheets of a run share, made ready: motions and their pictures, rules, measures, and what is asked for."""
 
 import os
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
 from typing import Any, Literal
@@ -16,7 +16,7 @@ from pipeline.classify import classify
 from pipeline.collection.inventory import Catalogue, Listed, latest_import
 from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
-from pipeline.jobs.desk import Brief, ChartErrand
+from pipeline.jobs.desk import Brief, ChartErrand, motions_of
 from pipeline.jobs.levels import floors_of, notes
 from pipeline.jobs.reporting import manner
 from pipeline.jobs.versions import code_digest, rules_digest
@@ -52,7 +52,7 @@ def brief_for(
     settings = workspace.settings
     written = manner(settings)  # A catalogue of phrases that is missing is said before the night's work, not after it.
     storeys = floors_of(settings, site, {one.gallery for one in chosen})
-    motions = {m.motion.hash: m.motion for storey in storeys.values() for level in storey.levels for m in level.motions}
+    motions = motions_of(storeys)
     samples = sum(motion.acceleration.shape[1] for motion in motions.values())
     shown = sum(one.on_display for one in chosen) * samples
     fragile = _asked(settings.analysis.fragility, shown <= FRAGILE)
@@ -107,11 +107,10 @@ def admit(brief: Brief, catalogue: Catalogue, chosen: Sequence[Listed], x_azimut
     """Decide which response charts are used (see `popular`), and return those to be built before the sheets."""
     found = popular(catalogue, chosen, brief.rules, x_azimuth)
     brief.admitted = frozenset(found)
-    shaking = {m.motion.hash: m.motion for storey in brief.storeys.values() for v in storey.levels for m in v.motions}
     return [
         ChartErrand(model.name, motion, angle, alike)
         for _, (model, angle, alike) in sorted(found.items())
-        for motion in shaking.values()
+        for motion in brief.motions.values()
     ]
 
 
@@ -181,11 +180,6 @@ def _charts(workspace: Workspace, motions: Sequence[Motion], brief: Brief, progr
         drawn |= kept if len(kept) == len(chart_keys(motion)) else charts(motion, executor, shelf)
     progress.step("charts", len(motions), len(motions))
     return drawn
-
-
-def hashes(brief: Brief) -> Collection[str]:
-    """Return the hashes of the motions in use, whose charts stay although perhaps none of them is asked for."""
-    return {m.motion.hash for storey in brief.storeys.values() for level in storey.levels for m in level.motions}
 
 
 def _level_note(level: Level) -> str:

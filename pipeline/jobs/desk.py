@@ -31,7 +31,6 @@ from pipeline.records import (
     Fragility,
     Item,
     Motion,
-    Progress,
     RunRecord,
     Sheet,
     Silent,
@@ -83,6 +82,11 @@ class Brief:
         made = {"shelf", "carriage", "pen", "executor"}
         return {name: value for name, value in self.__dict__.items() if name not in made}
 
+    @property
+    def motions(self) -> dict[str, Motion]:
+        """The motions in use, by hash."""
+        return motions_of(self.storeys)
+
     @cached_property
     def shelf(self) -> Shelf:
         """The response charts."""
@@ -113,6 +117,11 @@ class Brief:
         raises : ReportError for a language without a catalogue
         """
         return Pen(self.head, self.units, language(self.tongue, self.catalogues))
+
+
+def motions_of(storeys: Mapping[str, Storey]) -> dict[str, Motion]:
+    """Return the motions of some floors by hash; one that several share is there once."""
+    return {m.motion.hash: m.motion for storey in storeys.values() for level in storey.levels for m in level.motions}
 
 
 @dataclass(frozen=True)
@@ -249,19 +258,13 @@ def place(item: Item, rules: Table | None, decisions: Sequence[Decision]) -> Pla
     return placed(scene, measures)
 
 
-def find(
-    brief: Brief,
-    storey: Storey,
-    items: Sequence[Item],
-    decisions: Sequence[Decision],
-    progress: Progress | None = None,
-) -> tuple[Found, float]:
+def find(brief: Brief, storey: Storey, items: Sequence[Item], decisions: Sequence[Decision]) -> tuple[Found, float]:
     """Run everything that objects on one floor require under its motions, judge it and advise.
 
     decisions : those in force: classes and installed measures change what is run
     returns   : what was found, and the seconds that finding out what is worth measuring cost
     """
-    told = progress or Silent()
+    told = Silent()
     about: dict[str, list[Decision]] = {}
     for decision in decisions:
         about.setdefault(decision.object_number, []).append(decision)

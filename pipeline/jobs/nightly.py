@@ -8,17 +8,18 @@ from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from pipeline.collection.inventory import catalogue, latest_import
-from pipeline.jobs.briefing import admit, brief_for, hashes
+from pipeline.jobs.briefing import admit, brief_for
 from pipeline.jobs.deciding import decided
 from pipeline.jobs.importing import import_collection, remember, source_of, unchanged
 from pipeline.jobs.outcome import write_summary
 from pipeline.jobs.retention import sweep
 from pipeline.jobs.rounds import Round
 from pipeline.jobs.standing import Status, mark_good, mark_running, status
-from pipeline.jobs.workspace import UsageError, Workspace, locked, near, open_workspace
+from pipeline.jobs.workspace import UsageError, Workspace, locked, near, open_workspace, tidy
 from pipeline.motions.site import Site
-from pipeline.records import Progress, RunChanges, RunRecord, Sheet, Standing, Tally, Urgent
+from pipeline.records import Progress, RunChanges, RunRecord, Sheet, Tally, Urgent
 from pipeline.report import publish
+from pipeline.report.decided import by_object
 from pipeline.report.survey_words import SURVEY_SECONDS
 from pipeline.settings import Settings
 from pipeline.store.reuse import SELECTION, whole_runs
@@ -116,9 +117,7 @@ def run(
                 night.charts = admit(brief, everything, objects, site.manifest.site.x_azimuth)
             return _hold(night, progress, chosen, dry_run=dry_run)
         finally:
-            limits = settings.charts
-            most = round(1e6 * limits.megabytes)
-            brief.shelf.tidy(days=limits.unused_days, most_bytes=most, using=hashes(brief))
+            tidy(settings, brief.shelf, brief.motions)
 
 
 def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool) -> Summary:
@@ -132,17 +131,17 @@ def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool)
         head = _ended(night, chosen)
         # A part is not compared: what was left out of it has not changed.
         before = [] if chosen else whole_runs(engine)[:1]
-        standing = (*night.standing, *night.strangers(whole=not chosen))
-        commit_run(engine, replace(head, decisions=standing), night.sheets, published=False)
+        strangers = night.strangers(whole=not chosen)
+        whole = replace(head, decisions=(*head.decisions, *strangers))
+        commit_run(engine, whole, night.sheets, published=False)
         changes = compare_runs(engine, before[0], head.run_id) if before else None
         progress.step("report", 0, 1)
-        strangers = replace(head, decisions=night.strangers(whole=not chosen))
-        index = edition.finish(strangers, found, changes, night.links(changes))
+        index = edition.finish(replace(head, decisions=strangers), found, changes, night.links(changes))
         # A part of the collection is worth a report, but not the name of the museum's latest one.
         latest = None if chosen else publish(index.parent, workspace.reports)
         mark_finished(engine, head.run_id)
         progress.step("report", 1, 1)
-    summary = summarise(replace(head, decisions=standing), night.sheets, found)
+    summary = summarise(whole, night.sheets, found)
     summary = replace(summary, fresh=night.fresh, report=index, latest=latest, changes=changes)
     write_summary(summary, index.parent)
     if latest is not None:
@@ -267,9 +266,7 @@ def summarise(head: RunRecord, sheets: Sequence[Sheet], found: Tally) -> Summary
 
 def _unsettled(head: RunRecord, found: Tally, most: int = 5) -> list[Urgent]:
     """Return the worst objects of which not everything is accepted or overruled beyond doubt."""
-    about: dict[str, list[Standing]] = {}
-    for standing in head.decisions:
-        about.setdefault(standing.decision.object_number, []).append(standing)
+    about = by_object(head.decisions)
     return [
         one
         for one in found.first

@@ -1,19 +1,16 @@
 """Looking at runs that are over: render one again, compare two."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TypedDict
 
 from pipeline.jobs.outcome import SUMMARY, write_aside
 from pipeline.jobs.standing import renew
 from pipeline.jobs.workspace import UsageError, locked, open_workspace
-from pipeline.records import RunChanges, Standing, Tally
+from pipeline.records import RunChanges
 from pipeline.report import Language, Units, language, publish
-from pipeline.report.edition import Edition, link_to, sheet_key
+from pipeline.report.edition import Edition
+from pipeline.report.render import draw_all
 from pipeline.report.sheets import Pen
-from pipeline.report.since import mentioned
-from pipeline.report.tallies import tally, total
-from pipeline.report.views import Pointer
 from pipeline.settings import Settings
 from pipeline.store.results import load_found
 from pipeline.store.reuse import whole_runs
@@ -34,23 +31,9 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
         at = whole.index(head.run_id) if head.run_id in whole else len(whole)
         before = whole[at + 1 : at + 2]
         changes = compare_runs(engine, before[0], head.run_id) if before else None
-        decisions: dict[str, list[Standing]] = {}
-        for standing in head.decisions:
-            decisions.setdefault(standing.decision.object_number, []).append(standing)
-        named = set() if changes is None else mentioned(changes)
-        links: dict[str, Pointer] = {}
-        tallies: list[Tally] = []
-        pen = Pen(replace(head, decisions=()), **manner(settings))
-        with Edition(_free(workspace.reports / head.run_id), pen) as edition:
-            for sheet in sheets:
-                found = load_found(engine, sheet.key)
-                numbers = {a.scene.item.object_number: a.scene.item.title for a in found.assessments}
-                mine = [standing for number in numbers for standing in decisions.pop(number, ())]
-                edition.add(sheet_key(pen, sheet, mine), pen.draw(sheet, found, mine))
-                tallies.append(tally(found))
-                links |= {n: link_to(sheet, n, title) for n, title in numbers.items() if n in named}
-            strangers = tuple(standing for left in decisions.values() for standing in left)
-            index = edition.finish(replace(head, decisions=strangers), total(tallies), changes, links)
+        found = ((sheet, load_found(engine, sheet.key)) for sheet in sheets)
+        with Edition(_free(workspace.reports / head.run_id), Pen(head, **manner(settings))) as edition:
+            index = draw_all(edition, head, found, changes)
         told = workspace.reports / head.run_id / SUMMARY
         if told.is_file():
             write_aside(index.with_name(SUMMARY), told.read_text(encoding="utf-8"))

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass, replace
-from functools import cached_property
 from time import monotonic
 
 from pipeline.collection.inventory import Catalogue, Listed, fields_since
@@ -135,10 +134,10 @@ class Round:
         for piece in self._pieces:
             if piece.kept is not None and piece.decisions:
                 found = load_found(self.workspace.engine, piece.key)
-                piece.there = stand(self.brief.head, found, self._errand(piece))
-        taken = {at for at, piece in enumerate(self._pieces) if self._drawn(edition, piece)}
-        left = [piece for at, piece in enumerate(self._pieces) if at not in taken]
+                piece.there = stand(self.brief.head, found, self._told(piece))
         keys = [sheet_key(edition.pen, self._sheet(piece), piece.there) for piece in self._pieces]
+        taken = {at for at, piece in enumerate(self._pieces) if piece.kept is not None and edition.has(keys[at])}
+        left = [piece for at, piece in enumerate(self._pieces) if at not in taken]
         repeated = not left and edition.repeat(keys)
         wanted = (tuple(self._errand(piece) for piece in batch) for batch in _batches(left))
         waiting: list[Encoded] = []
@@ -149,12 +148,12 @@ class Round:
                 progress.step("sheets", at, len(self._pieces))
                 came = None if at in taken else next(done)
                 sheet = self._note(piece, came)
-                key = sheet_key(edition.pen, sheet, piece.there)
                 if came is None:
                     if not repeated:
-                        edition.reuse(key)
+                        edition.reuse(keys[at])
                 elif came.drawn is not None:
-                    edition.add(key, came.drawn)
+                    # How the decisions stand is only known now, where there was no result.
+                    edition.add(sheet_key(edition.pen, sheet, piece.there), came.drawn)
                 if came is not None and came.result is not None:
                     waiting.append(came.result)
                 if waiting and monotonic() - since > _SECONDS:
@@ -177,9 +176,6 @@ class Round:
         keep(self.workspace.engine, head.run_id, head.started, waiting)
         waiting.clear()
 
-    def _drawn(self, edition: Edition, piece: _Piece) -> bool:
-        return piece.kept is not None and edition.has(sheet_key(edition.pen, self._sheet(piece), piece.there))
-
     def _crew(self, objects: int) -> AbstractContextManager[Crew]:
         wanted = self.workspace.settings.execution
         if objects <= FEW:
@@ -196,15 +192,19 @@ class Round:
         run, made, counts = (head.run_id, head.started, {}) if kept is None else (kept.run, kept.made, kept.counts)
         return Sheet(piece.key, part.gallery, part.on_display, part.number, part.of, run, made, counts)
 
-    def _errand(self, piece: _Piece) -> Errand:
-        """Return what is to be done for a sheet, with all that it takes: whoever does it has no database."""
+    def _told(self, piece: _Piece) -> Errand:
+        """Return what is to be known of a sheet and of the decisions about its objects, whoever works on it."""
         digests = {number: self._numbers[number] for number in {d.object_number for d in piece.decisions}}
         changed = {
             (d.object_number, d.digest): tuple(fields_since(self.workspace.engine, d.object_number, d.digest))
             for d in piece.decisions
             if d.digest != digests[d.object_number]
         }
-        told = Errand(self._sheet(piece), piece.floor, decisions=piece.decisions, digests=digests, changed=changed)
+        return Errand(self._sheet(piece), piece.floor, decisions=piece.decisions, digests=digests, changed=changed)
+
+    def _errand(self, piece: _Piece) -> Errand:
+        """Return what is to be done for a sheet, with all that it takes: whoever does it has no database."""
+        told = self._told(piece)
         if piece.kept is not None:
             return replace(told, found=packed(self.workspace.engine, piece.key))
         numbers = [one.object_number for one in piece.part.objects]
@@ -225,10 +225,6 @@ class Round:
 
     # -----------------------------------------------------------------------------------------------------------------
 
-    @cached_property
-    def _by_key(self) -> Mapping[str, Sheet]:
-        return {sheet.key: sheet for sheet in self._sheets}
-
     def links(self, changes: RunChanges | None) -> dict[str, Pointer]:
         """Return where the objects are that the index names as changed, by number."""
         named = set() if changes is None else mentioned(changes)
@@ -238,7 +234,14 @@ class Round:
             for one in piece.part.objects
             if one.object_number in named
         }
-        return links_to(self.workspace, where, self._by_key)
+        sheets = {sheet.key: sheet for sheet in self._sheets}
+        titles = {
+            outline.object_number: (key, outline.title)
+            for key in dict.fromkeys(where.values())
+            for outline in outlines_of(self.workspace.engine, [key])
+        }
+        found = ((number, *titles[number]) for number in where if number in titles)
+        return {number: link_to(sheets[key], number, title) for number, key, title in found}
 
 
 def _batches(pieces: Iterable[_Piece]) -> Iterator[list[_Piece]]:
@@ -252,18 +255,3 @@ def _batches(pieces: Iterable[_Piece]) -> Iterator[list[_Piece]]:
         batch.append(piece)
     if batch:
         yield batch
-
-
-def links_to(workspace: Workspace, where: Mapping[str, str], sheets: Mapping[str, Sheet]) -> dict[str, Pointer]:
-    """Return how the index names objects, by number.
-
-    where  : the key of the sheet that each is on;  sheets : by key
-    """
-    titles = {
-        outline.object_number: (key, outline.title)
-        for key in dict.fromkeys(where.values())
-        for outline in outlines_of(workspace.engine, [key])
-    }
-    return {
-        number: link_to(sheets[titles[number][0]], number, titles[number][1]) for number in where if number in titles
-    }

@@ -154,5 +154,13 @@ def charts_of(
     try:
         yield shelf
     finally:
-        limits = settings.charts
-        shelf.tidy(days=limits.unused_days, most_bytes=round(1e6 * limits.megabytes), using=using)
+        tidy(settings, shelf, using)
+
+
+def tidy(settings: "Settings", shelf: "Shelf", using: Collection[str]) -> None:
+    """Remove the charts that the settings do not keep any longer.
+
+    using : as in `charts_of`
+    """
+    limits = settings.charts
+    shelf.tidy(days=limits.unused_days, most_bytes=round(1e6 * limits.megabytes), using=using)

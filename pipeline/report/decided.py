@@ -22,14 +22,20 @@ def _title(kind: DecisionKind) -> str:
     return told[kind]
 
 
+def by_object(decisions: Iterable[Standing]) -> dict[str, list[Standing]]:
+    """Return decisions by the number of the object that they are about."""
+    found: dict[str, list[Standing]] = {}
+    for standing in decisions:
+        found.setdefault(standing.decision.object_number, []).append(standing)
+    return found
+
+
 class Decided:
     """The decisions of one run, by object."""
 
     def __init__(self, decisions: Iterable[Standing], units: Units) -> None:
         self._units = units
-        self._of: dict[str, list[Standing]] = {}
-        for standing in decisions:
-            self._of.setdefault(standing.decision.object_number, []).append(standing)
+        self._of = by_object(decisions)
 
     def of(self, assessment: Assessment) -> tuple[DecisionView, ...]:
         """Return the decisions about an object."""

@@ -93,14 +93,8 @@ def _code() -> str:
 
 def sheet_key(pen: Pen, sheet: Sheet, decisions: Sequence[Standing]) -> str:
     """Return the digest of everything that a sheet's page and rows depend on."""
-    head = pen.head
-    shared = (
-        _code(), repr(pen.units), pen.language.code, head.museum, head.settings.get("credit"), head.version,
-        head.demonstration, [(m.hash, m.name, m.level, m.floor, m.approved_by, m.approved_on) for m in head.motions],
-        sorted(head.charts),
-    )  # fmt: skip
     own = (sheet.key, sheet.run, sheet.made, sheet.gallery, sheet.on_display, sheet.number, sheet.of, list(decisions))
-    return sha256(repr((shared, own)).encode("utf-8", "surrogatepass")).hexdigest()
+    return sha256(repr((_code(), pen.identity, own)).encode("utf-8", "surrogatepass")).hexdigest()
 
 
 class Edition:
@@ -167,17 +161,14 @@ class Edition:
         self._repeated = True
         return True
 
-    def reuse(self, key: str) -> bool:
-        """Take a sheet from the earlier report; say whether it was there."""
-        placed = self._earlier.get(key)
-        if placed is None:
-            return False
+    def reuse(self, key: str) -> None:
+        """Take a sheet from the earlier report, which has it."""
+        placed = self._earlier.sheets[key]
         page = placed.entry.sheet.page
         _same(self._earlier.folder / page, self._partial / page)
         texts = {name: self._copied(name, *where) for name, where in placed.texts.items()}
         tables = {name: self._grouped(name, group) for name, group in placed.tables.items()}
         self._placed.append(Placed(key, placed.entry, texts, tables))
-        return True
 
     def add(self, key: str, made: Drawn) -> None:
         """Add a sheet that was drawn for this report."""

@@ -1,10 +1,12 @@
 """A whole run that is in memory becomes a report."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from pipeline.records import Assessment, Found, RunChanges, RunRecord, Sheet, Spacing, Standing
-from pipeline.report.edition import Edition, link_to
+from pipeline.records import Assessment, Found, RunChanges, RunRecord, Sheet, Spacing
+from pipeline.report.decided import by_object
+from pipeline.report.edition import Edition, link_to, sheet_key
 from pipeline.report.language import Language
 from pipeline.report.sheets import Pen
 from pipeline.report.since import mentioned
@@ -30,23 +32,31 @@ def render(
     returns : the path of index.html
     raises  : ReportError if the folder exists, or if the record cannot be shown (see `compose`)
     """
-    decisions: dict[str, list[Standing]] = {}
-    for standing in record.decisions:
-        decisions.setdefault(standing.decision.object_number, []).append(standing)
-    head = replace(record, assessments=(), wishes=None, spacings=(), decisions=())
+    head = replace(record, assessments=(), wishes=None, spacings=())
+    with Edition(Path(folder), Pen(head, units or Units(), language or Language())) as edition:
+        return draw_all(edition, head, sheets_of(record), changes)
+
+
+def draw_all(
+    edition: Edition, head: RunRecord, sheets: Iterable[tuple[Sheet, Found]], changes: RunChanges | None
+) -> Path:
+    """Draw every sheet of a run that is over into a report, one at a time, and finish it.
+
+    head    : the run without its objects, with all decisions as they stood
+    returns : the path of index.html
+    """
+    decisions = by_object(head.decisions)
     named = set() if changes is None else mentioned(changes)
     links: dict[str, Pointer] = {}
     tallies = []
-    with Edition(Path(folder), Pen(head, units or Units(), language or Language())) as edition:
-        for sheet, found in sheets_of(record):
-            numbers = [a.scene.item.object_number for a in found.assessments]
-            mine = [standing for number in dict.fromkeys(numbers) for standing in decisions.pop(number, ())]
-            edition.add("", edition.pen.draw(sheet, found, mine))
-            tallies.append(tally(found))
-            titles = ((a.scene.item.object_number, a.scene.item.title) for a in found.assessments)
-            links |= {number: link_to(sheet, number, title) for number, title in titles if number in named}
-        strangers = tuple(standing for left in decisions.values() for standing in left)
-        return edition.finish(replace(head, decisions=strangers), total(tallies), changes, links)
+    for sheet, found in sheets:
+        titles = {a.scene.item.object_number: a.scene.item.title for a in found.assessments}
+        mine = [standing for number in titles for standing in decisions.pop(number, ())]
+        edition.add(sheet_key(edition.pen, sheet, mine), edition.pen.draw(sheet, found, mine))
+        tallies.append(tally(found))
+        links |= {number: link_to(sheet, number, title) for number, title in titles.items() if number in named}
+    strangers = tuple(standing for left in decisions.values() for standing in left)
+    return edition.finish(replace(head, decisions=strangers), total(tallies), changes, links)
 
 
 def sheets_of(record: RunRecord) -> list[tuple[Sheet, Found]]:

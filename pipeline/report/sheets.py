@@ -66,6 +66,18 @@ class Pen:
         return Drawn(page.encode(), exported, made.entry)
 
     @cached_property
+    def identity(self) -> str:
+        """What all pages say of the run and how they say it, as one digest."""
+        head = self.head
+        said = (
+            repr(self.units), self.language.code, head.museum, head.settings.get("credit"), head.version,
+            head.demonstration,
+            [(m.hash, m.name, m.level, m.floor, m.approved_by, m.approved_on) for m in head.motions],
+            sorted(head.charts),
+        )  # fmt: skip
+        return hashlib.sha256(repr(said).encode("utf-8", "surrogatepass")).hexdigest()
+
+    @cached_property
     def drawings(self) -> dict[str, Drawing]:
         """The charts of the run, ready to be put on pages; each has the same name on every page."""
         motions = [motion.hash[:16] for motion in self.head.motions]

@@ -65,30 +65,29 @@ def keep(engine: Engine, run_id: str, made: str, results: Iterable[Encoded]) -> 
     run_id, made : the run that found them, and when it began
     raises       : StoreError for a database that refuses
     """
-    wanted = {result.key: result for result in results}
     with speaking(engine, "results were not stored"), engine.begin() as connection:
-        there = known(connection, list(wanted))
-        rows = [_row(result, run_id, made) for key, result in wanted.items() if key not in there]
-        if rows:
-            connection.execute(insert(RESULT), rows)
+        add(connection, run_id, made, results)
 
 
-def _row(result: Encoded, run_id: str, made: str) -> dict[str, Any]:
-    return {
-        "key": result.key,
-        "run_id": run_id,
-        "made": made,
-        "counts": dict(result.counts),
-        "tally": result.tally,
-        "outline": result.outline,
-        "found": result.found,
-    }
-
-
-def add(connection: Connection, run_id: str, made: str, result: Encoded) -> None:
-    """Write one result as a part of a transaction; one that is there already is left as it is."""
-    if not known(connection, [result.key]):
-        connection.execute(insert(RESULT), [_row(result, run_id, made)])
+def add(connection: Connection, run_id: str, made: str, results: Iterable[Encoded]) -> None:
+    """Write results as a part of a transaction, as `keep` does in one of its own."""
+    wanted = {result.key: result for result in results}
+    there = known(connection, list(wanted))
+    rows = [
+        {
+            "key": key,
+            "run_id": run_id,
+            "made": made,
+            "counts": dict(result.counts),
+            "tally": result.tally,
+            "outline": result.outline,
+            "found": result.found,
+        }
+        for key, result in wanted.items()
+        if key not in there
+    ]
+    if rows:
+        connection.execute(insert(RESULT), rows)
 
 
 @dataclass(frozen=True, slots=True)

@@ -80,8 +80,7 @@ def commit_run(
     failure = f"run {head.run_id!a} was not stored, and nothing of it was kept"
     try:
         with speaking(engine, failure), engine.begin() as connection:
-            for result in results:
-                add(connection, head.run_id, head.finished, result)
+            add(connection, head.run_id, head.finished, results)
             for table, rows in _tables(head, sheets, status):
                 waiting = iter(rows)
                 while chunk := list(islice(waiting, _CHUNK)):
