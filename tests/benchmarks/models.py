@@ -1,10 +1,12 @@
 """Cost of each model per object and sample, at 0.7 g, with the share of intervals at rest and two threads' gain.
 
-The gain is read beside the cores that the two threads were given: on a machine that is busy with something else both
-fall together, and 1.1 of 1.1 is no worse than 1.9 of 2.0.
+The gain is read beside that of two processes, each of which does the same alone with memory and lock of its own: that
+is what the machine can give, whose two processors may share a core, its caches and its clock with each other or with
+somebody else.  1.7 of 1.7 is no worse than 1.95 of 1.95.
 """
 
 import math
+import multiprocessing
 import time
 from collections.abc import Callable
 
@@ -54,16 +56,32 @@ def parameters() -> dict[str, tuple[float, dict[str, Array | float]]]:
     }
 
 
-def in_threads(work: Callable[[Columns], None], values: Columns, alone: float) -> tuple[float, float]:
-    """Return the seconds of one of several batches, each of all objects, in two threads, and the cores they had.
+def in_threads(work: Callable[[], None], batches: int) -> float:
+    """Return the seconds of one of several batches, each of all objects, in two threads."""
+    began = time.perf_counter()
+    Threads(2).map(lambda _: work(), range(batches))
+    return (time.perf_counter() - began) / batches
 
-    alone : seconds of one batch in one thread
-    """
-    batches = max(BATCHES, 2 * math.ceil(SHARED / alone / 2))
-    began, used = time.perf_counter(), time.process_time()
-    Threads(2).map(work, [values] * batches)
-    took = time.perf_counter() - began
-    return took / batches, (time.process_time() - used) / took
+
+def in_processes(work: Callable[[], None], batches: int) -> float:
+    """Return the same in two processes, from where both begin to where the later one ends."""
+    fork = multiprocessing.get_context("fork")
+    ready, clocks = fork.Barrier(2), fork.SimpleQueue()
+
+    def half() -> None:
+        ready.wait()
+        began = time.perf_counter()
+        for _ in range(batches // 2):
+            work()
+        clocks.put((began, time.perf_counter()))
+
+    both = [fork.Process(target=half) for _ in range(2)]
+    for one in both:
+        one.start()
+    times = [clocks.get() for _ in both]
+    for one in both:
+        one.join()
+    return (max(end for _, end in times) - min(began for began, _ in times)) / batches
 
 
 def at_rest(model: Model, excitation: Excitation, values: dict[str, Array]) -> float:
@@ -83,7 +101,7 @@ def costs() -> None:
     x, y, z = motion.acceleration
     along = strongest()
     print(f"{motion.samples} samples, {OBJECTS} objects, one thread, peak {np.abs(along).max() / G:.1f} g")
-    print(f"{'model':<38}{'ns per object and sample':>26}{'aim':>8}{'at rest':>9}{'two threads':>13}{'on cores':>10}")
+    print(f"{'model':<38}{'ns per object and sample':>26}{'aim':>8}{'at rest':>9}{'two threads':>13}{'processes':>11}")
     for title, (aim, given) in parameters().items():
         model = model_named(title.split(",")[0])
         values = prepare(model, given)
@@ -94,13 +112,15 @@ def costs() -> None:
             model.run(excitation, values, REFINE["history"], False)
 
         once()
-        # In turns, so that both meet the machine as it is.
-        alone, together, cores = math.inf, math.inf, 0.0
+        # In turns, so that all meet the machine as it is.
+        alone, threads, processes = math.inf, math.inf, math.inf
         for _ in range(ROUNDS):
             alone = min(alone, fastest(once, ALONE))
-            together, cores = min((together, cores), in_threads(once, values, alone))
+            batches = max(BATCHES, 2 * math.ceil(SHARED / alone / 2))
+            threads = min(threads, in_threads(once, batches))
+            processes = min(processes, in_processes(once, batches))
         cost = alone / OBJECTS / motion.samples * 1e9
         wanted = "" if np.isnan(aim) else f"{aim:g}"
         rest = at_rest(model, excitation, values)
-        gain = f"{alone / together:>13.2f}{cores:>10.2f}"
+        gain = f"{alone / threads:>13.2f}{alone / processes:>11.2f}"
         print(f"{title:<38}{cost:>26.2f}{wanted:>8}{rest:>9.0%}{gain}", flush=True)
