@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import FIRST, bare, inlined, inner, kernel
+from pipeline.kernels import FIRST, bare, fused, inlined, kernel
 from pipeline.kernels.flags import CUT
 from pipeline.kernels.lanes import LANES, lanes, same_steps
 from pipeline.kernels.roots import narrowed, trial
@@ -73,7 +73,7 @@ def _step(
     )
 
 
-@inner
+@fused
 def _turn(
     theta: float,
     s: float,
@@ -115,7 +115,7 @@ def _turn(
     return angle
 
 
-@inner
+@fused
 def _shake(x: Array, z: Array, dt: float, pieces: int, block: Array, history: Array) -> None:
     # Integrate a block of LANES pendulums through the record.  history: theta of the first lane.
     n = x.shape[0]
@@ -163,7 +163,7 @@ def _shake(x: Array, z: Array, dt: float, pieces: int, block: Array, history: Ar
         history[n - 1, 0] = block[THETA, 0]
 
 
-@inner
+@fused
 def _coast(
     theta: float, rate: float, most: float, length: float, zeta: float, tail: float, refine: int
 ) -> tuple[float, float]:

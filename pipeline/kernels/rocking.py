@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import FIRST, inlined, inner, kernel
+from pipeline.kernels import FIRST, fused, inlined, inner, kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
 from pipeline.kernels.quiet import next_above
 from pipeline.kernels.roots import narrowed, trial
@@ -83,7 +83,7 @@ def _step(
     )
 
 
-@inner
+@fused
 def _locate(
     phi: float,
     rate: float,
@@ -141,7 +141,7 @@ def _lift_off(
     return time, edge
 
 
-@inner
+@fused
 def _stretch(
     state: Array,
     a0: float,
@@ -232,7 +232,7 @@ def _stretch(
     state[0], state[1], state[2], state[3], state[4] = s, phi, rate, sn, cs
 
 
-@inner
+@fused
 def _peak(
     phi: float,
     rate: float,

@@ -22,11 +22,10 @@ from tests.benchmarks.common import OBJECTS, SEED, fastest, level, shaking, stro
 SLOWER = 1.6
 """How much slower than C a kernel may be."""
 
-FUSED = "gcc fuses products and sums, numba without fastmath does not (C without fusing: {})"
+FUSED = "gcc fuses products and sums, which this kernel does not (C without fusing: {})"
 
 REASONS = {
     "isolator 1-D": FUSED.format("1.27") + "; gcc melts all phases into one loop",
-    "swing": FUSED.format("1.11"),
     "oscillator": FUSED.format("1.13"),
 }
 """Why a kernel is above 1.2 times C."""
