@@ -4,7 +4,7 @@ A `Brief` holds what all sheets of a run share and goes once to whoever works; a
 back depends on these two alone: the same on this machine and on another, whoever did what before.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from hashlib import sha256
@@ -19,6 +19,7 @@ from pipeline.execute import Threads
 from pipeline.fragility.objects import fragilities
 from pipeline.jobs.doubts import now, standing
 from pipeline.jobs.levels import Storey
+from pipeline.jobs.twins import Known, Twins, as_own, likeness
 from pipeline.mitigate import Means, advise
 from pipeline.mitigate.bench import Carriage
 from pipeline.mitigate.installed import Measure, Placed, assess_above, placed
@@ -79,7 +80,7 @@ class Brief:
 
     def __getstate__(self) -> dict[str, Any]:
         # What was made on the way is made again where it is needed.
-        made = {"shelf", "carriage", "pen", "executor"}
+        made = {"shelf", "carriage", "pen", "executor", "twins"}
         return {name: value for name, value in self.__dict__.items() if name not in made}
 
     @property
@@ -104,6 +105,11 @@ class Brief:
     def carriage(self) -> Carriage:
         """What isolators pass on, once for all sheets."""
         return Carriage()
+
+    @cached_property
+    def twins(self) -> Twins:
+        """What was found of objects that others may be like."""
+        return Twins()
 
     @cached_property
     def executor(self) -> Threads:
@@ -264,21 +270,73 @@ def find(brief: Brief, storey: Storey, items: Sequence[Item], decisions: Sequenc
     decisions : those in force: classes and installed measures change what is run
     returns   : what was found, and the seconds that finding out what is worth measuring cost
     """
-    told = Silent()
     about: dict[str, list[Decision]] = {}
     for decision in decisions:
         about.setdefault(decision.object_number, []).append(decision)
     objects = [place(item, brief.rules, about.get(item.object_number, ())) for item in items]
-    scenes = [replace(one.scene, floor=storey.name) for one in objects]
+    objects = [replace(one, scene=replace(one.scene, floor=storey.name)) for one in objects]
+    known = _known(brief, storey, objects, [item.object_number in about for item in items])
+    assessments = [assessment for assessment, _ in known]
+    scenes, findings = [a.scene for a in assessments], [a.findings for a in assessments]
+    began = perf_counter()
+    wished = None
+    if brief.surveyed:
+        fidelity, step = _integrating(brief), brief.analysis.azimuth_step
+        # Each trial is asked once: a chart would not pay.
+        asked = wishes(scenes, findings, storey.shaking, brief.executor, Silent(), fidelity=fidelity, azimuth_step=step)
+        wished = tuple(in_order(asked))
+    seconds = perf_counter() - began if brief.surveyed else 0.0
+    found = Found(
+        assessments=tuple(assessments),
+        wishes=wished,
+        spacings=tuple(neighbours(scenes, findings, storey.shaking)),
+        needing={a.scene.item.object_number: counts for a, counts in known if counts},
+    )
+    return found, seconds
+
+
+def _integrating(brief: Brief) -> str:
+    return "reference" if brief.analysis.fidelity == "reference" else "history"
+
+
+def _known(brief: Brief, storey: Storey, objects: Sequence[Placed], decided: Sequence[bool]) -> list[Known]:
+    """Return what is found of each object, where several are alike that of the first."""
+    likes: list[Hashable] = []
+    for at, (one, mine) in enumerate(zip(objects, decided, strict=True)):
+        like = None if mine else likeness(one.scene)
+        # Its place, which nothing else has, stands for an object of its own kind.
+        likes.append(at if like is None else like)
+    known = {like: before for like in likes if (before := brief.twins.get(like)) is not None}
+    fresh: dict[Hashable, int] = {}
+    for at, like in enumerate(likes):
+        if like not in known:
+            fresh.setdefault(like, at)
+    own = dict(zip(fresh, _assessed(brief, storey, [objects[at] for at in fresh.values()]), strict=True))
+    for like, (assessment, needing) in own.items():
+        if not isinstance(like, int):
+            brief.twins.note(like, assessment, needing)
+    known |= own
+    out = []
+    for at, (like, one) in enumerate(zip(likes, objects, strict=True)):
+        assessment, needing = known[like]
+        out.append((assessment if fresh.get(like) == at else as_own(one.scene, assessment), needing))
+    return out
+
+
+def _assessed(brief: Brief, storey: Storey, objects: Sequence[Placed]) -> list[Known]:
+    """Run everything that objects require, judge it and advise."""
+    if not objects:
+        return []
+    told = Silent()
+    scenes = [one.scene for one in objects]
     levels, executor = storey.shaking, brief.executor
     fidelity, step = brief.analysis.fidelity, brief.analysis.azimuth_step
-    # Few objects stand on isolators, each on its own: neither charts nor bounds of what these pass on would pay.
-    integrating = "reference" if fidelity == "reference" else "history"
     needing: list[dict[str, int]] = [{} for _ in scenes]
     plan, findings = assess(
         scenes, levels, executor, told, fidelity=fidelity, azimuth_step=step, charts=brief.shelf, needing=needing
     )
-    above = assess_above(objects, levels, executor, told, fidelity=integrating, azimuth_step=step)
+    # Few objects stand on isolators, each on its own: neither charts nor bounds of what these pass on would pay.
+    above = assess_above(objects, levels, executor, told, fidelity=_integrating(brief), azimuth_step=step)
     for at, (on_top, left_out) in enumerate(above):
         findings[at] += on_top
         done = {finding.title for finding in findings[at]}
@@ -301,19 +359,7 @@ def find(brief: Brief, storey: Storey, items: Sequence[Item], decisions: Sequenc
         # What an isolator passes on would have to be scaled too.
         shown = [s.item.on_display and s.support is not Support.ISOLATED for s in scenes]
         curves = fragilities(scenes, plan.work, storey.stripes, executor, told, chosen=shown)
-    began = perf_counter()
-    wished = None
-    if brief.surveyed:
-        # Each trial is asked once: a chart would not pay.
-        wished = wishes(scenes, findings, levels, executor, told, fidelity=integrating, azimuth_step=step)
-    seconds = perf_counter() - began if brief.surveyed else 0.0
-    found = Found(
-        assessments=tuple(
-            Assessment(scene, tuple(those), tuple(advised), curve)
-            for scene, those, advised, curve in zip(scenes, findings, advice, curves, strict=True)
-        ),
-        wishes=None if wished is None else tuple(in_order(wished)),
-        spacings=tuple(neighbours(scenes, findings, levels)),
-        needing={scene.item.object_number: counts for scene, counts in zip(scenes, needing, strict=True) if counts},
-    )
-    return found, seconds
+    return [
+        (Assessment(scene, tuple(those), tuple(advised), curve), counts)
+        for scene, those, advised, curve, counts in zip(scenes, findings, advice, curves, needing, strict=True)
+    ]

@@ -1,10 +1,15 @@
 """A museum of any size to measure with: real dimensions resampled with a fixed seed, and a suite of eleven motions.
 
-Only the numbers of the real records are used; what the museum is called, where its objects stand and what shakes it is
-made up.  Sizes vary a little from copy to copy, so that no two objects are the same work.
+Only the records that a museum published are used; what the museum is called, where its objects stand and what shakes it
+is made up.  Without a spread copies of one record are one piece of work; with a spread sizes vary from copy to copy, so
+that no two objects are.
+
+KOUROS_BENCH_REAL names the whole exports that records are drawn from, as "carnegie=FILE,moma=FILE" (mapping=file), in
+place of the thousands of rows that come with the tests.
 """
 
 import csv
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,6 +26,7 @@ from pipeline.records import Item, Motion
 from pipeline.resources import resource
 
 SEED = 20_261_121
+REAL = "KOUROS_BENCH_REAL"
 SAMPLES, DT = 20_000, 0.005
 PGA = tuple(np.linspace(0.2, 0.7, 11).tolist())
 """Of the suite's motions, g: the larger horizontal component."""
@@ -55,14 +61,15 @@ class Museum:
     site: Path
 
 
-def museum(folder: Path, objects: int, *, motions: int = len(PGA), more: str = "") -> Museum:
+def museum(folder: Path, objects: int, *, motions: int = len(PGA), spread: float = 0.0, more: str = "") -> Museum:
     """Write a museum with its settings, collection and site.
 
-    more : further settings, as TOML
+    spread : of the sizes of copies, relative
+    more   : further settings, as TOML
     """
     folder.mkdir(parents=True, exist_ok=True)
     collection = folder / "collection.csv"
-    write_collection(collection, objects)
+    write_collection(collection, objects, spread)
     site = SiteTable(name="A made-up suite", latitude=35.8, longitude=-117.6)
     told = [("design", motion) for motion in suite()[:motions]]
     write_site(folder / "site", told, site, licence="made up", why="eleven motions to measure with")
@@ -74,17 +81,19 @@ def museum(folder: Path, objects: int, *, motions: int = len(PGA), more: str = "
 def real_items() -> list[Item]:
     """Return the real records that sizes are taken from: those of Carnegie and MoMA that have a height."""
     moma = Path(__file__).resolve().parents[1] / "data" / "collections" / "moma_rows.csv"
-    files = ((bundled_collection(), "carnegie"), (moma, "moma"))
+    files = [(bundled_collection(), "carnegie"), (moma, "moma")]
+    if named := os.environ.get(REAL):
+        files = [(Path(file), mapping) for mapping, _, file in (one.partition("=") for one in named.split(","))]
     items = [item for file, mapping in files for item in read_items(file, load_mapping(mapping)).items]
     return [item for item in items if item.height_m]
 
 
-def write_collection(file: Path, objects: int) -> None:
-    """Write a collection: real dimensions drawn again and again, each time a few percent larger or smaller."""
+def write_collection(file: Path, objects: int, spread: float = 0.0) -> None:
+    """Write a collection: real records drawn again and again, each time larger or smaller by the spread."""
     real = real_items()
     numbers = np.random.default_rng(SEED)
     drawn = numbers.integers(0, len(real), objects)
-    sizes = numbers.lognormal(0.0, 0.05, (objects, 4))
+    sizes = numbers.lognormal(0.0, spread, (objects, 4))
     tough = numbers.random(objects) < 0.2
     with file.open("w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream)

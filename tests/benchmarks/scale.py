@@ -1,6 +1,7 @@
 """What a night costs at the size of the collection: first, unchanged, one object changed, one motion changed.
 
-KOUROS_BENCH_SIZES names the numbers of objects, KOUROS_BENCH_MOTIONS how many of the eleven motions shake them;
+KOUROS_BENCH_SIZES names the numbers of objects, KOUROS_BENCH_MOTIONS how many of the eleven motions shake them,
+KOUROS_BENCH_SPREAD by how much copies of one real record differ (0.05; none: not at all), see `museum` for more;
 KOUROS_BENCH_FOLDER where everything is written (tens of gigabytes for half a million objects).
 """
 
@@ -18,6 +19,7 @@ from pathlib import Path
 from tests.benchmarks.museum import PGA, Museum, museum
 
 SIZES, MOTIONS, FOLDER = "KOUROS_BENCH_SIZES", "KOUROS_BENCH_MOTIONS", "KOUROS_BENCH_FOLDER"
+SPREAD = "KOUROS_BENCH_SPREAD"
 
 
 @dataclass(frozen=True)
@@ -33,13 +35,14 @@ class Cost:
 def scale() -> None:
     """Print the table, and with what power of the number of objects the first night grows."""
     sizes = [int(size) for size in os.environ.get(SIZES, "1000,10000").split(",")]
-    motions = int(os.environ.get(MOTIONS, len(PGA)))
-    print(f"{motions} motions of 20,000 samples, three components; {os.cpu_count()} cores; seconds")
+    motions, spread = int(os.environ.get(MOTIONS, len(PGA))), float(os.environ.get(SPREAD, "0"))
+    print(f"copies of a record differ by {spread:.0%}; {os.cpu_count()} cores; seconds")
+    print(f"{motions} motions of 20,000 samples, three components")
     print(f"{'objects':>9} {'night':<24}{'wall':>8}{'cpu':>9}{'ms/object':>11}{'peak MB':>9}{'exit':>6}")
     first = {}
     with tempfile.TemporaryDirectory() as temporary:
         for size in sizes:
-            made = museum(Path(os.environ.get(FOLDER) or temporary) / str(size), size, motions=motions)
+            made = museum(Path(os.environ.get(FOLDER) or temporary) / str(size), size, motions=motions, spread=spread)
             first[size] = _tell(size, "first", made)
             _tell(size, "unchanged", made)
             _change_object(made)

@@ -1,0 +1,78 @@
+"""Objects that differ in nothing that anything computed rests on are worked on once.
+
+A service of forty cups, a series of prints in the same frame: what is found of one of them holds for all, with another
+number.  So it does for an object of an earlier night, under the same shaking and rules, that is still what it was.
+"""
+
+from collections import OrderedDict
+from collections.abc import Hashable, Mapping
+from dataclasses import replace
+from operator import attrgetter
+
+from pipeline.records import ITEM_FIELDS, Assessment, Found, Scene, Support
+
+MOST = 20_000
+"""Kinds of objects that are remembered: some hundred megabytes."""
+
+_OWN = (
+    "object_number", "gallery", "title", "dimensions", "position_x_m", "position_y_m", "value_class", "provenance",
+    "problems",
+)  # fmt: skip
+"""Fields of a record that are looked at by the classification, whose result is a part of the scene, or by nobody; where
+an object stands beside others counts for its neighbours, which are looked at afterwards."""
+
+_shared = attrgetter(*(name for name in ITEM_FIELDS if name not in _OWN))
+
+
+def likeness(scene: Scene) -> Hashable | None:
+    """Return what objects that are alike share; None for one whose company counts.
+
+    That is one that stands in a case, whose measures are for all in it, or on an isolator.
+    """
+    if scene.item.case.strip() or scene.support is Support.ISOLATED:
+        return None
+    return (
+        *(scene.object_class, scene.rule, scene.support, scene.models, tuple(scene.parameters.items())),
+        *(scene.assumptions, scene.missing, scene.floor),
+        *_shared(scene.item),
+    )
+
+
+Known = tuple[Assessment, Mapping[str, int]]
+"""What was found of an object, and for how many of its analyses any history was run, by the name of the model."""
+
+
+class Twins:
+    """What was found of objects, by their likeness; of too many the first are forgotten."""
+
+    def __init__(self, most: int = MOST) -> None:
+        self._most = most
+        self._known: OrderedDict[Hashable, Known] = OrderedDict()
+
+    def get(self, like: Hashable) -> Known | None:
+        """Return what is known of such an object."""
+        return self._known.get(like)
+
+    def note(self, like: Hashable, assessment: Assessment, needing: Mapping[str, int]) -> None:
+        """Take down what was found of an object."""
+        self._known[like] = (assessment, needing)
+        if len(self._known) > self._most:
+            self._known.popitem(last=False)
+
+    def learn(self, found: Found) -> None:
+        """Take down what an earlier night found, under the same shaking and by the same rules and code."""
+        for assessment in found.assessments:
+            like = likeness(assessment.scene)
+            if like is not None:
+                self.note(like, assessment, found.needing.get(assessment.scene.item.object_number, {}))
+
+
+def as_own(scene: Scene, twin: Assessment) -> Assessment:
+    """Return what was found of a twin as found of this object."""
+    number, gallery = scene.item.object_number, scene.item.gallery
+    return Assessment(
+        replace(scene, skipped=twin.scene.skipped),
+        tuple(replace(one, object_number=number, gallery=gallery) for one in twin.findings),
+        tuple(replace(one, object_number=number, gallery=gallery) for one in twin.recommendations),
+        tuple(replace(one, object_number=number) for one in twin.fragilities),
+    )
