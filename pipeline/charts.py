@@ -4,6 +4,7 @@ import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,9 @@ PATH_POINTS = 1500
 
 PICTURED = 2e-2
 """Tolerance of the response charts that are made for a picture: half of it, its error as a rule, is a line's width."""
+
+SHORTEST = 0.1
+"""Metres of the shortest suspension on a swing's picture: below, verdicts need a chart and nobody a picture."""
 
 SMOOTH = 240
 """Points of a curve between the nodes of its chart, so that it is drawn as the chart is read."""
@@ -87,17 +91,18 @@ def _rounded(value: float) -> float:
     return float(f"{value:.5g}")
 
 
-def sliding_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, float]) -> ResponseChart:
+def sliding_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, Any]) -> ResponseChart:
     """Return the chart of sliding against friction: the very one that verdicts are found by."""
     return response_chart("sliding", motion, tolerance=DECIDES, charts=shelf, **fixed)
 
 
-def swing_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, float]) -> ResponseChart:
+def swing_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, Any]) -> ResponseChart:
     """Return the chart of a swing against its length."""
-    return response_chart("swing", motion, azimuth_step=SWING_DIRECTIONS, tolerance=PICTURED, charts=shelf, **fixed)
+    step = SWING_DIRECTIONS
+    return response_chart("swing", motion, azimuth_step=step, tolerance=PICTURED, low=SHORTEST, charts=shelf, **fixed)
 
 
-def isolator_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, float]) -> ResponseChart:
+def isolator_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, Any]) -> ResponseChart:
     """Return the chart of what a horizontal isolator passes on against its frequency."""
     return response_chart("horizontal_isolator", motion, tolerance=PICTURED, charts=shelf, **fixed)
 

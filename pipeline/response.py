@@ -1,6 +1,7 @@
 """One model, one motion, many parameter sets, one fidelity."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -274,12 +275,14 @@ def response_chart(
     angle: float | None = None,
     azimuth_step: float = AZIMUTH_STEP,
     tolerance: float = TOLERANCE,
+    low: float | None = None,
     charts: Shelf = SHELF,
     **fixed: Any,
 ) -> ResponseChart:
     """Return a model's response chart under a motion, from the shelf or built.
 
     angle  : as in ``respond``
+    low    : where the chart begins; None: as the model says
     fixed  : the model's parameters besides that of the chart's axis, single numbers
     raises : ValueError as ``respond``, and for a model that is never tabulated
     """
@@ -288,7 +291,7 @@ def response_chart(
     values = prepare(row, {**fixed, axis.name: axis.low})
     run, settings = _charted(row, motion, values, angle, None, azimuth_step, tolerance)
     others = {name: column[0] for name, column in values.items() if name != axis.name}
-    return chart_of(row, motion, others, run, settings, charts)
+    return chart_of(row, motion, others, run, replace(settings, low=low), charts)
 
 
 def _charted(

@@ -1,7 +1,7 @@
 """Which rows of a call are looked up in which charts."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -31,6 +31,7 @@ class Settings:
     azimuth_step : degrees between the directions of which the worst counts
     refine       : how finely the nodes are integrated
     tolerance    : of the interpolation, relative to max(value, 1 % of the largest value on the chart)
+    low          : where the axis begins; None: as the model says
     raises       : ValueError for a tolerance that makes no sense
     """
 
@@ -40,6 +41,7 @@ class Settings:
     azimuth_step: float
     refine: int
     tolerance: float
+    low: float | None = None
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.tolerance) and 1e-6 <= self.tolerance <= 1.0):
@@ -153,9 +155,11 @@ def chart_of(
     raises : as `tabulate`
     """
     axis = axis_of(model)
+    if settings.low is not None:
+        axis = replace(axis, low=settings.low)
     key = _identity(model, motion, fixed, settings)
     excitation = motion.excitation(None if settings.both else settings.angle, settings.tail)
-    return shelf.get(key, axis, partial(ResponseChart.build, model, excitation, fixed, run, settings.tolerance))
+    return shelf.get(key, axis, partial(ResponseChart.build, model, axis, excitation, fixed, run, settings.tolerance))
 
 
 def _identity(model: Model, motion: Motion, fixed: Mapping[str, float], settings: Settings) -> str:
@@ -168,5 +172,6 @@ def _identity(model: Model, motion: Motion, fixed: Mapping[str, float], settings
         tail=settings.tail,
         refine=settings.refine,
         tolerance=settings.tolerance,
+        low=settings.low,
         fixed=dict(fixed),
     )

@@ -55,6 +55,7 @@ class ResponseChart:
     def build(
         cls,
         model: Model,
+        axis: ChartAxis,
         excitation: Excitation,
         fixed: Mapping[str, float],
         run: Run,
@@ -63,11 +64,10 @@ class ResponseChart:
     ) -> "ResponseChart":
         """Run the model where it is needed.
 
+        axis       : the model's, or a stretch of it
         excitation : the strongest that the run may shake with: in both directions for a worst direction
         fixed      : the model's parameters besides that of the axis (NaN: left out)
-        raises     : ValueError for a model that is never tabulated
         """
-        axis = axis_of(model)
         settled = np.inf if axis.settled is None else axis.settled(excitation)
         high = axis.high if settled > axis.high else max(settled, 2.0 * axis.low)
         outputs = tuple(q.name for q in model.gives)

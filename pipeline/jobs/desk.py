@@ -168,7 +168,7 @@ class ChartErrand:
 
 def build(brief: Brief, errand: ChartErrand) -> None:
     """Put a chart on the shelf, where it is not there yet, so that all who work find it."""
-    given = {name: value for name, value in errand.alike.items() if value == value}  # noqa: PLR0124 - NaN: not given
+    given: dict[str, Any] = {name: value for name, value in errand.alike.items() if value == value}  # noqa: PLR0124 - NaN: not given
     response_chart(
         errand.model,
         errand.motion,

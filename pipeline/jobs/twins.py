@@ -11,8 +11,8 @@ from operator import attrgetter
 
 from pipeline.records import ITEM_FIELDS, Assessment, Found, Scene, Support
 
-MOST = 20_000
-"""Kinds of objects that are remembered: some hundred megabytes."""
+MOST = 100_000
+"""Kinds of objects that are remembered, of about 6 kB each."""
 
 _OWN = (
     "object_number", "gallery", "title", "dimensions", "position_x_m", "position_y_m", "value_class", "provenance",

@@ -21,7 +21,7 @@ CHANCE = 1e-9
 most swings.  It falls with the fourth power of the step."""
 
 LENGTH = Quantity("length", "m", "from the point of suspension to the centre of gravity", 0.0, exclusive=True)
-LENGTH_AXIS = ChartAxis("length", low=0.1, high=20.0, nodes=400)
+LENGTH_AXIS = ChartAxis("length", low=0.008, high=20.0, nodes=400)
 
 
 def _swept(angle: Array) -> Array:

@@ -85,7 +85,7 @@ TEXT_FILES = ("findings.csv", "findings.jsonl", "recommendations.csv", "objects.
 
 WORKBOOK = "findings.xlsx"
 
-WORKBOOK_ROWS = 20_000
+WORKBOOK_ROWS = 10_000
 """Rows of a table up to which there is a workbook; a spreadsheet holds more, but writing them takes minutes."""
 
 HEADERS = {f"{name}.csv": (",".join(columns) + "\n").encode() for name, columns in TABLES.items()}

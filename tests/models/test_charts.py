@@ -11,6 +11,7 @@ from shaking import along_x, random_motion
 from pipeline import respond
 from pipeline.charting import ResponseChart, Shelf
 from pipeline.charting.refine import MOST_NODES, UNITS, refine
+from pipeline.charting.response_chart import axis_of
 from pipeline.models import MODELS, model_named
 from pipeline.models.common import lift_ratios
 from pipeline.motions import read_motion
@@ -84,7 +85,7 @@ def chart(name: str, motion: Motion, tolerance: float, most: int = MOST_NODES, *
 
     left_out = {q.name: np.nan if q.default is None else q.default for q in model.needs}
     excitation = motion.excitation(None)
-    return ResponseChart.build(model, excitation, {**left_out, **fixed}, run, tolerance, most)
+    return ResponseChart.build(model, axis_of(model), excitation, {**left_out, **fixed}, run, tolerance, most)
 
 
 def test_a_tighter_tolerance_takes_more_nodes_and_keeps_it() -> None:
