@@ -3,6 +3,7 @@
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass, replace
+from math import ceil
 from time import monotonic
 
 from pipeline.collection.inventory import Catalogue, Listed, fields_since
@@ -23,8 +24,9 @@ from pipeline.store.results import Encoded, Kept, keep, known_to, load_found, ou
 FEW = 5_000
 """Objects whose results are to be found for which other processes do not pay: they take seconds to start."""
 
-BATCH = 4_000
-"""Objects, about, that one worker works on together: each model is called once for all of them under each motion."""
+BATCH = 20_000
+"""Objects, about, that one worker works on together at most: each model is called once for all of them under each
+motion, which costs some seconds however few they are."""
 
 _SECONDS = 5.0
 """Longest time for which results wait to be stored together."""
@@ -113,8 +115,7 @@ class Round:
         take : is given each new result
         """
         todo = [piece for piece in self._pieces if piece.kept is None]
-        wanted = (tuple(replace(self._errand(piece), draw=False) for piece in batch) for batch in _batches(todo))
-        with self._crew(self.fresh) as hands, closing(self._each(hands, wanted, progress)) as done:
+        with self._crew(self.fresh) as hands, closing(self._each(hands, todo, progress, draw=False)) as done:
             for at, piece in enumerate(self._pieces):
                 progress.step("sheets", at, len(self._pieces))
                 came = None if piece.kept is not None else next(done)
@@ -139,11 +140,10 @@ class Round:
         taken = {at for at, piece in enumerate(self._pieces) if piece.kept is not None and edition.has(keys[at])}
         left = [piece for at, piece in enumerate(self._pieces) if at not in taken]
         repeated = not left and edition.repeat(keys)
-        wanted = (tuple(self._errand(piece) for piece in batch) for batch in _batches(left))
         waiting: list[Encoded] = []
         since = monotonic()
         todo = sum(len(piece.part.objects) for piece in left)
-        with self._crew(todo) as hands, closing(self._each(hands, wanted, progress)) as done:
+        with self._crew(todo) as hands, closing(self._each(hands, left, progress, draw=True)) as done:
             for at, piece in enumerate(self._pieces):
                 progress.step("sheets", at, len(self._pieces))
                 came = None if at in taken else next(done)
@@ -163,11 +163,15 @@ class Round:
         progress.step("sheets", len(self._pieces), len(self._pieces))
         return total(self._tallies)
 
-    def _each(self, hands: Crew, wanted: Iterable[tuple[Errand, ...]], progress: Progress) -> Generator[Done]:
+    def _each(self, hands: Crew, todo: Sequence[_Piece], progress: Progress, *, draw: bool) -> Generator[Done]:
         """Yield what comes of each sheet; charts that many ask for are built before, each by one."""
         if self.charts and self.brief.kept is not None:
             for at, _ in enumerate(hands.each(build, self.brief, self.charts)):
                 progress.step("response charts", at + 1, len(self.charts))
+        objects = sum(len(piece.part.objects) for piece in todo)
+        # As many for each worker, so that none waits for the last.
+        batches = _batches(todo, ceil(objects / (hands.workers * ceil(objects / (hands.workers * BATCH) or 1))))
+        wanted = (tuple(replace(self._errand(piece), draw=draw) for piece in batch) for batch in batches)
         for done in hands.each(work, self.brief, wanted):
             yield from done
 
@@ -244,14 +248,20 @@ class Round:
         return {number: link_to(sheets[key], number, title) for number, key, title in found}
 
 
-def _batches(pieces: Iterable[_Piece]) -> Iterator[list[_Piece]]:
-    """Yield what is worked on together: sheets of one floor, in their order, that have a result or have none."""
+def _batches(pieces: Iterable[_Piece], most: int) -> Iterator[list[_Piece]]:
+    """Yield what is worked on together: sheets of one floor, in their order, that have a result or have none.
+
+    most : objects, about
+    """
     batch: list[_Piece] = []
+    size = 0
     for piece in pieces:
         alike = batch and (batch[0].floor, batch[0].kept is None) == (piece.floor, piece.kept is None)
-        if batch and (not alike or sum(len(p.part.objects) for p in batch) + len(piece.part.objects) > BATCH):
+        # The sheet with which it would be larger by more than half of that sheet is left to the next.
+        if batch and (not alike or size + len(piece.part.objects) // 2 > most):
             yield batch
-            batch = []
+            batch, size = [], 0
         batch.append(piece)
+        size += len(piece.part.objects)
     if batch:
         yield batch

@@ -1,6 +1,7 @@
 """What several generic models share: flags in words, excitations prepared once, error floors."""
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 
@@ -33,6 +34,9 @@ ILL = 1e3
 
 NUDGE = 1e-6
 """Relative change of amplitude by which a condition is measured."""
+
+_KNOWN = 256
+"""Excitations whose peaks are remembered: a motion is asked for its own again and again."""
 
 
 def words(bits: float) -> str:
@@ -69,6 +73,7 @@ def contact_lost(motion: Excitation, size: int) -> Array:
     return np.full(size, float(flags.CONTACT_LOST) if np.min(motion.z) < -G else 0.0)
 
 
+@lru_cache(maxsize=_KNOWN)
 def largest_push(motion: Excitation) -> float:
     """Return A_max [m/s2]: the peak along the direction, or the peak resultant of two."""
     return float(np.max(np.abs(motion.x) if motion.y is None else np.hypot(motion.x, motion.y)))
@@ -78,6 +83,7 @@ _STRONGEST = 64
 """Samples that already tell most of the peaks along all directions."""
 
 
+@lru_cache(maxsize=_KNOWN)
 def smallest_push(motion: Excitation) -> float:
     """Return a lower bound of A_max [m/s2] along any direction; along the one of the excitation it is A_max itself."""
     if motion.y is None:
@@ -123,6 +129,7 @@ def after_record(motion: Excitation) -> int:
     return 0 if motion.tail is None else int(np.ceil(motion.tail / motion.dt))
 
 
+@lru_cache(maxsize=_KNOWN)
 def lift_ratios(motion: Excitation) -> tuple[float, float]:
     """Return the largest -a / N and a / N over time, N = max(0, g + a_z): what lifts either edge of a body of slope 1.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -101,13 +101,18 @@ class Motion:
 
         tail : s after the record; None: until rest or past the peak
         """
-        x, y, z = self.acceleration
-        v_x, v_y, _ = self.start
         if angle is None:
-            return Excitation(self.dt, x, y, z, tail, (v_x, v_y), self.v_max)
+            return self._both if tail is None else replace(self._both, tail=tail)
+        z, (v_x, v_y, _) = self.acceleration[2], self.start
         turn = np.radians(angle)
         begin = float(np.cos(turn) * v_x + np.sin(turn) * v_y)
         return Excitation(self.dt, self.along(angle), None, z, tail, (begin, 0.0), self.v_max)
+
+    @cached_property
+    def _both(self) -> Excitation:
+        # Always the same one, so that what is worked out about it once is known.
+        x, y, z = self.acceleration
+        return Excitation(self.dt, x, y, z, None, self.start[:2], self.v_max)
 
     def changed(self, acceleration: ArrayLike, step: str, dt: float | None = None) -> Motion:
         """Return the motion with other samples (and time step), and what was done recorded as its last step."""
@@ -138,7 +143,7 @@ class Motion:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Excitation:
     """What a one-direction or two-direction model is shaken by.
 
