@@ -19,7 +19,7 @@ Shared = TypeVar("Shared")
 Errand = TypeVar("Errand")
 Done = TypeVar("Done")
 
-AHEAD = 3
+AHEAD = 2
 """Errands that are handed out for each worker at a time: nobody waits, and memory stays bounded by them."""
 
 DEATHS = 3
@@ -102,7 +102,11 @@ def crew(*, address: str = "", processes: int = 0) -> Iterator[Crew]:
     import dask
     from distributed import Client, LocalCluster
 
-    settings: dict[str, Any] = {"distributed.scheduler.allowed-failures": DEATHS}
+    settings: dict[str, Any] = {
+        "distributed.scheduler.allowed-failures": DEATHS,
+        # The errands are as large as they are meant to be.
+        "distributed.admin.large-graph-warning-threshold": "1GB",
+    }
     with dask.config.set(settings):
         if not address:
             with (

@@ -136,6 +136,8 @@ class Errand:
 
     floor     : that it stands on
     items     : its objects, where they are to be assessed; else ``found`` is what was found of them, as it is kept
+    basis     : the digest of what is found of them depends on besides them
+    before    : results of an earlier night, as they are kept, on the same basis, of objects many of which are the same
     decisions : those in force about its objects
     digests   : of the records, by object number, of the objects decided about
     changed   : (object number, digest of its record when it was decided about) -> the fields that changed since
@@ -146,6 +148,8 @@ class Errand:
     floor: str
     items: tuple[Item, ...] = ()
     found: bytes | None = None
+    basis: str = ""
+    before: tuple[bytes, ...] = ()
     decisions: tuple[Decision, ...] = ()
     digests: Mapping[str, str] = field(default_factory=dict)
     changed: Mapping[tuple[str, str], tuple[str, ...]] = field(default_factory=dict)
@@ -207,10 +211,13 @@ def work(brief: Brief, batch: Sequence[Errand]) -> tuple[Done, ...]:
     if fresh:
         items = [item for errand in fresh for item in errand.items]
         decisions = [decision for errand in fresh for decision in errand.decisions]
+        for errand in fresh:
+            for earlier in errand.before:
+                brief.twins.learn(unpacked(earlier))
         with brief.shelf.remembering(brief.memory(fresh)):
             whole, seconds = find(brief, brief.storeys[fresh[0].floor], items, decisions)
         for errand, found in zip(fresh, parted(whole, [len(errand.items) for errand in fresh]), strict=True):
-            results[errand.sheet.key] = (found, encode(errand.sheet.key, found, tally))
+            results[errand.sheet.key] = (found, encode(errand.sheet.key, errand.basis, found, tally))
     done = []
     for errand in batch:
         known = errand.found

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import ceil
 from time import monotonic
 
@@ -19,12 +20,23 @@ from pipeline.report.edition import Edition, Shelved, link_to, sheet_key
 from pipeline.report.since import mentioned
 from pipeline.report.tallies import total
 from pipeline.report.views import Pointer
-from pipeline.store.results import Encoded, Kept, keep, known_to, load_found, outlines_of, packed
+from pipeline.store.results import (
+    Encoded,
+    Kept,
+    keep,
+    known_to,
+    load_found,
+    on_same_basis,
+    outlines_of,
+    packed,
+)
+from pipeline.store.reuse import whole_runs
+from pipeline.store.runs import sheets_of
 
 FEW = 5_000
 """Objects whose results are to be found for which other processes do not pay: they take seconds to start."""
 
-BATCH = 20_000
+BATCH = 16_000
 """Objects, about, that one worker works on together at most: each model is called once for all of them under each
 motion, which costs some seconds however few they are."""
 
@@ -69,6 +81,7 @@ class Round:
         self._catalogue, self._decisions = catalogue, decisions
         self._numbers = {one.object_number: one.digest for one in objects if one.object_number in decisions}
         settings, keys = workspace.settings, Keys(brief, rules_digest(workspace.settings))
+        self._keys = keys
         parts = cut(objects, settings)
         floors = [floor_name(settings, part.objects[0].gallery) for part in parts]
         named = [keys.of(part, floor, decisions) for part, floor in zip(parts, floors, strict=True)]
@@ -212,8 +225,25 @@ class Round:
         if piece.kept is not None:
             return replace(told, found=packed(self.workspace.engine, piece.key))
         numbers = [one.object_number for one in piece.part.objects]
-        records = self._catalogue.items(numbers)
-        return replace(told, items=tuple(records[number] for number in numbers))
+        records, basis = self._catalogue.items(numbers), self._keys.basis(piece.floor)
+        before = tuple(packed(self.workspace.engine, key) for key in self._before(piece, basis))
+        return replace(told, items=tuple(records[number] for number in numbers), basis=basis, before=before)
+
+    def _before(self, piece: _Piece, basis: str) -> list[str]:
+        """Return the keys of what the last night found in the place of a sheet, as far as it may be taken over."""
+        gone = self._gone.get((piece.part.gallery, piece.part.on_display), [])
+        return on_same_basis(self.workspace.engine, gone, basis) if gone else []
+
+    @cached_property
+    def _gone(self) -> dict[tuple[str, bool], list[str]]:
+        # By gallery, the sheets of the last night that are not shown any more: those that are hold other objects.
+        shown = {one.key for one in self._pieces}
+        out: dict[tuple[str, bool], list[str]] = {}
+        for run_id in whole_runs(self.workspace.engine)[:1]:
+            for sheet in sheets_of(self.workspace.engine, run_id):
+                if sheet.key not in shown:
+                    out.setdefault((sheet.gallery, sheet.on_display), []).append(sheet.key)
+        return out
 
     def _note(self, piece: _Piece, came: Done | None) -> Sheet:
         sheet, tally = self._sheet(piece), None if piece.kept is None else piece.kept.tally

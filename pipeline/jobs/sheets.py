@@ -107,6 +107,10 @@ class Keys:
         self._shared = repr((_code(), KERNEL_VERSION, asked))
         self._floors = {name: repr(_shaking(storey)) for name, storey in brief.storeys.items()}
 
+    def basis(self, floor: str) -> str:
+        """Return the digest of what results on a floor depend on besides the objects and the decisions about them."""
+        return hashlib.sha256(f"{self._shared}\0{self._floors[floor]}".encode("utf-8", "surrogatepass")).hexdigest()
+
     def of(self, part: Part, floor: str, decisions: Mapping[str, Sequence[Decision]]) -> str:
         """Return the key of a part; which of its gallery's sheets it is does not matter.
 

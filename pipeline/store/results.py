@@ -28,18 +28,23 @@ _TITLE = 80
 
 @dataclass(frozen=True, slots=True)
 class Encoded:
-    """A result as it is kept; a worker makes it, so that whoever writes only writes."""
+    """A result as it is kept; a worker makes it, so that whoever writes only writes.
+
+    basis : the digest of what it depends on besides its objects
+    """
 
     key: str
+    basis: str
     counts: Mapping[str, int]
     tally: Tally
     outline: bytes
     found: bytes
 
 
-def encode(key: str, found: Found, tally: Callable[[Found], Tally]) -> Encoded:
+def encode(key: str, basis: str, found: Found, tally: Callable[[Found], Tally]) -> Encoded:
     """Make a result ready to be kept.
 
+    basis  : the digest of what it depends on besides its objects
     tally  : what it adds to the totals of a run
 
     raises : StoreError naming the object, for a value of the wrong type, for text that is not Unicode, and for a
@@ -56,7 +61,7 @@ def encode(key: str, found: Found, tally: Callable[[Found], Tally]) -> Encoded:
             check_type(_where(assessment), Assessment, assessment)
         raise
     outline = _packed(tuple[Outline, ...], outlines(found))
-    return Encoded(key, counts(found), tally(found), outline, everything)
+    return Encoded(key, basis, counts(found), tally(found), outline, everything)
 
 
 def keep(engine: Engine, run_id: str, made: str, results: Iterable[Encoded]) -> None:
@@ -76,6 +81,7 @@ def add(connection: Connection, run_id: str, made: str, results: Iterable[Encode
     rows = [
         {
             "key": key,
+            "basis": result.basis,
             "run_id": run_id,
             "made": made,
             "counts": dict(result.counts),
@@ -117,6 +123,16 @@ def known_to(engine: Engine, keys: Sequence[str]) -> dict[str, Kept]:
     """
     with speaking(engine, "the results of earlier runs could not be read"), engine.connect() as connection:
         return known(connection, keys)
+
+
+def on_same_basis(engine: Engine, keys: Sequence[str], basis: str) -> list[str]:
+    """Return those of the keys whose results rest on a basis."""
+    found: list[str] = []
+    with engine.connect() as connection:
+        for start in range(0, len(keys), NAMED):
+            some = RESULT.c.key.in_(keys[start : start + NAMED])
+            found += connection.execute(select(RESULT.c.key).where(some, RESULT.c.basis == basis)).scalars()
+    return found
 
 
 def copy(source: Engine, target: Engine, key: str) -> None:

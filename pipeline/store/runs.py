@@ -131,6 +131,12 @@ def load_head(engine: Engine, run_id: str | None = None) -> tuple[RunRecord, tup
     return record, sheets
 
 
+def sheets_of(engine: Engine, run_id: str) -> tuple[Sheet, ...]:
+    """Return the sheets of a run, in their order."""
+    with speaking(engine, f"the sheets of run {run_id!a} could not be read"), engine.connect() as connection:
+        return _sheets(connection, run_id)
+
+
 def load_run(engine: Engine, run_id: str | None = None) -> RunRecord:
     """Return a whole run in memory, equal to the one that was saved; of a large collection that is much.
 

@@ -248,6 +248,7 @@ RESULT = Table(
     "result",
     METADATA,
     Column("key", Words(), primary_key=True),
+    Column("basis", Words(), nullable=False, server_default=""),
     Column("run_id", Words(), nullable=False),
     Column("made", Words(), nullable=False),
     Column("counts", Json(dict[str, int]), nullable=False),
@@ -257,6 +258,7 @@ RESULT = Table(
 )
 """What was found about the objects of one sheet, under the digest of everything that it depends on; never changed.
 
+basis   : the digest of what it depends on besides its objects; "" where that is not known
 run_id  : the run that found it, which may be gone;  made : when, ISO 8601, UTC
 outline : of each object what comparisons need, found : everything; compressed JSON (see `results`)
 """

@@ -174,6 +174,6 @@ def run(run_id: str, *assessments: Assessment, day: int = 1, motions: tuple[Moti
 def save_run(engine: Engine, record: RunRecord) -> None:
     """Keep a whole run as one sheet, as a night keeps its many."""
     found = Found(record.assessments, record.wishes, record.spacings)
-    encoded = encode(uuid4().hex, found, tally)
+    encoded = encode(uuid4().hex, "", found, tally)
     sheet = Sheet(encoded.key, "", True, 1, 1, record.run_id, record.finished, encoded.counts)
     commit_run(engine, replace(record, assessments=(), wishes=None, spacings=()), [sheet], [encoded])

@@ -195,7 +195,7 @@ def test_what_two_runs_share_stays_until_both_are_gone(engine: Engine) -> None:
     save_run(engine, one)
     _, sheets = load_head(engine, "one")
     commit_run(engine, replace(one, run_id="two", assessments=()), sheets)
-    stray = encode("stray", Found((assessment("2"),)), tally)
+    stray = encode("stray", "", Found((assessment("2"),)), tally)
     keep(engine, "cut off", "2031-05-01T00:00:00+00:00", [stray])
     remove_runs(engine, ["one", "never there"])
     assert rows(engine) == NOTHING | {"run": 1, "run_motion": 0, "run_sheet": 1, "result": 1}

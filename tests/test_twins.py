@@ -1,0 +1,148 @@
+"""What is found of one object holds for all that are like it, that night and, where nothing else changed, later."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from pipeline.classify import classify
+from pipeline.jobs import desk
+from pipeline.jobs.twins import Twins, as_own, likeness
+from pipeline.mitigate.installed import Placed
+from pipeline.records import Item, Provenance, Support
+from pipeline.records.scene import Origin
+from pipeline.settings import load_settings
+from tests.test_unchanged_nights import found, museum, night, rows, write
+
+CUP = Item(
+    "1", "Room 1", title="Cup", object_name="cup", medium="earthenware", height_m=0.1, width_m=0.08, depth_m=0.08
+)
+
+
+def like(**changes: object) -> object:
+    return likeness(classify(replace(CUP, **changes)))
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"object_number": "2"},
+        {"gallery": "Room 2"},
+        {"title": "A cup"},
+        {"position_x_m": 1.0, "position_y_m": 2.0},
+        {"value_class": "A"},
+        {"provenance": (Provenance("height_m", Origin.MEASURED, "10 cm"),)},
+    ],
+    ids=lambda changes: next(iter(changes)),
+)
+def test_what_tells_one_from_another_does_not_make_them_unlike(changes: dict[str, object]) -> None:
+    assert like(**changes) == like()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"height_m": 0.11},
+        {"mass_kg": 0.3},
+        {"medium": "glass"},
+        {"orientation_deg": 30.0},
+        {"susceptible": False},
+        {"on_display": False},
+        {"condition": 0.8},
+        {"clearance_m": 0.02},
+        {"support": Support.FASTENED},
+        {"object_name": "statue"},
+    ],
+    ids=lambda changes: next(iter(changes)),
+)
+def test_what_anything_computed_rests_on_does(changes: dict[str, object]) -> None:
+    assert like(**changes) != like()
+
+
+def test_company_counts_in_a_case_and_on_an_isolator() -> None:
+    assert like(case="A") is None
+    assert like(support=Support.ISOLATED, isolator="friction_isolator") is None
+
+
+def test_of_too_many_kinds_the_first_are_forgotten() -> None:
+    twins = Twins(most=2)
+    scene = classify(CUP)
+    for kind in "abc":
+        twins.note(kind, desk.Assessment(scene, (), ()), {})
+    assert twins.get("a") is None
+    assert twins.get("c") is not None
+
+
+@pytest.fixture
+def assessed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The numbers of the objects that anything was run for."""
+    numbers: list[str] = []
+    true = desk._assessed
+
+    def noted(brief: desk.Brief, storey: desk.Storey, objects: list[Placed]) -> list[desk.Known]:
+        numbers.extend(one.scene.item.object_number for one in objects)
+        return true(brief, storey, objects)
+
+    monkeypatch.setattr(desk, "_assessed", noted)
+    return numbers
+
+
+def set_of_vases() -> list[dict[str, str]]:
+    """Three rooms with four vases each, of four sizes in all."""
+    return [row | {"width_m": "0.12"} for row in rows()]
+
+
+def test_a_set_is_worked_on_once_and_shown_as_if_each_had_been(tmp_path: Path, assessed: list[str]) -> None:
+    settings = museum(tmp_path / "set", set_of_vases())
+    night(settings)
+    assert assessed == ["0.0", "0.1", "0.2", "0.3"]
+    together = found(settings)
+    for one in together.assessments:
+        assert all(f.object_number == one.scene.item.object_number for f in (*one.findings, *one.recommendations))
+        assert all(f.gallery == one.scene.item.gallery for f in (*one.findings, *one.recommendations))
+    # Each in a museum of its own, where nothing is like it.
+    for number, row in ((5, set_of_vases()[5]), (10, set_of_vases()[10])):
+        alone = museum(tmp_path / f"alone-{number}", [row])
+        night(alone)
+        (own,) = found(alone).assessments
+        assert own == together.assessments[number]
+
+
+def test_of_a_changed_sheet_only_what_changed_is_worked_on(tmp_path: Path, assessed: list[str]) -> None:
+    settings = museum(tmp_path / "museum", rows())
+    night(settings)
+    assessed.clear()
+    objects = rows()
+    objects[5]["height_m"] = "0.9"
+    objects[6]["title"] = "A vase with another title"
+    write(settings.home, objects)
+    summary = night(settings)
+    assert summary.fresh == 4
+    assert assessed == ["1.1"]
+    fresh = museum(tmp_path / "fresh", objects)
+    night(fresh)
+    assert found(settings) == found(fresh)
+
+
+def test_under_other_shaking_or_other_settings_nothing_is_taken_over(tmp_path: Path, assessed: list[str]) -> None:
+    settings = museum(tmp_path / "museum", rows())
+    night(settings)
+    assessed.clear()
+    manifest = settings.home / "site" / "manifest.toml"
+    text = manifest.read_text(encoding="utf-8")
+    manifest.write_text(text.replace("scale_to_pga_g = 0.7", "scale_to_pga_g = 0.6"), encoding="utf-8")
+    night(settings)
+    assert len(assessed) == 12
+    assessed.clear()
+    file = settings.home / "kouros.toml"
+    told = file.read_text(encoding="utf-8")
+    assert "azimuth_step = 10.0" in told
+    file.write_text(told.replace("azimuth_step = 10.0", "azimuth_step = 15.0"), encoding="utf-8")
+    night(load_settings(file))
+    assert len(assessed) == 12
+
+
+def test_why_models_were_left_out_is_taken_over_too() -> None:
+    scene = replace(classify(CUP), skipped={"Stress": "it is whole"})
+    twin = classify(replace(CUP, object_number="2", gallery="Room 2"))
+    assert as_own(twin, desk.Assessment(scene, (), ())).scene == replace(twin, skipped={"Stress": "it is whole"})
