@@ -1,5 +1,8 @@
 """What `auto` costs beside `history`, model by model, on real objects.
 
+On a first night a chart is built; of sliding it is the one that the report's picture is drawn from, made before the
+verdicts whatever they ask for, so that what a night pays for them is the second ratio.
+
 KOUROS_BENCH_COLLECTION names another collection with Carnegie's columns, such as the whole of it.
 """
 

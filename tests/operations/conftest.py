@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
+import time
 import warnings
 from collections.abc import Callable, Mapping
 from contextlib import redirect_stderr, redirect_stdout
@@ -19,7 +21,9 @@ from referencing import Registry, Resource
 
 from pipeline.jobs.signals import synthesise
 from pipeline.resources import resource
-from tests.test_jobs import workspace
+from tests.test_jobs import COLUMNS, workspace
+
+from .disturbed import Nights, last, objects, rows
 
 SCHEMAS = ("run-summary", "status", "event")
 
@@ -93,3 +97,23 @@ def within(folder: Path, *words: str, **more: str) -> subprocess.CompletedProces
         with pytest.raises(SystemExit) as left:
             main()
     return subprocess.CompletedProcess(words, int(str(left.value.code)), out.getvalue(), err.getvalue())
+
+
+@pytest.fixture(scope="session")
+def nights(tmp_path_factory: pytest.TempPathFactory, shaking: Path) -> Nights:
+    folder = tmp_path_factory.mktemp("interrupted") / "museum"
+    folder.mkdir()
+    workspace(folder, rows(0.4), site=str(shaking))
+    assert within(folder, "run").returncode in (0, 3)
+    before = objects(folder / "reports" / "latest")
+    (folder / "export.csv").write_text("\n".join([COLUMNS, *rows(0.9)]) + "\n", encoding="utf-8")
+    undisturbed = Path(shutil.copytree(folder, folder.parent / "undisturbed", symlinks=True))
+    start = time.monotonic()
+    ran = subprocess.run(
+        command("run"), cwd=undisturbed, env=environment({}), capture_output=True, text=True, check=False
+    )
+    seconds = time.monotonic() - start
+    assert ran.returncode in (0, 3), ran.stderr
+    after = objects(undisturbed / "reports" / "latest")
+    assert before != after
+    return Nights(folder, before, after, last(str(undisturbed / "kouros.sqlite")), seconds)

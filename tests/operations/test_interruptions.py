@@ -6,95 +6,25 @@ report must be whole, last night's or tonight's, and the run that is resumed mus
 
 from __future__ import annotations
 
-import csv
 import os
 import random
 import shutil
 import signal
 import sqlite3
 import subprocess
-import time
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
-from lxml import html
 
 from pipeline.collection.database import open_database
-from pipeline.records import RunRecord
-from pipeline.store.runs import list_runs, load_run
-from tests.test_jobs import COLUMNS
+from pipeline.store.runs import list_runs
 
 from .conftest import command, environment, within
+from .disturbed import Nights, last, objects, whole
 
 KILLS = int(os.environ.get("KOUROS_KILLS", "2"))
 """How many runs are killed; `make soak` kills fifty."""
-
-ROOMS, EACH = 6, 5
-
-
-def rows(height: float) -> list[str]:
-    """Thirty vases in six rooms, of which every second one has another height tonight."""
-    columns = COLUMNS.split(",")
-    out = []
-    for room in range(ROOMS):
-        for n in range(EACH):
-            told = {
-                columns[0]: f"{room}.{n}", columns[1]: f"Room {room}", columns[2]: "Vase",
-                columns[3]: f"{(height if n % 2 else 0.4) + 0.05 * n:.3f}", columns[4]: "0.15", columns[5]: "0.15",
-            }  # fmt: skip
-            out.append(",".join(told.get(column, "") for column in columns))
-    return out
-
-
-@dataclass(frozen=True)
-class Nights:
-    """A museum after its first good night, with tonight's records in place; what an undisturbed night would find."""
-
-    folder: Path
-    before: dict[str, dict[str, str]]
-    after: dict[str, dict[str, str]]
-    record: RunRecord
-    seconds: float
-
-
-def objects(report: Path) -> dict[str, dict[str, str]]:
-    """Return the rows of objects.csv by object number, without the run that found them."""
-    with (report / "objects.csv").open(encoding="utf-8", newline="") as stream:
-        listed = [row | {"run": ""} for row in csv.DictReader(stream)]
-    found = {row["object_number"]: row for row in listed}
-    assert len(found) == len(listed)
-    return found
-
-
-def last(folder: Path) -> RunRecord:
-    """Return what the last finished run found, without what tells one night from another."""
-    record = load_run(open_database(str(folder / "kouros.sqlite")))
-    kept = {name: value for name, value in record.settings.items() if name != "survey_seconds"}
-    return replace(record, run_id="", started="", finished="", settings=kept)
-
-
-@pytest.fixture(scope="session")
-def nights(tmp_path_factory: pytest.TempPathFactory, shaking: Path) -> Nights:
-    from tests.test_jobs import workspace
-
-    folder = tmp_path_factory.mktemp("interrupted") / "museum"
-    folder.mkdir()
-    workspace(folder, rows(0.4), site=str(shaking))
-    assert within(folder, "run").returncode in (0, 3)
-    before = objects(folder / "reports" / "latest")
-    (folder / "export.csv").write_text("\n".join([COLUMNS, *rows(0.9)]) + "\n", encoding="utf-8")
-    undisturbed = Path(shutil.copytree(folder, folder.parent / "undisturbed", symlinks=True))
-    start = time.monotonic()
-    ran = subprocess.run(
-        command("run"), cwd=undisturbed, env=environment({}), capture_output=True, text=True, check=False
-    )
-    seconds = time.monotonic() - start
-    assert ran.returncode in (0, 3), ran.stderr
-    after = objects(undisturbed / "reports" / "latest")
-    assert before != after
-    return Nights(folder, before, after, last(undisturbed), seconds)
 
 
 @pytest.fixture
@@ -103,27 +33,12 @@ def museum(nights: Nights, tmp_path: Path) -> Path:
     return Path(shutil.copytree(nights.folder, tmp_path / "museum", symlinks=True))
 
 
-def whole(folder: Path, nights: Nights) -> bool:
-    """Check that the published report is whole, and say whether it is tonight's."""
-    report = (folder / "reports" / "latest").resolve()
-    found = objects(report)
-    assert found in (nights.before, nights.after)
-    for page in report.glob("*.html"):
-        tree = html.fromstring(page.read_bytes())
-        for link in tree.xpath("//a/@href"):
-            target = link.partition("#")[0]
-            assert not target or (report / target).is_file(), f"{page.name}: {link}"
-    for name in ("findings.csv", "findings.jsonl", "findings.parquet", "findings.xlsx", "recommendations.csv"):
-        assert (report / name).stat().st_size > 0
-    return found == nights.after
-
-
 def resumes(folder: Path, nights: Nights) -> None:
     """Check that the run is finished by --resume, with what an undisturbed night finds, once."""
     done = within(folder, "run", "--resume")
     assert done.returncode in (0, 3), done.stderr
     assert whole(folder, nights)
-    assert last(folder) == nights.record
+    assert last(str(folder / "kouros.sqlite")) == nights.record
     finished = [run for run in list_runs(open_database(str(folder / "kouros.sqlite"))) if run.status == "finished"]
     assert len(finished) in (2, 3)  # three where the kill came after the report was published
     assert not [p.name for p in (folder / "reports").iterdir() if p.name.endswith(".partial")]
