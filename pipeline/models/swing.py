@@ -147,7 +147,8 @@ SWING_3D = Model(
     screen=_screen_3d,
     say_screen=_say_3d,
     trace=_trace_3d,
-    chart=replace(LENGTH_AXIS, nodes=1200),
+    # What hangs from a ceiling has no short string; those whirl over the top, where no chart can follow.
+    chart=replace(LENGTH_AXIS, low=0.1, nodes=1200),
     mark=lambda parameters, demand: ("swing", parameters["length"], demand),
     demand="displacement",
     capacity="clearance",

@@ -143,13 +143,19 @@ def test_a_password_stands_nowhere(museum: Callable[..., Path], postgresql_url: 
 
     The test's server lets everybody in, so that the password may be anything.
     """
-    ours = make_url(postgresql_url).set(drivername="postgresql", password=SECRET)
+    server = make_url(postgresql_url).set(drivername="postgresql+psycopg")
+    maker = create_engine(server, isolation_level="AUTOCOMMIT")
+    with maker.connect() as connection:
+        # Other tests leave their inventories in the session's own.
+        connection.execute(text("CREATE DATABASE borders"))
+    maker.dispose()
+    ours = make_url(postgresql_url).set(drivername="postgresql", password=SECRET, database="borders")
     theirs = (
         ours.set(password="${MUSEUM_PW}")
         .render_as_string(hide_password=False)
         .replace("%24%7BMUSEUM_PW%7D", "${MUSEUM_PW}")
     )
-    admin = create_engine(make_url(postgresql_url).set(drivername="postgresql+psycopg"))
+    admin = create_engine(server.set(database="borders"))
     with admin.begin() as connection:
         connection.execute(text("CREATE TABLE holdings (object_number text PRIMARY KEY, gallery text, height_m float)"))
         connection.execute(text("INSERT INTO holdings VALUES ('1', 'A', 0.4), ('2', 'A', 0.3)"))
