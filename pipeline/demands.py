@@ -151,7 +151,7 @@ def bounded(work: Work, motion: Motion, outputs: Sequence[str], executor: Execut
     note = np.zeros(size)
     parts = [
         (angle, rows[i : i + BOUNDED])
-        for angle, rows in work.by_angle(np.arange(size))
+        for angle, rows in work.by_angle(np.unique(work.first))
         for i in range(0, rows.size, BOUNDED)
     ]
     # The certificate of a demand that counts needs no bounds besides.
@@ -174,6 +174,9 @@ def bounded(work: Work, motion: Motion, outputs: Sequence[str], executor: Execut
                 low[output][resting] = high[output][resting] = 0.0
             if model.exact and output == model.demand:
                 low[output][rows] = high[output][rows] = certificate
+    # What is the same is bounded once.
+    low, high = ({output: column[work.first] for output, column in side.items()} for side in (low, high))
+    note = note[work.first]
     return Demands(work, motion, np.zeros(size, dtype=np.int8), low, high, note, np.full(size, -1, dtype=np.int32))
 
 
@@ -198,26 +201,55 @@ def integrate(
     histories : those that were run before, which are taken over; None: all are run
     """
     work = found.work
-    parts: list[tuple[float | None, Indices, str]] = []
+    groups: list[_Group] = []
+    tasks: list[_RunTask] = []
     for angle, group in work.by_angle(rows):
+        each, place = np.unique(work.first[group], return_inverse=True)
         key = history_key(work.model.name, found.motion.hash, angle, fidelity, azimuth_step)
-        left = group if histories is None else _recalled(found, group, key, histories)
-        parts += [(angle, left[i : i + CHUNK], key) for i in range(0, left.size, CHUNK)]
-    tasks: list[_RunTask] = [
-        (work.model, found.motion, angle, work.some(chunk), fidelity, azimuth_step) for angle, chunk, _ in parts
-    ]
-    for (_, chunk, key), columns in zip(parts, executor.map(_run, tasks), strict=True):
-        found.settle(chunk, columns, Step.HISTORY)
+        there = np.zeros(each.size, dtype=bool)
+        known: Columns = {}
         if histories is not None:
-            histories.note(key, work.some(chunk), columns)
+            there, known = histories.recall(key, work.some(each))
+        left = each[~there]
+        chunks = [left[i : i + CHUNK] for i in range(0, left.size, CHUNK)]
+        tasks += [(work.model, found.motion, angle, work.some(some), fidelity, azimuth_step) for some in chunks]
+        groups.append(_Group(key, group, place, each, there, known, len(chunks)))
+    ran = iter(executor.map(_run, tasks))
+    for one in groups:
+        columns = dict(one.known)
+        parts = [next(ran) for _ in range(one.chunks)]
+        if parts:
+            fresh = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+            if histories is not None:
+                histories.note(one.key, work.some(one.each[~one.there]), fresh)
+            columns = {name: _merged(one.there, one.known.get(name), column) for name, column in fresh.items()}
+        found.settle(one.rows, {name: column[one.place] for name, column in columns.items()}, Step.HISTORY)
     return int(rows.size)
 
 
-def _recalled(found: Demands, rows: Indices, key: str, histories: Histories) -> Indices:
-    """Settle the rows that were run before, and return the others."""
-    there, columns = histories.recall(key, found.work.some(rows))
-    found.settle(rows[there], columns, Step.HISTORY)
-    return rows[~there]
+@dataclass(frozen=True)
+class _Group:
+    """Rows shaken along one angle.
+
+    each  : the different ones among them;  place : of each row in it
+    there : which of those were run before, with what they gave;  chunks : in how many parts the others are run
+    """
+
+    key: str
+    rows: Indices
+    place: Indices
+    each: Indices
+    there: NDArray[np.bool_]
+    known: Columns
+    chunks: int
+
+
+def _merged(there: NDArray[np.bool_], known: Array | None, fresh: Array) -> Array:
+    out = np.empty(there.size)
+    out[~there] = fresh
+    if known is not None:
+        out[there] = known
+    return out
 
 
 def chart(found: Demands, rows: Indices, charts: Shelf, azimuth_step: float, *, thrifty: bool) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pipeline.models import MODELS
 from pipeline.quantities import Array
 from pipeline.records import Model, Scene
-from pipeline.verdicts import EAST
+from pipeline.verdicts import EAST, capacity_of
 
 Indices = NDArray[np.intp]
 """Places in another array, (n,)."""
@@ -70,9 +70,9 @@ class Spans:
 
 @dataclass(frozen=True)
 class Work:
-    """All analyses of one model: unique parameter sets, and which of them each scene asked for.
+    """All analyses of one model: parameter sets, and which of them each scene asked for.
 
-    values : by parameter, (k,) unique sets
+    values : by parameter, (k,) sets, each once for those that ask the same of it
     angles : (k,) degrees from x towards y along which each is shaken; NaN: in both directions, or the worst counts
     scenes : (m,) index of the scene of each analysis
     spans  : which sets each analysis looks at
@@ -88,6 +88,12 @@ class Work:
     def size(self) -> int:
         """How many parameter sets there are, k."""
         return self.angles.size
+
+    @cached_property
+    def first(self) -> Indices:
+        """Of each parameter set the first that is the same, (k,): what is run is run for that one."""
+        first, place = _unique_rows(np.column_stack([*self.values.values(), self.angles]))
+        return first[place]
 
     def some(self, rows: Indices) -> dict[str, Array]:
         """Return the parameters of some rows."""
@@ -116,7 +122,7 @@ class Plan:
 
 
 def plan(scenes: Sequence[Scene], x_azimuth: float = EAST) -> Plan:
-    """Choose the models of each scene and gather their parameter sets, each set once however many objects share it.
+    """Choose the models of each scene and gather their parameter sets, each once for all that ask the same of it.
 
     x_azimuth : degrees clockwise from north of the x axis of the motions
     """
@@ -192,14 +198,36 @@ def _gather(model: Model, scenes: Sequence[Scene], chosen: Sequence[int], x_azim
         # Objects of a collection have one half width: turned by half a turn they are the same.
         angle = np.where(turned, (angles + 90.0 * at) % 180.0, np.nan)[analysis]
         along.append(np.column_stack([one, angle]))
-    unique, where = _unique_rows(np.concatenate(along))
+    asked = _questions(model, scenes, chosen, analysis, along)[analysis]
+    every = np.concatenate([np.column_stack([one, asked]) for one in along])
+    first, where = _unique_rows(every)
+    unique = every[first]
     return Work(
         model,
         {name: np.ascontiguousarray(unique[:, i]) for i, name in enumerate(names)},
-        np.ascontiguousarray(unique[:, -1]),
+        np.ascontiguousarray(unique[:, len(names)]),
         np.array(chosen, dtype=np.intp),
         Spans(where.reshape(len(axes), -1).T, np.searchsorted(analysis, np.arange(len(chosen)))),
     )
+
+
+def _questions(
+    model: Model, scenes: Sequence[Scene], chosen: Sequence[int], analysis: Indices, along: Sequence[Array]
+) -> Array:
+    """Return a number for each analysis that it shares with those of the very same sets and capacity, (m,).
+
+    Those are answered alike.  Others may ask for some of the same sets, but how closely a set is looked at is the
+    matter of each alone: what is found of an object must not hang on which others happen to be looked at with it.
+    """
+    numbers: dict[Hashable, int] = {}
+    table = np.concatenate(along, axis=1)
+    ends = np.searchsorted(analysis, np.arange(len(chosen) + 1))
+    out = np.empty(len(chosen))
+    for at, index in enumerate(chosen):
+        output, capacity = capacity_of(model, scenes[index])
+        own = (output, capacity.low, capacity.value, capacity.high, table[ends[at] : ends[at + 1]].tobytes())
+        out[at] = numbers.setdefault(own, len(numbers))
+    return out
 
 
 def own_angle(model: Model, scene: Scene, x_azimuth: float) -> float:
@@ -250,8 +278,9 @@ def corners(base: Array, low: Array, high: Array, uncertain: NDArray[np.bool_]) 
     return np.concatenate(sets)[order], analysis[order]
 
 
-def _unique_rows(matrix: Array) -> tuple[Array, Indices]:
+def _unique_rows(matrix: Array) -> tuple[Indices, Indices]:
+    """Return where each different row is first, (k,), and which of them each row is, (n,)."""
     # Bit for bit, so that NaN (not given) equals NaN.
     bits = np.ascontiguousarray(matrix).view(np.uint64)
     _, first, inverse = np.unique(bits, axis=0, return_index=True, return_inverse=True)
-    return matrix[first], inverse.reshape(-1)
+    return first, inverse.reshape(-1)

@@ -6,15 +6,17 @@ import os
 import tempfile
 import warnings
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from shutil import rmtree
+from typing import Any
 
 import pytest
 
 
-@pytest.fixture(scope="session")
-def postgresql_url() -> Iterator[str]:
-    """The URL of an empty database on a PostgreSQL server that lives as long as the session, in a temporary folder."""
+@contextmanager
+def postgresql_server() -> Iterator[Any]:
+    """Run a PostgreSQL server in a temporary folder."""
     with warnings.catch_warnings():
         # The package looks for XDG_RUNTIME_DIR when it is imported, which a build machine may lack.
         warnings.simplefilter("ignore")
@@ -24,12 +26,19 @@ def postgresql_url() -> Iterator[str]:
     folder.chmod(0o755)
     server = server_package.get_server(folder, cleanup_mode="stop")
     try:
-        name = f"kouros_{os.getpid()}"
-        server.psql(f"CREATE DATABASE {name};")
-        yield server.get_uri(database=name)
+        yield server
     finally:
         server.stop()
         rmtree(folder, ignore_errors=True)
+
+
+@pytest.fixture(scope="session")
+def postgresql_url() -> Iterator[str]:
+    """The URL of an empty database on a server that lives as long as the session."""
+    with postgresql_server() as server:
+        name = f"kouros_{os.getpid()}"
+        server.psql(f"CREATE DATABASE {name};")
+        yield server.get_uri(database=name)
 
 
 @pytest.fixture(scope="session")

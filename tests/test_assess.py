@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from pipeline.assess import LevelMotions, assess, judge
+from pipeline.charting import Shelf
 from pipeline.classify import classify
 from pipeline.execute import Threads
 from pipeline.mitigate import changed
@@ -82,6 +83,34 @@ def test_equal_work_is_done_once() -> None:
     sliding = next(w for w in plan(scenes).work if w.model.name == "sliding")
     assert len(sliding.scenes) == 100
     assert sliding.values["friction_static"].size == 3
+
+
+def test_what_is_found_of_an_object_does_not_hang_on_which_others_are_looked_at_with_it(motion: Motion) -> None:
+    """Twenty-four vases of four sizes, each with room or friction of its own: they ask for the same histories.
+
+    Which of these are run, and so how narrow the range of a demand is, is decided by capacity: of each alone.
+    """
+    items = [
+        replace(
+            VASE,
+            object_number=str(n),
+            height_m=0.3 + 0.1 * (n % 4),
+            clearance_m=(None, 0.01, 0.05, 0.2)[n // 4 % 4],
+            susceptible=(None, False)[n // 12],
+        )
+        for n in range(24)
+    ]
+    weaker = Motion(motion.dt, 0.5 * motion.acceleration, "weaker")
+    scenes = [classify(item) for item in items]
+    level = LevelMotions("design", "max", (motion, weaker), 90.0)
+
+    def found(some: list[Scene]) -> list[list[Finding]]:
+        return assess(some, [level], Threads(1), Silent(), fidelity="auto", charts=Shelf())[1]
+
+    together = found(scenes)
+    assert {f.fidelity for findings in together for f in findings} >= {"bound", "history"}
+    for scene, findings in zip(scenes, together, strict=True):
+        assert found([scene]) == [findings]
 
 
 def test_the_certificate_agrees_with_the_history(motion: Motion) -> None:

@@ -1,15 +1,25 @@
 """What is found of one object holds for all that are like it, that night and, where nothing else changed, later."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from pipeline.charting import Shelf
 from pipeline.classify import classify
-from pipeline.jobs import desk
+from pipeline.collection.catalogue import Listed, catalogue
+from pipeline.collection.record import kind_of
+from pipeline.execute.crew import Alone
+from pipeline.jobs import desk, rounds
+from pipeline.jobs.briefing import popular
+from pipeline.jobs.importing import import_collection
+from pipeline.jobs.sheets import Part
 from pipeline.jobs.twins import Twins, as_own, likeness
+from pipeline.jobs.workspace import HISTORIES, KEPT, open_workspace
 from pipeline.mitigate.installed import Placed
-from pipeline.records import Item, Provenance, Support
+from pipeline.models import model_named
+from pipeline.records import Item, Problem, Provenance, Support
 from pipeline.records.scene import Origin
 from pipeline.settings import load_settings
 from tests.test_unchanged_nights import found, museum, night, rows, write
@@ -146,3 +156,96 @@ def test_why_models_were_left_out_is_taken_over_too() -> None:
     scene = replace(classify(CUP), skipped={"Stress": "it is whole"})
     twin = classify(replace(CUP, object_number="2", gallery="Room 2"))
     assert as_own(twin, desk.Assessment(scene, (), ())).scene == replace(twin, skipped={"Stress": "it is whole"})
+
+
+class Pair(Alone):
+    """Two who work, one after the other in this process, so that it can be seen what each is given."""
+
+    workers = 2
+
+
+@pytest.fixture
+def pair(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rounds, "FEW", 0)
+    monkeypatch.setattr(rounds, "BATCH", 4)
+    monkeypatch.setattr(rounds, "KIND_BATCH", 1)
+    monkeypatch.setattr(rounds, "crew", lambda **_: nullcontext(Pair()))
+
+
+@pytest.mark.usefixtures("pair")
+def test_where_several_work_what_holds_for_many_is_found_before_the_sheets(tmp_path: Path, assessed: list[str]) -> None:
+    settings = museum(tmp_path / "set", set_of_vases())
+    execution = settings.execution.model_copy(update={"processes": 2})
+    settings = settings.model_copy(update={"execution": execution})
+    night(settings)
+    assert sorted(assessed) == ["0.0", "0.1", "0.2", "0.3"]
+    kept = settings.path(KEPT) / HISTORIES
+    parts = {file.name for file in kept.iterdir()}
+    # The next night's parts are the same, whatever else changed.
+    write(settings.home, [*set_of_vases(), set_of_vases()[0] | {"object_number": "9.9", "height_m": "0.77"}])
+    night(settings)
+    assert sorted(assessed) == ["0.0", "0.1", "0.2", "0.3", "9.9"]
+    assert parts <= {file.name for file in kept.iterdir()}
+
+
+def listed(number: str, kind: int | None, case: str = "") -> Listed:
+    return Listed(number, "Room", case, True, number, kind)
+
+
+def piece(*objects: Listed, floor: str = "") -> rounds._Piece:
+    return rounds._Piece(Part("Room", True, 1, 1, objects), floor, "key", (), None)
+
+
+def test_which_kinds_are_found_beforehand(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of more than one object, the most frequent first; all of them where all can be remembered."""
+    first = piece(listed("1", 7), listed("2", 8), listed("3", 7), listed("4", None), listed("5", 9, case="A"))
+    second = piece(listed("6", 8), listed("7", 8), listed("8", 5), listed("9", 9))
+    upstairs = piece(listed("10", 7), floor="Upstairs")
+    every = rounds._frequent([first, second, upstairs], ())
+    assert every == {"": {8: "2", 7: "1", 9: "9", 5: "8"}, "Upstairs": {7: "10"}}
+    # What a decision changes is the object's own.
+    assert rounds._frequent([first, second], {"1", "8"}) == {"": {8: "2", 7: "3", 9: "9"}}
+    monkeypatch.setattr(rounds, "KINDS", 4)
+    assert rounds._frequent([first, second, upstairs], ()) == {"": {8: "2", 7: "1"}}
+    monkeypatch.setattr(rounds, "KINDS", 1)
+    assert rounds._frequent([first, second, upstairs], ()) == {"": {8: "2"}}
+
+
+def test_a_kind_is_what_the_record_says_but_for_what_is_the_objects_own() -> None:
+    assert kind_of(CUP) == kind_of(
+        replace(CUP, object_number="2", gallery="R", value_class="A", problems=(Problem("a", "b"),))
+    )
+    others = [replace(CUP, height_m=0.11), replace(CUP, medium="glass"), replace(CUP, on_display=False)]
+    kinds = {kind_of(one) for one in (CUP, *others)}
+    assert len(kinds) == 4
+    assert all(-(2**63) <= kind < 2**63 for kind in kinds)
+
+
+def test_pads_have_a_chart_where_many_works_hang_on_walls(tmp_path: Path) -> None:
+    """Whoever works on which sheets: what is looked up in a chart must not hang on that."""
+    settings = museum(tmp_path / "walls", rows(1, 1))
+    workspace = open_workspace(settings)
+
+    def names(count: int) -> set[float]:
+        hung = [
+            {"object_number": f"P.{n}", "object_name": "painting", "gallery": "Room", "height_m": f"{0.3 + n / 3000}"}
+            | {"width_m": "0.5", "depth_m": "0.04", "medium": "oil on canvas"}
+            for n in range(count)
+        ]
+        write(settings.home, hung)
+        import_collection(workspace, settings.home / "collection.csv", "kouros", shrink_limit=1.0)
+        everything = catalogue(workspace.engine)
+        found = popular(everything, everything.objects, workspace.rules, workspace.means, 90.0)
+        return {alike["damping"] for model, _, alike in found.values() if model.name == "swing"}
+
+    assert names(500) == set()
+    assert names(1_400) == {0.02}
+    assert names(5_000) == {0.02, 0.06, 0.13}
+
+
+def test_a_shelf_that_was_told_what_pays_asks_nobody_else() -> None:
+    swing = model_named("swing").chart
+    assert swing is not None
+    assert Shelf(admitted=frozenset({"a"})).pays("a", "key", swing, 1, 400)
+    assert not Shelf(admitted=frozenset({"a"})).pays("b", "key", swing, 10_000, 400)
+    assert Shelf().pays("b", "key", swing, 10_000, 400)

@@ -12,8 +12,8 @@ from sqlalchemy import func, select
 
 from pipeline import demands
 from pipeline.cli.console import Console
+from pipeline.collection.catalogue import Listed
 from pipeline.collection.database import open_database
-from pipeline.collection.inventory import Listed
 from pipeline.jobs.nightly import Summary, run
 from pipeline.jobs.sheets import LEAST, MOST, cut
 from pipeline.records import RunRecord
@@ -151,7 +151,7 @@ def test_a_result_that_is_there_is_taken_up_by_a_run_that_was_cut_off(settings: 
 
 
 def listed(number: int, case: str = "", gallery: str = "Store") -> Listed:
-    return Listed(f"S.{number:05d}", gallery, case, True, "")
+    return Listed(f"S.{number:05d}", gallery, case, True, "", None)
 
 
 def test_a_large_gallery_is_cut_where_its_own_objects_say() -> None:
@@ -178,7 +178,7 @@ def test_a_case_is_never_cut() -> None:
 
 
 def test_a_small_gallery_is_one_sheet_and_what_is_stored_shares_pages() -> None:
-    stored = [replace(listed(n, gallery=f"Store {n % 3}"), on_display=False) for n in range(30)]
+    stored = [listed(n, gallery=f"Store {n % 3}")._replace(on_display=False) for n in range(30)]
     parts = cut([listed(100), *stored], Settings())
     assert [(part.gallery, part.on_display, len(part.objects)) for part in parts] == [
         ("Store", True, 1),

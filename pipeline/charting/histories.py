@@ -7,6 +7,7 @@ night that must judge a sheet again because something changed finds here all tha
 import hashlib
 import json
 import os
+import time
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -17,7 +18,7 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.charting.keeping import code_version
+from pipeline.charting.keeping import DAY, code_version, remove
 from pipeline.quantities import Array
 from pipeline.records import Columns
 
@@ -84,6 +85,23 @@ class Histories:
         except OSError:
             with suppress(OSError):
                 aside.unlink(missing_ok=True)
+
+
+def prune(folder: Path, *, days: float, most_bytes: int) -> None:
+    """Remove the files that nobody wrote or used for some days, and the oldest of too many."""
+    now, total = time.time(), 0
+    files = []
+    for file in folder.glob("*.npz") if folder.is_dir() else ():
+        with suppress(OSError):
+            facts = file.stat()
+            files.append((facts.st_mtime, facts.st_size, file))
+    for used, size, file in sorted(files, key=lambda one: (-one[0], one[2].name)):
+        # What begins with a dot was left behind by a process that died while it wrote.
+        last = 1.0 if file.name.startswith(".") else days
+        if now - used > last * DAY or total + size > most_bytes:
+            remove(file)
+        else:
+            total += size
 
 
 def history_key(*parts: object) -> str:

@@ -150,11 +150,11 @@ def prune(folder: Path, *, days: float, most_bytes: int, using: Collection[str] 
         if file.name.startswith("."):
             # Left behind by a process that died while it wrote.
             if now - facts.st_mtime > DAY:
-                _remove(file)
+                remove(file)
         elif len(parts) != 4:
             continue
         elif f"{parts[0]}-{parts[1]}" != version:
-            _remove(file)
+            remove(file)
         elif parts[2] in used:
             with suppress(OSError):
                 os.utime(file)
@@ -167,11 +167,12 @@ def prune(folder: Path, *, days: float, most_bytes: int, using: Collection[str] 
     total = 0
     for _, size, motion, file in sorted(charts, key=lambda chart: (-chart[0], chart[3].name)):
         if now - last[motion] > days * DAY or total + size > most_bytes:
-            _remove(file)
+            remove(file)
         else:
             total += size
 
 
-def _remove(file: Path) -> None:
+def remove(file: Path) -> None:
+    """Remove a file; what cannot be removed stays."""
     with suppress(OSError):
         file.unlink()

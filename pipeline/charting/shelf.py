@@ -72,11 +72,11 @@ class Shelf:
         """Say whether a chart is to be used by some who could be integrated too.
 
         group  : what they have in common, whatever the motion
-        asking : how many they are;  least : of how many it pays to build one
+        asking : how many they are;  least : of how many it pays to build one, where nothing else decides
         """
         if self._admitted is not None:
-            # Of those whom a measure would change only they themselves can tell; what the shelf holds has no say.
-            return group in self._admitted or asking >= least
+            # Neither what the shelf holds nor who asks together has a say: who works on what may differ.
+            return group in self._admitted
         return asking >= least or self.has(key, axis)
 
     def has(self, key: str, axis: ChartAxis) -> bool:

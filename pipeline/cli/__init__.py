@@ -13,6 +13,7 @@ from pipeline import __version__
 from pipeline.cli import commands
 from pipeline.cli.console import Guarded
 from pipeline.cli.options import Options
+from pipeline.execute.crew import RARELY
 from pipeline.jobs.journal import note
 
 
@@ -47,7 +48,7 @@ def main() -> None:
     """Run the command; errors name file, row, field and remedy, and become exit codes."""
     # Loading modules makes objects by the hundred thousand, and all stay: to look for garbage among them every 700 took
     # an eighth of a short command.
-    gc.set_threshold(100_000, 20, 50)
+    gc.set_threshold(*RARELY)
     debug = "--debug" in sys.argv
     # Whatever prints, a museum's texts must not steer the terminal.
     sys.stdout, sys.stderr = cast(TextIO, Guarded(sys.stdout)), cast(TextIO, Guarded(sys.stderr))

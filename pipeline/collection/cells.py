@@ -82,8 +82,8 @@ class Cells:
         text = column.separator.join(part for part in parts if part)
         if _missing(text, column):
             return ""
-        meaning = _translate(column).get(text.casefold(), text)
-        text = str(meaning)
+        if column.values:
+            text = str(_translate(column).get(text.casefold(), text))
         if len(text) > limit:
             message = f"{len(text):,} characters, of which the first {limit:,} are kept"
             self._note(name, column, message, "shorten it in the museum's database")
@@ -161,6 +161,9 @@ class Cells:
 
     def _clean(self, name: str, column: ColumnMap, text: str) -> str:
         text = text.strip(_SPACE)
+        if text.isprintable():
+            # Nearly all are, and none of those has what is looked for below.
+            return text
         clean = _CONTROLS.sub("", _BREAKS.sub(" ", text))
         if clean != text:
             found = sorted({f"U+{ord(c):04X}" for c in _CONTROLS.findall(text) + _BREAKS.findall(text) for c in c})
@@ -174,7 +177,9 @@ class Cells:
 
 
 def _missing(text: str, column: ColumnMap) -> bool:
-    return not text or any(text.casefold() == m.casefold() for m in column.missing if isinstance(m, str))
+    if not text or not column.missing:
+        return not text
+    return any(text.casefold() == m.casefold() for m in column.missing if isinstance(m, str))
 
 
 def _translate(column: ColumnMap) -> dict[str, str | bool]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import (
     JSON,
+    BigInteger,
     Boolean,
     Column,
     ColumnElement,
@@ -29,12 +30,12 @@ from sqlalchemy import (
 from pipeline.collection import supplement
 from pipeline.collection.database import METADATA
 from pipeline.collection.errors import CollectionError, ShrunkError
-from pipeline.collection.record import KINDS, digest_of, to_items, to_records
+from pipeline.collection.record import KINDS, digest_of, kind_of, to_items, to_records
 from pipeline.collection.supplement import filled_in, laid_over
 from pipeline.records import ITEM_FIELDS, Item
 
 if TYPE_CHECKING:
-    from pipeline.collection.reading import Reading
+    from pipeline.collection.reading import Reading, Unread
 
 CHUNK = 10_000
 """Rows in one executemany: bounds the memory of a large import."""
@@ -62,11 +63,13 @@ ITEM = Table(
     Column("since", Integer(), primary_key=True, autoincrement=False),
     Column("until", Integer(), nullable=True),
     Column("digest", Text(), nullable=False),
+    Column("kind", BigInteger(), nullable=True),
 )
 """One row for each state of an object: a column for each field of Item, of the same name; lists as JSON.
 
 since, until : the imports that brought this state and that ended it; until is null for the state of now
 digest       : of the record, so that an import finds what changed without reading all of it ("" where not known)
+kind         : what it shares with objects that may be alike, see `record.kind_of`; null where not known
 """
 
 IMPORT_BATCH = Table(
@@ -157,7 +160,7 @@ class Difference:
 def difference(engine: Engine, reading: Reading) -> Difference:
     """Say what importing this reading would change, and change nothing."""
     with engine.connect() as connection:
-        return _difference(connection, reading.items)[0]
+        return _difference(connection, reading.items, reading.unread)[0]
 
 
 def replace_inventory(
@@ -174,15 +177,15 @@ def replace_inventory(
     if not 0.0 <= shrink_limit <= 1.0:
         raise ValueError(f"shrink_limit must be a share from 0 to 1, not {shrink_limit!r}")
     moment = _moment(when)
-    if not reading.items:
+    if not reading.objects:
         raise CollectionError(f"{reading.source}: none of its {reading.rows} rows could be used. {_first(reading)}")
     with engine.begin() as connection:
         items = laid_over(reading.items, supplement.current(connection))
-        found, digests = _difference(connection, items)
-        lost = found.before - len(reading.items)
+        found, digests = _difference(connection, items, reading.unread)
+        lost = found.before - found.after
         if found.before and lost / found.before > shrink_limit:
             raise ShrunkError(
-                f"{reading.source} has {len(reading.items)} usable objects, the inventory {found.before}: "
+                f"{reading.source} has {found.after} usable objects, the inventory {found.before}: "
                 f"{lost / found.before:.0%} fewer, above the limit of {shrink_limit:.0%}. Nothing was written. "
                 f"Check that the export is complete ({len(reading.rejected)} of its rows were rejected); "
                 "if the objects are really gone, import again with a higher shrink limit"
@@ -248,7 +251,7 @@ def return_to(engine: Engine, version: int, *, when: datetime | None = None) -> 
             known = connection.execute(select(IMPORT_BATCH.c.id).order_by(IMPORT_BATCH.c.id)).scalars().all()
             there = f"there are {known[0]} to {known[-1]}" if known else "nothing was imported yet"
             raise CollectionError(f"the inventory has no version {version}: {there}; `kouros import --versions` lists")
-        items = tuple(_read(connection.execute(select(ITEM).where(_at(version))).mappings()))
+        items = tuple(_read(connection.execute(select(ITEM).where(state_at(version))).mappings()))
         found, digests = _difference(connection, items)
         kept = {name: row[name] for name in ("source", "sha256", "mapping", "museum", "credit", "rows", "rejected")}
         back = kept | _stamp(moment) | {"kind": "return", "returned_to": version}
@@ -278,51 +281,8 @@ def read_inventory(engine: Engine) -> list[Item]:
     return sorted(items, key=lambda item: item.object_number)
 
 
-@dataclass(frozen=True, slots=True)
-class Listed:
-    """An object in as much as the objects of a collection are sorted by."""
-
-    object_number: str
-    gallery: str
-    case: str
-    on_display: bool
-    digest: str
-
-
-@dataclass(frozen=True)
-class Catalogue:
-    """The objects of one version of the inventory; ``items`` reads their records of that same version.
-
-    version : the import that it is the state after; 0 where nothing was imported
-    """
-
-    engine: Engine
-    version: int
-    objects: tuple[Listed, ...]
-
-    def items(self, numbers: Sequence[str]) -> dict[str, Item]:
-        """Return the records of some objects, by number, as they were in this version."""
-        found: dict[str, Item] = {}
-        with self.engine.connect() as connection:
-            for start in range(0, len(numbers), NAMED):
-                some = ITEM.c.object_number.in_(numbers[start : start + NAMED])
-                rows = connection.execute(select(ITEM).where(_at(self.version), some)).mappings()
-                found |= {item.object_number: item for item in _read(rows)}
-        return found
-
-
-def catalogue(engine: Engine) -> Catalogue:
-    """Return the objects of the inventory as it is now, sorted by object number."""
-    with engine.begin() as connection:
-        version = connection.execute(select(func.max(IMPORT_BATCH.c.id))).scalar() or 0
-        columns = (ITEM.c.object_number, ITEM.c.gallery, ITEM.c["case"], ITEM.c.on_display, ITEM.c.digest)
-        rows = connection.execute(select(*columns).where(_at(version)))
-        objects = [Listed(*tuple(row)) for row in rows]
-    # Sorted here and not in SQL: servers collate by the locale of their country.
-    return Catalogue(engine, version, tuple(sorted(objects, key=lambda one: one.object_number)))
-
-
-def _at(version: int) -> ColumnElement[bool]:
+def state_at(version: int) -> ColumnElement[bool]:
+    """Return which rows of ITEM are the inventory as it was after an import."""
     return (ITEM.c.since <= version) & (ITEM.c.until.is_(None) | (ITEM.c.until > version))
 
 
@@ -365,10 +325,22 @@ def galleries(items: Iterable[Item]) -> dict[str, int]:
     return dict(sorted(counts.items()))
 
 
-def _difference(connection: Connection, items: Sequence[Item]) -> tuple[Difference, dict[str, str]]:
-    """Return what changes, and the digest of every record that is not the one that the inventory has."""
-    now = select(ITEM.c.object_number, ITEM.c.digest).where(ITEM.c.until.is_(None))
-    old = {row.object_number: row.digest for row in connection.execute(now)}
+def _difference(
+    connection: Connection, items: Sequence[Item], unread: Unread | None = None
+) -> tuple[Difference, dict[str, str]]:
+    """Return what changes, and the digest of every record that is not the one that the inventory has.
+
+    unread : objects that are as the inventory has them and are not among the items
+    """
+    now = select(ITEM.c.object_number, ITEM.c.digest, ITEM.c.kind).where(ITEM.c.until.is_(None))
+    if unread is None:
+        rows = list(connection.execute(now))
+    else:
+        numbers = sorted(unread.gone.union(item.object_number for item in items))
+        slices = (numbers[start : start + NAMED] for start in range(0, len(numbers), NAMED))
+        rows = [row for some in slices for row in connection.execute(now.where(ITEM.c.object_number.in_(some)))]
+    # Of what an older version of Kouros wrote, the kind or the digest may not be known.
+    old = {row.object_number: "" if row.kind is None else row.digest for row in rows}
     added, differing, digests = [], {}, {}
     for item in items:
         digest = digest_of(item)
@@ -386,7 +358,8 @@ def _difference(connection: Connection, items: Sequence[Item]) -> tuple[Differen
         if fields:
             changed[number] = fields
     removed = sorted(old.keys() - {item.object_number for item in items})
-    return Difference(len(old), len(items), tuple(added), tuple(removed), changed), digests
+    others = 0 if unread is None else unread.objects
+    return Difference(len(old) + others, len(items) + others, tuple(added), tuple(removed), changed), digests
 
 
 def _fields_changed(then: Item, now: Item) -> dict[str, tuple[Any, Any]]:
@@ -417,17 +390,23 @@ def _write(
     for start in range(0, len(ended), NAMED):
         some = ITEM.c.object_number.in_(ended[start : start + NAMED])
         connection.execute(update(ITEM).where(ITEM.c.until.is_(None), some).values(until=version))
-    same = [{"number": number, "found": digests[number]} for number in digests.keys() - new]
+    same = digests.keys() - new
     if same:
-        # The same records, whose digests an older version of Kouros did not know.
+        # The same records, of which an older version of Kouros did not write all.
+        told = [
+            {"number": item.object_number, "found": digests[item.object_number], "like": kind_of(item)}
+            for item in items
+            if item.object_number in same
+        ]
         mine = (ITEM.c.object_number == bindparam("number")) & ITEM.c.until.is_(None)
-        connection.execute(update(ITEM).where(mine).values(digest=bindparam("found")), same)
+        connection.execute(update(ITEM).where(mine).values(digest=bindparam("found"), kind=bindparam("like")), told)
     fresh = [item for item in items if item.object_number in new]
     for start in range(0, len(fresh), CHUNK):
         chunk = fresh[start : start + CHUNK]
         records = to_records(chunk)
-        for record in records:
-            record |= {"since": version, "until": None, "digest": digests[record["object_number"]]}
+        for item, record in zip(chunk, records, strict=True):
+            digest = digests[item.object_number]
+            record |= {"since": version, "until": None, "digest": digest, "kind": kind_of(item)}
         connection.execute(insert(ITEM), records)
     return version
 

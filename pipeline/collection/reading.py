@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pipeline.collection.blocks import Block, cut
 from pipeline.collection.cells import Cells
 from pipeline.collection.contradictions import contradictions
 from pipeline.collection.errors import CollectionError
@@ -17,7 +18,7 @@ from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
 from pipeline.collection.sources.delimited import RECORD_LIMIT
 from pipeline.collection.sources.opening import open_source
 from pipeline.collection.sources.rows import Row
-from pipeline.collection.suspicion import Suspicion, suspicions
+from pipeline.collection.suspicion import Evidence, Suspicion, suspicions
 from pipeline.records import Item, Origin, Problem, Provenance
 
 NOWHERE = "Location not recorded"
@@ -45,6 +46,8 @@ class Reading:
     mapping : name of the mapping; museum and credit as the mapping gives them
     places  : of each item, its row and its line in the source
     suspicions : units that the whole source seems to have wrong
+    blocks  : what became of its rows, for the next reading
+    unread  : what was only counted, because it is as it was at the last reading; None: everything was read
     """
 
     items: tuple[Item, ...]
@@ -57,9 +60,32 @@ class Reading:
     credit: str = ""
     places: tuple[tuple[int, int], ...] = ()
     suspicions: tuple[Suspicion, ...] = ()
+    blocks: tuple[Block, ...] = ()
+    unread: Unread | None = None
+
+    @property
+    def objects(self) -> int:
+        """How many objects the source has, read now or before."""
+        return len(self.items) + (0 if self.unread is None else self.unread.objects)
 
 
-def read_items(where: str | Path, mapping: Mapping, limits: Limits = STANDARD) -> Reading:
+@dataclass(frozen=True, slots=True)
+class Unread:
+    """The rows that are as they were at the last reading, all of which became objects.
+
+    objects : how many
+    gone    : numbers of the objects of that reading whose rows did not come again as they were
+    noted   : the problems of the unread objects: row, line, object number, field, message, remedy
+    """
+
+    objects: int
+    gone: frozenset[str]
+    noted: tuple[tuple[int, int, str, str, str, str], ...]
+
+
+def read_items(
+    where: str | Path, mapping: Mapping, limits: Limits = STANDARD, before: Sequence[Block] | None = None
+) -> Reading:
     """Read a museum's file or database, row by row.
 
     A value that cannot be accepted is None in its item, which keeps the reason as a problem; only rows that are broken,
@@ -67,6 +93,8 @@ def read_items(where: str | Path, mapping: Mapping, limits: Limits = STANDARD) -
 
     where  : path of a file, or the URL of a database
     limits : bytes, rows and seconds that are accepted
+    before : the blocks of an earlier reading by the same mapping and code; those of its rows that come again are
+             counted and not read
     raises : CollectionError for a source that is missing, unreadable, too large, empty or not in its encoding;
              MappingError where the mapping's columns are not the source's
     """
@@ -74,9 +102,9 @@ def read_items(where: str | Path, mapping: Mapping, limits: Limits = STANDARD) -
         header = next(source.rows, None)
         if header is None:
             raise CollectionError(f"{source.name}: empty collection: there is no header; export it again")
-        desk = _Desk(source.name, mapping, header, limits)
-        for row in source.rows:
-            desk.take(row)
+        desk = _Desk(source.name, mapping, header, limits, before)
+        for rows, told in cut(source.rows, header.cells):
+            desk.take(rows, told)
         digest = source.digest()
     if not desk.rows:
         raise CollectionError(f"{source.name}: empty collection: a header and no data rows; export it again")
@@ -90,14 +118,18 @@ def read_items(where: str | Path, mapping: Mapping, limits: Limits = STANDARD) -
         museum=mapping.museum.name,
         credit=mapping.museum.credit,
         places=tuple(desk.places),
-        suspicions=suspicions(desk.items),
+        suspicions=suspicions(desk.evidence),
+        blocks=tuple(desk.blocks),
+        unread=None if before is None else desk.unread(before),
     )
 
 
 class _Desk:
     """Where the rows of one file are looked at, one after the other."""
 
-    def __init__(self, file: str, mapping: Mapping, header: Row, limits: Limits) -> None:
+    def __init__(
+        self, file: str, mapping: Mapping, header: Row, limits: Limits, before: Sequence[Block] | None
+    ) -> None:
         names = [cell.strip() for cell in header.cells]
         check_header(mapping, file, names)
         self._file = file
@@ -117,12 +149,56 @@ class _Desk:
         self.places: list[tuple[int, int]] = []
         self.rejected: list[Rejected] = []
         self._meter = Meter(file, limits)
+        self._before = {block.digest: block for block in before or () if block.digest}
+        self._unread: list[Block] = []
+        self._noted: list[tuple[int, int, str, str, str, str]] = []
+        self.blocks: list[Block] = []
+        self.evidence = Evidence()
 
     @property
     def rows(self) -> int:
         return self._meter.rows
 
-    def take(self, row: Row) -> None:
+    def take(self, rows: Sequence[Row], digest: str) -> None:
+        """Read the rows of a block, or only count them."""
+        known = self._before.get(digest)
+        # What has a number that was given already must be refused, as it was not when it was read.
+        if known is not None and len(known.numbers) == len(rows) and self._seen.keys().isdisjoint(known.numbers):
+            self._take_over(rows, known)
+            return
+        first, refused = len(self.items), len(self.rejected)
+        at = {}
+        for place, row in enumerate(rows):
+            self._take(row)
+            at[row.number] = place
+        items = self.items[first:]
+        noted = tuple(
+            (at[row], item.object_number, problem.field, problem.message, problem.remedy)
+            for item, (row, _) in zip(items, self.places[first:], strict=True)
+            for problem in item.problems
+        )
+        sound = digest if len(self.rejected) == refused else ""
+        block = Block(sound, tuple(item.object_number for item in items), noted, Evidence.of(items))
+        self.blocks.append(block)
+        self.evidence.add(block.evidence)
+
+    def _take_over(self, rows: Sequence[Row], block: Block) -> None:
+        for row, number in zip(rows, block.numbers, strict=True):
+            self._meter.count()
+            self._seen[number] = row.number
+        for at, number, field, message, remedy in block.noted:
+            self._noted.append((rows[at].number, rows[at].line, number, field, message, remedy))
+        self._unread.append(block)
+        self.blocks.append(block)
+        self.evidence.add(block.evidence)
+
+    def unread(self, before: Sequence[Block]) -> Unread:
+        """Return what was only counted."""
+        again = {block.digest for block in self._unread}
+        gone = frozenset(number for block in before if block.digest not in again for number in block.numbers)
+        return Unread(sum(len(block.numbers) for block in self._unread), gone, tuple(self._noted))
+
+    def _take(self, row: Row) -> None:
         self._meter.count()
         message, remedy = row.fault
         if message:

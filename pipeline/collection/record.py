@@ -136,6 +136,33 @@ def digest_of(item: Item) -> str:
     return blake2b(_item().dump_json(item, exclude_defaults=True), digest_size=16).hexdigest()
 
 
+INDIVIDUAL = (
+    "object_number", "gallery", "title", "dimensions", "position_x_m", "position_y_m", "value_class", "provenance",
+    "problems",
+)  # fmt: skip
+"""Fields that tell one object from others of its kind: nothing computed rests on them but through the classification,
+and where an object stands beside others."""
+
+
+_TITLE_BITS = 24
+
+
+def kind_of(item: Item) -> int:
+    """Return a number of 64 bits, with a sign, that objects share which may well be alike.
+
+    Those that differ in no field but INDIVIDUAL ones have the same `family_of` it; with the same title, by which they
+    may be classified, the same number.  Two kinds may by chance have one number: it is no proof.
+    """
+    told = _item().dump_json(item, exclude=set(INDIVIDUAL), exclude_defaults=True)
+    title = blake2b(item.title.encode(), digest_size=_TITLE_BITS // 8)
+    return int.from_bytes(blake2b(told, digest_size=8 - _TITLE_BITS // 8).digest() + title.digest(), signed=True)
+
+
+def family_of(kind: int) -> int:
+    """Return what kinds of objects have in common that differ in nothing but their title."""
+    return kind >> _TITLE_BITS
+
+
 def to_items(records: list[Any]) -> list[Item]:
     """Return the items of records that `to_records` made.
 

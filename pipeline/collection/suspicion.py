@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 from statistics import median
+from typing import Any
 
 from pipeline.quantities import LENGTHS, MASSES
 from pipeline.records import Item, Origin
@@ -43,26 +44,79 @@ class Suspicion:
     remedy: str
 
 
-def suspicions(items: Sequence[Item]) -> tuple[Suspicion, ...]:
-    """Look at all records of a source together, and say which units look wrong.
+@dataclass
+class Evidence:
+    """What records say about the units of their source; that of several parts of it adds up.
 
-    items : with provenance, which holds the numbers as they were written
+    steps : by unit of length, how many numbers with a telling fraction are written in tenths, and in sixteenths
+    fills : by units of length and mass, what share of its box each object would fill with its own material
     """
-    return (*_steps(items), *_densities(items))
 
+    steps: dict[str, list[int]] = field(default_factory=dict)
+    fills: dict[tuple[str, str], list[float]] = field(default_factory=dict)
 
-def _steps(items: Iterable[Item]) -> list[Suspicion]:
-    fractions: dict[str, list[str]] = {}
-    for item in items:
+    @classmethod
+    def of(cls, items: Iterable[Item]) -> Evidence:
+        """Gather what some records say.
+
+        items : with provenance, which holds the numbers as they were written
+        """
+        found = cls()
+        for item in items:
+            found._see_steps(item)
+            weighed = _weighed(item)
+            if weighed is not None:
+                length, mass, fill = weighed
+                found.fills.setdefault((length, mass), []).append(fill)
+        return found
+
+    def _see_steps(self, item: Item) -> None:
         for origin in item.provenance:
             found = _WRITTEN.fullmatch(origin.written)
             if found and origin.field in _SIDES and origin.origin is Origin.MEASURED:
-                fractions.setdefault(found[3], []).append(found[2])
+                digits = found[2]
+                counts = self.steps.setdefault(found[3], [0, 0])
+                # Halves and quarters are written in both.
+                counts[0] += len(digits) == 1 and digits != "5"
+                counts[1] += digits in _SIXTEENTHS
+
+    def add(self, other: Evidence) -> None:
+        """Add what another part of the source says."""
+        for unit, (tenths, sixteenths) in other.steps.items():
+            counts = self.steps.setdefault(unit, [0, 0])
+            counts[0] += tenths
+            counts[1] += sixteenths
+        for units, fills in other.fills.items():
+            self.fills.setdefault(units, []).extend(fills)
+
+    def plain(self) -> list[list[object]]:
+        """Return it as JSON can hold it."""
+        return [
+            [[unit, *counts] for unit, counts in self.steps.items()],
+            [[*units, *fills] for units, fills in self.fills.items()],
+        ]
+
+    @classmethod
+    def of_plain(cls, plain: Sequence[Sequence[Sequence[Any]]]) -> Evidence:
+        """Read what `plain` gave.
+
+        raises : ValueError or TypeError for anything else
+        """
+        steps, fills = plain
+        return cls(
+            {str(unit): [int(tenths), int(sixteenths)] for unit, tenths, sixteenths in steps},
+            {(str(length), str(mass)): [float(one) for one in those] for length, mass, *those in fills},
+        )
+
+
+def suspicions(found: Evidence) -> tuple[Suspicion, ...]:
+    """Say which units look wrong by what all records of a source say together."""
+    return (*_steps(found), *_densities(found))
+
+
+def _steps(found: Evidence) -> list[Suspicion]:
     out = []
-    for unit, digits in sorted(fractions.items()):
-        # Halves and quarters are written in both.
-        tenths = sum(len(d) == 1 and d != "5" for d in digits)
-        sixteenths = sum(d in _SIXTEENTHS for d in digits)
+    for unit, (tenths, sixteenths) in sorted(found.steps.items()):
         telling = tenths + sixteenths
         if telling < FEWEST_STEPS or unit not in ("in", "cm", "mm"):
             continue
@@ -81,25 +135,12 @@ def _wrong_steps(count: int, telling: int, unit: str, steps: str, other: str) ->
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Weighed:
-    volume: float
-    mass: float
-    density: float
-    length_unit: str
-    mass_unit: str
-
-
-def _densities(items: Iterable[Item]) -> list[Suspicion]:
-    weighed = [found for item in items if (found := _weighed(item)) is not None]
-    groups: dict[tuple[str, str], list[_Weighed]] = {}
-    for one in weighed:
-        groups.setdefault((one.length_unit, one.mass_unit), []).append(one)
+def _densities(found: Evidence) -> list[Suspicion]:
     out = []
-    for (length, mass), group in sorted(groups.items()):
+    for (length, mass), group in sorted(found.fills.items()):
         if len(group) < FEWEST_DENSITIES:
             continue
-        fill = median(one.mass / one.volume / one.density for one in group)
+        fill = median(group)
         if FILL[0] <= fill <= FILL[1]:
             continue
         fits = []
@@ -123,7 +164,8 @@ def _densities(items: Iterable[Item]) -> list[Suspicion]:
     return out
 
 
-def _weighed(item: Item) -> _Weighed | None:
+def _weighed(item: Item) -> tuple[str, str, float] | None:
+    """Return the units of length and mass of an object, and what share of its box it would fill."""
     sides = [getattr(item, side) for side in _SIDES]
     if item.mass_kg is None or not all(sides):
         return None
@@ -133,4 +175,5 @@ def _weighed(item: Item) -> _Weighed | None:
     if material is None or len(lengths) != 1 or not lengths <= LENGTHS.keys() or units.get("mass_kg") not in MASSES:
         return None
     density = number(material, "density", f"materials.csv, {material['material']}")
-    return _Weighed(sides[0] * sides[1] * sides[2], item.mass_kg, density, lengths.pop(), units["mass_kg"])
+    volume = sides[0] * sides[1] * sides[2]
+    return lengths.pop(), units["mass_kg"], item.mass_kg / volume / density

@@ -3,14 +3,17 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from math import sqrt
+from math import log, pi, sqrt
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import log_ndtr
 
 from pipeline.quantities import Array
 from pipeline.records.fragility import ABOVE, BELOW
 from pipeline.tables import Range, spread, table
+
+_LOG_ROOT = 0.5 * log(2.0 * pi)
+"""Of the standard normal density: log f(z) = -z^2 / 2 - log sqrt(2 pi)."""
 
 ENOUGH = 7
 """Motions from which on their own scatter is believed, as codes let a mean decide; with fewer, not below the stated."""
@@ -85,7 +88,8 @@ def _censored(held: Array, short: Array, far: Array) -> tuple[Array, Array]:
     for _ in range(ROUNDS):
         z = (held - mean[:, None]) / deviation[:, None]
         # What is expected of a sample beyond z, and of its square, in standard deviations.
-        over, under = np.exp(norm.logpdf(z) - norm.logsf(z)), np.exp(norm.logpdf(z) - norm.logcdf(z))
+        density = -0.5 * z**2 - _LOG_ROOT
+        over, under = np.exp(density - log_ndtr(-z)), np.exp(density - log_ndtr(z))
         first = np.where(far, over, np.where(short, -under, z))
         second = np.where(far, 1.0 + z * over, np.where(short, 1.0 - z * under, z * z))
         shift = first.mean(axis=1)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtr
 
 from pipeline.quantities import Array
 
@@ -69,5 +69,5 @@ class Hazard:
         # The integral of k0 x^-k over the density of x between two ends: the density moved by -k beta^2.
         whole = rate[:-1] + k * (x[:-1] - at) + 0.5 * (k * dispersion) ** 2
         ends = (x - at) / dispersion
-        share = norm.cdf(ends[1:] + k * dispersion) - norm.cdf(ends[:-1] + k * dispersion)
-        return float(np.sum(np.exp(whole) * share) + self.rate[0] * norm.cdf(ends[0]))
+        share = ndtr(ends[1:] + k * dispersion) - ndtr(ends[:-1] + k * dispersion)
+        return float(np.sum(np.exp(whole) * share) + self.rate[0] * ndtr(ends[0]))

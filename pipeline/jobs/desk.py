@@ -15,11 +15,13 @@ from typing import Any
 from pipeline.assess import assess
 from pipeline.charting import Shelf
 from pipeline.classify import classify, object_classes
+from pipeline.collection.catalogue import read_packed
 from pipeline.execute import Threads
 from pipeline.fragility.objects import fragilities
 from pipeline.jobs.doubts import now, standing
 from pipeline.jobs.levels import Storey
 from pipeline.jobs.twins import Known, Twins, as_own, likeness
+from pipeline.jobs.workspace import HISTORIES
 from pipeline.mitigate import Means, advise
 from pipeline.mitigate.bench import Carriage
 from pipeline.mitigate.installed import Measure, Placed, assess_above, placed
@@ -45,11 +47,9 @@ from pipeline.report.units import Units
 from pipeline.response import DECIDES, response_chart
 from pipeline.rules import Table
 from pipeline.settings import Analysis
+from pipeline.store.parcels import Parcel
 from pipeline.store.results import Encoded, encode, unpacked
 from pipeline.survey import in_order, wishes
-
-HISTORIES = "histories"
-"""Folder beside that of the charts for the histories of each sheet."""
 
 
 @dataclass
@@ -93,12 +93,14 @@ class Brief:
         """The response charts."""
         return Shelf(self.kept, admitted=self.admitted)
 
-    def memory(self, batch: Sequence["Errand"]) -> Path | None:
-        """Return the file in which the histories of some sheets are kept from night to night."""
+    def memory(self, *batch: object) -> Path | None:
+        """Return the file in which the histories of what is worked on together are kept from night to night.
+
+        batch : what is the same every night, such as gallery and number of its sheets
+        """
         if self.kept is None:
             return None
-        sheets = [(e.sheet.gallery, e.sheet.on_display, e.sheet.number, e.floor) for e in batch]
-        name = repr(sheets).encode("utf-8", "surrogatepass")
+        name = repr(batch).encode("utf-8", "surrogatepass")
         return self.kept.parent / HISTORIES / f"{sha256(name).hexdigest()[:32]}.npz"
 
     @cached_property
@@ -135,7 +137,8 @@ class Errand:
     """One sheet to be worked on.
 
     floor     : that it stands on
-    items     : its objects, where they are to be assessed; else ``found`` is what was found of them, as it is kept
+    records   : of its objects, packed, where they are to be assessed; else ``found`` is what was found of them, as it
+                is kept
     basis     : the digest of what is found of them depends on besides them
     before    : results of an earlier night, as they are kept, on the same basis, of objects many of which are the same
     decisions : those in force about its objects
@@ -146,7 +149,7 @@ class Errand:
 
     sheet: Sheet
     floor: str
-    items: tuple[Item, ...] = ()
+    records: bytes = b"[]"
     found: bytes | None = None
     basis: str = ""
     before: tuple[bytes, ...] = ()
@@ -185,6 +188,49 @@ def build(brief: Brief, errand: ChartErrand) -> None:
 
 
 @dataclass(frozen=True)
+class KindErrand:
+    """Objects on one floor, of kinds that others are of.
+
+    part    : which of the parts it is that the kinds were divided into, and into how many
+    kinds   : of the objects;  records: theirs, packed, in the same order
+    """
+
+    floor: str
+    part: tuple[int, int]
+    kinds: tuple[int, ...]
+    records: bytes
+
+
+def find_kinds(brief: Brief, errand: KindErrand) -> Parcel:
+    """Find what holds for all that are like some objects, and return it by their kinds."""
+    storey = brief.storeys[errand.floor]
+    first: dict[Hashable, int] = {}
+    chosen, same = {}, {}
+    for kind, one in zip(errand.kinds, _placed(brief, storey, read_packed(errand.records), {}), strict=True):
+        like = likeness(one.scene)
+        if like is None:
+            continue
+        if first.setdefault(like, kind) == kind:
+            chosen[kind] = one
+        else:
+            same[kind] = first[like]
+    with brief.shelf.remembering(brief.memory("kinds", errand.floor, errand.part)):
+        known = _assessed(brief, storey, list(chosen.values()))
+    return Parcel.of(Known, dict(zip(chosen, known, strict=True)), same)
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Sheets of one floor that are worked on together.
+
+    twins : what was found beforehand of kinds that their objects may be of
+    """
+
+    errands: tuple[Errand, ...]
+    twins: tuple[Parcel, ...] = ()
+
+
+@dataclass(frozen=True)
 class Done:
     """What came of an errand.
 
@@ -200,26 +246,32 @@ class Done:
     seconds: float = 0.0
 
 
-def work(brief: Brief, batch: Sequence[Errand]) -> tuple[Done, ...]:
+def work(brief: Brief, batch: Batch) -> tuple[Done, ...]:
     """Do what there is to do for some sheets of one floor; what must be found is found together, which is quicker.
 
     raises : StoreError and ReportError naming the object, for what can neither be kept nor shown
     """
-    fresh = [errand for errand in batch if errand.found is None]
+    fresh = [errand for errand in batch.errands if errand.found is None]
     seconds = 0.0
     results: dict[str, tuple[Found, Encoded]] = {}
     if fresh:
-        items = [item for errand in fresh for item in errand.items]
+        items = [read_packed(errand.records) for errand in fresh]
+        floor, everything = fresh[0].floor, [item for some in items for item in some]
         decisions = [decision for errand in fresh for decision in errand.decisions]
+        # What comes with the batch is forgotten with it, so that memory does not grow with the collection.
+        twins = Twins() if batch.twins else brief.twins
+        for parcel in batch.twins:
+            twins.take(parcel.opened())
         for errand in fresh:
             for earlier in errand.before:
-                brief.twins.learn(unpacked(earlier))
-        with brief.shelf.remembering(brief.memory(fresh)):
-            whole, seconds = find(brief, brief.storeys[fresh[0].floor], items, decisions)
-        for errand, found in zip(fresh, parted(whole, [len(errand.items) for errand in fresh]), strict=True):
+                twins.learn(unpacked(earlier))
+        sheets = ((e.sheet.gallery, e.sheet.on_display, e.sheet.number, e.floor) for e in fresh)
+        with brief.shelf.remembering(brief.memory(*sheets)):
+            whole, seconds = find(brief, brief.storeys[floor], everything, decisions, twins)
+        for errand, found in zip(fresh, parted(whole, [len(some) for some in items]), strict=True):
             results[errand.sheet.key] = (found, encode(errand.sheet.key, errand.basis, found, tally))
     done = []
-    for errand in batch:
+    for errand in batch.errands:
         known = errand.found
         found = results[errand.sheet.key][0] if known is None else unpacked(known)
         result = results[errand.sheet.key][1] if known is None else None
@@ -239,7 +291,8 @@ def parted(whole: Found, sizes: Sequence[int]) -> list[Found]:
     for size in sizes:
         mine = whole.assessments[start : start + size]
         start += size
-        numbers = {a.scene.item.object_number for a in mine}
+        # In order, so that the same is stored as the same bytes.
+        numbers = dict.fromkeys(a.scene.item.object_number for a in mine)
         wished = None if whole.wishes is None else tuple(w for w in whole.wishes if w.object_number in numbers)
         out.append(
             Found(
@@ -271,20 +324,21 @@ def place(item: Item, rules: Table | None, decisions: Sequence[Decision]) -> Pla
     return placed(scene, measures)
 
 
-def find(brief: Brief, storey: Storey, items: Sequence[Item], decisions: Sequence[Decision]) -> tuple[Found, float]:
+def find(
+    brief: Brief, storey: Storey, items: Sequence[Item], decisions: Sequence[Decision], twins: Twins
+) -> tuple[Found, float]:
     """Run everything that objects on one floor require under its motions, judge it and advise.
 
     decisions : those in force: classes and installed measures change what is run
+    twins     : what is known of objects that these may be like
     returns   : what was found, and the seconds that finding out what is worth measuring cost
     """
     about: dict[str, list[Decision]] = {}
     for decision in decisions:
         about.setdefault(decision.object_number, []).append(decision)
-    objects = [place(item, brief.rules, about.get(item.object_number, ())) for item in items]
-    objects = [replace(one, scene=replace(one.scene, floor=storey.name)) for one in objects]
-    known = _known(brief, storey, objects, [item.object_number in about for item in items])
-    assessments = [assessment for assessment, _ in known]
-    scenes, findings = [a.scene for a in assessments], [a.findings for a in assessments]
+    objects = _placed(brief, storey, items, about)
+    whole = _found(_known(brief, storey, objects, [item.object_number in about for item in items], twins))
+    scenes, findings = [a.scene for a in whole.assessments], [a.findings for a in whole.assessments]
     began = perf_counter()
     wished = None
     if brief.surveyed:
@@ -293,27 +347,35 @@ def find(brief: Brief, storey: Storey, items: Sequence[Item], decisions: Sequenc
         asked = wishes(scenes, findings, storey.shaking, brief.executor, Silent(), fidelity=fidelity, azimuth_step=step)
         wished = tuple(in_order(asked))
     seconds = perf_counter() - began if brief.surveyed else 0.0
-    found = Found(
-        assessments=tuple(assessments),
-        wishes=wished,
-        spacings=tuple(neighbours(scenes, findings, storey.shaking)),
-        needing={a.scene.item.object_number: counts for a, counts in known if counts},
-    )
-    return found, seconds
+    return replace(whole, wishes=wished, spacings=tuple(neighbours(scenes, findings, storey.shaking))), seconds
+
+
+def _placed(
+    brief: Brief, storey: Storey, items: Sequence[Item], about: Mapping[str, Sequence[Decision]]
+) -> list[Placed]:
+    objects = [place(item, brief.rules, about.get(item.object_number, ())) for item in items]
+    return [replace(one, scene=replace(one.scene, floor=storey.name)) for one in objects]
+
+
+def _found(known: Sequence[Known]) -> Found:
+    assessments = tuple(assessment for assessment, _ in known)
+    return Found(assessments, needing={a.scene.item.object_number: counts for a, counts in known if counts})
 
 
 def _integrating(brief: Brief) -> str:
     return "reference" if brief.analysis.fidelity == "reference" else "history"
 
 
-def _known(brief: Brief, storey: Storey, objects: Sequence[Placed], decided: Sequence[bool]) -> list[Known]:
+def _known(
+    brief: Brief, storey: Storey, objects: Sequence[Placed], decided: Sequence[bool], twins: Twins
+) -> list[Known]:
     """Return what is found of each object, where several are alike that of the first."""
     likes: list[Hashable] = []
     for at, (one, mine) in enumerate(zip(objects, decided, strict=True)):
         like = None if mine else likeness(one.scene)
         # Its place, which nothing else has, stands for an object of its own kind.
         likes.append(at if like is None else like)
-    known = {like: before for like in likes if (before := brief.twins.get(like)) is not None}
+    known = {like: before for like in likes if (before := twins.get(like)) is not None}
     fresh: dict[Hashable, int] = {}
     for at, like in enumerate(likes):
         if like not in known:
@@ -321,7 +383,7 @@ def _known(brief: Brief, storey: Storey, objects: Sequence[Placed], decided: Seq
     own = dict(zip(fresh, _assessed(brief, storey, [objects[at] for at in fresh.values()]), strict=True))
     for like, (assessment, needing) in own.items():
         if not isinstance(like, int):
-            brief.twins.note(like, assessment, needing)
+            twins.note(like, assessment, needing)
     known |= own
     out = []
     for at, (like, one) in enumerate(zip(likes, objects, strict=True)):

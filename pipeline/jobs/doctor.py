@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
-from pipeline.collection.mapping import load_mapping, preset_names
 from pipeline.collection.sources.opening import is_database
 from pipeline.jobs import checkup
+from pipeline.jobs.lasting import mapping_of
 from pipeline.jobs.secrets import hider
 from pipeline.jobs.workspace import Workspace, open_workspace
 from pipeline.settings import Settings, load_settings
@@ -62,7 +62,7 @@ def _each(settings: Settings, workspace: Workspace | None) -> list[Diagnosis]:
 
 def _collection(settings: Settings) -> tuple[str, str]:
     wanted = settings.collection
-    load_mapping(wanted.mapping if wanted.mapping in preset_names() else settings.path(wanted.mapping))
+    mapping_of(settings, wanted.mapping)
     if not wanted.source:
         return "ok", "no source: the inventory is used as it was last imported"
     if is_database(wanted.source):

@@ -8,7 +8,8 @@ from typing import Any
 from pipeline.assess import assess
 from pipeline.charting import Shelf
 from pipeline.climb import AUTO, Climb, examine
-from pipeline.collection.inventory import catalogue, read_inventory
+from pipeline.collection.catalogue import catalogue
+from pipeline.collection.inventory import read_inventory
 from pipeline.execute import Threads
 from pipeline.findings import findings
 from pipeline.jobs.briefing import popular
@@ -82,7 +83,7 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
     for storey in storeys(settings, site, items):
         levels = storey.shaking
         # The charts that a night uses, so that the reasons are those of the night.
-        charted = popular(everything, everything.objects, workspace.rules, storey.x_azimuth)
+        charted = popular(everything, everything.objects, workspace.rules, workspace.means, storey.x_azimuth)
         with charts_of(settings, [m.hash for level in levels for m in level.motions], charted) as shelf:
             for index in storey.members:
                 one = _placed(workspace, items[index], decisions)

@@ -1,26 +1,25 @@
 """The museum's records -> Kouros's inventory, with a log of what was read, refused and changed."""
 
 import csv
-import hashlib
 import json
-import os
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass
+from heapq import merge
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
 from pipeline.collection.guess import Guess, guess
 from pipeline.collection.inventory import Difference, difference, held, latest_import, replace_inventory, return_to
 from pipeline.collection.limits import Limits
-from pipeline.collection.mapping import Mapping, load_mapping, preset_names
+from pipeline.collection.mapping import load_mapping, preset_names
 from pipeline.collection.reading import Reading, read_items
 from pipeline.collection.sources.opening import is_database
 from pipeline.collection.suspicion import Suspicion
-from pipeline.jobs.workspace import KEPT, Workspace
+from pipeline.jobs.lasting import known_blocks, mapping_of
+from pipeline.jobs.workspace import Workspace
 from pipeline.records import Item, Problem
 from pipeline.report.exports import safe_cell
-from pipeline.resources import digest_of
 from pipeline.settings import Settings
 
 LOGS = "imports"
@@ -112,76 +111,26 @@ def import_collection(
     """Read a museum's records and make the inventory what they say, all of it or nothing.
 
     source  : path of a file, or the URL of a database
-    nightly : nobody is there to decide: a version that a person went back to stays until the source changes
+    nightly : nobody is there to decide: a version that a person went back to stays until the source changes; and nobody
+              looks on: rows that are as they were at the last reading are not read again
     raises  : CollectionError, MappingError and ShrunkError, as reading and writing do; nothing is written then
     """
-    named = mapping if mapping in preset_names() else workspace.settings.path(mapping)
-    reading = read_items(source, load_mapping(named), accepted(workspace.settings))
+    before = known_blocks(workspace, source, mapping) if nightly else None
+    reading = read_items(source, mapping_of(workspace.settings, mapping), accepted(workspace.settings), before)
     if nightly:
         stays = held(workspace.engine, reading.sha256)
         if stays is not None:
             return Imported(reading, None, held=stays)
     if dry_run:
         return Imported(reading, difference(workspace.engine, reading))
-    before = latest_import(workspace.engine)
+    last = latest_import(workspace.engine)
     changes = replace_inventory(workspace.engine, reading, shrink_limit=shrink_limit)
     after = latest_import(workspace.engine)
-    if after is None or before == after:
+    if after is None or last == after:
         return Imported(reading, changes)
     log = workspace.settings.path(LOGS) / f"{after.id:05d}-{after.imported_at[:10]}.csv"
     _write_log(log, reading, changes)
     return Imported(reading, changes, log=log)
-
-
-def unchanged(workspace: Workspace, source: str, mapping: str) -> bool:
-    """Say whether a file is the one that the inventory is the state of, byte for byte, and would be read alike.
-
-    source : as in the settings; a database must be read to know
-    raises : MappingError for a mapping that cannot be used
-    """
-    if is_database(source):
-        return False
-    try:
-        told = json.loads(_mark(workspace).read_text(encoding="utf-8"))
-        return bool(told == _seen(workspace, source, mapping))
-    except (OSError, ValueError):
-        return False
-
-
-def remember(workspace: Workspace, source: str, mapping: str) -> None:
-    """Note which file the inventory is the state of, so that it is not read again as long as it is the same."""
-    if is_database(source):
-        return
-    file = _mark(workspace)
-    aside = file.with_name(f".{file.name}.{os.getpid()}")
-    with suppress(OSError):
-        # Without the note the next night reads the source, and that is all.
-        file.parent.mkdir(parents=True, exist_ok=True)
-        aside.write_text(json.dumps(_seen(workspace, source, mapping)), encoding="utf-8")
-        aside.replace(file)
-
-
-def _mark(workspace: Workspace) -> Path:
-    return workspace.settings.path(KEPT) / "source.json"
-
-
-def _seen(workspace: Workspace, source: str, mapping: str) -> dict[str, Any]:
-    path = workspace.settings.path(source)
-    with path.open("rb") as binary:
-        content = hashlib.file_digest(binary, "sha256").hexdigest()
-    info = latest_import(workspace.engine)
-    return {
-        "source": str(path),
-        "sha256": content,
-        "mapping": hashlib.sha256(_mapping(workspace, mapping).model_dump_json().encode()).hexdigest(),
-        "code": digest_of("collection", "records", kinds=(".py", ".csv", ".toml")),
-        "limits": workspace.settings.limits.model_dump_json(),
-        "version": None if info is None else info.id,
-    }
-
-
-def _mapping(workspace: Workspace, mapping: str) -> Mapping:
-    return load_mapping(mapping if mapping in preset_names() else workspace.settings.path(mapping))
 
 
 def go_back(workspace: Workspace, version: int) -> Difference:
@@ -208,6 +157,16 @@ def log_rows(reading: Reading, changes: Difference) -> Iterator[tuple[Any, ...]]
         yield out.row, out.line, "", out.field, "rejected", out.message, out.remedy
     for doubt in reading.suspicions:
         yield "", "", "", doubt.field, "suspicion", doubt.message, doubt.remedy
+    noted = () if reading.unread is None else reading.unread.noted
+    unread = (
+        (row, line, number, field, "problem", message, remedy) for row, line, number, field, message, remedy in noted
+    )
+    yield from merge(unread, _rows_read(reading, changes), key=itemgetter(0))
+    for number in changes.removed:
+        yield "", "", number, "", "gone", "no longer in the source", ""
+
+
+def _rows_read(reading: Reading, changes: Difference) -> Iterator[tuple[Any, ...]]:
     added = set(changes.added)
     for item, (row, line) in zip(reading.items, reading.places, strict=True):
         number = item.object_number
@@ -217,8 +176,6 @@ def log_rows(reading: Reading, changes: Difference) -> Iterator[tuple[Any, ...]]
             yield row, line, number, "", "new", "", ""
         for field, (old, new) in changes.changed.get(number, {}).items():
             yield row, line, number, field, "changed", f"{_short(old)} -> {_short(new)}", ""
-    for number in changes.removed:
-        yield "", "", number, "", "gone", "no longer in the source", ""
 
 
 def _short(value: Any, most: int = 200) -> str:

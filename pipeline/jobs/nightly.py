@@ -7,10 +7,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from pipeline.collection.inventory import catalogue, latest_import
+from pipeline.collection.catalogue import catalogue
+from pipeline.collection.inventory import latest_import
 from pipeline.jobs.briefing import admit, brief_for
 from pipeline.jobs.deciding import decided
-from pipeline.jobs.importing import import_collection, remember, source_of, unchanged
+from pipeline.jobs.importing import import_collection, source_of
+from pipeline.jobs.lasting import remember, unchanged
 from pipeline.jobs.outcome import write_summary
 from pipeline.jobs.retention import sweep
 from pipeline.jobs.rounds import Round
@@ -171,11 +173,13 @@ def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None
     progress.step("collection", 0, 1)
     if not unchanged(workspace, wanted.source, wanted.mapping):
         source = source_of(workspace, wanted.source)
-        import_collection(
+        done = import_collection(
             workspace, source, wanted.mapping, shrink_limit=wanted.shrink_limit, dry_run=dry_run, nightly=True
         )
         if not dry_run:
-            remember(workspace, wanted.source, wanted.mapping)
+            # What a person went back to is not what the source says.
+            blocks = done.reading.blocks if done.held is None else ()
+            remember(workspace, source, wanted.mapping, done.reading.sha256, blocks)
     progress.step("collection", 1, 1)
 
 

@@ -1,15 +1,18 @@
 """One round through the sheets of a collection: which have results, who finds the others, what becomes of all."""
 
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Container, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil
 from time import monotonic
 
-from pipeline.collection.inventory import Catalogue, Listed, fields_since
+from pipeline.collection.catalogue import Catalogue, Listed
+from pipeline.collection.inventory import fields_since
+from pipeline.collection.record import family_of
 from pipeline.execute.crew import Crew, cores, crew
-from pipeline.jobs.desk import Brief, ChartErrand, Done, Errand, build, stand, work
+from pipeline.jobs.desk import Batch, Brief, ChartErrand, Done, Errand, KindErrand, build, find_kinds, stand, work
 from pipeline.jobs.doubts import now, standing
 from pipeline.jobs.levels import floor_name
 from pipeline.jobs.sheets import Keys, Part, cut
@@ -20,6 +23,7 @@ from pipeline.report.edition import Edition, Shelved, link_to, sheet_key
 from pipeline.report.since import mentioned
 from pipeline.report.tallies import total
 from pipeline.report.views import Pointer
+from pipeline.store.parcels import Parcel
 from pipeline.store.results import (
     Encoded,
     Kept,
@@ -39,6 +43,12 @@ FEW = 5_000
 BATCH = 16_000
 """Objects, about, that one worker works on together at most: each model is called once for all of them under each
 motion, which costs some seconds however few they are."""
+
+KIND_BATCH = 24_000
+"""Kinds of objects, about, that one worker works on together at most; they are neither stored nor drawn."""
+
+KINDS = 400_000
+"""Kinds of objects that are found before the sheets at most, of about 0.5 kB each."""
 
 _SECONDS = 5.0
 """Longest time for which results wait to be stored together."""
@@ -81,7 +91,7 @@ class Round:
         self._catalogue, self._decisions = catalogue, decisions
         self._numbers = {one.object_number: one.digest for one in objects if one.object_number in decisions}
         settings, keys = workspace.settings, Keys(brief, rules_digest(workspace.settings))
-        self._keys = keys
+        self._bases = keys.bases
         parts = cut(objects, settings)
         floors = [floor_name(settings, part.objects[0].gallery) for part in parts]
         named = [keys.of(part, floor, decisions) for part, floor in zip(parts, floors, strict=True)]
@@ -181,12 +191,42 @@ class Round:
         if self.charts and self.brief.kept is not None:
             for at, _ in enumerate(hands.each(build, self.brief, self.charts)):
                 progress.step("response charts", at + 1, len(self.charts))
+        fresh = [p for p in todo if p.kept is None and not self._before(p, self._bases[p.floor])]
+        # One who works alone remembers what he found.
+        parcels = list(self._kinds(hands, fresh, progress)) if hands.workers > 1 else []
         objects = sum(len(piece.part.objects) for piece in todo)
-        # As many for each worker, so that none waits for the last.
-        batches = _batches(todo, ceil(objects / (hands.workers * ceil(objects / (hands.workers * BATCH) or 1))))
-        wanted = (tuple(replace(self._errand(piece), draw=draw) for piece in batch) for batch in batches)
+        batches = _batches(todo, ceil(objects / _shares(objects, hands.workers, BATCH)))
+        wanted = (self._batch(batch, parcels, draw=draw) for batch in batches)
         for done in hands.each(work, self.brief, wanted):
             yield from done
+
+    def _kinds(self, hands: Crew, fresh: Sequence[_Piece], progress: Progress) -> Iterator[tuple[str, Parcel]]:
+        """Find what holds for many objects before the sheets that they are on: else each worker finds it for itself.
+
+        fresh   : sheets of which the last night knew nothing
+        returns : for a floor, what was found of some kinds
+        """
+        errands: list[tuple[str, tuple[int, int], dict[int, str]]] = []
+        for floor, kinds in _frequent(fresh, self._decisions).items():
+            parts = _shares(len({family_of(kind) for kind in kinds}), hands.workers, KIND_BATCH)
+            shared: list[dict[int, str]] = [{} for _ in range(parts)]
+            for kind, number in kinds.items():
+                shared[family_of(kind) % parts][kind] = number
+            errands += [(floor, (at, parts), part) for at, part in enumerate(shared)]
+        wanted = (
+            KindErrand(floor, place, tuple(part), self._catalogue.packed(list(part.values())))
+            for floor, place, part in errands
+        )
+        for at, found in enumerate(hands.each(find_kinds, self.brief, wanted)):
+            progress.step("kinds of objects", at + 1, len(errands))
+            yield errands[at][0], found
+
+    def _batch(self, batch: Sequence[_Piece], parcels: Sequence[tuple[str, Parcel]], *, draw: bool) -> Batch:
+        errands = tuple(replace(self._errand(piece), draw=draw) for piece in batch)
+        if batch[0].kept is not None:
+            return Batch(errands)
+        kinds = {one.kind for piece in batch for one in piece.part.objects if one.kind is not None}
+        return Batch(errands, tuple(parcel.only(kinds) for floor, parcel in parcels if floor == batch[0].floor))
 
     def _keep(self, waiting: list[Encoded]) -> None:
         head = self.brief.head
@@ -225,25 +265,31 @@ class Round:
         if piece.kept is not None:
             return replace(told, found=packed(self.workspace.engine, piece.key))
         numbers = [one.object_number for one in piece.part.objects]
-        records, basis = self._catalogue.items(numbers), self._keys.basis(piece.floor)
+        basis = self._bases[piece.floor]
         before = tuple(packed(self.workspace.engine, key) for key in self._before(piece, basis))
-        return replace(told, items=tuple(records[number] for number in numbers), basis=basis, before=before)
+        return replace(told, records=self._catalogue.packed(numbers), basis=basis, before=before)
 
     def _before(self, piece: _Piece, basis: str) -> list[str]:
-        """Return the keys of what the last night found in the place of a sheet, as far as it may be taken over."""
-        gone = self._gone.get((piece.part.gallery, piece.part.on_display), [])
+        """Return the keys of what the last night found in the place of a sheet, as far as it may be taken over.
+
+        A cut more or less shifts the numbers by one.  More are not looked at: of a gallery whose sheets all changed
+        each would bring all.
+        """
+        part = piece.part
+        places = [(part.gallery, part.on_display, part.number + shift) for shift in (-1, 0, 1)]
+        gone = [self._gone[place] for place in places if place in self._gone]
         return on_same_basis(self.workspace.engine, gone, basis) if gone else []
 
     @cached_property
-    def _gone(self) -> dict[tuple[str, bool], list[str]]:
-        # By gallery, the sheets of the last night that are not shown any more: those that are hold other objects.
+    def _gone(self) -> dict[tuple[str, bool, int], str]:
+        # By place, the sheets of the last night that are not shown any more: those that are hold other objects.
         shown = {one.key for one in self._pieces}
-        out: dict[tuple[str, bool], list[str]] = {}
-        for run_id in whole_runs(self.workspace.engine)[:1]:
-            for sheet in sheets_of(self.workspace.engine, run_id):
-                if sheet.key not in shown:
-                    out.setdefault((sheet.gallery, sheet.on_display), []).append(sheet.key)
-        return out
+        return {
+            (sheet.gallery, sheet.on_display, sheet.number): sheet.key
+            for run_id in whole_runs(self.workspace.engine)[:1]
+            for sheet in sheets_of(self.workspace.engine, run_id)
+            if sheet.key not in shown
+        }
 
     def _note(self, piece: _Piece, came: Done | None) -> Sheet:
         sheet, tally = self._sheet(piece), None if piece.kept is None else piece.kept.tally
@@ -295,3 +341,31 @@ def _batches(pieces: Iterable[_Piece], most: int) -> Iterator[list[_Piece]]:
         size += len(piece.part.objects)
     if batch:
         yield batch
+
+
+def _shares(objects: int, workers: int, most: int) -> int:
+    """Return how many parts work is cut into: of so many objects at most, and as many for each worker: none waits."""
+    return workers * max(1, ceil(objects / (workers * most)))
+
+
+def _frequent(pieces: Iterable[_Piece], decided: Container[str]) -> dict[str, dict[int, str]]:
+    """Return the kinds that more than one object on a floor may be of, with the number of the first of each.
+
+    Where all kinds can be held they are all taken: many at once are quicker than a few with each sheet.
+
+    decided : numbers of the objects that decisions were made about; what these change is theirs alone
+    """
+    times: Counter[tuple[str, int]] = Counter()
+    first: dict[tuple[str, int], str] = {}
+    for piece in pieces:
+        for one in piece.part.objects:
+            if one.kind is None or one.case or one.object_number in decided:
+                continue
+            times[piece.floor, one.kind] += 1
+            first.setdefault((piece.floor, one.kind), one.object_number)
+    out: dict[str, dict[int, str]] = {}
+    few = len(times) <= KINDS
+    for (floor, kind), often in times.most_common(KINDS):
+        if few or often > 1:
+            out.setdefault(floor, {})[kind] = first[floor, kind]
+    return out

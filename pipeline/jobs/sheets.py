@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
-from pipeline.collection.inventory import Listed
+from pipeline.collection.catalogue import Listed
 from pipeline.jobs.desk import Brief
 from pipeline.jobs.levels import Storey, floor_name
 from pipeline.kernels import KERNEL_VERSION
@@ -96,7 +96,10 @@ def _code() -> str:
 
 
 class Keys:
-    """The key of a sheet: a digest of everything that what is found about it depends on."""
+    """The key of a sheet: a digest of everything that what is found about it depends on.
+
+    bases : by floor, the digest of what results depend on besides the objects and the decisions about them
+    """
 
     def __init__(self, brief: Brief, rules: str) -> None:
         analysis = brief.analysis.model_dump(exclude={"workers", "fragility"})
@@ -104,20 +107,18 @@ class Keys:
         measures = [repr(replace(m, classes=frozenset())) + repr(sorted(m.classes)) for m in brief.means.measures]
         means = (measures, repr(brief.means.isolators))
         asked = (sorted(analysis.items()), rules, means, brief.surveyed, brief.fragile)
-        self._shared = repr((_code(), KERNEL_VERSION, asked))
-        self._floors = {name: repr(_shaking(storey)) for name, storey in brief.storeys.items()}
-
-    def basis(self, floor: str) -> str:
-        """Return the digest of what results on a floor depend on besides the objects and the decisions about them."""
-        return hashlib.sha256(f"{self._shared}\0{self._floors[floor]}".encode("utf-8", "surrogatepass")).hexdigest()
+        shared = repr((_code(), KERNEL_VERSION, asked))
+        self.bases = {
+            name: hashlib.sha256(f"{shared}{_shaking(storey)!r}".encode("utf-8", "surrogatepass")).hexdigest()
+            for name, storey in brief.storeys.items()
+        }
 
     def of(self, part: Part, floor: str, decisions: Mapping[str, Sequence[Decision]]) -> str:
         """Return the key of a part; which of its gallery's sheets it is does not matter.
 
         decisions : those in force, by object number
         """
-        digest = hashlib.sha256(self._shared.encode())
-        digest.update(self._floors[floor].encode())
+        digest = hashlib.sha256(self.bases[floor].encode())
         for one in part.objects:
             digest.update(f"{one.object_number}\0{one.digest}\0".encode("utf-8", "surrogatepass"))
             for decision in decisions.get(one.object_number, ()):

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
+from pipeline.collection.catalogue import catalogue
 from pipeline.collection.database import Database, open_database
-from pipeline.collection.inventory import catalogue
 from pipeline.jobs.briefing import admit, brief_for
 from pipeline.jobs.deciding import decided
 from pipeline.jobs.rounds import Round

@@ -5,23 +5,18 @@ number.  So it does for an object of an earlier night, under the same shaking an
 """
 
 from collections import OrderedDict
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import replace
 from operator import attrgetter
 
+from pipeline.collection.record import INDIVIDUAL
 from pipeline.records import ITEM_FIELDS, Assessment, Found, Scene, Support
 
 MOST = 100_000
 """Kinds of objects that are remembered, of about 6 kB each."""
 
-_OWN = (
-    "object_number", "gallery", "title", "dimensions", "position_x_m", "position_y_m", "value_class", "provenance",
-    "problems",
-)  # fmt: skip
-"""Fields of a record that are looked at by the classification, whose result is a part of the scene, or by nobody; where
-an object stands beside others counts for its neighbours, which are looked at afterwards."""
-
-_shared = attrgetter(*(name for name in ITEM_FIELDS if name not in _OWN))
+# The classification, whose result is a part of the scene, looks at titles; neighbours are looked at afterwards.
+_shared = attrgetter(*(name for name in ITEM_FIELDS if name not in INDIVIDUAL))
 
 
 def likeness(scene: Scene) -> Hashable | None:
@@ -61,10 +56,14 @@ class Twins:
 
     def learn(self, found: Found) -> None:
         """Take down what an earlier night found, under the same shaking and by the same rules and code."""
-        for assessment in found.assessments:
+        self.take((a, found.needing.get(a.scene.item.object_number, {})) for a in found.assessments)
+
+    def take(self, known: Iterable[Known]) -> None:
+        """Take down what is known of some objects."""
+        for assessment, needing in known:
             like = likeness(assessment.scene)
             if like is not None:
-                self.note(like, assessment, found.needing.get(assessment.scene.item.object_number, {}))
+                self.note(like, assessment, needing)
 
 
 def as_own(scene: Scene, twin: Assessment) -> Assessment:

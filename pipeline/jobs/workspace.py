@@ -24,6 +24,9 @@ KEPT = ".kouros-kept"
 CHARTS = "charts"
 """Folder in it for the response charts."""
 
+HISTORIES = "histories"
+"""Folder in it for the histories of what was worked on together, see `pipeline.charting.histories`."""
+
 
 class LockedError(RuntimeError):
     """Another run is at work."""
@@ -158,9 +161,13 @@ def charts_of(
 
 
 def tidy(settings: "Settings", shelf: "Shelf", using: Collection[str]) -> None:
-    """Remove the charts that the settings do not keep any longer.
+    """Remove the charts and the histories that the settings do not keep any longer.
 
     using : as in `charts_of`
     """
+    from pipeline.charting import prune_histories
+
     limits = settings.charts
-    shelf.tidy(days=limits.unused_days, most_bytes=round(1e6 * limits.megabytes), using=using)
+    most = round(1e6 * limits.megabytes)
+    shelf.tidy(days=limits.unused_days, most_bytes=most, using=using)
+    prune_histories(settings.path(KEPT) / HISTORIES, days=limits.unused_days, most_bytes=most)

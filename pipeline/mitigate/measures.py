@@ -9,7 +9,7 @@ from pipeline.classify import material_of
 from pipeline.mitigate.bench import Bench, Trial
 from pipeline.mitigate.changes import changed, held, knows_section
 from pipeline.mitigate.holding import footing, force_and_moment, strengths, wax_area, wax_checks
-from pipeline.mitigate.means import Isolator, Measure
+from pipeline.mitigate.means import Isolator, Means, Measure
 from pipeline.mitigate.offers import Need, Numbers, Offer, Proposal, refused
 from pipeline.models.stress import STRESS
 from pipeline.quantities import G
@@ -82,6 +82,16 @@ def rubber_pads(need: Need, bench: Bench, measure: Measure) -> Proposal:  # noqa
         return refused("it has as much damping already")
     numbers = {"damping": (measure.limit, "-")}
     return _one(need, measure, numbers, finish=_movement, mark_of="swing")
+
+
+def padded(scenes: Sequence[Scene], means: Means) -> list[Scene]:
+    """Return those of the scenes that rubber pads would damp, with the pads in place."""
+    out = []
+    for measure in (measure for measure in means.measures if measure.name == "rubber_pads"):
+        hung = [scene for scene in scenes if scene.support is Support.HUNG and "damping" in scene.parameters]
+        damped = {"damping": measure.limit}
+        out += [changed(s, measure.name, damped) for s in hung if s.parameters["damping"].value < measure.limit]
+    return out
 
 
 def surface(need: Need, bench: Bench, measure: Measure) -> Proposal:  # noqa: ARG001

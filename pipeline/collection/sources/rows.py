@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from datetime import date, datetime, time
 from decimal import Decimal
 from math import isfinite
+from types import MappingProxyType
+from typing import NamedTuple
+
+_NO_FAULTS: Mapping[int, tuple[str, str]] = MappingProxyType({})
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
+class Row(NamedTuple):
     """A row as it stands in its source: its number (1 = first data row), its first line, its cells as texts.
 
     line   : of the file or the sheet; of a query's result, the same as the number
@@ -22,7 +24,7 @@ class Row:
     line: int
     cells: list[str]
     fault: tuple[str, str] = ("", "")
-    faults: Mapping[int, tuple[str, str]] = field(default_factory=dict)
+    faults: Mapping[int, tuple[str, str]] = _NO_FAULTS
 
 
 def as_text(value: object) -> str:
