@@ -126,7 +126,7 @@ def crew(*, address: str = "", processes: int = 0) -> Iterator[Crew]:
             f"{name}_NUM_THREADS": 1 for name in ("OMP", "MKL", "OPENBLAS", "NUMBA", "NUMEXPR")
         },
     }
-    with dask.config.set(settings):
+    with dask.config.set(settings), _environment():
         if not address:
             with (
                 # Any free port for the web page that nobody looks at: 8787 may be taken.
@@ -148,6 +148,18 @@ def crew(*, address: str = "", processes: int = 0) -> Iterator[Crew]:
             if not workers:
                 raise CrewError(f"the Dask cluster at {address} has no workers; start some (`dask worker {address}`)")
             yield Dask(client, workers)
+
+
+@contextmanager
+def _environment() -> Iterator[None]:
+    """Put back what Dask leaves in the environment of this process when it starts workers: what they start with."""
+    before = dict(os.environ)
+    try:
+        yield
+    finally:
+        for name in os.environ.keys() - before.keys():
+            del os.environ[name]
+        os.environ.update(before)
 
 
 def cores() -> int:

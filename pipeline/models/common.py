@@ -90,13 +90,14 @@ def smallest_push(motion: Excitation) -> float:
         return largest_push(motion)
     half = np.radians(0.25)
     turns = np.arange(0.0, np.pi, 2.0 * half)
-    directions = np.column_stack([np.cos(turns), np.sin(turns)])
-    pushes = np.stack([motion.x, motion.y])
+    cosine, sine = np.cos(turns)[:, None], np.sin(turns)[:, None]
     radius = np.hypot(motion.x, motion.y)
     strongest = np.argpartition(radius, -min(_STRONGEST, radius.size))[-_STRONGEST:]
-    least = np.abs(directions @ pushes[:, strongest]).max(axis=1).min()
+    # Written out: a product of matrices has other last digits on another number of cores.
+    least = np.abs(cosine * motion.x[strongest] + sine * motion.y[strongest]).max(axis=1).min()
     # A sample that is weaker than that is the peak along no direction.
-    peaks = np.abs(directions @ pushes[:, radius >= least]).max(axis=1)
+    strong = radius >= least
+    peaks = np.abs(cosine * motion.x[strong] + sine * motion.y[strong]).max(axis=1)
     # Half a step away the sample with the peak along t still pushes by its cosine, less what it pushes across t.
     across = np.sqrt(np.maximum(0.0, largest_push(motion) ** 2 - peaks**2))
     return max(0.0, float(np.min(np.cos(half) * peaks - np.sin(half) * across)))

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pipeline.motions.blas import one_thread
 from pipeline.motions.errors import MotionError, judged, refusal
 from pipeline.motions.intensity import integrate, measures, strong_part
 from pipeline.motions.keeping import keep, key_of, recall
@@ -158,6 +159,7 @@ def _carried(site: Site, table: FloorTable, ground: SiteMotion) -> SiteMotion:
     return SiteMotion(*known, ground.licence, ground.source)
 
 
+@one_thread()
 def carry(motion: Motion, table: FloorTable) -> Motion:
     """Return a motion of the ground as a floor feels it, by the method of the manifest's table.
 
@@ -198,6 +200,7 @@ def _identity(record: Record, target: TargetTable | None, x_azimuth: float, *mor
     return key_of(record.model_dump_json(), "" if target is None else target.model_dump_json(), str(x_azimuth), *more)
 
 
+@one_thread()
 def measured(motion: Motion, velocity: Array | None = None) -> dict[str, float]:
     """Return the measures of a motion (`intensity.measures`), and those of its near-fault pulse where it has one.
 
@@ -282,6 +285,7 @@ def _site_motion(site: Site, key: str, record: Record, target: TargetTable | Non
     return SiteMotion(*known, record.licence, record.source)
 
 
+@one_thread()
 def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_azimuth: float) -> Processed:
     """Read and process one record of a manifest.
 

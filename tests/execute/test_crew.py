@@ -49,6 +49,14 @@ def test_a_dying_worker_loses_nothing_and_doubles_nothing(hands: Crew, tmp_path:
     assert (tmp_path / "died").exists()
 
 
+def test_a_crew_leaves_the_environment_as_it_was(tmp_path: Path) -> None:
+    """Dask gives its workers one thread of BLAS by way of this process, and the hash seed besides."""
+    before = dict(os.environ)
+    with crew(processes=2) as hands:
+        assert list(hands.each(product, Shared(tmp_path), range(4)))
+    assert dict(os.environ) == before
+
+
 def test_what_kills_every_worker_is_named_instead_of_tried_for_ever(tmp_path: Path) -> None:
     with crew(processes=2) as hands, pytest.raises(CrewError, match="workers died of one part of the work"):
         list(hands.each(dies, Shared(tmp_path), range(4)))
