@@ -9,9 +9,8 @@ from typing import Any, Literal
 import numpy as np
 
 from pipeline import __version__
-from pipeline.charting import Shelf
 from pipeline.charting.grouping import group_name, groups
-from pipeline.charts import chart_keys, charts, picture_version
+from pipeline.charts import picture_version
 from pipeline.classify import classify
 from pipeline.collection.catalogue import Catalogue, Listed
 from pipeline.collection.inventory import latest_import
@@ -19,6 +18,7 @@ from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
 from pipeline.jobs.desk import Brief, ChartErrand, motions_of
 from pipeline.jobs.levels import floors_of, notes
+from pipeline.jobs.pictures import Pictures
 from pipeline.jobs.reporting import manner
 from pipeline.jobs.versions import code_digest, rules_digest
 from pipeline.jobs.workspace import CHARTS, KEPT, Workspace
@@ -27,9 +27,9 @@ from pipeline.mitigate import Means
 from pipeline.mitigate.measures import padded
 from pipeline.motions.site import Level, Site
 from pipeline.plan import plan
-from pipeline.records import Chart, Executor, Model, Motion, Progress, RunRecord
+from pipeline.records import Model, Progress, RunRecord
 from pipeline.rules import Table
-from pipeline.store.reuse import CODE, KERNELS, LEVELS, PICTURES, RULES, stored_charts
+from pipeline.store.reuse import CODE, KERNELS, LEVELS, PICTURES, RULES
 
 FRAGILE, SURVEYED = 1e8, 2e8
 """Objects on display times samples of all motions up to which curves, and wishes, are found unasked: some minutes."""
@@ -50,12 +50,14 @@ def brief_for(
     site: Site,
     catalogue: Catalogue,
     chosen: Sequence[Listed],
+    pictures: Pictures,
     started: datetime,
     progress: Progress,
 ) -> Brief:
     """Make ready what all sheets of a run share; its shelf is to be tidied at the end.
 
     catalogue : all objects of the inventory;  chosen : those that the run is of
+    pictures  : where those of the motions are had
     raises    : SettingsError for a floor that the site does not have, MotionError for a floor's record, TableError and
                 UsageError for tables of the museum's own, ReportError for a language without a catalogue
     """
@@ -104,12 +106,12 @@ def brief_for(
         catalogues=settings.path(settings.report.catalogues) if settings.report.catalogues else None,
     )
     # The pictures are made before the verdicts, which use their charts; motions that two floors share only once.
-    pictures = _charts(workspace, list(motions.values()), brief, progress)
+    drawn = pictures.of(list(motions.values()), progress)
     measured = tradeoff.kept(settings.path(KEPT))
     if measured is not None:
         picture = tradeoff.picture(measured)
-        pictures[picture.key] = picture
-    brief.head = replace(head, charts=pictures)
+        drawn[picture.key] = picture
+    brief.head = replace(head, charts=drawn)
     return brief
 
 
@@ -181,19 +183,6 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
         "floors": settings.floors.model_dump(),
         "numerics": None if tested is None else tested.plain(),
     }
-
-
-def _charts(workspace: Workspace, motions: Sequence[Motion], brief: Brief, progress: Progress) -> dict[str, Chart]:
-    drawn: dict[str, Chart] = {}
-    executor: Executor = brief.executor
-    # Not the brief's own, which is made once it is decided what it holds.
-    shelf = Shelf(brief.kept)
-    for done, motion in enumerate(motions):
-        progress.step("charts", done, len(motions))
-        kept = stored_charts(workspace.engine, chart_keys(motion), picture_version())
-        drawn |= kept if len(kept) == len(chart_keys(motion)) else charts(motion, executor, shelf)
-    progress.step("charts", len(motions), len(motions))
-    return drawn
 
 
 def _level_note(level: Level) -> str:

@@ -14,6 +14,7 @@ from pipeline.jobs.deciding import decided
 from pipeline.jobs.importing import import_collection, source_of
 from pipeline.jobs.lasting import remember, unchanged
 from pipeline.jobs.outcome import write_summary
+from pipeline.jobs.pictures import pictures
 from pipeline.jobs.retention import sweep
 from pipeline.jobs.rounds import Round
 from pipeline.jobs.standing import Status, mark_good, mark_running, status
@@ -107,12 +108,13 @@ def run(
             mark_running(settings)
         sweep(settings)
         workspace = open_workspace(settings)
-        if not (resume and _was_read(workspace, cut_off)):
-            _refresh(workspace, progress, dry_run=dry_run)
-        everything = catalogue(workspace.engine)
-        objects = named(everything.objects, galleries=chosen.galleries, objects=chosen.objects)
         site = _read_site(workspace, progress)
-        brief = brief_for(workspace, site, everything, objects, started, progress)
+        with pictures(workspace, site) as drawing:
+            if not (resume and _was_read(workspace, cut_off)):
+                _refresh(workspace, progress, dry_run=dry_run)
+            everything = catalogue(workspace.engine)
+            objects = named(everything.objects, galleries=chosen.galleries, objects=chosen.objects)
+            brief = brief_for(workspace, site, everything, objects, drawing, started, progress)
         try:
             night = Round(workspace, brief, everything, objects, decided(workspace))
             if night.fresh:

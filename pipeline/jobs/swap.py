@@ -11,6 +11,7 @@ from pipeline.collection.catalogue import catalogue
 from pipeline.collection.database import Database, open_database
 from pipeline.jobs.briefing import admit, brief_for
 from pipeline.jobs.deciding import decided
+from pipeline.jobs.pictures import pictures
 from pipeline.jobs.rounds import Round
 from pipeline.jobs.workspace import KEPT, Workspace, open_workspace
 from pipeline.motions.site import Level, Site, read_site
@@ -131,7 +132,8 @@ def _assessed(workspace: Workspace, site: Site, name: str, engine: Database, pro
     returns : how many objects had no result yet
     """
     everything = catalogue(workspace.engine)
-    brief = brief_for(workspace, site, everything, everything.objects, datetime.now(UTC), progress)
+    with pictures(workspace, site) as drawing:
+        brief = brief_for(workspace, site, everything, everything.objects, drawing, datetime.now(UTC), progress)
     night = Round(workspace, brief, everything, everything.objects, decided(workspace))
     if night.fresh:
         night.charts = admit(brief, everything, everything.objects, site.manifest.site.x_azimuth)
