@@ -13,7 +13,7 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Any, Self
+from typing import Any, Self
 
 from markupsafe import Markup
 from pydantic import TypeAdapter, ValidationError
@@ -26,16 +26,15 @@ from pipeline.report.language import speaking
 from pipeline.report.pages import environment, fill
 from pipeline.report.sheets import Drawn, Pen, drawn
 from pipeline.report.since import since_view
-from pipeline.report.table_files import OldTable, TableFile
+from pipeline.report.table_files import TableFile
 from pipeline.report.text import clean, short
+from pipeline.report.text_files import TextFile
 from pipeline.report.traces import trace
 from pipeline.report.views import Entry, Pointer, State
 from pipeline.resources import digest_of, resource
 
 SHEETS = ".sheets.json"
 """File of a report that says what of it is which sheet's."""
-
-_BLOCK = 1 << 22
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,19 +114,19 @@ class Edition:
         self._placed: list[Placed] = []
         self._repeated = False
         self._stack = ExitStack()
-        self._texts: dict[str, IO[bytes]] = {}
-        self._old_texts: dict[str, IO[bytes]] = {}
+        self._texts: dict[str, TextFile] = {}
         self._tables: dict[str, TableFile] = {}
-        self._old_tables: dict[str, OldTable] = {}
 
     def __enter__(self) -> Self:
         self._partial.mkdir(parents=True)
         self._stack.callback(shutil.rmtree, self._partial, ignore_errors=True)
+        earlier = self._earlier.folder
         for name in TEXT_FILES:
-            self._texts[name] = self._stack.enter_context((self._partial / name).open("wb"))
-            self._texts[name].write(HEADERS.get(name, b""))
+            self._texts[name] = TextFile(self._partial / name, HEADERS.get(name, b""), earlier / name)
+            self._stack.callback(self._texts[name].close)
         for name in TABLES:
-            self._tables[name] = TableFile(self._partial / f"{name}.parquet", schema_of(name))
+            file = f"{name}.parquet"
+            self._tables[name] = TableFile(self._partial / file, schema_of(name), earlier / file)
             self._stack.callback(self._tables[name].close)
         return self
 
@@ -137,10 +136,9 @@ class Edition:
         self._stack.close()
 
     def _close(self) -> None:
-        for stream in self._texts.values():
-            stream.close()
-        for table in self._tables.values():
-            table.close()
+        files: list[TextFile | TableFile] = [*self._texts.values(), *self._tables.values()]
+        for file in files:
+            file.close()
 
     def has(self, key: str) -> bool:
         """Say whether the earlier report has a sheet."""
@@ -169,42 +167,16 @@ class Edition:
         placed = self._earlier.sheets[key]
         page = placed.entry.sheet.page
         _same(self._earlier.folder / page, self._partial / page)
-        texts = {name: self._copied(name, *where) for name, where in placed.texts.items()}
-        tables = {name: self._taken(name, *where) for name, where in placed.tables.items()}
+        texts = {name: self._texts[name].take(*where) for name, where in placed.texts.items()}
+        tables = {name: self._tables[name].take(*where) for name, where in placed.tables.items()}
         self._placed.append(Placed(key, placed.entry, texts, tables))
 
     def add(self, key: str, made: Drawn) -> None:
         """Add a sheet that was drawn for this report."""
         (self._partial / made.entry.sheet.page).write_bytes(made.page)
-        texts = {name: self._appended(name, content) for name, content in made.fragment.texts.items()}
-        tables = {name: self._tables[name].add_stream(content) for name, content in made.fragment.tables.items()}
+        texts = {name: self._texts[name].add(content) for name, content in made.fragment.texts.items()}
+        tables = {name: self._tables[name].add(content) for name, content in made.fragment.tables.items()}
         self._placed.append(Placed(key, made.entry, texts, tables))
-
-    def _appended(self, name: str, content: bytes) -> tuple[int, int]:
-        stream = self._texts[name]
-        start = stream.tell()
-        stream.write(content)
-        return start, len(content)
-
-    def _copied(self, name: str, start: int, length: int) -> tuple[int, int]:
-        source, target = self._old_texts.get(name), self._texts[name]
-        if source is None:
-            source = self._old_texts[name] = self._stack.enter_context((self._earlier.folder / name).open("rb"))
-        source.seek(start)
-        began, left = target.tell(), length
-        while left:
-            block = source.read(min(left, _BLOCK))
-            if not block:
-                raise ReportError(f"{source.name} is shorter than its report says; remove that report, and run again")
-            target.write(block)
-            left -= len(block)
-        return began, length
-
-    def _taken(self, name: str, start: int, rows: int) -> tuple[int, int]:
-        if name not in self._old_tables:
-            self._old_tables[name] = OldTable(self._earlier.folder / f"{name}.parquet")
-            self._stack.callback(self._old_tables[name].close)
-        return self._tables[name].add(self._old_tables[name].rows(start, rows))
 
     def finish(self, head: RunRecord, tally: Tally, changes: RunChanges | None, links: Mapping[str, Pointer]) -> Path:
         """Write the index and the pages that all share, and give the report its name.

@@ -1,9 +1,10 @@
-"""The exported tables as Parquet files, row by row from sheets that are new and from an earlier report's file."""
+"""The exported tables as Parquet files, put together from sheets that are new and from an earlier report's files."""
 
-from concurrent.futures import Future, ThreadPoolExecutor
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from pipeline.report.behind import Behind
 from pipeline.report.errors import ReportError
 
 GROUP = 20_000
@@ -13,67 +14,80 @@ GROUP = 20_000
 class TableFile:
     """A Parquet file that is being written, by a thread of its own: it compresses while the rest goes on.
 
-    schema : pyarrow.Schema
+    schema  : pyarrow.Schema
+    earlier : the same file of an earlier report, whose rows can be taken over
     """
 
-    def __init__(self, path: Path, schema: Any) -> None:
+    def __init__(self, path: Path, schema: Any, earlier: Path) -> None:
         import pyarrow.parquet as pq
 
         self._schema = schema
         self._writer = pq.ParquetWriter(path, schema, compression="zstd")
-        self._hand = ThreadPoolExecutor(1)
-        self._last: Future[None] | None = None
+        self._earlier = earlier
+        self._behind = Behind()
+        # Tables, and of the earlier file where rows begin and end.
         self._waiting: list[Any] = []
         self._pending = 0
         self._rows = 0
 
-    def add_stream(self, content: bytes) -> tuple[int, int]:
+    def add(self, content: bytes) -> tuple[int, int]:
         """Add the rows of a table in Arrow's own format; return where they begin and how many they are."""
         import pyarrow as pa
 
-        return self.add(pa.ipc.open_stream(content).read_all())
+        table = pa.ipc.open_stream(content).read_all()
+        self._waiting.append(table)
+        return self._placed(table.num_rows)
 
-    def add(self, table: Any) -> tuple[int, int]:
-        """Add the rows of a pyarrow.Table; return where they begin and how many they are."""
-        start, rows = self._rows, table.num_rows
-        if rows:
-            # What comes from a Parquet file calls the parts of its lists by another name.
-            self._waiting.append(table.cast(self._schema))
-            self._rows += rows
-            self._pending += rows
-            if self._pending >= GROUP:
-                self._write()
+    def take(self, start: int, rows: int) -> tuple[int, int]:
+        """Take rows over from the earlier file; return where they begin here and how many they are."""
+        last = self._waiting[-1] if self._waiting else None
+        if isinstance(last, tuple) and last[1] == start:
+            self._waiting[-1] = (last[0], start + rows)
+        else:
+            self._waiting.append((start, start + rows))
+        return self._placed(rows)
+
+    def _placed(self, rows: int) -> tuple[int, int]:
+        start = self._rows
+        self._rows += rows
+        self._pending += rows
+        if self._pending >= GROUP:
+            self._write()
         return start, rows
 
     def _write(self) -> None:
-        # One row group waits at most: the memory is bounded, and what went wrong is said here.
-        self._wait()
-        if self._waiting:
-            self._last = self._hand.submit(self._written, self._waiting, self._pending)
+        waiting, rows = self._waiting, self._pending
         self._waiting, self._pending = [], 0
+        if rows:
+            self._behind.do(self._written, waiting, rows)
 
-    def _written(self, tables: list[Any], rows: int) -> None:
+    def _written(self, waiting: list[Any], rows: int) -> None:
         import pyarrow as pa
 
-        self._writer.write_table(pa.concat_tables(tables), row_group_size=rows)
+        tables = [self._old.rows(*part) if isinstance(part, tuple) else part for part in waiting]
+        # What comes from a Parquet file calls the parts of its lists by another name.
+        whole = pa.concat_tables([table.cast(self._schema) for table in tables])
+        self._writer.write_table(whole, row_group_size=rows)
 
-    def _wait(self) -> None:
-        last, self._last = self._last, None
-        if last is not None:
-            last.result()
+    @cached_property
+    def _old(self) -> "OldTable":
+        return OldTable(self._earlier)
 
     def close(self) -> None:
         """Write what is left and end the file; once more does nothing.
 
-        raises : OSError where it cannot be written, such as a disk that is full
+        raises : OSError where it cannot be written, such as a disk that is full; ReportError where the earlier file has
+                 fewer rows than it should
         """
         try:
             if self._writer.is_open:
                 self._write()
-                self._wait()
+                self._behind.wait()
         finally:
-            self._hand.shutdown()
+            self._behind.close()
             self._writer.close()
+            if "_old" in self.__dict__:
+                self._old.close()
 
 
 class OldTable:
@@ -90,15 +104,14 @@ class OldTable:
             self._ends.append(before + self._file.metadata.row_group(group).num_rows)
         self._group, self._table = -1, None
 
-    def rows(self, start: int, count: int) -> Any:
+    def rows(self, start: int, end: int) -> Any:
         """Return some rows as a pyarrow.Table.
 
         raises : ReportError where the file does not have them
         """
         import pyarrow as pa
 
-        end = start + count
-        if count and (not self._ends or end > self._ends[-1]):
+        if start < end and (not self._ends or end > self._ends[-1]):
             raise ReportError(f"{self._path} is shorter than its report says; remove that report, and run again")
         parts = []
         for group, group_end in enumerate(self._ends):

@@ -8,7 +8,7 @@ import pytest
 
 from pipeline.report import table_files
 from pipeline.report.errors import ReportError
-from pipeline.report.table_files import OldTable, TableFile
+from pipeline.report.table_files import TableFile
 
 SCHEMA = pa.schema([("n", pa.float64()), ("words", pa.list_(pa.string())), ("text", pa.string())])
 
@@ -30,10 +30,10 @@ def stream(part: pa.Table) -> bytes:
 def written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, list[tuple[int, int]]]:
     """A file of 1,000 rows in parts of 0 to 53, in groups of a hundred or so, and where each part is."""
     monkeypatch.setattr(table_files, "GROUP", 100)
-    out = TableFile(tmp_path / "old.parquet", SCHEMA)
+    out = TableFile(tmp_path / "old.parquet", SCHEMA, tmp_path / "none.parquet")
     places, first = [], 0
     for size in [0, 1, *range(44), 0, 53]:
-        places.append(out.add_stream(stream(table(first, size))))
+        places.append(out.add(stream(table(first, size))))
         first += size
     out.close()
     out.close()
@@ -51,30 +51,32 @@ def test_row_groups_hold_many_parts(written: tuple[Path, list[tuple[int, int]]])
 def test_what_is_taken_over_is_what_was_written(written: tuple[Path, list[tuple[int, int]]], tmp_path: Path) -> None:
     """All parts but one, which is new, and one more at the end; also across the ends of row groups."""
     path, places = written
-    old, out = OldTable(path), TableFile(tmp_path / "new.parquet", SCHEMA)
+    out = TableFile(tmp_path / "new.parquet", SCHEMA, path)
     expected = []
     for at, (start, count) in enumerate(places):
         part = table(5_000, 33) if at == 20 else table(start, count)
         expected.append(part)
-        assert out.add(part if at == 20 else old.rows(start, count))[1] == part.num_rows
-    assert out.add(old.rows(950, 50)) == (sum(part.num_rows for part in expected), 50)
+        assert (out.add(stream(part)) if at == 20 else out.take(start, count))[1] == part.num_rows
+    assert out.take(950, 50) == (sum(part.num_rows for part in expected), 50)
     out.close()
-    old.close()
     whole = pa.concat_tables([*expected, table(950, 50)])
     assert pq.read_table(tmp_path / "new.parquet").cast(SCHEMA) == whole
 
 
-def test_what_the_earlier_file_lacks_is_an_error(written: tuple[Path, list[tuple[int, int]]]) -> None:
-    old = OldTable(written[0])
-    assert old.rows(1_000, 0).num_rows == 0
+def test_what_the_earlier_file_lacks_is_an_error(written: tuple[Path, list[tuple[int, int]]], tmp_path: Path) -> None:
+    out = TableFile(tmp_path / "new.parquet", SCHEMA, written[0])
+    out.take(990, 11)
     with pytest.raises(ReportError, match=r"old\.parquet is shorter than its report says"):
-        old.rows(990, 11)
-    old.close()
+        out.close()
+    out.close()
 
 
 def test_a_table_without_rows(tmp_path: Path) -> None:
-    out = TableFile(tmp_path / "none.parquet", SCHEMA)
-    assert out.add(table(0, 0)) == (0, 0)
+    out = TableFile(tmp_path / "none.parquet", SCHEMA, tmp_path / "nothing.parquet")
+    assert out.add(stream(table(0, 0))) == (0, 0)
     out.close()
     assert pq.read_table(tmp_path / "none.parquet").num_rows == 0
-    assert OldTable(tmp_path / "none.parquet").rows(0, 0).num_rows == 0
+    again = TableFile(tmp_path / "again.parquet", SCHEMA, tmp_path / "none.parquet")
+    assert again.take(0, 0) == (0, 0)
+    again.close()
+    assert pq.read_table(tmp_path / "again.parquet").num_rows == 0
