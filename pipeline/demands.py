@@ -17,8 +17,8 @@ from pipeline.response import DECIDES, look_up, run_model
 CHUNK = 96
 """Parameter sets in one task: small enough to share between workers, large enough to make the task worth its call."""
 
-BOUNDED = 4096
-"""Parameter sets in one task that only bounds them."""
+WHOLE = 4096
+"""Parameter sets in one task that only bounds them, or that nobody shares: bounds the memory."""
 
 HISTORY_ERROR = 2e-3
 """Share of a demand by which a history may be off what is bounded or tabulated.
@@ -150,9 +150,9 @@ def bounded(work: Work, motion: Motion, outputs: Sequence[str], executor: Execut
     high = {output: np.full(size, np.inf) for output in outputs}
     note = np.zeros(size)
     parts = [
-        (angle, rows[i : i + BOUNDED])
+        (angle, rows[i : i + WHOLE])
         for angle, rows in work.by_angle(np.unique(work.first))
-        for i in range(0, rows.size, BOUNDED)
+        for i in range(0, rows.size, WHOLE)
     ]
     # The certificate of a demand that counts needs no bounds besides.
     needed = whole and not (model.exact and set(outputs) == {model.demand} and model.rests is not None)
@@ -201,6 +201,8 @@ def integrate(
     histories : those that were run before, which are taken over; None: all are run
     """
     work = found.work
+    # What a motion is made ready for is worth as many sets as there are, where nobody else waits for some.
+    most = WHOLE if executor.workers == 1 else CHUNK
     groups: list[_Group] = []
     tasks: list[_RunTask] = []
     for angle, group in work.by_angle(rows):
@@ -211,7 +213,7 @@ def integrate(
         if histories is not None:
             there, known = histories.recall(key, work.some(each))
         left = each[~there]
-        chunks = [left[i : i + CHUNK] for i in range(0, left.size, CHUNK)]
+        chunks = [left[i : i + most] for i in range(0, left.size, most)]
         tasks += [(work.model, found.motion, angle, work.some(some), fidelity, azimuth_step) for some in chunks]
         groups.append(_Group(key, group, place, each, there, known, len(chunks)))
     ran = iter(executor.map(_run, tasks))

@@ -10,7 +10,9 @@ Answer = TypeVar("Answer")
 
 
 class Executor(Protocol):
-    """Where independent pieces of work run."""
+    """Where independent pieces of work run, on so many workers."""
+
+    workers: int
 
     def map(self, work: Callable[[Task], Answer], tasks: Sequence[Task]) -> list[Answer]:
         """Run the work on each task and return the answers in the order of the tasks."""
