@@ -189,7 +189,8 @@ class Round:
 
     def _each(self, hands: Crew, todo: Sequence[_Piece], progress: Progress, *, draw: bool) -> Generator[Done]:
         """Yield what comes of each sheet; charts that many ask for are built before, each by one."""
-        if self.charts and self.brief.kept is not None:
+        # For a few objects not all are read: whoever asks for one finds or builds it.
+        if self.charts and self.brief.kept is not None and self.fresh > FEW:
             for at, _ in enumerate(hands.each(build, self.brief, self.charts)):
                 progress.step("response charts", at + 1, len(self.charts))
         fresh = [p for p in todo if p.kept is None and not self._before(p, self._bases[p.floor])]
