@@ -17,6 +17,7 @@ from pipeline.charting import Shelf
 from pipeline.classify import classify, object_classes
 from pipeline.collection.catalogue import read_packed
 from pipeline.execute import Threads
+from pipeline.execute.memory import give_back
 from pipeline.fragility.objects import fragilities
 from pipeline.jobs.doubts import now, standing
 from pipeline.jobs.levels import Storey
@@ -216,7 +217,11 @@ def find_kinds(brief: Brief, errand: KindErrand) -> Parcel:
             same[kind] = first[like]
     with brief.shelf.remembering(brief.memory("kinds", errand.floor, errand.part)):
         known = _assessed(brief, storey, list(chosen.values()))
-    return Parcel.of(Known, dict(zip(chosen, known, strict=True)), same)
+    found = Parcel.of(Known, dict(zip(chosen, known, strict=True)), same)
+    del chosen, known
+    # What follows, sheet by sheet, takes far less.
+    give_back()
+    return found
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from pipeline.collection.catalogue import Catalogue, Listed
 from pipeline.collection.inventory import fields_since
 from pipeline.collection.record import family_of
 from pipeline.execute.crew import Crew, cores, crew
+from pipeline.execute.memory import give_back
 from pipeline.jobs.desk import Batch, Brief, ChartErrand, Done, Errand, KindErrand, build, find_kinds, stand, work
 from pipeline.jobs.doubts import now, standing
 from pipeline.jobs.levels import floor_name
@@ -239,6 +240,8 @@ class Round:
         wanted = self.workspace.settings.execution
         if objects <= FEW:
             return crew()
+        # What reading the records and drawing the motions took is there for the workers.
+        give_back()
         if wanted.cluster:
             # Its workers may not see our folders.
             self.brief = replace(self.brief, kept=None, threads=1)

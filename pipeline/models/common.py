@@ -38,6 +38,9 @@ NUDGE = 1e-6
 _KNOWN = 256
 """Excitations whose peaks are remembered: a motion is asked for its own again and again."""
 
+_FEW = 16
+"""The same where most are those of a direction, which nobody asks for twice: each holds 0.2 MB."""
+
 
 def words(bits: float) -> str:
     """Return the note of a result in words."""
@@ -130,7 +133,7 @@ def after_record(motion: Excitation) -> int:
     return 0 if motion.tail is None else int(np.ceil(motion.tail / motion.dt))
 
 
-@lru_cache(maxsize=_KNOWN)
+@lru_cache(maxsize=_FEW)
 def lift_ratios(motion: Excitation) -> tuple[float, float]:
     """Return the largest -a / N and a / N over time, N = max(0, g + a_z): what lifts either edge of a body of slope 1.
 
