@@ -24,7 +24,7 @@ demo: $(STAMP)  ## the whole job on the bundled collection and record; ends with
 	$(BIN)/kouros demo
 
 test: $(STAMP) lint check-browser  ## lint, types, floors and all tests
-	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile
+	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
 lint: $(STAMP)
 	$(BIN)/ruff format --check pipeline schemas tests examples .ci

@@ -12,6 +12,48 @@ from shutil import rmtree
 from typing import Any
 
 import pytest
+from filelock import FileLock
+
+SHARED = "KOUROS_TESTS_SHARED"
+"""Names the folder of what all processes of a session have in common: it is the same whoever made it."""
+
+LONGEST = frozenset(
+    {
+        "test_unchanged_nights.py",
+        "test_twins.py",
+        "test_examples.py",
+        "test_motions_commands.py",
+        "test_cli.py",
+        "test_demo.py",
+        "test_night_changes.py",
+        "test_crewed_nights.py",
+        "test_fragility.py",
+        "test_import_command.py",
+        "test_chart_nights.py",
+        "test_jobs.py",
+        "test_interruptions.py",
+        "test_borders.py",
+        "test_extremes.py",
+        "test_hostile_collection.py",
+        "test_tradeoff.py",
+        "test_pictures.py",
+    }
+)
+"""Files of tests that take long: they come first, so that at the end no core waits for another."""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if not hasattr(config, "workerinput"):
+        os.environ[SHARED] = tempfile.mkdtemp(prefix="kouros-tests-")
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    if not hasattr(config, "workerinput"):
+        rmtree(os.environ.pop(SHARED), ignore_errors=True)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    items.sort(key=lambda item: item.path.name not in LONGEST)
 
 
 @contextmanager
@@ -42,13 +84,15 @@ def postgresql_url() -> Iterator[str]:
 
 
 @pytest.fixture(scope="session")
-def demo_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a demonstration that was run once: settings, database, reports."""
+def demo_folder() -> Path:
+    """The folder of a demonstration that was run once: settings, database, reports; it is only looked at."""
     from pipeline.cli.console import Console
     from pipeline.jobs.demo import demo
 
-    folder = tmp_path_factory.mktemp("demo")
-    demo(folder, Console(quiet=True))
+    folder = Path(os.environ[SHARED]) / "demo"
+    with FileLock(folder.with_suffix(".lock")):
+        if not (folder / "reports" / "latest").exists():
+            demo(folder, Console(quiet=True))
     return folder
 
 

@@ -22,7 +22,7 @@ from pipeline.settings import template
 from tests.operations.conftest import within
 from tests.operations.servers import Web, web
 from tests.report.conftest import browser as browser  # noqa: PLC0414 - a fixture
-from tests.test_jobs import CHARTED
+from tests.test_jobs import in_common
 
 from . import payloads
 
@@ -72,9 +72,7 @@ def night(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Night]:
     around = tmp_path_factory.mktemp("around")
     folder = around / "a" / "museum"
     synthesise("sine", ["amplitude=3", "frequency=2", "cycles=2"], folder / "site")
-    charts = folder / ".kouros-kept" / "charts"
-    charts.parent.mkdir()
-    charts.symlink_to(CHARTED.name, target_is_directory=True)
+    in_common(folder)
     with web(204) as canary:
         payload = payloads.payloads(canary.url + "/", around / OUTSIDE)
         table = list(payloads.rows(payload))
