@@ -53,17 +53,14 @@ unit = "m"
 """
 
 
-CHARTED = Path(os.environ[SHARED]) / "charts"
-"""Where the response charts of all small museums are kept: each is the same whoever built it."""
-
-
 def in_common(folder: Path) -> None:
-    """Let a museum in a folder keep its charts where all others do."""
+    """Let a museum in a folder keep its response charts where all others do: each is the same whoever built it."""
     charts = folder / KEPT / CHARTS
     if not charts.exists():
         charts.parent.mkdir()
-        CHARTED.mkdir(exist_ok=True)
-        charts.symlink_to(CHARTED, target_is_directory=True)
+        common = Path(os.environ[SHARED]) / "charts"
+        common.mkdir(exist_ok=True)
+        charts.symlink_to(common, target_is_directory=True)
 
 
 def workspace(folder: Path, rows: list[str] | None = None, site: str = "demo") -> Settings:
