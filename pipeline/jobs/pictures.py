@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from pathlib import Path
 
 from pipeline.charting import Shelf
 from pipeline.charts import chart_keys, charts, picture_version
@@ -15,16 +14,13 @@ from pipeline.store.reuse import stored_charts
 
 
 class Pictures:
-    """Makes the pictures of motions that no earlier run has stored, and finds those that one has.
+    """Makes the pictures of motions that no earlier run has stored, and finds those that one has."""
 
-    kept    : the folder of the response charts that they are pictures of
-    threads : that work on one motion
-    """
-
-    def __init__(self, workspace: Workspace, kept: Path, threads: int) -> None:
+    def __init__(self, workspace: Workspace) -> None:
+        settings = workspace.settings
         self._workspace = workspace
         # Not the shelf of the verdicts, which is made once it is decided what it holds.
-        self._shelf, self._executor = Shelf(kept), Threads(threads)
+        self._shelf, self._executor = Shelf(settings.path(KEPT) / CHARTS), Threads(settings.analysis.workers)
         self._hand = ThreadPoolExecutor(1)
         self._stored: dict[str, Mapping[str, Chart]] = {}
         self._begun: dict[str, Future[dict[str, Chart]]] = {}
@@ -60,10 +56,9 @@ class Pictures:
 @contextmanager
 def pictures(workspace: Workspace, site: Site) -> Iterator[Pictures]:
     """Begin with the pictures of the ground's motions, which are wanted unless all galleries are on other floors."""
-    settings = workspace.settings
-    found = Pictures(workspace, settings.path(KEPT) / CHARTS, settings.analysis.workers or Threads().workers)
+    found = Pictures(workspace)
     try:
-        if not any("*" in galleries for galleries in settings.floors.root.values()):
+        if not any("*" in galleries for galleries in workspace.settings.floors.root.values()):
             found.begin([one.motion for level in site.levels for one in level.motions])
         yield found
     finally:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.report.behind import Behind
-from pipeline.report.errors import ReportError
+from pipeline.report.errors import cut_short
 
 GROUP = 20_000
 """Rows of a row group, about: sheet by sheet they would be a thousand, which costs their reader time and room."""
@@ -112,7 +112,7 @@ class OldTable:
         import pyarrow as pa
 
         if start < end and (not self._ends or end > self._ends[-1]):
-            raise ReportError(f"{self._path} is shorter than its report says; remove that report, and run again")
+            raise cut_short(self._path)
         parts = []
         for group, group_end in enumerate(self._ends):
             begin = self._ends[group - 1] if group else 0

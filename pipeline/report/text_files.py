@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from pipeline.report.behind import Behind
-from pipeline.report.errors import ReportError
+from pipeline.report.errors import cut_short
 
 BLOCK = 1 << 22
 """Bytes that are written at a time, about: a sheet's are too few to be worth a thread's while."""
@@ -26,20 +26,22 @@ class TextFile:
 
     def add(self, content: bytes) -> tuple[int, int]:
         """Add what is new; return where it begins and how many bytes it is."""
-        if self._range[0] < self._range[1]:
-            self._flush()
+        self._end_range()
         self._waiting.append(content)
         self._pending += len(content)
         return self._placed(len(content))
 
     def take(self, start: int, length: int) -> tuple[int, int]:
         """Take bytes over from the earlier file; return where they begin here and how many they are."""
-        begin, end = self._range
-        if begin < end and end != start:
-            self._flush()
-            begin, end = self._range
-        self._range = (begin if begin < end else start, start + length)
+        if start != self._range[1]:
+            self._end_range()
+            self._range = (start, start)
+        self._range = (self._range[0], start + length)
         return self._placed(length)
+
+    def _end_range(self) -> None:
+        if self._range[0] < self._range[1]:
+            self._flush()
 
     def _placed(self, length: int) -> tuple[int, int]:
         start = self._size
@@ -65,9 +67,7 @@ class TextFile:
             while left:
                 got = source.readinto(room[:left])
                 if not got:
-                    raise ReportError(
-                        f"{self._earlier} is shorter than its report says; remove that report, and run again"
-                    )
+                    raise cut_short(self._earlier)
                 self._all(room[:got])
                 left -= got
 
