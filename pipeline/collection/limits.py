@@ -35,20 +35,24 @@ class Meter:
         self._source = source
         self._limits = limits
         self._end = time.monotonic() + limits.seconds
+        self._looked = -_ROWS_BETWEEN
         self.rows = 0
 
-    def count(self) -> None:
-        """Count one more row.
+    def count(self, more: int = 1) -> None:
+        """Count more rows.
 
         raises : CollectionError beyond the limits, naming the source, the row and the remedy
         """
-        self.rows += 1
+        self.rows += more
         if self.rows > self._limits.rows:
             raise CollectionError(
                 f"{self._source}: more than {self._limits.rows:,} rows; export only the objects on display, "
                 "or raise [limits] rows"
             )
-        if self.rows % _ROWS_BETWEEN == 1 and time.monotonic() > self._end:
+        if self.rows - self._looked < _ROWS_BETWEEN:
+            return
+        self._looked = self.rows
+        if time.monotonic() > self._end:
             raise CollectionError(
                 f"{self._source}, row {self.rows:,}: reading took more than {self._limits.seconds:g} s; see whether "
                 "the disk or the network is slow, or raise [limits] seconds"

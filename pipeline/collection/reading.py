@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 from typing import Any
 
-from pipeline.collection.blocks import Block, cut
+from pipeline.collection.blocks import Block, Piece, cut
 from pipeline.collection.cells import Cells
 from pipeline.collection.contradictions import contradictions
 from pipeline.collection.errors import CollectionError
@@ -102,9 +103,9 @@ def read_items(
         header = next(source.rows, None)
         if header is None:
             raise CollectionError(f"{source.name}: empty collection: there is no header; export it again")
-        desk = _Desk(source.name, mapping, header, limits, before)
-        for rows, told in cut(source.rows, header.cells):
-            desk.take(rows, told)
+        desk = _Desk(source.name, mapping, header, limits)
+        for piece in cut(source, header.cells, before or (), desk.holds):
+            desk.take(piece)
         digest = source.digest()
     if not desk.rows:
         raise CollectionError(f"{source.name}: empty collection: a header and no data rows; export it again")
@@ -127,9 +128,7 @@ def read_items(
 class _Desk:
     """Where the rows of one file are looked at, one after the other."""
 
-    def __init__(
-        self, file: str, mapping: Mapping, header: Row, limits: Limits, before: Sequence[Block] | None
-    ) -> None:
+    def __init__(self, file: str, mapping: Mapping, header: Row, limits: Limits) -> None:
         names = [cell.strip() for cell in header.cells]
         check_header(mapping, file, names)
         self._file = file
@@ -149,7 +148,6 @@ class _Desk:
         self.places: list[tuple[int, int]] = []
         self.rejected: list[Rejected] = []
         self._meter = Meter(file, limits)
-        self._before = {block.digest: block for block in before or () if block.digest}
         self._unread: list[Block] = []
         self._noted: list[tuple[int, int, str, str, str, str]] = []
         self.blocks: list[Block] = []
@@ -159,35 +157,48 @@ class _Desk:
     def rows(self) -> int:
         return self._meter.rows
 
-    def take(self, rows: Sequence[Row], digest: str) -> None:
+    def holds(self, block: Block) -> bool:
+        """Say whether what became of the rows of a block holds again: none of its numbers was given already.
+
+        Such a row must be refused, as it was not when it was read.
+        """
+        return self._seen.keys().isdisjoint(block.numbers)
+
+    def take(self, piece: Piece) -> None:
         """Read the rows of a block, or only count them."""
-        known = self._before.get(digest)
-        # What has a number that was given already must be refused, as it was not when it was read.
-        if known is not None and len(known.numbers) == len(rows) and self._seen.keys().isdisjoint(known.numbers):
-            self._take_over(rows, known)
+        if piece.known is not None:
+            self._take_over(piece, piece.known)
             return
         first, refused = len(self.items), len(self.rejected)
         at = {}
-        for place, row in enumerate(rows):
+        for place, row in enumerate(piece.rows):
             self._take(row)
             at[row.number] = place
         items = self.items[first:]
-        noted = tuple(
-            (at[row], item.object_number, problem.field, problem.message, problem.remedy)
-            for item, (row, _) in zip(items, self.places[first:], strict=True)
-            for problem in item.problems
-        )
-        sound = digest if len(self.rejected) == refused else ""
-        block = Block(sound, tuple(item.object_number for item in items), noted, Evidence.of(items))
+        numbers = tuple(item.object_number for item in items)
+        if len(self.rejected) > refused:
+            # It is never taken over, so that nothing need be known of its rows.
+            block = Block("", numbers, (), Evidence.of(items))
+        else:
+            noted = tuple(
+                (at[row], line - piece.line, item.object_number, problem.field, problem.message, problem.remedy)
+                for item, (row, line) in zip(items, self.places[first:], strict=True)
+                for problem in item.problems
+            )
+            block = Block(piece.digest, numbers, noted, Evidence.of(items), piece.span)
         self.blocks.append(block)
         self.evidence.add(block.evidence)
 
-    def _take_over(self, rows: Sequence[Row], block: Block) -> None:
-        for row, number in zip(rows, block.numbers, strict=True):
-            self._meter.count()
-            self._seen[number] = row.number
-        for at, number, field, message, remedy in block.noted:
-            self._noted.append((rows[at].number, rows[at].line, number, field, message, remedy))
+    def _take_over(self, piece: Piece, known: Block) -> None:
+        self._meter.count(len(known.numbers))
+        self._seen.update(zip(known.numbers, count(piece.number), strict=False))
+        block = known
+        if piece.rows:
+            # Blank lines more or less change where its rows are, and nothing else.
+            places = [row.line - piece.line for row in piece.rows]
+            noted = tuple((one[0], places[one[0]], *one[2:]) for one in known.noted)
+            block = replace(known, noted=noted, span=piece.span)
+        self._noted += [(piece.number + one[0], piece.line + one[1], *one[2:]) for one in block.noted]
         self._unread.append(block)
         self.blocks.append(block)
         self.evidence.add(block.evidence)

@@ -11,11 +11,12 @@ import pytest
 from sqlalchemy import Engine
 
 from pipeline.collection import blocks
-from pipeline.collection.blocks import Block, cut
+from pipeline.collection.blocks import Block, Piece
 from pipeline.collection.database import METADATA, open_database
 from pipeline.collection.inventory import difference, read_inventory, replace_inventory
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import Reading, read_items
+from pipeline.collection.sources.opening import Opened
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.suspicion import Evidence, suspicions
 from pipeline.jobs.importing import bundled_collection, log_rows
@@ -161,10 +162,14 @@ def test_other_columns_are_another_file(real: Table, tmp_path: Path) -> None:
     assert again.items == read_items(path, CARNEGIE).items != last.items
 
 
+def cut(rows: list[Row], header: list[str]) -> list[Piece]:
+    return list(blocks.cut(Opened("a source", iter(rows), str), header, (), lambda _: False))
+
+
 def test_where_cells_end_counts() -> None:
     def digest(*cells: str) -> str:
-        ((_, told),) = cut([Row(1, 2, list(cells))], ["a", "b"])
-        return told
+        (piece,) = cut([Row(1, 2, list(cells))], ["a", "b"])
+        return piece.digest
 
     assert digest("x\0y", "z") != digest("x", "y\0z")
     assert digest("x", "y") == digest("x", "y")
@@ -173,16 +178,24 @@ def test_where_cells_end_counts() -> None:
 
 def test_a_block_is_bounded_whatever_its_rows_hold(monkeypatch: pytest.MonkeyPatch) -> None:
     """Rows that are all the same end a block at all, or at none, by their digest."""
-    row = next(Row(n, n, [str(n)]) for n in range(999) if len(list(cut([Row(1, 1, [str(n)])] * 9, ["a"]))) == 1)
-    sizes = [len(rows) for rows, _ in cut([row] * 5_000, ["a"])]
+    row = next(Row(n, n, [str(n)]) for n in range(999) if len(cut([Row(1, 1, [str(n)])] * 9, ["a"])) == 1)
+    sizes = [len(piece.rows) for piece in cut([row] * 5_000, ["a"])]
     assert sum(sizes) == 5_000
     assert max(sizes) == blocks.MOST
     monkeypatch.setattr(blocks, "_CHARACTERS", 10_000)
-    assert max(len(rows) for rows, _ in cut([Row(1, 1, ["x" * 1_000])] * 100, ["a"])) <= 10
+    assert max(len(piece.rows) for piece in cut([Row(1, 1, ["x" * 1_000])] * 100, ["a"])) <= 10
 
 
 @pytest.mark.parametrize(
-    "line", ["[]", "{}", '["",[],[[0,"a","b","c","d"]],[[],[]]]', '["",["a"],[],[[["cm"]],[]]]', "["]
+    "line",
+    [
+        "[]",
+        "{}",
+        '["",[],[[0,1,"a","b","c","d"]],[[],[]],[0,0,""]]',
+        '["",["a"],[],[[["cm"]],[]],[0,0,""]]',
+        '["",["a"],[],[[],[]],[-1,0,""]]',
+        "[",
+    ],
 )
 def test_a_damaged_line_is_no_block(line: str) -> None:
     with pytest.raises((ValueError, TypeError)):

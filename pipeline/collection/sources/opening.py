@@ -8,20 +8,18 @@ import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from io import BufferedReader, TextIOWrapper
+from io import BufferedReader
 from pathlib import Path
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.limits import STANDARD, Limits
 from pipeline.collection.mapping import Mapping, Source
-from pipeline.collection.sources.delimited import read_rows
+from pipeline.collection.sources.delimited import DelimitedRows
 from pipeline.collection.sources.files import unreadable
-from pipeline.collection.sources.rows import Row
+from pipeline.collection.sources.rows import Row, Spans
 
 TIMEOUT = 600.0
 """Seconds that a database may take, where the mapping says nothing."""
-
-_UTF8_MARK = b"\xef\xbb\xbf"
 
 
 @dataclass(frozen=True)
@@ -29,11 +27,13 @@ class Opened:
     """A source that is open: its name for messages, its rows (the header first), and how to tell its digest.
 
     digest : SHA-256 of a file's bytes, or of all the rows of a database; call it when the rows are read
+    spans  : the rows once more, where they can be passed over
     """
 
     name: str
     rows: Iterator[Row]
     digest: Callable[[], str]
+    spans: Spans | None = None
 
 
 def is_database(where: str | Path) -> bool:
@@ -60,7 +60,12 @@ def open_source(where: str | Path, mapping: Mapping, limits: Limits = STANDARD) 
     path = Path(where)
     with _open(path, limits.bytes) as binary:
         digest = _digest(binary, path.name)
-        yield Opened(path.name, _file_rows(binary, path.name, mapping.source), lambda: digest)
+        source = mapping.source
+        if source.format in ("csv", "tsv"):
+            rows = DelimitedRows(binary, path.name, source.delimiter or "\t", source.encoding or "utf-8")
+            yield Opened(path.name, rows, lambda: digest, rows)
+        else:
+            yield Opened(path.name, _file_rows(binary, path.name, source), lambda: digest)
 
 
 def _file_rows(binary: BufferedReader, file: str, source: Source) -> Iterator[Row]:
@@ -68,16 +73,9 @@ def _file_rows(binary: BufferedReader, file: str, source: Source) -> Iterator[Ro
         from pipeline.collection.sources.xlsx import read_sheet
 
         return read_sheet(binary, file, sheet=source.sheet, header_row=source.header_row or 1)
-    if source.format == "lido":
-        from pipeline.collection.sources.lido import read_records
+    from pipeline.collection.sources.lido import read_records
 
-        return read_records(binary, file, languages=(source.language or "en",))
-    encoding = source.encoding or "utf-8"
-    _mark(binary, file, encoding)
-    # "utf-8-sig" also reads files without the mark.
-    codec = "utf-8-sig" if encoding == "utf-8" else encoding
-    stream = TextIOWrapper(binary, encoding=codec, errors="surrogateescape", newline="")
-    return read_rows(stream, file, source.delimiter or "\t", encoding)
+    return read_records(binary, file, languages=(source.language or "en",))
 
 
 def _database(url: str, mapping: Mapping, limits: Limits) -> Opened:
@@ -129,12 +127,3 @@ def _digest(binary: BufferedReader, file: str) -> str:
             f"{file}: reading stopped: {problem.strerror or problem}; see whether the disk or network share is there"
         ) from problem
     return digest
-
-
-def _mark(binary: BufferedReader, file: str, encoding: str) -> None:
-    mark = binary.read(len(_UTF8_MARK))
-    binary.seek(0)
-    if mark == _UTF8_MARK and encoding != "utf-8":
-        raise CollectionError(
-            f'{file}: begins with the mark of UTF-8, and the mapping says {encoding}; say encoding = "utf-8" there'
-        )

@@ -7,7 +7,7 @@ from datetime import date, datetime, time
 from decimal import Decimal
 from math import isfinite
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 _NO_FAULTS: Mapping[int, tuple[str, str]] = MappingProxyType({})
 
@@ -25,6 +25,28 @@ class Row(NamedTuple):
     cells: list[str]
     fault: tuple[str, str] = ("", "")
     faults: Mapping[int, tuple[str, str]] = _NO_FAULTS
+
+
+class Spans(Protocol):
+    """Rows that lie one behind the other as bytes, so that those that are known can be passed over.
+
+    line : how many lines lie before the row that is given next
+    """
+
+    line: int
+
+    @property
+    def number(self) -> int:
+        """Of the row that is given next."""
+
+    def taken(self) -> bytes:
+        """Return the bytes of the rows since the last call, with which the next row's begin; none where not known."""
+
+    def peek(self, size: int) -> bytes:
+        """Return some bytes from where `taken` or `pass_over` left off on, and stay there; fewer at the end."""
+
+    def pass_over(self, size: int, rows: int, lines: int) -> None:
+        """Go on behind some bytes from where `taken` or `pass_over` left off on, which so many rows are."""
 
 
 def as_text(value: object) -> str:
