@@ -21,7 +21,7 @@ from pydantic import TypeAdapter, ValidationError
 from pipeline.records import RunChanges, RunRecord, Sheet, Standing, Tally
 from pipeline.report.compose import anchor_of, museum_view, page_name
 from pipeline.report.errors import ReportError
-from pipeline.report.exports import HEADERS, TABLES, TEXT_FILES, WORKBOOK, schema_of, workbook
+from pipeline.report.exports import HEADERS, TABLES, TEXT_FILES, WORKBOOK, WORKBOOK_ROWS, schema_of, workbook
 from pipeline.report.language import speaking
 from pipeline.report.pages import environment, fill
 from pipeline.report.sheets import Drawn, Pen, drawn
@@ -188,10 +188,14 @@ class Edition:
         returns : the path of index.html
         raises  : ReportError where two galleries' files would have one name
         """
-        self._close()
-        has_book = (self._partial / WORKBOOK).is_file() if self._repeated else workbook(self._partial, head.started)
+        fits = all(table.rows <= WORKBOOK_ROWS for table in self._tables.values())
+        has_book = (self._partial / WORKBOOK).is_file() if self._repeated else fits
+        # The exports are still being written meanwhile.
         for name, text in self._shared(head, tally, changes, links, has_book=has_book):
             (self._partial / name).write_text(text, encoding="utf-8", newline="\n")
+        self._close()
+        if fits and not self._repeated:
+            workbook(self._partial, head.started)
         (self._partial / SHEETS).write_bytes(_adapter().dump_json(self._placed))
         self._partial.rename(self.folder)
         return self.folder / "index.html"

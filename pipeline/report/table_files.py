@@ -16,6 +16,7 @@ class TableFile:
 
     schema  : pyarrow.Schema
     earlier : the same file of an earlier report, whose rows can be taken over
+    rows    : how many it has so far
     """
 
     def __init__(self, path: Path, schema: Any, earlier: Path) -> None:
@@ -28,7 +29,7 @@ class TableFile:
         # Tables, and of the earlier file where rows begin and end.
         self._waiting: list[Any] = []
         self._pending = 0
-        self._rows = 0
+        self.rows = 0
 
     def add(self, content: bytes) -> tuple[int, int]:
         """Add the rows of a table in Arrow's own format; return where they begin and how many they are."""
@@ -48,8 +49,8 @@ class TableFile:
         return self._placed(rows)
 
     def _placed(self, rows: int) -> tuple[int, int]:
-        start = self._rows
-        self._rows += rows
+        start = self.rows
+        self.rows += rows
         self._pending += rows
         if self._pending >= GROUP:
             self._write()
@@ -59,7 +60,8 @@ class TableFile:
         waiting, rows = self._waiting, self._pending
         self._waiting, self._pending = [], 0
         if rows:
-            self._behind.do(self._written, waiting, rows)
+            held = sum(part.nbytes for part in waiting if not isinstance(part, tuple))
+            self._behind.do(held, self._written, waiting, rows)
 
     def _written(self, waiting: list[Any], rows: int) -> None:
         import pyarrow as pa
