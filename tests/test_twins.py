@@ -8,7 +8,8 @@ import pytest
 
 from pipeline.charting import Shelf
 from pipeline.classify import classify
-from pipeline.collection.catalogue import Listed, catalogue
+from pipeline.collection.catalogue import catalogue
+from pipeline.collection.listing import Listed, Listing
 from pipeline.collection.record import kind_of
 from pipeline.execute.crew import Alone
 from pipeline.jobs import desk, rounds
@@ -193,7 +194,7 @@ def listed(number: str, kind: int | None, case: str = "") -> Listed:
 
 
 def piece(*objects: Listed, floor: str = "") -> rounds._Piece:
-    return rounds._Piece(Part("Room", True, 1, 1, objects), floor, "key", (), None)
+    return rounds._Piece(Part("Room", True, 1, 1, Listing.of(objects)), floor, "key", (), None)
 
 
 def test_which_kinds_are_found_beforehand(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,8 +12,8 @@ from sqlalchemy import func, select
 
 from pipeline import demands
 from pipeline.cli.console import Console
-from pipeline.collection.catalogue import Listed
 from pipeline.collection.database import open_database
+from pipeline.collection.listing import Listed, Listing, order
 from pipeline.jobs.nightly import Summary, run
 from pipeline.jobs.sheets import LEAST, MOST, cut
 from pipeline.records import RunRecord
@@ -157,21 +157,21 @@ def listed(number: int, case: str = "", gallery: str = "Store") -> Listed:
 def test_a_large_gallery_is_cut_where_its_own_objects_say() -> None:
     plain = Settings()
     everything = [listed(n) for n in range(6_000)]
-    sheets = cut(everything, plain)
+    sheets = cut(Listing.of(everything), plain).parts
     assert [part.number for part in sheets] == list(range(1, len(sheets) + 1))
     assert {part.of for part in sheets} == {len(sheets)}
     assert all(LEAST <= len(part.objects) <= MOST for part in sheets[:-1])
     assert [one for part in sheets for one in part.objects] == everything
     # An object less changes the sheet that it was on and leaves the others as they are.
-    fewer = cut([one for one in everything if one.object_number != "S.01234"], plain)
-    before, after = ({part.objects for part in parts} for parts in (sheets, fewer))
+    fewer = cut(Listing.of(one for one in everything if one.object_number != "S.01234"), plain).parts
+    before, after = ({tuple(part.objects) for part in parts} for parts in (sheets, fewer))
     assert len(before - after) <= 2
 
 
 def test_a_case_is_never_cut() -> None:
     everything = [listed(n, case=f"case {n // 70:03d}") for n in range(3_000)]
     where: dict[str, set[int]] = {}
-    for part in cut(everything, Settings()):
+    for part in cut(Listing.of(everything), Settings()).parts:
         for one in part.objects:
             where.setdefault(one.case, set()).add(part.number)
     assert all(len(numbers) == 1 for numbers in where.values())
@@ -179,7 +179,7 @@ def test_a_case_is_never_cut() -> None:
 
 def test_a_small_gallery_is_one_sheet_and_what_is_stored_shares_pages() -> None:
     stored = [listed(n, gallery=f"Store {n % 3}")._replace(on_display=False) for n in range(30)]
-    parts = cut([listed(100), *stored], Settings())
+    parts = cut(Listing.of([listed(100), *sorted(stored, key=order)]), Settings()).parts
     assert [(part.gallery, part.on_display, len(part.objects)) for part in parts] == [
         ("Store", True, 1),
         ("", False, 30),

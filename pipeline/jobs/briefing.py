@@ -1,7 +1,6 @@
 """What all sheets of a run share, made ready: motions and their pictures, rules, measures, and what is asked for."""
 
 import os
-from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
 from typing import Any, Literal
@@ -12,8 +11,9 @@ from pipeline import __version__
 from pipeline.charting.grouping import group_name, groups
 from pipeline.charts import picture_version
 from pipeline.classify import classify
-from pipeline.collection.catalogue import Catalogue, Listed
+from pipeline.collection.catalogue import Catalogue
 from pipeline.collection.inventory import latest_import
+from pipeline.collection.listing import Listing
 from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
 from pipeline.jobs.desk import Brief, ChartErrand, motions_of
@@ -49,7 +49,7 @@ def brief_for(
     workspace: Workspace,
     site: Site,
     catalogue: Catalogue,
-    chosen: Sequence[Listed],
+    chosen: Listing,
     pictures: Pictures,
     started: datetime,
     progress: Progress,
@@ -63,15 +63,15 @@ def brief_for(
     """
     settings = workspace.settings
     written = manner(settings)  # A catalogue of phrases that is missing is said before the night's work, not after it.
-    storeys = floors_of(settings, site, {one.gallery for one in chosen})
+    storeys = floors_of(settings, site, chosen.galleries)
     motions = motions_of(storeys)
     samples = sum(motion.acceleration.shape[1] for motion in motions.values())
-    shown = sum(one.on_display for one in chosen) * samples
+    shown = chosen.shown * samples
     fragile = _asked(settings.analysis.fragility, shown <= FRAGILE)
     surveyed = _asked(settings.report.survey, shown <= SURVEYED)
     info = latest_import(workspace.engine)
     said = [_level_note(level) for level in site.levels]
-    said += notes(settings, site, {one.gallery for one in catalogue.objects})
+    said += notes(settings, site, catalogue.objects.galleries)
     if settings.analysis.fragility and not fragile:
         said.append(_left_out("From what shaking each object fails", "[analysis] fragility = true"))
     if settings.report.survey and not surveyed:
@@ -115,7 +115,7 @@ def brief_for(
     return brief
 
 
-def admit(brief: Brief, catalogue: Catalogue, chosen: Sequence[Listed], x_azimuth: float) -> list[ChartErrand]:
+def admit(brief: Brief, catalogue: Catalogue, chosen: Listing, x_azimuth: float) -> list[ChartErrand]:
     """Decide which response charts are used (see `popular`), and return those to be built before the sheets."""
     found = popular(catalogue, chosen, brief.rules, brief.means, x_azimuth)
     brief.admitted = frozenset(found)
@@ -131,7 +131,7 @@ Group = tuple[Model, float | None, dict[str, float]]
 
 
 def popular(
-    catalogue: Catalogue, chosen: Sequence[Listed], rules: Table | None, means: Means, x_azimuth: float
+    catalogue: Catalogue, chosen: Listing, rules: Table | None, means: Means, x_azimuth: float
 ) -> dict[str, Group]:
     """Return the groups of parameters whose charts pay for a collection, as a sample of its objects says, by name.
 

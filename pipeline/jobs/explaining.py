@@ -8,7 +8,6 @@ from typing import Any
 from pipeline.assess import assess
 from pipeline.charting import Shelf
 from pipeline.climb import AUTO, Climb, examine
-from pipeline.collection.catalogue import catalogue
 from pipeline.collection.inventory import read_inventory
 from pipeline.execute import Threads
 from pipeline.findings import findings
@@ -75,7 +74,7 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
     raises : UsageError for an object that the inventory does not have, with close ones; errors as a run
     """
     settings = workspace.settings
-    everything, inventory = catalogue(workspace.engine), read_inventory(workspace.engine)
+    everything, inventory = workspace.catalogue(), read_inventory(workspace.engine)
     items = named(inventory, objects=(number,))
     site = workspace.site()
     executor, decisions = Threads(settings.analysis.workers or None), decided(workspace)

@@ -7,8 +7,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from pipeline.collection.catalogue import catalogue
 from pipeline.collection.inventory import latest_import
+from pipeline.collection.listing import Listing
 from pipeline.jobs.briefing import admit, brief_for
 from pipeline.jobs.deciding import decided
 from pipeline.jobs.importing import import_collection, source_of
@@ -112,8 +112,8 @@ def run(
         with pictures(workspace, site) as drawing:
             if not (resume and _was_read(workspace, cut_off)):
                 _refresh(workspace, progress, dry_run=dry_run)
-            everything = catalogue(workspace.engine)
-            objects = named(everything.objects, galleries=chosen.galleries, objects=chosen.objects)
+            everything = workspace.catalogue()
+            objects = _chosen(everything.objects, chosen)
             brief = brief_for(workspace, site, everything, objects, drawing, started, progress)
         try:
             night = Round(workspace, brief, everything, objects, decided(workspace))
@@ -183,6 +183,12 @@ def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None
             blocks = done.reading.blocks if done.held is None else ()
             remember(workspace, source, wanted.mapping, done.reading.sha256, blocks)
     progress.step("collection", 1, 1)
+
+
+def _chosen(objects: Listing, chosen: Selection) -> Listing:
+    if objects and not chosen:
+        return objects
+    return Listing.of(named(objects, galleries=chosen.galleries, objects=chosen.objects))
 
 
 class _Object(Protocol):

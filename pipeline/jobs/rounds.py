@@ -8,8 +8,9 @@ from functools import cached_property
 from math import ceil
 from time import monotonic
 
-from pipeline.collection.catalogue import Catalogue, Listed
+from pipeline.collection.catalogue import Catalogue
 from pipeline.collection.inventory import fields_since
+from pipeline.collection.listing import Listing
 from pipeline.collection.record import family_of
 from pipeline.execute.crew import Crew, cores, crew
 from pipeline.execute.memory import give_back
@@ -86,21 +87,26 @@ class Round:
         workspace: Workspace,
         brief: Brief,
         catalogue: Catalogue,
-        objects: Sequence[Listed],
+        objects: Listing,
         decisions: Mapping[str, tuple[Decision, ...]],
     ) -> None:
         self.workspace, self.brief = workspace, brief
         self._catalogue, self._decisions = catalogue, decisions
-        self._numbers = {one.object_number: one.digest for one in objects if one.object_number in decisions}
         settings, keys = workspace.settings, Keys(brief, rules_digest(workspace.settings))
         self._bases = keys.bases
-        parts = cut(objects, settings)
+        self._cut = cut(objects, settings)
+        parts, decided = self._cut.parts, self._cut.holding(decisions.keys())
+        self._numbers = {number: one.digest for number, (_, one) in decided.items()}
+        about: dict[int, tuple[Decision, ...]] = {}
+        for number, (part, _) in decided.items():
+            about[id(part)] = about.get(id(part), ()) + decisions[number]
+        theirs = [about.get(id(part), ()) for part in parts]
         floors = [floor_name(settings, part.objects[0].gallery) for part in parts]
-        named = [keys.of(part, floor, decisions) for part, floor in zip(parts, floors, strict=True)]
+        named = [keys.of(*of) for of in zip(parts, floors, theirs, strict=True)]
         there = known_to(workspace.engine, named)
         self._pieces = [
-            _Piece(part, floor, key, self._about(part), there.get(key))
-            for part, floor, key in zip(parts, floors, named, strict=True)
+            _Piece(part, floor, key, mine, there.get(key))
+            for part, floor, key, mine in zip(parts, floors, named, theirs, strict=True)
         ]
         self.fresh = sum(len(piece.part.objects) for piece in self._pieces if piece.kept is None)
         self.seconds = 0.0
@@ -128,9 +134,6 @@ class Round:
         gone = [d for number, mine in self._decisions.items() if number not in self._numbers for d in mine]
         at = now((), self.brief.head, {}, lambda _number, _digest: ())
         return standing(sorted(gone, key=lambda d: d.id), at)
-
-    def _about(self, part: Part) -> tuple[Decision, ...]:
-        return tuple(d for one in part.objects for d in self._decisions.get(one.object_number, ()))
 
     # -----------------------------------------------------------------------------------------------------------------
 
@@ -313,12 +316,8 @@ class Round:
     def links(self, changes: RunChanges | None) -> dict[str, Pointer]:
         """Return where the objects are that the index names as changed, by number."""
         named = set() if changes is None else mentioned(changes)
-        where = {
-            one.object_number: piece.key
-            for piece in self._pieces
-            for one in piece.part.objects
-            if one.object_number in named
-        }
+        keys = {id(piece.part): piece.key for piece in self._pieces}
+        where = {number: keys[id(part)] for number, (part, _) in self._cut.holding(named).items()}
         sheets = {sheet.key: sheet for sheet in self._sheets}
         titles = {
             outline.object_number: (key, outline.title)

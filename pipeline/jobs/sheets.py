@@ -5,11 +5,13 @@ objects that their own numbers choose, so that one object more or less moves no 
 """
 
 import hashlib
-from collections.abc import Iterator, Mapping, Sequence
+from bisect import bisect_left, bisect_right
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import accumulate
 
-from pipeline.collection.catalogue import Listed
+from pipeline.collection.listing import Listed, Listing, Run
 from pipeline.jobs.desk import Brief
 from pipeline.jobs.levels import Storey, floor_name
 from pipeline.kernels import KERNEL_VERSION
@@ -38,51 +40,67 @@ class Part:
     on_display: bool
     number: int
     of: int
-    objects: tuple[Listed, ...]
+    objects: Listing
 
 
-def cut(objects: Sequence[Listed], settings: Settings) -> list[Part]:
-    """Cut a collection into sheets: galleries by name, then what is not on display, floor by floor."""
-    groups: dict[tuple[bool, str], list[Listed]] = {}
-    for one in objects:
+@dataclass(frozen=True)
+class Sheets:
+    """A collection cut into sheets.
+
+    objects : of all parts, one behind the other
+    """
+
+    objects: Listing
+    parts: tuple[Part, ...]
+
+    def holding(self, numbers: Collection[str]) -> dict[str, tuple[Part, Listed]]:
+        """Return objects and the parts that they are in, by number and in their order; others are left out."""
+        ends = list(accumulate(len(part.objects) for part in self.parts))
+        places = self.objects.places(numbers)
+        return {number: (self.parts[bisect_right(ends, at)], self.objects[at]) for number, at in places.items()}
+
+
+def cut(objects: Listing, settings: Settings) -> Sheets:
+    """Cut a collection into sheets: galleries by name, then what is not on display, floor by floor.
+
+    objects : sorted by `listing.order`
+    """
+    groups: dict[tuple[bool, str], list[Run]] = {}
+    for run in objects.runs:
         # What is not on display shares pages, but not with what stands on another floor.
-        place = one.gallery if one.on_display else floor_name(settings, one.gallery)
-        groups.setdefault((one.on_display, place), []).append(one)
+        place = run.gallery if run.on_display else floor_name(settings, run.gallery)
+        groups.setdefault((not run.on_display, place), []).append(run)
+    arranged = objects.joined(run for group in sorted(groups) for run in groups[group])
     out: list[Part] = []
-    stored: list[list[Listed]] = []
-    for (on_display, place), members in sorted(groups.items(), key=lambda group: (not group[0][0], group[0][1])):
-        pieces = list(_pieces(members))
-        if on_display:
-            out += [Part(place, True, n, len(pieces), tuple(piece)) for n, piece in enumerate(pieces, 1)]
-        else:
+    stored: list[Listing] = []
+    start = 0
+    for absent, place in sorted(groups):
+        end = start + sum(run.end - run.start for run in groups[absent, place])
+        pieces = _pieces(arranged[start:end])
+        start = end
+        if absent:
             stored += pieces
-    return out + [Part("", False, n, len(stored), tuple(piece)) for n, piece in enumerate(stored, 1)]
+        else:
+            out += [Part(place, True, n, len(pieces), piece) for n, piece in enumerate(pieces, 1)]
+    out += [Part("", False, n, len(stored), piece) for n, piece in enumerate(stored, 1)]
+    return Sheets(arranged, tuple(out))
 
 
-def _pieces(members: Sequence[Listed]) -> Iterator[list[Listed]]:
+def _pieces(members: Listing) -> list[Listing]:
     if len(members) <= MOST:
-        yield list(members)
-        return
-    piece: list[Listed] = []
-    for company in _companies(members):
-        full = len(piece) + len(company) > MOST
-        if piece and (full or (len(piece) >= LEAST and _chosen(company[0]))):
-            yield piece
-            piece = []
-        piece += company
-    if piece:
-        yield piece
-
-
-def _companies(members: Sequence[Listed]) -> Iterator[list[Listed]]:
-    """Yield what must stay together: the objects of a case, and each other object by itself."""
-    company: list[Listed] = []
-    for one in sorted(members, key=lambda m: (m.gallery, m.case, m.object_number)):
-        if company and (not one.case or (one.gallery, one.case) != (company[0].gallery, company[0].case)):
-            yield company
-            company = []
-        company.append(one)
-    yield company
+        return [members]
+    begins = members.companies()
+    ends = [*begins[1:].tolist(), len(members)]
+    out, start, company = [], 0, 0
+    while start < len(members):
+        # The first that must not be on this piece, unless it is alone there, and the first that need not.
+        full = max(bisect_right(ends, start + MOST), company + 1)
+        least = max(bisect_left(begins, start + LEAST), company + 1)
+        company = next((at for at in range(least, full) if _chosen(members[int(begins[at])])), full)
+        end = int(begins[company]) if company < len(begins) else len(members)
+        out.append(members[start:end])
+        start = end
+    return out
 
 
 def _chosen(one: Listed) -> bool:
@@ -113,18 +131,16 @@ class Keys:
             for name, storey in brief.storeys.items()
         }
 
-    def of(self, part: Part, floor: str, decisions: Mapping[str, Sequence[Decision]]) -> str:
+    def of(self, part: Part, floor: str, decisions: Sequence[Decision]) -> str:
         """Return the key of a part; which of its gallery's sheets it is does not matter.
 
-        decisions : those in force, by object number
+        decisions : those in force about its objects
         """
-        digest = hashlib.sha256(self.bases[floor].encode())
-        for one in part.objects:
-            digest.update(f"{one.object_number}\0{one.digest}\0".encode("utf-8", "surrogatepass"))
-            for decision in decisions.get(one.object_number, ()):
-                # The others never change what is computed.
-                if decision.kind in (DecisionKind.CLASS, DecisionKind.INSTALLED):
-                    digest.update(repr(decision).encode("utf-8", "surrogatepass"))
+        digest = hashlib.sha256(self.bases[floor].encode() + part.objects.digest())
+        for decision in decisions:
+            # The others never change what is computed.
+            if decision.kind in (DecisionKind.CLASS, DecisionKind.INSTALLED):
+                digest.update(repr(decision).encode("utf-8", "surrogatepass"))
         return digest.hexdigest()
 
 

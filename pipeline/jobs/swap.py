@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
-from pipeline.collection.catalogue import catalogue
 from pipeline.collection.database import Database, open_database
 from pipeline.jobs.briefing import admit, brief_for
 from pipeline.jobs.deciding import decided
@@ -131,7 +130,7 @@ def _assessed(workspace: Workspace, site: Site, name: str, engine: Database, pro
 
     returns : how many objects had no result yet
     """
-    everything = catalogue(workspace.engine)
+    everything = workspace.catalogue()
     with pictures(workspace, site) as drawing:
         brief = brief_for(workspace, site, everything, everything.objects, drawing, datetime.now(UTC), progress)
     night = Round(workspace, brief, everything, everything.objects, decided(workspace))

@@ -12,6 +12,7 @@ from pipeline.resources import resource
 
 if TYPE_CHECKING:
     from pipeline.charting import Shelf
+    from pipeline.collection.catalogue import Catalogue
     from pipeline.collection.database import Database
     from pipeline.mitigate import Means
     from pipeline.motions.site import Site
@@ -26,6 +27,10 @@ CHARTS = "charts"
 
 HISTORIES = "histories"
 """Folder in it for the histories of what was worked on together, see `pipeline.charting.histories`."""
+
+
+LISTING = "listing"
+"""File in it for the listing of the inventory's objects, see `pipeline.collection.listing`."""
 
 
 class LockedError(RuntimeError):
@@ -71,6 +76,12 @@ class Workspace:
             self._own(wanted.measures, "[mitigation] measures names the file of your own measures"),
             self._own(wanted.catalogue, "[mitigation] catalogue names the file of your own isolators"),
         )
+
+    def catalogue(self) -> "Catalogue":
+        """Return the objects of the inventory; their listing is kept for another time."""
+        from pipeline.collection.catalogue import catalogue
+
+        return catalogue(self.engine, self.settings.path(KEPT) / LISTING)
 
     def site(self) -> "Site":
         """Read the site of the settings; its processed motions are kept for the next time.
