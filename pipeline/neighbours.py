@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from pipeline.models import model_named
 from pipeline.plan import corners, own_angle
@@ -114,6 +113,8 @@ def _near(members: Sequence[Place]) -> list[tuple[Place, Place]]:
     """Return the pairs that might meet, and each object's nearest, each pair once, the earlier object first."""
     if len(members) < 2:
         return []
+    from scipy.spatial import cKDTree
+
     points = np.array([place.at for place in members])
     radius = np.array([place.reach + place.most for place in members])
     tree = cKDTree(points)

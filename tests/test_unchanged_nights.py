@@ -5,6 +5,7 @@ import json
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from random import Random
 
 import pytest
 from lxml import html
@@ -14,11 +15,12 @@ from pipeline import demands
 from pipeline.cli.console import Console
 from pipeline.collection.database import open_database
 from pipeline.collection.listing import Listed, Listing, order
+from pipeline.jobs import sheets
 from pipeline.jobs.nightly import Summary, run
 from pipeline.jobs.sheets import LEAST, MOST, cut
 from pipeline.records import RunRecord
 from pipeline.resources import resource
-from pipeline.settings import Settings, load_settings, template
+from pipeline.settings import Floors, Settings, load_settings, template
 from pipeline.store.runs import load_run
 from pipeline.store.tables import RESULT
 
@@ -157,14 +159,14 @@ def listed(number: int, case: str = "", gallery: str = "Store") -> Listed:
 def test_a_large_gallery_is_cut_where_its_own_objects_say() -> None:
     plain = Settings()
     everything = [listed(n) for n in range(6_000)]
-    sheets = cut(Listing.of(everything), plain).parts
-    assert [part.number for part in sheets] == list(range(1, len(sheets) + 1))
-    assert {part.of for part in sheets} == {len(sheets)}
-    assert all(LEAST <= len(part.objects) <= MOST for part in sheets[:-1])
-    assert [one for part in sheets for one in part.objects] == everything
+    whole = cut(Listing.of(everything), plain).parts
+    assert [part.number for part in whole] == list(range(1, len(whole) + 1))
+    assert {part.of for part in whole} == {len(whole)}
+    assert all(LEAST <= len(part.objects) <= MOST for part in whole[:-1])
+    assert [one for part in whole for one in part.objects] == everything
     # An object less changes the sheet that it was on and leaves the others as they are.
     fewer = cut(Listing.of(one for one in everything if one.object_number != "S.01234"), plain).parts
-    before, after = ({tuple(part.objects) for part in parts} for parts in (sheets, fewer))
+    before, after = ({tuple(part.objects) for part in parts} for parts in (whole, fewer))
     assert len(before - after) <= 2
 
 
@@ -175,6 +177,57 @@ def test_a_case_is_never_cut() -> None:
         for one in part.objects:
             where.setdefault(one.case, set()).add(part.number)
     assert all(len(numbers) == 1 for numbers in where.values())
+
+
+def walked(members: list[Listed]) -> list[list[Listed]]:
+    """Cut one group as one would by hand, company by company."""
+    companies: list[list[Listed]] = []
+    for one in members:
+        if companies and one.case and (one.gallery, one.case) == (companies[-1][0].gallery, companies[-1][0].case):
+            companies[-1].append(one)
+        else:
+            companies.append([one])
+    pieces: list[list[Listed]] = [[]]
+    for company in companies:
+        full = len(pieces[-1]) + len(company) > sheets.MOST
+        chosen = len(pieces[-1]) >= sheets.LEAST and sheets._chosen(company[0])
+        if len(members) > sheets.MOST and pieces[-1] and (full or chosen):
+            pieces.append([])
+        pieces[-1] += company
+    return pieces
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_sheets_are_cut_as_by_hand(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Galleries of all sizes, on two floors, with cases of up to more than a sheet holds."""
+    monkeypatch.setattr(sheets, "MOST", 30)
+    monkeypatch.setattr(sheets, "LEAST", 15)
+    monkeypatch.setattr(sheets, "_CHOSEN", 4)
+    random = Random(seed)
+    objects = []
+    for n in range(random.choice([1, 40, 700])):
+        case = random.choice(["", "", f"case {n // random.choice([3, 60])}"])
+        one = listed(n, case, f"Room {random.randrange(3)}")
+        objects.append(one._replace(on_display=random.random() < 0.5))
+    objects.sort(key=order)
+    settings = Settings(floors=Floors({"upper": ("Room 1",)}))
+    made = cut(Listing.of(objects), settings)
+    groups: dict[tuple[bool, str], list[Listed]] = {}
+    for one in objects:
+        upper = "upper" if one.gallery == "Room 1" else ""
+        groups.setdefault((not one.on_display, one.gallery if one.on_display else upper), []).append(one)
+    by_hand = {group: walked(members) for group, members in groups.items()}
+    expected = [piece for group in sorted(by_hand) for piece in by_hand[group]]
+    assert [list(part.objects) for part in made.parts] == expected
+    assert list(made.objects) == [one for piece in expected for one in piece]
+    stored = sum(len(pieces) for (absent, _), pieces in by_hand.items() if absent)
+    for part in made.parts:
+        of = len(by_hand[False, part.gallery]) if part.on_display else stored
+        assert (part.of, part.gallery != "") == (of, part.on_display)
+    asked = {one.object_number: one for one in objects[::3]}
+    found = made.holding({*asked, "none"})
+    assert {number: one for number, (_, one) in found.items()} == asked
+    assert all(one in list(part.objects) for part, one in found.values())
 
 
 def test_a_small_gallery_is_one_sheet_and_what_is_stored_shares_pages() -> None:

@@ -6,7 +6,6 @@ from functools import cache
 from math import log, pi, sqrt
 
 import numpy as np
-from scipy.special import log_ndtr
 
 from pipeline.quantities import Array
 from pipeline.records.fragility import ABOVE, BELOW
@@ -84,6 +83,8 @@ def fit(capacity: Array, least: Array, most: Array) -> Fit:
 
 def _censored(held: Array, short: Array, far: Array) -> tuple[Array, Array]:
     """Return mean and deviation (m,) of normal samples (m, n), some known only to be beyond where they stand."""
+    from scipy.special import log_ndtr
+
     mean, deviation = held.mean(axis=1), np.maximum(held.std(axis=1), 1e-3)
     for _ in range(ROUNDS):
         z = (held - mean[:, None]) / deviation[:, None]

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtr
 
 from pipeline.quantities import Array
 
@@ -60,6 +59,8 @@ class Hazard:
         so that the result is a lower bound; it is close where the median lies well inside.
         source : Jalayer and Cornell (2003), lambda = k0 m^-k exp(k^2 beta^2 / 2) for a curve without ends
         """
+        from scipy.special import ndtr
+
         x, rate = np.log(self.intensity), np.log(self.rate)
         at = np.log(median)
         if dispersion == 0.0:

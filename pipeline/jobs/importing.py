@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from heapq import merge
 from operator import itemgetter
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from pipeline.collection.guess import Guess, guess
 from pipeline.collection.inventory import Difference, difference, held, latest_import, replace_inventory, return_to
 from pipeline.collection.limits import Limits
 from pipeline.collection.mapping import load_mapping, preset_names
@@ -21,6 +20,9 @@ from pipeline.jobs.workspace import Workspace
 from pipeline.records import Item, Problem
 from pipeline.report.exports import safe_cell
 from pipeline.settings import Settings
+
+if TYPE_CHECKING:
+    from pipeline.collection.guess import Guess
 
 LOGS = "imports"
 """Folder beside the settings that holds the log of every import that changed something."""
@@ -61,7 +63,7 @@ def presets() -> dict[str, str]:
 class Proposed:
     """A guessed mapping, and what it makes of the file: rows, objects, and some of them in words."""
 
-    guess: Guess
+    guess: "Guess"
     rows: int
     items: int
     examples: tuple[str, ...]
@@ -73,6 +75,8 @@ def proposed(source: Path, most: int = 10) -> Proposed:
 
     raises : CollectionError for a file that cannot be read
     """
+    from pipeline.collection.guess import guess
+
     found = guess(source)
     reading = read_items(source, found.mapping)
     step = max(len(reading.items) // most, 1)

@@ -6,6 +6,7 @@ from math import ceil, floor, isfinite, isnan, log10
 
 import numpy as np
 
+from pipeline.kernels.thinning import needed
 from pipeline.quantities import Array
 from pipeline.report.errors import ReportError
 
@@ -119,38 +120,35 @@ def roomy(px: Sequence[float], py: Sequence[float], half: float) -> list[tuple[f
     half    : half the label's width in pixels
     returns : grid points where the whole label lies inside; none for a polygon that is too thin
     """
+    across = np.linspace(min(px), max(px), 26)[1:-1]
+    up = np.linspace(min(py), max(py), 26)[1:-1]
+    x, y = (grid.ravel() for grid in np.meshgrid(across, up, indexing="ij"))
+    held = np.ones(x.size, bool)
+    for dx in (-half, 0.0, half):
+        for dy in (-7.0, 7.0):
+            held &= _all_inside(x + dx, y + dy, np.array(px), np.array(py))
     places: list[tuple[float, float, float]] = []
-    for x in np.linspace(min(px), max(px), 26)[1:-1].tolist():
-        for y in np.linspace(min(py), max(py), 26)[1:-1].tolist():
-            if not all(inside(x + dx, y + dy, px, py) for dx in (-half, 0.0, half) for dy in (-7.0, 7.0)):
-                continue
-            room = min(_distance((x, y), (px[i - 1], py[i - 1]), (px[i], py[i])) for i in range(len(px)))
-            if room > 8.0:
-                places.append((-room, x, y))
-    return [(x, y) for _, x, y in sorted(places)]
+    for a, b in zip(x[held].tolist(), y[held].tolist(), strict=True):
+        room = min(_distance((a, b), (px[i - 1], py[i - 1]), (px[i], py[i])) for i in range(len(px)))
+        if room > 8.0:
+            places.append((-room, a, b))
+    return [(a, b) for _, a, b in sorted(places)]
+
+
+def _all_inside(x: Array, y: Array, px: Array, py: Array) -> Array:
+    """Return which points (m,) lie in a closed polygon of n corners, as `inside` says of one."""
+    x0, y0 = np.roll(px, 1), np.roll(py, 1)
+    crosses = (y0 > y[:, None]) != (py > y[:, None])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        where = (px - x0) * (y[:, None] - y0) / (py - y0) + x0
+    within: Array = np.count_nonzero(crosses & (x[:, None] < where), axis=1) % 2 == 1
+    return within
 
 
 def thin(points: Sequence[tuple[float, float]], tolerance: float = 0.3) -> list[tuple[float, float]]:
     """Drop points that lie within the tolerance (pixels) of the line through their neighbours (Douglas and Peucker)."""
-    if len(points) < 3:
-        return list(points)
-    p = np.asarray(points)
-    keep = np.zeros(len(p), dtype=bool)
-    keep[[0, -1]] = True
-    stack = [(0, len(p) - 1)]
-    while stack:
-        a, b = stack.pop()
-        if b - a < 2:
-            continue
-        chord, away = p[b] - p[a], p[a + 1 : b] - p[a]
-        square = float(chord @ chord)
-        share = np.clip(away @ chord / square, 0.0, 1.0) if square > 0.0 else np.zeros(len(away))
-        far = np.hypot(*(away - share[:, None] * chord).T)
-        middle = int(far.argmax())
-        if far[middle] > tolerance:
-            keep[a + 1 + middle] = True
-            stack += [(a, a + 1 + middle), (a + 1 + middle, b)]
-    return [points[i] for i in np.flatnonzero(keep).tolist()]
+    x, y = np.array(points, np.float64).reshape(-1, 2).T
+    return [points[i] for i in np.flatnonzero(needed(x.copy(), y.copy(), tolerance)).tolist()]
 
 
 def _distance(point: tuple[float, float], start: tuple[float, float], end: tuple[float, float]) -> float:

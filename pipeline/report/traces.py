@@ -1,5 +1,6 @@
 """The picture of a motion: its three components, one above the other, on one scale."""
 
+from functools import cache
 from html import escape
 from math import isfinite
 
@@ -34,6 +35,11 @@ def trace(motion: MotionSummary, units: Units, ident: str) -> str:
     end = given[-1] if given else duration
     start = given[0] if given else 0.0
     x = Scale(start, max(end, start + motion.dt), _LEFT, WIDTH - _RIGHT)
+
+    @cache
+    def across(count: int) -> list[float]:
+        return [x.at(t) for t in given or (duration * i / max(1, count - 1) for i in range(count))]
+
     parts = []
     names = {"x": _("East (x)"), "y": _("North (y)"), "z": _("Up (z)")}
     for row, (name, series) in enumerate(components.items()):
@@ -42,10 +48,9 @@ def trace(motion: MotionSummary, units: Units, ident: str) -> str:
                 f"motion {motion.name!r}: series {name!r} has {len(series)} values for {len(given)} times; "
                 "store it thinned at the same times"
             )
-        times = given or tuple(duration * i / max(1, len(series) - 1) for i in range(len(series)))
         top = _TOP + row * ROW
         y = Scale(*reach, top + ROW - 24, top)
-        points = thin([(x.at(t), y.at(v * factor)) for t, v in zip(times, series, strict=True)], 0.25)
+        points = thin([(a, y.at(v * factor)) for a, v in zip(across(len(series)), series, strict=True)], 0.25)
         d = "M" + "L".join(f"{a:.1f} {b:.1f}" for a, b in points)
         ticks = [v for v in (reach[0], 0.0, reach[1]) if reach[0] <= v <= reach[1]]
         parts.append(f'<path class="gr" d="{"".join(f"M{_LEFT} {y.at(v):.1f}H{WIDTH - _RIGHT}" for v in ticks)}"/>')
@@ -68,11 +73,11 @@ def trace(motion: MotionSummary, units: Units, ident: str) -> str:
         "peak": units.text(peak / factor, "m/s2"),
     }
     heading = _("%(motion)s: accelerogram") % {"motion": plain(motion.name)}
-    across, up = escape(_("Time (s)")), escape(_("Acceleration")) + f" ({symbol})"
+    axis, up = escape(_("Time (s)")), escape(_("Acceleration")) + f" ({symbol})"
     return (
         f'<svg class="chart wide" viewBox="0 0 {WIDTH} {height}" role="img" aria-labelledby="{ident}t {ident}d">'
         f'<title id="{ident}t">{escape(heading)}</title>'
         f'<desc id="{ident}d">{escape(told)}</desc>'
-        f'{"".join(parts)}{seconds}<text class="al" x="{(_LEFT + WIDTH) / 2:.0f}" y="{height - 6}">{across}</text>'
+        f'{"".join(parts)}{seconds}<text class="al" x="{(_LEFT + WIDTH) / 2:.0f}" y="{height - 6}">{axis}</text>'
         f'<text class="al" transform="translate(15 {floor / 2:.0f})rotate(-90)">{up}</text></svg>'
     )

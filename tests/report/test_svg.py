@@ -9,7 +9,7 @@ from lxml import etree
 
 from pipeline.records import Axis, Chart, Curve, Zone
 from pipeline.report import ReportError, Units
-from pipeline.report.scales import Scale, inside, linear_ticks, log_between, log_ticks, roomy, thin
+from pipeline.report.scales import Scale, _all_inside, inside, linear_ticks, log_between, log_ticks, roomy, thin
 from pipeline.report.svg import Drawing, Spot
 from pipeline.report.traces import trace
 
@@ -73,6 +73,24 @@ def test_thinning_stays_within_its_tolerance_and_keeps_the_ends() -> None:
     for x, y in circle:
         far = min(_to_segment(x, y, kept[i - 1], kept[i]) for i in range(1, len(kept)))
         assert far <= 0.3 + 1e-9
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 3, 4_000])
+def test_a_line_of_any_length_is_thinned(count: int) -> None:
+    """A zigzag needs all of its points, points in one place need two."""
+    zigzag = [(float(i), 100.0 * (i % 2)) for i in range(count)]
+    assert thin(zigzag, 0.3) == zigzag
+    assert thin([(5.0, 5.0)] * count, 0.3) == [(5.0, 5.0)] * min(count, 2)
+
+
+def test_many_points_are_found_inside_as_one_is() -> None:
+    numbers = np.random.default_rng(4)
+    for corners in range(3, 40):
+        # Sides that are level, and points on a level with corners, are where such rules differ.
+        px, py = numbers.uniform(0, 90, corners), np.round(numbers.uniform(0, 90, corners), -1)
+        x, y = numbers.uniform(0, 90, 60), np.round(numbers.uniform(0, 90, 60), -1)
+        expected = [inside(a, b, px.tolist(), py.tolist()) for a, b in zip(x, y, strict=True)]
+        assert _all_inside(x, y, px, py).tolist() == expected
 
 
 def _to_segment(x: float, y: float, a: tuple[float, float], b: tuple[float, float]) -> float:
