@@ -276,6 +276,7 @@ def response_chart(
     azimuth_step: float = AZIMUTH_STEP,
     tolerance: float = TOLERANCE,
     low: float | None = None,
+    first: bool = False,
     charts: Shelf = SHELF,
     **fixed: Any,
 ) -> ResponseChart:
@@ -283,6 +284,7 @@ def response_chart(
 
     angle  : as in ``respond``
     low    : where the chart begins; None: as the model says
+    first  : whether the tolerance is that of the first output alone, as for a picture of it
     fixed  : the model's parameters besides that of the chart's axis, single numbers
     raises : ValueError as ``respond``, and for a model that is never tabulated
     """
@@ -291,7 +293,7 @@ def response_chart(
     values = prepare(row, {**fixed, axis.name: axis.low})
     run, settings = _charted(row, motion, values, angle, None, azimuth_step, tolerance)
     others = {name: column[0] for name, column in values.items() if name != axis.name}
-    return chart_of(row, motion, others, run, replace(settings, low=low), charts)
+    return chart_of(row, motion, others, run, replace(settings, low=low, first=first), charts)
 
 
 def _charted(

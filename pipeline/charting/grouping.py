@@ -32,6 +32,7 @@ class Settings:
     refine       : how finely the nodes are integrated
     tolerance    : of the interpolation, relative to max(value, 1 % of the largest value on the chart)
     low          : where the axis begins; None: as the model says
+    first        : whether the tolerance is that of the first output alone, as for a picture of it
     raises       : ValueError for a tolerance that makes no sense
     """
 
@@ -42,6 +43,7 @@ class Settings:
     refine: int
     tolerance: float
     low: float | None = None
+    first: bool = False
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.tolerance) and 1e-6 <= self.tolerance <= 1.0):
@@ -159,7 +161,8 @@ def chart_of(
         axis = replace(axis, low=settings.low)
     key = _identity(model, motion, fixed, settings)
     excitation = motion.excitation(None if settings.both else settings.angle, settings.tail)
-    return shelf.get(key, axis, partial(ResponseChart.build, model, axis, excitation, fixed, run, settings.tolerance))
+    build = partial(ResponseChart.build, model, axis, excitation, fixed, run, settings.tolerance, first=settings.first)
+    return shelf.get(key, axis, build)
 
 
 def _identity(model: Model, motion: Motion, fixed: Mapping[str, float], settings: Settings) -> str:
@@ -173,5 +176,6 @@ def _identity(model: Model, motion: Motion, fixed: Mapping[str, float], settings
         refine=settings.refine,
         tolerance=settings.tolerance,
         low=settings.low,
+        first=settings.first,
         fixed=dict(fixed),
     )

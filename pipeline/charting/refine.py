@@ -99,12 +99,13 @@ def _predict(values: Array) -> Array:
     return np.asarray(np.einsum("ai,cio->cao", weights, values[:, ::2]))
 
 
-def refine(analyse: Analyses, tolerance: float, most_nodes: int = MOST_NODES) -> Cells:
+def refine(analyse: Analyses, tolerance: float, most_nodes: int = MOST_NODES, counted: int | None = None) -> Cells:
     """Halve cells until their error is below ``tolerance`` times the value there, or no more analyses may be run.
 
     analyse    : runs the model; its outputs are magnitudes
-    tolerance  : of max(value, SMALL x the largest value), of every output
+    tolerance  : of max(value, SMALL x the largest value), of every output that counts
     most_nodes : of the first cells and of halving them; the worst are halved first where not all can be
+    counted    : how many of the outputs count, the first ones; None: all
     returns    : the cells; those that could not be resolved have the bounds that they have
     """
     nodes = _Nodes(analyse)
@@ -121,14 +122,15 @@ def refine(analyse: Analyses, tolerance: float, most_nodes: int = MOST_NODES) ->
             floor = SMALL * values.max(axis=(0, 1))
         allowed = tolerance * np.maximum(values.min(axis=1), floor)
         bounds = SAFETY * np.abs(_predict(values) - values).max(axis=1)
-        bad = (bounds > allowed).any(axis=1)
+        bad = (bounds > allowed)[:, :counted].any(axis=1)
         # Not even halvings that quartered the error could mend a jump, or chaos: leave it early.
-        hopeless = (bounds > allowed * (size / UNIT) ** 2).any(axis=1)
+        hopeless = (bounds > allowed * (size / UNIT) ** 2)[:, :counted].any(axis=1)
         halved = bad & ~hopeless & (size > UNIT)
         # Halving a cell adds the six midpoints of its nodes.
         room = max(0, most_nodes - len(nodes)) // UNIT
         if np.count_nonzero(halved) > room:
-            share = np.divide(bounds, allowed, out=np.full_like(bounds, np.inf), where=allowed > 0.0).max(axis=1)
+            share = np.divide(bounds, allowed, out=np.full_like(bounds, np.inf), where=allowed > 0.0)
+            share = share[:, :counted].max(axis=1)
             halved[np.argsort(np.where(halved, -share, 0.0), kind="stable")[room:]] = False
         stay = ~halved
         note = np.bitwise_or.reduce(rows[stay, :, -1].astype(np.int64), axis=1)

@@ -61,26 +61,29 @@ class ResponseChart:
         run: Run,
         tolerance: float,
         most_nodes: int = MOST_NODES,
+        *,
+        first: bool = False,
     ) -> "ResponseChart":
         """Run the model where it is needed.
 
         axis       : the model's, or a stretch of it
         excitation : the strongest that the run may shake with: in both directions for a worst direction
         fixed      : the model's parameters besides that of the axis (NaN: left out)
+        first      : whether the tolerance is that of the first output alone, whatever becomes of the others
         """
         settled = np.inf if axis.settled is None else axis.settled(excitation)
         high = axis.high if settled > axis.high else max(settled, 2.0 * axis.low)
         outputs = tuple(q.name for q in model.gives)
-        first, length = np.log(axis.low), np.log(high / axis.low)
+        begin, length = np.log(axis.low), np.log(high / axis.low)
 
         def analyse(places: Integers) -> Array:
-            along = np.clip(np.exp(first + length * places / UNITS), axis.low, high)
+            along = np.clip(np.exp(begin + length * places / UNITS), axis.low, high)
             # A kink stands at the end, so that the end must be met exactly.
             along = np.where(places == UNITS, high, along)
             columns = run({q.name: along if q.name == axis.name else _all(fixed[q.name], along) for q in model.needs})
             return np.column_stack([columns[name] for name in (*outputs, "error", "note")])
 
-        cells = refine(analyse, tolerance, most_nodes)
+        cells = refine(analyse, tolerance, most_nodes, 1 if first else None)
         return cls(axis, outputs, axis.low, high, settled if settled <= high else np.inf, tolerance, cells)
 
     def covers(self, along: Array) -> NDArray[np.bool_]:

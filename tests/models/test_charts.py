@@ -133,6 +133,24 @@ def test_kinks_jumps_and_smooth_stretches_of_a_known_function() -> None:
     assert np.diff(edges)[kink] < 0.25 * np.median(np.diff(edges))
 
 
+def test_only_the_outputs_that_count_are_closed_in_on() -> None:
+    """A smooth output beside one that is noise: for a picture of the first the second does not matter."""
+
+    def analyse(places: Array) -> Array:
+        share = places / UNITS
+        noise = np.modf(1e4 * np.sin(1e5 * share))[0] ** 2
+        nothing = np.zeros_like(share)
+        return np.column_stack([2.0 + np.sin(7.0 * share), noise, nothing, nothing])
+
+    both, first = refine(analyse, 1e-3), refine(analyse, 1e-3, counted=1)
+    assert first.nodes < 0.1 * both.nodes
+    assert first.resolved.all()
+    assert not both.resolved.any()
+    assert (first.bounds[:, 0] <= 1e-3 * first.values[..., 0].min(axis=1)).all()
+    # What is known of the other is said all the same.
+    assert (first.bounds[:, 1] > 0.1).all()
+
+
 def test_nothing_moves_beyond_the_certificate() -> None:
     """The end of the chart stands exactly where the certificate says that it rests: exactly zero from there on."""
     motion = random_motion(3)

@@ -15,6 +15,7 @@ from shaking import along_x, random_motion
 from pipeline import respond
 from pipeline.charting import ChartWarning, ResponseChart, Shelf, keeping
 from pipeline.records import Motion
+from pipeline.response import response_chart
 
 DAY = 86_400.0
 
@@ -23,7 +24,7 @@ class RebuiltError(Exception):
     pass
 
 
-def refuse(*_: object) -> ResponseChart:
+def refuse(*_: object, **__: object) -> ResponseChart:
     raise RebuiltError
 
 
@@ -56,6 +57,9 @@ def test_charts_are_found_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         ask(motion, tmp_path, tolerance=2e-2)
     with pytest.raises(RebuiltError):
         ask(motion, tmp_path, tolerance=1e-2, directions=1.0)
+    response_chart("sliding", motion, tolerance=1e-2, charts=Shelf(tmp_path))
+    with pytest.raises(RebuiltError):
+        response_chart("sliding", motion, tolerance=1e-2, first=True, charts=Shelf(tmp_path))
     with pytest.raises(RebuiltError):
         ask(motion.scaled(1.01, "another"), tmp_path, tolerance=1e-2)
     for name, another in (("KERNEL_VERSION", "another"), ("_code", lambda: "another")):
