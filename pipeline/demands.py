@@ -262,10 +262,11 @@ def chart(found: Demands, rows: Indices, charts: Shelf, azimuth_step: float, *, 
     model, work = found.work.model, found.work
     if model.chart is None or rows.size == 0:
         return
-    least = model.chart.nodes if thrifty else 0
+    least, first = model.chart.nodes if thrifty else 0, model.chart.leads
     for angle, group in work.by_angle(rows):
+        some = work.some(group)
         looked = look_up(
-            model, found.motion, work.some(group), angle, None, azimuth_step, DECIDES, charts=charts, least=least
+            model, found.motion, some, angle, None, azimuth_step, DECIDES, charts=charts, least=least, first=first
         )
         there = looked.found
         columns = {name: column[there] for name, column in looked.columns.items()}

@@ -258,14 +258,17 @@ def look_up(
     tolerance: float = TOLERANCE,
     charts: Shelf = SHELF,
     least: int = 0,
+    *,
+    first: bool = False,
 ) -> Tabulated:
     """Look prepared parameters up in charts, building those that are missing; what is on none of them is left open.
 
     least  : how many sets must ask for a chart that is not on the shelf before it is built
+    first  : whether the tolerance is that of the first output alone; the others are NaN
     raises : as ``run_chart``
     """
     run, settings = _charted(model, motion, values, angle, tail, azimuth_step, tolerance)
-    return tabulate(model, motion, values, run, settings, charts, least)
+    return tabulate(model, motion, values, run, replace(settings, first=first), charts, least)
 
 
 def response_chart(

@@ -54,7 +54,7 @@ class Settings:
 class Tabulated:
     """Rows looked up in charts, (n,) each.
 
-    columns : the outputs, "error" (of the first output) and "note"
+    columns : the outputs, "error" (of the first output) and "note"; outputs that a chart does not follow are NaN
     bounds  : by how much each output may be wrong; of the first it is the error
     found   : which rows were looked up.  The others are NaN and are to be integrated: they lie outside of the chart,
               have a parameter that no chart has, or lie where the chart did not reach the tolerance
@@ -98,7 +98,7 @@ def tabulate(
         good = looked.resolved
         at = inside[good]
         found[at] = True
-        for name in chart.outputs:
+        for name in chart.outputs[: 1 if settings.first else None]:
             columns[name][at] = looked.columns[name][good]
             bounds[name][at] = looked.bounds[name][good]
         bounds[chart.outputs[0]][at] += looked.own[good]

@@ -14,6 +14,7 @@ from typing import Any
 
 from pipeline.assess import assess
 from pipeline.charting import Shelf
+from pipeline.charting.response_chart import axis_of
 from pipeline.classify import classify, object_classes
 from pipeline.collection.catalogue import read_packed
 from pipeline.execute import Threads
@@ -26,6 +27,7 @@ from pipeline.jobs.workspace import HISTORIES
 from pipeline.mitigate import Means, advise
 from pipeline.mitigate.bench import Carriage
 from pipeline.mitigate.installed import Measure, Placed, assess_above, placed
+from pipeline.models import model_named
 from pipeline.neighbours import neighbours
 from pipeline.records import (
     Assessment,
@@ -177,12 +179,14 @@ class ChartErrand:
 def build(brief: Brief, errand: ChartErrand) -> None:
     """Put a chart on the shelf, where it is not there yet, so that all who work find it."""
     given: dict[str, Any] = {name: value for name, value in errand.alike.items() if value == value}  # noqa: PLR0124 - NaN: not given
+    axis = axis_of(model_named(errand.model))
     response_chart(
         errand.model,
         errand.motion,
         angle=errand.angle,
         azimuth_step=brief.analysis.azimuth_step,
         tolerance=DECIDES,
+        first=axis.leads,
         charts=brief.shelf,
         **given,
     )

@@ -40,6 +40,7 @@ class ChartAxis:
     nodes     : analyses that a chart good enough to tell verdicts takes under strong shaking: fewer sets are integrated
     absent    : optional parameters; a set that has one of them is not on the chart
     settled   : (excitation) -> value from which on the response no longer changes; None: it always does
+    leads     : whether verdicts rest on the first output alone, so that a chart for them need not follow the others
     """
 
     name: str
@@ -48,6 +49,7 @@ class ChartAxis:
     nodes: int
     absent: tuple[str, ...] = ()
     settled: Callable[[Excitation], float] | None = None
+    leads: bool = False
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from pipeline.motions import read_motion
 from pipeline.quantities import Array
 from pipeline.records import Columns, Motion
 from pipeline.resources import resource
-from pipeline.response import run_chart, run_model
+from pipeline.response import DECIDES, look_up, prepare, run_chart, run_model
 
 CASES = {
     "sliding": ({}, 0.0),
@@ -149,6 +149,23 @@ def test_only_the_outputs_that_count_are_closed_in_on() -> None:
     assert (first.bounds[:, 0] <= 1e-3 * first.values[..., 0].min(axis=1)).all()
     # What is known of the other is said all the same.
     assert (first.bounds[:, 1] > 0.1).all()
+
+
+@pytest.mark.parametrize("name", [model.name for model in MODELS if model.chart is not None and model.chart.leads])
+def test_a_verdicts_chart_follows_what_the_verdict_rests_on(name: str) -> None:
+    """With little damping under strong shaking: a tenth of the axis was left to the integration before."""
+    model, motion = model_named(name), random_motion(8, n=1500, pga=7.0)
+    assert model.chart is not None
+    assert model.demand == model.gives[0].name
+    values = prepare(model, {model.chart.name: fresh(name, 1000, 2), "damping": 0.02})
+    angle = None if model.directions == 2 else 0.0
+    looked = look_up(model, motion, values, angle, None, tolerance=DECIDES, charts=Shelf(), first=True)
+    assert looked.found.mean() > 0.98
+    true = run_model(model, motion, values, "history", angle, None)[0][model.demand]
+    wrong = np.abs(looked.columns[model.demand] - true)[looked.found]
+    assert (wrong <= looked.bounds[model.demand][looked.found]).mean() >= 0.99
+    # What it does not follow it does not tell.
+    assert all(np.isnan(looked.columns[other.name]).all() for other in model.gives[1:])
 
 
 def test_nothing_moves_beyond_the_certificate() -> None:
