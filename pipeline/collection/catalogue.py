@@ -28,7 +28,8 @@ class Catalogue:
     """The objects of one version of the inventory; ``items`` reads their records of that same version.
 
     version : the import that it is the state after; 0 where nothing was imported
-    objects : sorted by `listing.order`
+    objects : sorted by `listing.order`.  A digest that newer code has since written in the place of the one of before
+              stands for the same record, and need not have got here; `digests` says what is written now
     """
 
     engine: Engine
@@ -38,6 +39,16 @@ class Catalogue:
     def items(self, numbers: Sequence[str]) -> dict[str, Item]:
         """Return the records of some objects, by number, as they were in this version."""
         return {item.object_number: item for item in read_packed(self.packed(numbers))}
+
+    def digests(self, numbers: Sequence[str]) -> dict[str, str]:
+        """Return the digests of the records of some objects, by number; what is not there is left out."""
+        wanted = select(ITEM.c.object_number, ITEM.c.digest).where(state_at(self.version))
+        out: dict[str, str] = {}
+        with self.engine.connect() as connection:
+            for start in range(0, len(numbers), NAMED):
+                some = ITEM.c.object_number.in_(numbers[start : start + NAMED])
+                out |= {row.object_number: row.digest for row in connection.execute(wanted.where(some))}
+        return out
 
     def packed(self, numbers: Sequence[str]) -> bytes:
         """Return the records of some objects as they were in this version, as JSON that `read_packed` reads.

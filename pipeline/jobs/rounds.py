@@ -96,9 +96,9 @@ class Round:
         self._bases = keys.bases
         self._cut = cut(objects, settings)
         parts, decided = self._cut.parts, self._cut.holding(decisions.keys())
-        self._numbers = {number: one.digest for number, (_, one) in decided.items()}
+        self._numbers = catalogue.digests(list(decided))
         about: dict[int, tuple[Decision, ...]] = {}
-        for number, (part, _) in decided.items():
+        for number, part in decided.items():
             about[id(part)] = about.get(id(part), ()) + decisions[number]
         theirs = [about.get(id(part), ()) for part in parts]
         floors = [floor_name(settings, part.objects[0].gallery) for part in parts]
@@ -317,7 +317,7 @@ class Round:
         """Return where the objects are that the index names as changed, by number."""
         named = set() if changes is None else mentioned(changes)
         keys = {id(piece.part): piece.key for piece in self._pieces}
-        where = {number: keys[id(part)] for number, (part, _) in self._cut.holding(named).items()}
+        where = {number: keys[id(part)] for number, part in self._cut.holding(named).items()}
         sheets = {sheet.key: sheet for sheet in self._sheets}
         titles = {
             outline.object_number: (key, outline.title)

@@ -53,11 +53,11 @@ class Sheets:
     objects: Listing
     parts: tuple[Part, ...]
 
-    def holding(self, numbers: Collection[str]) -> dict[str, tuple[Part, Listed]]:
-        """Return objects and the parts that they are in, by number and in their order; others are left out."""
+    def holding(self, numbers: Collection[str]) -> dict[str, Part]:
+        """Return the parts that objects are in, by number and in the objects' order; others are left out."""
         ends = list(accumulate(len(part.objects) for part in self.parts))
         places = self.objects.places(numbers)
-        return {number: (self.parts[bisect_right(ends, at)], self.objects[at]) for number, at in places.items()}
+        return {number: self.parts[bisect_right(ends, at)] for number, at in places.items()}
 
 
 def cut(objects: Listing, settings: Settings) -> Sheets:

@@ -246,6 +246,19 @@ def test_what_an_older_version_wrote_is_not_kept(tmp_path: Path, reads: list[int
     made.dispose()
 
 
+def test_a_digest_that_newer_code_wrote_in_place_is_had_from_the_inventory(tmp_path: Path) -> None:
+    """No version says that it was written anew; the one in the listing stands for the same record."""
+    made = open_database(tmp_path / "kouros.db")
+    METADATA.create_all(made)
+    take_in(made, items(10))
+    same(made, tmp_path / "kept")
+    with made.begin() as connection:
+        connection.execute(update(ITEM).where(ITEM.c.object_number == "0003").values(digest="newer"))
+    brought = catalogue(made, tmp_path / "kept")
+    assert brought.digests(["0003", "none"]) == {"0003": "newer"}
+    made.dispose()
+
+
 def test_what_does_not_add_up_is_listed_anew(tmp_path: Path, reads: list[int]) -> None:
     """A state that somebody took out of the database by hand, behind every version's back."""
     made = open_database(tmp_path / "kouros.db")
