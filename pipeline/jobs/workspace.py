@@ -29,7 +29,7 @@ HISTORIES = "histories"
 """Folder in it for the histories of what was worked on together, see `pipeline.charting.histories`."""
 
 
-LISTING = "listing"
+LISTING = "listing.arrow"
 """File in it for the listing of the inventory's objects, see `pipeline.collection.listing`."""
 
 

@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import cache
 from math import isfinite, isnan
 from pathlib import Path
 from typing import Any
@@ -217,6 +218,9 @@ def _csv(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> bytes:
 
 
 def _cell(value: object) -> str:
+    # Most are texts; there are forty to an object.
+    if isinstance(value, str):
+        return safe_cell(str(value))
     match value:
         case None:
             return ""
@@ -236,6 +240,7 @@ def _json(value: object) -> object:
     return value
 
 
+@cache
 def schema_of(name: str) -> Any:
     """Return the types of the columns of a table, for Parquet."""
     import pyarrow as pa
@@ -248,18 +253,22 @@ def schema_of(name: str) -> Any:
 def _arrow(name: str, rows: Sequence[Mapping[str, Any]]) -> bytes:
     import pyarrow as pa
 
-    fit = [{column: _writable(value) for column, value in row.items()} for row in rows]
-    sink = pa.BufferOutputStream()
     schema = schema_of(name)
+    columns = [pa.array(_writable([row[field.name] for row in rows], field.type), field.type) for field in schema]
+    sink = pa.BufferOutputStream()
     with pa.ipc.new_stream(sink, schema) as stream:
-        stream.write_table(pa.Table.from_pylist(fit, schema=schema))
+        stream.write_table(pa.Table.from_arrays(columns, schema=schema))
     return bytes(sink.getvalue().to_pybytes())
 
 
-def _writable(value: Any) -> Any:
-    if isinstance(value, str):
-        return _encodable(value)
-    return [_encodable(text) for text in value] if isinstance(value, list) else value
+def _writable(values: list[Any], kind: Any) -> list[Any]:
+    import pyarrow as pa
+
+    if kind == pa.string():
+        return [value if value is None or value.isascii() else _encodable(value) for value in values]
+    if pa.types.is_list(kind):
+        return [[_encodable(text) for text in value] for value in values]
+    return values
 
 
 def _encodable(text: str) -> str:

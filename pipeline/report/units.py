@@ -71,15 +71,11 @@ class Units:
 
         A unit without a translation (s, Hz, kg) is written as it is.
         """
-        if unit in _POWERS:
-            return self.length + _POWERS[unit][0]
-        return _FIXED[unit][0] if unit in _FIXED else unit
+        return _shown(self.length, unit)[0]
 
     def factor(self, unit: str) -> float:
         """Return what a number in the SI unit is multiplied by to be in the reader's unit."""
-        if unit in _POWERS:
-            return 1.0 / LENGTHS[self.length] ** _POWERS[unit][1]
-        return _FIXED[unit][1] if unit in _FIXED else 1.0
+        return _shown(self.length, unit)[1]
 
     def number(self, value: float, unit: str) -> str:
         """Write the number alone, in the reader's unit: ratios with two significant digits, others with three."""
@@ -104,10 +100,12 @@ class Units:
 
     def pair(self, low: float, high: float, unit: str) -> str:
         """Write a range, such as "9 to 14 cm"; one number where both read the same."""
-        if self.text(low, unit) == self.text(high, unit):
-            return self.text(high, unit)
-        first = self.number(low, unit) if isfinite(high) else self.text(low, unit)
-        return _("%(low)s to %(high)s") % {"low": first, "high": self.text(high, unit)}
+        first, last = self.text(low, unit), self.text(high, unit)
+        if first == last:
+            return last
+        if isfinite(high):
+            first = self.number(low, unit)
+        return _("%(low)s to %(high)s") % {"low": first, "high": last}
 
     def bare(self, low: float, high: float, unit: str) -> str:
         """Write a range without its unit, which stands before it: "9 to 14"; one number where both read the same."""
@@ -134,6 +132,15 @@ class Units:
                 )
             parts.append(self.text(*values[name]))
         return "".join(parts)
+
+
+@lru_cache(maxsize=1024)
+def _shown(length: str, unit: str) -> tuple[str, float]:
+    """Return the reader's unit for an SI unit, and what a number in that is multiplied by."""
+    if unit in _POWERS:
+        suffix, power = _POWERS[unit]
+        return length + suffix, 1.0 / LENGTHS[length] ** power
+    return _FIXED.get(unit, (unit, 1.0))
 
 
 @lru_cache(maxsize=4096)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import openpyxl
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
@@ -160,13 +161,16 @@ def test_nothing_was_written_elsewhere(night: Night) -> None:
 def test_what_is_left_holds_no_objects_of_python(night: Night) -> None:
     """Texts, tables, JSON, SQL and plain arrays: nothing that runs when it is read."""
     kept = [path for path in night.folder.rglob("*") if path.is_file()]
-    kinds = {*(".toml", ".sqlite", ".lock", ".html", ".csv", ".jsonl", ".json", ".parquet", ".xlsx", ".npz")}
+    kinds = {*(".toml", ".sqlite", ".lock", ".html", ".csv", ".jsonl", ".json", ".parquet", ".xlsx", ".npz", ".arrow")}
     assert {path.suffix or path.name for path in kept} - {".kouros.lock"} <= kinds
     arrays = [path for path in [*kept, *(night.folder / ".kouros-kept" / "charts").rglob("*")] if path.suffix == ".npz"]
     assert arrays
     for path in arrays:
         with np.load(path, allow_pickle=False) as opened:
             assert not any(opened[name].dtype.hasobject for name in opened.files)
+    (listing,) = (path for path in kept if path.suffix == ".arrow")
+    _head, _, stream = listing.read_bytes().partition(b"\n")
+    assert {str(kind) for kind in pa.ipc.open_stream(stream).schema.types} == {"large_string", "bool", "int64"}
 
 
 def test_no_text_steers_a_terminal(night: Night) -> None:
