@@ -3,23 +3,22 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline.kernels import kernel
 from pipeline.quantities import Array
 
 
 @kernel
-def needed(x: Array, y: Array, tolerance: float) -> NDArray[np.bool_]:
-    """Return which points (n,) a line must keep so that none lies farther from what is left than the tolerance.
+def needed(x: Array, y: Array, tolerance: float) -> Array:
+    """Return 1 for points (n,) that a line must keep so that none lies farther from what is left than the tolerance.
 
     x, y : (n,), in the tolerance's unit; the first and the last point are kept
     """
     n = x.shape[0]
-    keep = np.zeros(n, np.bool_)
+    keep = np.zeros(n)
     if n == 0:
         return keep
-    keep[0] = keep[n - 1] = True
+    keep[0] = keep[n - 1] = 1.0
     firsts, lasts = np.empty(n, np.int64), np.empty(n, np.int64)
     firsts[0], lasts[0] = 0, n - 1
     waiting = 1
@@ -36,7 +35,7 @@ def needed(x: Array, y: Array, tolerance: float) -> NDArray[np.bool_]:
             if away > far:
                 far, middle = away, i
         if middle >= 0:
-            keep[middle] = True
+            keep[middle] = 1.0
             # Of n points no more than n - 1 stretches wait at once.
             firsts[waiting], lasts[waiting] = first, middle
             firsts[waiting + 1], lasts[waiting + 1] = middle, last
