@@ -1,9 +1,14 @@
-"""Where the files that travel with Kouros are, in a checkout and in an installed wheel alike."""
+"""Where the files that travel with Kouros are, in a checkout and in a wheel alike, and how files are read."""
 
 import errno
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from threading import RLock
+from typing import Any
+
+import numpy as np
 
 SMALL = 8 << 20
 """Bytes of a file that a person writes: settings, a mapping, a manifest."""
@@ -26,6 +31,22 @@ def digest_of(*parts: str, kinds: Iterable[str] = (".py",), but: Iterable[str] =
         if file.suffix in kinds and file.is_file() and name.parts[0] not in left_out:
             digest.update(name.as_posix().encode() + b"\0" + file.read_bytes())
     return digest.hexdigest()
+
+
+_READING = RLock()
+
+
+@contextmanager
+def arrays(file: Path) -> Iterator[Any]:
+    """Open a file of arrays (.npz) for one thread at a time; objects of Python in it are refused.
+
+    numpy reads the head of an array by `ast.literal_eval`, which Python 3.11 does not bear in several threads at once:
+    seldom, but it was seen, it ends in "AST constructor recursion depth mismatch".
+
+    raises : what `numpy.load` raises
+    """
+    with _READING, np.load(file, allow_pickle=False) as kept:
+        yield kept
 
 
 def small_text(file: Path) -> str:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from pipeline.charting.keeping import DAY, code_version, remove
 from pipeline.quantities import Array
 from pipeline.records import Columns
+from pipeline.resources import arrays
 
 _UNREADABLE = (OSError, ValueError, KeyError, BadZipFile, EOFError, TypeError)
 
@@ -118,7 +119,7 @@ def _rows(values: Mapping[str, Array]) -> list[bytes]:
 def _read(file: Path) -> dict[str, tuple[tuple[str, ...], Array]]:
     found = {}
     try:
-        with np.load(file, allow_pickle=False) as kept:
+        with arrays(file) as kept:
             if str(kept["code"]) != code_version():
                 return {}
             for number in range((len(kept.files) - 1) // 2):

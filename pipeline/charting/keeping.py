@@ -22,7 +22,7 @@ from pipeline.charting.refine import Cells
 from pipeline.charting.response_chart import ResponseChart
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.records import ChartAxis
-from pipeline.resources import digest_of
+from pipeline.resources import arrays, digest_of
 
 LARGEST = 16_000_000
 """Bytes beyond which a file is no chart: the largest have 0.5 MB."""
@@ -100,7 +100,7 @@ def recall(folder: Path, key: str, axis: ChartAxis) -> ResponseChart | None:
     try:
         if file.stat().st_size > LARGEST:
             raise ValueError("it is too large")
-        with np.load(file, allow_pickle=False) as kept:
+        with arrays(file) as kept:
             text, seal = str(kept["said"]), str(kept["seal"])
             cells = {name: kept[name] for name in _CELLS}
         said = json.loads(text)

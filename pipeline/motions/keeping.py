@@ -11,7 +11,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from pipeline.records import Motion
-from pipeline.resources import digest_of
+from pipeline.resources import arrays, digest_of
 
 Processed = tuple[Motion, dict[str, float]]
 """A motion and its measures."""
@@ -38,7 +38,7 @@ def key_of(*parts: str) -> str:
 def recall(folder: Path, key: str) -> Processed | None:
     """Return what an earlier night kept under this very key, or None; a damaged file counts as none."""
     try:
-        with np.load(folder / f"{key}.npz", allow_pickle=False) as kept:
+        with arrays(folder / f"{key}.npz") as kept:
             said = json.loads(str(kept["said"]))
             motion = Motion(
                 float(kept["dt"]),

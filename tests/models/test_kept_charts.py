@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import threading
 import time
 import warnings
 from pathlib import Path
@@ -15,6 +16,7 @@ from shaking import along_x, random_motion
 from pipeline import respond
 from pipeline.charting import ChartWarning, ResponseChart, Shelf, keeping
 from pipeline.records import Motion
+from pipeline.resources import arrays
 from pipeline.response import response_chart
 
 DAY = 86_400.0
@@ -186,3 +188,22 @@ def test_all_charts_together_are_bounded(tmp_path: Path) -> None:
     assert files(tmp_path) == {order[1]}
     Shelf(tmp_path).tidy(days=30.0, most_bytes=0)
     assert files(tmp_path) == set()
+
+
+def test_files_of_arrays_are_read_by_one_thread_at_a_time(tmp_path: Path) -> None:
+    """Two at once now and then end in a SystemError of Python's own."""
+    file, inside = tmp_path / "a.npz", threading.Event()
+    np.savez(file, a=np.arange(3))
+
+    def other() -> None:
+        with arrays(file) as kept:
+            inside.set()
+            assert kept["a"].sum() == 3
+
+    second = threading.Thread(target=other)
+    with arrays(file) as kept:
+        second.start()
+        assert not inside.wait(0.3)
+        assert kept["a"].sum() == 3
+    assert inside.wait(10.0)
+    second.join()
