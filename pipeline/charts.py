@@ -13,7 +13,7 @@ from pipeline.models.common import largest_push, largest_speed
 from pipeline.models.rocking import VELOCITY_SCREEN
 from pipeline.quantities import Array, G
 from pipeline.records import Axis, Chart, Curve, Executor, Motion, Zone
-from pipeline.response import DECIDES, respond, response_chart, trace
+from pipeline.response import deciding, respond, response_chart, trace
 
 SPECTRUM_FREQUENCIES = tuple(float(v) for v in np.round(np.geomspace(0.2, 50.0, 96), 4))
 PATH_FRICTION = 0.05
@@ -97,14 +97,20 @@ def _rounded(value: float) -> float:
 
 def sliding_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, Any]) -> ResponseChart:
     """Return the chart of sliding against friction: the very one that verdicts are found by."""
-    return response_chart("sliding", motion, tolerance=DECIDES, charts=shelf, **fixed)
+    return response_chart("sliding", motion, charts=shelf, **deciding("sliding"), **fixed)
 
 
 def swing_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, Any]) -> ResponseChart:
     """Return the chart of a swing against its length."""
-    step, low = SWING_DIRECTIONS, SHORTEST
     return response_chart(
-        "swing", motion, azimuth_step=step, tolerance=PICTURED, low=low, first=True, charts=shelf, **fixed
+        "swing",
+        motion,
+        azimuth_step=SWING_DIRECTIONS,
+        tolerance=PICTURED,
+        low=SHORTEST,
+        first=True,
+        charts=shelf,
+        **fixed,
     )
 
 

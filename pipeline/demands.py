@@ -12,7 +12,7 @@ from pipeline.charting.histories import Histories, history_key
 from pipeline.plan import Indices, Work
 from pipeline.quantities import Array
 from pipeline.records import Columns, Executor, Model, Motion
-from pipeline.response import DECIDES, look_up, run_model
+from pipeline.response import deciding, look_up, run_model
 
 CHUNK = 96
 """Parameter sets in one task: small enough to share between workers, large enough to make the task worth its call."""
@@ -262,11 +262,10 @@ def chart(found: Demands, rows: Indices, charts: Shelf, azimuth_step: float, *, 
     model, work = found.work.model, found.work
     if model.chart is None or rows.size == 0:
         return
-    least, first = model.chart.nodes if thrifty else 0, model.chart.leads
+    least, made = model.chart.nodes if thrifty else 0, deciding(model.name)
     for angle, group in work.by_angle(rows):
-        some = work.some(group)
         looked = look_up(
-            model, found.motion, some, angle, None, azimuth_step, DECIDES, charts=charts, least=least, first=first
+            model, found.motion, work.some(group), angle, None, azimuth_step, charts=charts, least=least, **made
         )
         there = looked.found
         columns = {name: column[there] for name, column in looked.columns.items()}

@@ -2,6 +2,7 @@
 
 import errno
 import hashlib
+import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -31,6 +32,17 @@ def digest_of(*parts: str, kinds: Iterable[str] = (".py",), but: Iterable[str] =
         if file.suffix in kinds and file.is_file() and name.parts[0] not in left_out:
             digest.update(name.as_posix().encode() + b"\0" + file.read_bytes())
     return digest.hexdigest()
+
+
+@contextmanager
+def replacing(file: Path) -> Iterator[Path]:
+    """Yield the path of a file to be written; it takes the place of another when it is whole, and is else removed."""
+    aside = file.with_name(f".{file.name}.{os.getpid()}")
+    try:
+        yield aside
+        aside.replace(file)
+    finally:
+        aside.unlink(missing_ok=True)
 
 
 _READING = RLock()

@@ -271,6 +271,14 @@ def look_up(
     return tabulate(model, motion, values, run, replace(settings, first=first), charts, least)
 
 
+def deciding(model: str) -> dict[str, Any]:
+    """Return how charts for verdicts are made, whoever builds one or looks it up: else it would be another chart.
+
+    raises : ValueError for a model that is never tabulated
+    """
+    return {"tolerance": DECIDES, "first": axis_of(model_named(model)).leads}
+
+
 def response_chart(
     model: str,
     motion: Motion,

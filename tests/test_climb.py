@@ -15,7 +15,7 @@ from pipeline.motions import read_motion
 from pipeline.quantities import Array
 from pipeline.records import Estimate, Finding, Item, Motion, Origin, Scene, Support, Verdict
 from pipeline.resources import resource
-from pipeline.response import DECIDES, respond, response_chart
+from pipeline.response import DECIDES, deciding, respond, response_chart
 from tests.test_assess import Silent
 
 BLOCK = Item("1", "G", title="Block", support=Support.FREESTANDING, height_m=0.3, base_width_m=0.3, base_depth_m=0.3,
@@ -46,8 +46,8 @@ def shelf(motions: tuple[Motion, ...]) -> Shelf:
     """Charts of sliding, and of the swing in every direction, as a night that drew them has them."""
     charts = Shelf()
     for motion in motions:
-        response_chart("sliding", motion, tolerance=DECIDES, charts=charts)
-        response_chart("swing", motion, tolerance=DECIDES, charts=charts, azimuth_step=30.0, damping=0.02)
+        response_chart("sliding", motion, charts=charts, **deciding("sliding"))
+        response_chart("swing", motion, charts=charts, azimuth_step=30.0, damping=0.02, **deciding("swing"))
     return charts
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from sqlalchemy import Connection, Engine, func, select
 
-from pipeline.collection.inventory import IMPORT_BATCH, ITEM, NAMED, state_at
+from pipeline.collection.inventory import IMPORT_BATCH, ITEM, numbered, state_at
 from pipeline.collection.listing import Listed, Listing, order, read_listing, write_listing
 from pipeline.collection.record import to_items
 from pipeline.records import ITEM_FIELDS, Item
@@ -45,8 +45,7 @@ class Catalogue:
         wanted = select(ITEM.c.object_number, ITEM.c.digest).where(state_at(self.version))
         out: dict[str, str] = {}
         with self.engine.connect() as connection:
-            for start in range(0, len(numbers), NAMED):
-                some = ITEM.c.object_number.in_(numbers[start : start + NAMED])
+            for some in numbered(numbers):
                 out |= {row.object_number: row.digest for row in connection.execute(wanted.where(some))}
         return out
 
@@ -60,8 +59,7 @@ class Catalogue:
         columns = [ITEM.c[name] for name in ITEM_FIELDS]
         at = ITEM_FIELDS.index("object_number")
         with self.engine.connect() as connection:
-            for start in range(0, len(numbers), NAMED):
-                some = ITEM.c.object_number.in_(numbers[start : start + NAMED])
+            for some in numbered(numbers):
                 for row in connection.execute(select(*columns).where(state_at(self.version), some)):
                     found[row[at]] = list(row)
         return json.dumps([found[number] for number in numbers], separators=(",", ":")).encode()

@@ -286,6 +286,12 @@ def state_at(version: int) -> ColumnElement[bool]:
     return (ITEM.c.since <= version) & (ITEM.c.until.is_(None) | (ITEM.c.until > version))
 
 
+def numbered(numbers: Sequence[str]) -> Iterator[ColumnElement[bool]]:
+    """Yield which rows of ITEM are of some objects, for one statement after the other."""
+    for start in range(0, len(numbers), NAMED):
+        yield ITEM.c.object_number.in_(numbers[start : start + NAMED])
+
+
 def items_named(engine: Engine, numbers: Sequence[str]) -> dict[str, Item]:
     """Return those of the items that there are, by object number."""
     with engine.connect() as connection:
@@ -337,8 +343,7 @@ def _difference(
         rows = list(connection.execute(now))
     else:
         numbers = sorted(unread.gone.union(item.object_number for item in items))
-        slices = (numbers[start : start + NAMED] for start in range(0, len(numbers), NAMED))
-        rows = [row for some in slices for row in connection.execute(now.where(ITEM.c.object_number.in_(some)))]
+        rows = [row for some in numbered(numbers) for row in connection.execute(now.where(some))]
     # Of what an older version of Kouros wrote, the kind or the digest may not be known.
     old = {row.object_number: "" if row.kind is None else row.digest for row in rows}
     added, differing, digests = [], {}, {}
@@ -368,9 +373,8 @@ def _fields_changed(then: Item, now: Item) -> dict[str, tuple[Any, Any]]:
 
 
 def _named(connection: Connection, numbers: Sequence[str]) -> Iterator[tuple[str, Item]]:
-    for start in range(0, len(numbers), NAMED):
-        some = numbers[start : start + NAMED]
-        rows = connection.execute(select(ITEM).where(ITEM.c.until.is_(None), ITEM.c.object_number.in_(some)))
+    for some in numbered(numbers):
+        rows = connection.execute(select(ITEM).where(ITEM.c.until.is_(None), some))
         for item in _read(rows.mappings()):
             yield item.object_number, item
 
@@ -387,8 +391,7 @@ def _write(
     version: int = connection.execute(insert(IMPORT_BATCH).values(record).returning(IMPORT_BATCH.c.id)).scalar_one()
     new = {*found.added, *found.changed}
     ended = [*found.removed, *found.changed]
-    for start in range(0, len(ended), NAMED):
-        some = ITEM.c.object_number.in_(ended[start : start + NAMED])
+    for some in numbered(ended):
         connection.execute(update(ITEM).where(ITEM.c.until.is_(None), some).values(until=version))
     same = digests.keys() - new
     if same:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from bisect import bisect_left
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -17,6 +16,8 @@ from pathlib import Path
 from typing import Any, NamedTuple, overload
 
 import numpy as np
+
+from pipeline.resources import replacing
 
 
 class Listed(NamedTuple):
@@ -183,16 +184,11 @@ def write_listing(file: Path, listing: Listing, told: Mapping[str, Any]) -> None
         stream.write_table(listing.table)
     content = sink.getvalue()
     head = json.dumps([hashlib.sha256(content).hexdigest(), told]).encode()
-    aside = file.with_name(f".{file.name}.{os.getpid()}")
     with suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            with aside.open("wb") as binary:
-                binary.write(head + b"\n")
-                binary.write(content)
-            aside.replace(file)
-        finally:
-            aside.unlink(missing_ok=True)
+        with replacing(file) as aside, aside.open("wb") as binary:
+            binary.write(head + b"\n")
+            binary.write(content)
 
 
 def read_listing(file: Path) -> tuple[Listing, dict[str, Any]] | None:

@@ -14,7 +14,6 @@ from typing import Any
 
 from pipeline.assess import assess
 from pipeline.charting import Shelf
-from pipeline.charting.response_chart import axis_of
 from pipeline.classify import classify, object_classes
 from pipeline.collection.catalogue import read_packed
 from pipeline.execute import Threads
@@ -27,7 +26,6 @@ from pipeline.jobs.workspace import HISTORIES
 from pipeline.mitigate import Means, advise
 from pipeline.mitigate.bench import Carriage
 from pipeline.mitigate.installed import Measure, Placed, assess_above, placed
-from pipeline.models import model_named
 from pipeline.neighbours import neighbours
 from pipeline.records import (
     Assessment,
@@ -47,7 +45,7 @@ from pipeline.report.language import language
 from pipeline.report.sheets import Drawn, Pen
 from pipeline.report.tallies import tally
 from pipeline.report.units import Units
-from pipeline.response import DECIDES, response_chart
+from pipeline.response import deciding, response_chart
 from pipeline.rules import Table
 from pipeline.settings import Analysis
 from pipeline.store.parcels import Parcel
@@ -179,15 +177,13 @@ class ChartErrand:
 def build(brief: Brief, errand: ChartErrand) -> None:
     """Put a chart on the shelf, where it is not there yet, so that all who work find it."""
     given: dict[str, Any] = {name: value for name, value in errand.alike.items() if value == value}  # noqa: PLR0124 - NaN: not given
-    axis = axis_of(model_named(errand.model))
     response_chart(
         errand.model,
         errand.motion,
         angle=errand.angle,
         azimuth_step=brief.analysis.azimuth_step,
-        tolerance=DECIDES,
-        first=axis.leads,
         charts=brief.shelf,
+        **deciding(errand.model),
         **given,
     )
 

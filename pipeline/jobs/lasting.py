@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import os
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -13,7 +12,7 @@ from pipeline.collection.inventory import latest_import
 from pipeline.collection.mapping import Mapping, load_mapping, preset_names
 from pipeline.collection.sources.opening import is_database
 from pipeline.jobs.workspace import KEPT, Workspace
-from pipeline.resources import digest_of
+from pipeline.resources import digest_of, replacing
 from pipeline.settings import Settings
 
 
@@ -67,17 +66,12 @@ def remember(workspace: Workspace, source: str, mapping: str, content: str, bloc
     blocks  : none where the inventory is not the state of its rows, because a person went back to an earlier one
     """
     file = _file(workspace)
-    aside = file.with_name(f".{file.name}.{os.getpid()}")
     with suppress(OSError):
         # Without the note the next night reads the source, and that is all.
         file.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            with aside.open("w", encoding="utf-8") as stream:
-                stream.write(json.dumps([_seen(workspace, source, mapping, content), len(blocks)]) + "\n")
-                stream.writelines(block.line() + "\n" for block in blocks)
-            aside.replace(file)
-        finally:
-            aside.unlink(missing_ok=True)
+        with replacing(file) as aside, aside.open("w", encoding="utf-8") as stream:
+            stream.write(json.dumps([_seen(workspace, source, mapping, content), len(blocks)]) + "\n")
+            stream.writelines(block.line() + "\n" for block in blocks)
 
 
 def _file(workspace: Workspace) -> Path:

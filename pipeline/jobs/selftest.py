@@ -13,6 +13,7 @@ from pydantic import TypeAdapter
 
 from pipeline import __version__
 from pipeline.jobs.workspace import KEPT
+from pipeline.resources import replacing
 from pipeline.settings import Settings
 
 KEPT_AS = "numerics.json"
@@ -74,9 +75,8 @@ def keep(test: SelfTest, folder: Path) -> Path:
     """Keep a self-test for the next reports, atomically."""
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / KEPT_AS
-    aside = folder / f".{KEPT_AS}.{os.getpid()}"
-    aside.write_text(json.dumps(test.plain(), indent=2, allow_nan=False), encoding="utf-8")
-    aside.replace(file)
+    with replacing(file) as aside:
+        aside.write_text(json.dumps(test.plain(), indent=2, allow_nan=False), encoding="utf-8")
     return file
 
 

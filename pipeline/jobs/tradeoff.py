@@ -1,7 +1,6 @@
 """Speed against accuracy, measured: every fidelity, step and azimuth setting on the user's motions and objects."""
 
 import json
-import os
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -25,6 +24,7 @@ from pipeline.motions.site import read_motion
 from pipeline.plan import plan
 from pipeline.quantities import Array
 from pipeline.records import Axis, Chart, Columns, Curve, Item, Model, Motion, Progress, Scene
+from pipeline.resources import replacing
 from pipeline.response import AZIMUTH_STEP, REFINE, prepare, run_chart, run_model
 from pipeline.settings import Settings
 
@@ -351,9 +351,8 @@ def keep(found: Tradeoff, folder: Path) -> Path:
     """Keep a measurement for the next reports."""
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / KEPT_AS
-    aside = folder / f".{KEPT_AS}.{os.getpid()}"
-    aside.write_text(json.dumps(asdict(found), indent=2), encoding="utf-8")
-    aside.replace(file)
+    with replacing(file) as aside:
+        aside.write_text(json.dumps(asdict(found), indent=2), encoding="utf-8")
     return file
 
 

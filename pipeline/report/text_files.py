@@ -52,7 +52,8 @@ class TextFile:
 
     def _flush(self) -> None:
         (begin, end), self._range = self._range, (0, 0)
-        (waiting, held), self._waiting, self._pending = (self._waiting, self._pending), [], 0
+        waiting, held = self._waiting, self._pending
+        self._waiting, self._pending = [], 0
         if waiting or begin < end:
             self._behind.do(held, self._written, waiting, begin, end)
 

@@ -111,7 +111,7 @@ class DelimitedRows:
         self._binary, self._file, self._delimiter, self._encoding = binary, file, delimiter, encoding
         # Where the row begins that is given next, in bytes; the rows and lines before it.
         self._at = _mark(binary, file, encoding)
-        self._number, self.line = 0, 0
+        self.number, self.line = 0, 0
         self._width = 0
         self._rescued = 0
         self._stream: TextIOWrapper | None = None
@@ -134,14 +134,9 @@ class DelimitedRows:
             if not self._ahead:
                 raise StopIteration
         row, text, self.line = self._ahead.popleft()
-        self._number = row.number + 1
+        self.number = row.number + 1
         self._texts.append(text)
         return row
-
-    @property
-    def number(self) -> int:
-        """The number of the row that is given next."""
-        return self._number
 
     def taken(self) -> bytes:
         """Return the bytes of the rows since the last call; none where bytes do not tell where rows begin."""
@@ -155,8 +150,6 @@ class DelimitedRows:
 
     def peek(self, size: int) -> bytes:
         """Return some bytes from where `taken` or `pass_over` left off on; fewer at the end of the file."""
-        if self._encoding == "utf-16":
-            return b""
         try:
             was = self._binary.tell()
             self._binary.seek(self._at)
@@ -171,7 +164,7 @@ class DelimitedRows:
     def pass_over(self, size: int, rows: int, lines: int) -> None:
         """Go on behind some bytes from where `taken` left off on."""
         self._at += size
-        self._number += rows
+        self.number += rows
         self.line += lines
         self._ahead.clear()
         if self._stream is not None and self._lines is not None:
@@ -191,7 +184,7 @@ class DelimitedRows:
         """Read some rows ahead."""
         if self._lines is None:
             self._lines = self._begin()
-        number = self._number
+        number = self.number
         # The limit of the csv module is the whole process's, and is not left changed while the rows are used.
         with _field_limit():
             for start, cells, found, text in self._records(self._lines):

@@ -30,14 +30,11 @@ class Row(NamedTuple):
 class Spans(Protocol):
     """Rows that lie one behind the other as bytes, so that those that are known can be passed over.
 
-    line : how many lines lie before the row that is given next
+    number, line : of the row that is given next, and how many lines lie before it
     """
 
+    number: int
     line: int
-
-    @property
-    def number(self) -> int:
-        """Of the row that is given next."""
 
     def taken(self) -> bytes:
         """Return the bytes of the rows since the last call, with which the next row's begin; none where not known."""
