@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import cache, lru_cache
 from math import pi
 
+from pipeline.errors import InputError
 from pipeline.records import Estimate, Item, Origin, Scene, Support
 from pipeline.rules import Table, rule_for
 from pipeline.tables import Range, Row, damping_of, friction_of, material_in, spread, table
@@ -314,7 +315,7 @@ def section_properties(shape: str, width: float, depth: float, count: int, wall:
         area = narrow * wide - inner
         modulus = rectangle_modulus(narrow, wide, wall)
     else:
-        raise ValueError(f"section_shape {shape!r} is not known; use round, rectangle, or legs with section_count")
+        raise InputError(f"section_shape {shape!r} is not known; use round, rectangle, or legs with section_count")
     return count * area, count * modulus
 
 

@@ -6,6 +6,8 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.errors import InputError
+
 G = 9.80665
 """Standard acceleration of gravity [m/s2]."""
 
@@ -46,7 +48,7 @@ class Quantity:
             bad |= values <= self.low
         if bad.any():
             at = int(np.flatnonzero(bad.ravel())[0])
-            raise ValueError(f"{self.name} must be {self.allowed()}, not {values.ravel()[at]:g} (entry {at})")
+            raise InputError(f"{self.name} must be {self.allowed()}, not {values.ravel()[at]:g} (entry {at})")
 
     def allowed(self) -> str:
         """Say in words which values are allowed, such as "a number above 0 m"."""

@@ -19,6 +19,7 @@ from pipeline.charting import (
     chart_of,
     tabulate,
 )
+from pipeline.errors import InputError
 from pipeline.models import MODELS, model_named
 from pipeline.models.common import BOUND, SENSITIVE, words
 from pipeline.quantities import Array, Quantity
@@ -118,7 +119,7 @@ def answer(
     """
     row = model_named(model)
     if fidelity not in FIDELITIES:
-        raise ValueError(f"there is no fidelity {fidelity!r}; choose from {', '.join(FIDELITIES)}")
+        raise InputError(f"there is no fidelity {fidelity!r}; choose from {', '.join(FIDELITIES)}")
     values = prepare(row, parameters)
     if fidelity == "chart":
         columns, angles, looked = run_chart(row, motion, values, angle, tail, azimuth_step, tolerance, charts)
@@ -166,30 +167,30 @@ def prepare(model: Parametric, parameters: Mapping[str, Any]) -> dict[str, Array
         if name not in known:
             close = get_close_matches(name, known, n=1)
             hint = f"; did you mean {close[0]!r}?" if close else "."
-            raise ValueError(f"{model.name} has no parameter {name!r}{hint} It takes: {', '.join(known)}")
+            raise InputError(f"{model.name} has no parameter {name!r}{hint} It takes: {', '.join(known)}")
     arrays: dict[str, Array] = {}
     for name, quantity in known.items():
         value = parameters.get(name)
         if value is None:
             if not quantity.optional:
-                raise ValueError(f"{model.name} needs {name} [{quantity.unit}]: {quantity.meaning}")
+                raise InputError(f"{model.name} needs {name} [{quantity.unit}]: {quantity.meaning}")
             arrays[name] = np.array(np.nan if quantity.default is None else quantity.default)
             continue
         try:
             array = np.asarray(value, dtype=np.float64)
         except (TypeError, ValueError) as problem:
-            raise ValueError(f"{name} must be {quantity.allowed()}, not {value!r}") from problem
+            raise InputError(f"{name} must be {quantity.allowed()}, not {value!r}") from problem
         if array.size == 0:
-            raise ValueError(f"{name} is empty: give at least one value")
+            raise InputError(f"{name} is empty: give at least one value")
         if array.ndim > 1:
-            raise ValueError(f"{name} must be a number or one row of numbers, not an array of shape {array.shape}")
+            raise InputError(f"{name} must be a number or one row of numbers, not an array of shape {array.shape}")
         quantity.check(np.atleast_1d(array))
         arrays[name] = array
     try:
         full = np.broadcast_arrays(*(np.atleast_1d(a) for a in arrays.values()))
     except ValueError as problem:
         sizes = ", ".join(f"{n}: {np.size(a)}" for n, a in arrays.items())
-        raise ValueError(f"the parameters of {model.name} have different lengths ({sizes})") from problem
+        raise InputError(f"the parameters of {model.name} have different lengths ({sizes})") from problem
     return {name: np.ascontiguousarray(a) for name, a in zip(arrays, full, strict=True)}
 
 
@@ -328,11 +329,11 @@ def _charted(
 
 def _check(angle: object, tail: object, azimuth_step: float) -> None:
     if tail is not None and not (isinstance(tail, (int, float)) and np.isfinite(tail) and tail >= 0.0):
-        raise ValueError(f"tail must be at least 0 s, or None for until rest, not {tail!r}")
+        raise InputError(f"tail must be at least 0 s, or None for until rest, not {tail!r}")
     if angle is not None:
         _finite_angle(angle)
     if not 0.0 < azimuth_step <= 90.0:
-        raise ValueError(f"azimuth_step must be above 0 and at most 90 degrees, not {azimuth_step!r}")
+        raise InputError(f"azimuth_step must be above 0 and at most 90 degrees, not {azimuth_step!r}")
 
 
 def _directions(model: Model, values: Mapping[str, Array]) -> int:
@@ -340,20 +341,20 @@ def _directions(model: Model, values: Mapping[str, Array]) -> int:
         return model.directions
     asked = np.unique(values["directions"])
     if asked.size > 1 or asked[0] not in (1.0, 2.0):
-        raise ValueError(f"directions must be 1 or 2 for all rows, not {asked.tolist()}")
+        raise InputError(f"directions must be 1 or 2 for all rows, not {asked.tolist()}")
     return int(asked[0])
 
 
 def _screened(model: Model, motion: Excitation, values: Mapping[str, Array]) -> Columns:
     if model.screen is None:
-        raise ValueError(f"the paper gives no closed-form criterion for {model.name}; ask for history")
+        raise InputError(f"the paper gives no closed-form criterion for {model.name}; ask for history")
     return model.screen(motion, values)
 
 
 def _bounded(model: Model, motion: Excitation, values: Mapping[str, Array]) -> Columns:
     if model.bound is None:
         others = ", ".join(m.name for m in MODELS if m.bound is not None)
-        raise ValueError(f"{model.name} has no guaranteed bounds; ask for history (bounds have: {others})")
+        raise InputError(f"{model.name} has no guaranteed bounds; ask for history (bounds have: {others})")
     bounds = model.bound(motion, values)
     low, high = bounds.outputs[model.gives[0].name]
     columns: Columns = {}
@@ -366,7 +367,7 @@ def _bounded(model: Model, motion: Excitation, values: Mapping[str, Array]) -> C
 
 def _finite_angle(angle: object) -> None:
     if not (isinstance(angle, (int, float)) and np.isfinite(angle)):
-        raise ValueError(f"angle must be a number of degrees, or None for RotD100, not {angle!r}")
+        raise InputError(f"angle must be a number of degrees, or None for RotD100, not {angle!r}")
 
 
 def _worst_direction(
@@ -444,7 +445,7 @@ def trace(model: str, motion: Motion, *, angle: float = 0.0, **parameters: Any) 
 
     row = model_named(model)
     if row.trace is None:
-        raise ValueError(f"{model} has no time history of its own; ask for the oscillator's")
+        raise InputError(f"{model} has no time history of its own; ask for the oscillator's")
     _finite_angle(angle)
     one = _single(row, parameters, "trace follows one object at a time")
     two = row.directions == 2 or (row.directions == 0 and one["directions"] == 2.0)
@@ -468,7 +469,7 @@ def transmit(
     row = support_named(support)
     values = _single(row, parameters, "transmit passes a motion through one support")
     if values.get("directions", 2.0) != 2.0:
-        raise ValueError("transmit passes both horizontal directions on; leave directions out")
+        raise InputError("transmit passes both horizontal directions on; leave directions out")
     _some_error(error)
     if refine is not None or not row.refines(values):
         return row.transmit(motion, values, 1 if refine is None else refine)
@@ -490,11 +491,11 @@ def cascade(chain: Sequence[tuple[str, Mapping[str, Any]]], motion: Motion, *, e
 
 def _some_error(error: object) -> None:
     if not (isinstance(error, (int, float)) and error > 0.0):
-        raise ValueError(f"error must be a number above 0, not {error!r}")
+        raise InputError(f"error must be a number above 0, not {error!r}")
 
 
 def _single(model: Parametric, parameters: Mapping[str, Any], why: str) -> dict[str, float]:
     values = prepare(model, parameters)
     if any(column.size > 1 for column in values.values()):
-        raise ValueError(f"{why}; give single numbers")
+        raise InputError(f"{why}; give single numbers")
     return {name: float(column[0]) for name, column in values.items()}

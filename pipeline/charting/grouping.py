@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pipeline.charting.keeping import chart_identity
 from pipeline.charting.response_chart import ResponseChart, Run, axis_of
 from pipeline.charting.shelf import Shelf
+from pipeline.errors import InputError
 from pipeline.quantities import Array
 from pipeline.records import Columns, Model, Motion
 
@@ -47,7 +48,7 @@ class Settings:
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.tolerance) and 1e-6 <= self.tolerance <= 1.0):
-            raise ValueError(f"tolerance must be from 1e-6 to 1 of the value, not {self.tolerance!r}")
+            raise InputError(f"tolerance must be from 1e-6 to 1 of the value, not {self.tolerance!r}")
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.charting.refine import MOST_NODES, SMALL, UNITS, Cells, Integers, refine
+from pipeline.errors import InputError
 from pipeline.kernels.lookup import POINTS, lookup_batch
 from pipeline.quantities import Array
 from pipeline.records import ChartAxis, Columns, Excitation, Model
@@ -136,5 +137,5 @@ def axis_of(model: Model) -> ChartAxis:
     raises : ValueError with the reason for a model that is not
     """
     if model.chart is None:
-        raise ValueError(f"{model.name} has no chart: {model.uncharted}; ask for history")
+        raise InputError(f"{model.name} has no chart: {model.uncharted}; ask for history")
     return model.chart

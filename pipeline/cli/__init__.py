@@ -73,10 +73,7 @@ def main() -> None:
         except Exception as problem:
             if debug:
                 raise
-            from pipeline.jobs.outcome import exit_code_of
-
-            code = exit_code_of(problem)
-            _say(problem, code, as_json="--log-json" in sys.argv)
+            code = _tell(problem, as_json="--log-json" in sys.argv)
     sys.exit(code if isinstance(code, int) else 0)
 
 
@@ -91,22 +88,17 @@ def _log(stack: ExitStack) -> None:
     )
 
 
-def _say(problem: Exception, code: int, *, as_json: bool) -> None:
-    """Tell an error without its secrets: as a sentence, or as a line of the log."""
+def _tell(problem: Exception, *, as_json: bool) -> int:
+    """Tell an error without its secrets, as a sentence or as a line of the log, and return the exit code."""
+    from pipeline.jobs.outcome import exit_code_of, words_of
     from pipeline.jobs.secrets import hider
 
-    said = hider(None)(_said(problem))
+    code, said = exit_code_of(problem), hider(None)(words_of(problem))
     if as_json:
         note("error", level=logging.ERROR, kind=type(problem).__name__, message=said, exit_code=code)
     else:
         print(f"kouros: {said}", file=sys.stderr)
-
-
-def _said(problem: Exception) -> str:
-    text = str(problem)
-    if isinstance(problem, ValueError) or hasattr(problem, "exit_code"):
-        return text
-    return f"unexpected {type(problem).__name__}: {text} (run again with --debug for the traceback)"
+    return code
 
 
 def _warned(

@@ -7,6 +7,8 @@ from sqlalchemy import Engine, MetaData, create_engine, event
 from sqlalchemy.engine import URL, make_url
 from sqlalchemy.pool import NullPool
 
+from pipeline.errors import InputError
+
 Database = Engine
 """An open database, for those floors that hand it on without speaking SQL."""
 
@@ -31,7 +33,7 @@ def database_url(where: str | Path) -> URL:
     text = str(where)
     url = make_url(text) if "://" in text else URL.create("sqlite", database=text)
     if url.get_backend_name() not in {"sqlite", "postgresql"}:
-        raise ValueError(f"Kouros keeps its own tables in SQLite or PostgreSQL, not in {url.get_backend_name()!r}")
+        raise InputError(f"Kouros keeps its own tables in SQLite or PostgreSQL, not in {url.get_backend_name()!r}")
     return url.set(drivername="postgresql+psycopg") if url.drivername == "postgresql" else url
 
 

@@ -32,6 +32,7 @@ from pipeline.collection.database import METADATA
 from pipeline.collection.errors import CollectionError, ShrunkError
 from pipeline.collection.record import KINDS, digest_of, kind_of, to_items, to_records
 from pipeline.collection.supplement import filled_in, laid_over
+from pipeline.errors import InputError
 from pipeline.records import ITEM_FIELDS, Item
 
 if TYPE_CHECKING:
@@ -175,7 +176,7 @@ def replace_inventory(
                    ValueError for a limit outside 0 to 1 or a time without a zone; nothing is written then
     """
     if not 0.0 <= shrink_limit <= 1.0:
-        raise ValueError(f"shrink_limit must be a share from 0 to 1, not {shrink_limit!r}")
+        raise InputError(f"shrink_limit must be a share from 0 to 1, not {shrink_limit!r}")
     moment = _moment(when)
     if not reading.objects:
         raise CollectionError(f"{reading.source}: none of its {reading.rows} rows could be used. {_first(reading)}")

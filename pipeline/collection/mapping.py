@@ -23,6 +23,7 @@ from pydantic import (
 
 from pipeline.collection.errors import MappingError
 from pipeline.collection.record import KINDS, REQUIRED, units_of
+from pipeline.errors import InputError
 from pipeline.quantities import LENGTHS, MASSES
 from pipeline.records import Support
 from pipeline.resources import small_text
@@ -100,13 +101,13 @@ class Source(_Part):
         for key in ("encoding", "delimiter", "sheet", "header_row", "language", "query", "table", "timeout_seconds"):
             given = getattr(self, key) is not None
             if key in needs and not given:
-                raise ValueError(f'{key} is missing; a source of format "{self.format}" needs it')
+                raise InputError(f'{key} is missing; a source of format "{self.format}" needs it')
             if given and key not in needs + may:
-                raise ValueError(f'{key} has no meaning for format "{self.format}"; leave it out')
+                raise InputError(f'{key} has no meaning for format "{self.format}"; leave it out')
         if self.delimiter == self.decimal == ",":
-            raise ValueError('a comma cannot be both delimiter and decimal mark; most such files have delimiter = ";"')
+            raise InputError('a comma cannot be both delimiter and decimal mark; most such files have delimiter = ";"')
         if self.format == "sql" and (self.query is None) == (self.table is None):
-            raise ValueError('a source of format "sql" needs either query = "SELECT ..." or table = "name"')
+            raise InputError('a source of format "sql" needs either query = "SELECT ..." or table = "name"')
         return self
 
 
@@ -159,7 +160,7 @@ class ColumnMap(_Part):
     @model_validator(mode="after")
     def _one_source(self) -> Self:
         if (self.column is not None) + bool(self.columns) + (self.constant is not None) != 1:
-            raise ValueError('needs one of column = "name", columns = ["first", "second"] and constant = "text"')
+            raise InputError('needs one of column = "name", columns = ["first", "second"] and constant = "text"')
         return self
 
 
@@ -179,7 +180,7 @@ class Texts(_Part):
     @classmethod
     def _known(cls, unit: str | None) -> str | None:
         if unit is not None and unit not in LENGTHS:
-            raise ValueError(f"{unit!r} is no unit of length; use one of {', '.join(LENGTHS)}")
+            raise InputError(f"{unit!r} is no unit of length; use one of {', '.join(LENGTHS)}")
         return unit
 
 
@@ -223,17 +224,17 @@ class Mapping(_Part):
     def _columns_fit(self) -> Self:
         unknown = [name for name in self.columns if name not in MAPPABLE]
         if unknown:
-            raise ValueError(
+            raise InputError(
                 f"columns.{unknown[0]}: there is no such field{closest(unknown[0], MAPPABLE)}. "
                 f"Fields are {', '.join(MAPPABLE)}"
             )
         absent = [name for name in REQUIRED if name not in self.columns]
         if absent:
-            raise ValueError(f'columns.{absent[0]} is missing; add it with column = "..."')
+            raise InputError(f'columns.{absent[0]} is missing; add it with column = "..."')
         for field, column in self.columns.items():
             fault = _fault(field, column)
             if fault:
-                raise ValueError(f"columns.{field}: {fault}")
+                raise InputError(f"columns.{field}: {fault}")
         return self
 
 

@@ -13,6 +13,8 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from pipeline.errors import KourosError
+
 if TYPE_CHECKING:
     from distributed import Client, Future
 
@@ -30,7 +32,7 @@ DEATHS = 3
 """Workers that may die of one errand before it is given up."""
 
 
-class CrewError(RuntimeError):
+class CrewError(KourosError):
     """The workers cannot be reached, or die of an errand."""
 
     exit_code = 1

@@ -5,13 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.errors import InputError
 from pipeline.quantities import Array
 
 EXTENDED = 2.0
 """Factor of intensity by which the straight ends of a hazard curve are drawn out beyond its levels, and no further."""
 
 
-class NoHazardError(ValueError):
+class NoHazardError(InputError):
     """The levels do not make a hazard curve; the message says why."""
 
 

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from pipeline import __version__
+from pipeline.errors import KourosError
 from pipeline.report.text import plain
 from pipeline.settings import DATABASE_VARIABLE
 from pipeline.settings.operations import CommandHook, EmailHook, Event, Hooks, WebhookHook, check_address
@@ -43,7 +44,7 @@ _PAUSE = 1.0
 """Seconds before the second attempt; each further pause is twice as long."""
 
 
-class HookError(Exception):
+class HookError(KourosError):
     """A hook that could not be told; the message holds no secret that the hook itself knows of."""
 
 

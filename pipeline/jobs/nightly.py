@@ -9,6 +9,7 @@ from typing import Any, Protocol, TypeVar
 
 from pipeline.collection.inventory import latest_import
 from pipeline.collection.listing import Listing
+from pipeline.errors import InputError
 from pipeline.jobs.briefing import admit, brief_for
 from pipeline.jobs.deciding import decided
 from pipeline.jobs.importing import import_collection, source_of
@@ -217,7 +218,7 @@ def named(items: Sequence[_Some], *, galleries: Sequence[str] = (), objects: Seq
     ]
 
 
-class EmptyCollectionError(ValueError):
+class EmptyCollectionError(InputError):
     """There is nothing to assess."""
 
     exit_code = 5

@@ -3,11 +3,13 @@
 import json
 import math
 import os
+import traceback
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pipeline.errors import KourosError
 from pipeline.records import RunChanges
 
 if TYPE_CHECKING:
@@ -18,6 +20,8 @@ SUMMARY = "summary.json"
 
 LISTED = 1000
 """Changes of each kind that the file lists; `kouros diff --json` has all."""
+
+_PACKAGE = Path(__file__).resolve().parents[1]
 
 _KINDS = ("added", "removed", "moved", "inputs", "verdicts", "motions", "decisions", "settings", "versions")
 
@@ -72,7 +76,20 @@ def exit_code_of(problem: BaseException) -> int:
     """Return the exit code of the command that ends with this error."""
     if not isinstance(problem, Exception):
         return 130  # stopped by hand
-    return int(getattr(problem, "exit_code", 2 if isinstance(problem, ValueError) else 1))
+    return problem.exit_code if isinstance(problem, KourosError) else 1
+
+
+def words_of(problem: BaseException) -> str:
+    """Return an error in words: what people can mend as it says; a fault of Kouros as such, with its place."""
+    if isinstance(problem, KourosError) or not isinstance(problem, Exception):
+        return str(problem)
+    steps = traceback.extract_tb(problem.__traceback__)
+    own = [step for step in steps if _PACKAGE in Path(step.filename).resolve().parents]
+    at = "".join(f", {Path(s.filename).resolve().relative_to(_PACKAGE)}, line {s.lineno} ({s.name})" for s in own[-1:])
+    kind = type(problem).__name__
+    if isinstance(problem, OSError) and problem.errno is not None:
+        return f"{problem} ({kind}{at}; run again with --debug for the traceback)"
+    return f"a fault of Kouros, not of yours: {kind}: {problem}{at} (run again with --debug for the traceback)"
 
 
 def write_summary(summary: "Summary", folder: Path) -> None:

@@ -13,7 +13,7 @@ from pipeline.collection.errors import ShrunkError
 from pipeline.jobs.hooks import tell
 from pipeline.jobs.journal import note
 from pipeline.jobs.nightly import Summary
-from pipeline.jobs.outcome import exit_code_of, summary_document
+from pipeline.jobs.outcome import exit_code_of, summary_document, words_of
 from pipeline.jobs.retention import prune
 from pipeline.jobs.standing import last_good, mark_failed
 from pipeline.jobs.workspace import LockedError
@@ -51,7 +51,7 @@ def _failed(
     settings: Settings, problem: BaseException, hide: Callable[[str], str], *, whole: bool, seconds: float
 ) -> None:
     shrunk = isinstance(problem, ShrunkError)
-    message = hide(str(problem) or type(problem).__name__)
+    message = hide(words_of(problem) or type(problem).__name__)
     code = exit_code_of(problem)
     note(
         "run.shrunk" if shrunk else "run.failed",

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pipeline.errors import InputError, KourosError
 from pipeline.resources import resource
 
 if TYPE_CHECKING:
@@ -33,16 +34,14 @@ LISTING = "listing.arrow"
 """File in it for the listing of the inventory's objects, see `pipeline.collection.listing`."""
 
 
-class LockedError(RuntimeError):
+class LockedError(KourosError):
     """Another run is at work."""
 
     exit_code = 6
 
 
-class UsageError(ValueError):
+class UsageError(InputError):
     """A wish that cannot be carried out as it was put."""
-
-    exit_code = 2
 
 
 @dataclass(frozen=True)

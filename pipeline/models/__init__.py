@@ -2,6 +2,7 @@
 
 from difflib import get_close_matches
 
+from pipeline.errors import InputError
 from pipeline.models.friction_isolator import FRICTION_ISOLATOR
 from pipeline.models.horizontal_isolator import HORIZONTAL_ISOLATOR
 from pipeline.models.oscillator import OSCILLATOR
@@ -37,4 +38,4 @@ def model_named(name: str) -> Model:
     names = [m.name for m in MODELS]
     close = get_close_matches(name, names, n=1)
     hint = f"; did you mean {close[0]!r}?" if close else "."
-    raise ValueError(f"there is no model {name!r}{hint} The models are: {', '.join(names)}")
+    raise InputError(f"there is no model {name!r}{hint} The models are: {', '.join(names)}")

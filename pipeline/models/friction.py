@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from pipeline.errors import InputError
 from pipeline.kernels.bounds import slip_bounds_batch
 from pipeline.kernels.friction_line import friction_line_batch
 from pipeline.kernels.friction_plane import friction_plane_batch
@@ -162,5 +163,5 @@ def kinetic(parameters: Mapping[str, Array]) -> Array:
     above = np.flatnonzero(mu_k > mu_s)
     if above.size:
         at = int(above[0])
-        raise ValueError(f"friction_kinetic ({mu_k[at]:g}) is above friction_static ({mu_s[at]:g}) (entry {at})")
+        raise InputError(f"friction_kinetic ({mu_k[at]:g}) is above friction_static ({mu_s[at]:g}) (entry {at})")
     return np.where(np.isnan(mu_k), mu_s, mu_k)

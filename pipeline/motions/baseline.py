@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from pipeline.errors import InputError
 from pipeline.motions.filtering import highpass, pad_seconds, remove_baseline
 from pipeline.motions.intensity import integrate, strong_part
 from pipeline.quantities import Array
@@ -82,9 +83,9 @@ def polynomial_baseline(
     """
     least = 0 if of == "acceleration" else 1
     if isinstance(degree, bool) or not isinstance(degree, int) or not least <= degree <= 6:
-        raise ValueError(f"degree must be a whole number from {least} to 6 for the {of}, not {degree!r}")
+        raise InputError(f"degree must be a whole number from {least} to 6 for the {of}, not {degree!r}")
     if motion.samples <= degree + 1:
-        raise ValueError(f"a record of {motion.samples} samples is too short for a polynomial of degree {degree}")
+        raise InputError(f"a record of {motion.samples} samples is too short for a polynomial of degree {degree}")
     n = motion.samples
     # Time runs from 0 to 1: the powers stay of one size.
     s = np.linspace(0.0, 1.0, n)
@@ -96,7 +97,7 @@ def polynomial_baseline(
         coefficients = [np.linalg.lstsq(powers, row, rcond=None)[0] for row in integrate(motion)[0]]
         fitted = [Polynomial([0.0, *c]).deriv()(s) / motion.duration for c in coefficients]
     else:
-        raise ValueError(f"of must be 'acceleration' or 'velocity', not {of!r}")
+        raise InputError(f"of must be 'acceleration' or 'velocity', not {of!r}")
     sizes = [float(np.abs(f).max()) for f in fitted]
     step = f"polynomial baseline of degree {degree}, fitted to the {of}, removed; largest value {_told(sizes, 'm/s2')}"
     return _stepped(motion, out - np.asarray(fitted), step)
@@ -128,13 +129,13 @@ def two_segment_baseline(
         a, b = first if t1 is None else t1, last if t2 is None else t2
         start = b if fit_from is None else fit_from
         if not 0.0 <= a < b <= start < motion.duration:
-            raise ValueError(
+            raise InputError(
                 f"two-segment baseline, component {axis}: t1 {a:g}, t2 {b:g} and fit_from {start:g} s must be in this "
                 f"order inside the record of {motion.duration:g} s; give them"
             )
         end = t >= start - 1e-9 * motion.dt
         if np.count_nonzero(end) < 10:
-            raise ValueError(
+            raise InputError(
                 f"two-segment baseline, component {axis}: fewer than 10 samples after {start:g} s; use an earlier "
                 f"fit_from or a longer record"
             )
@@ -178,9 +179,9 @@ def choose_corner(
                 SDEE 25, 93-115, for noise and displacement as guides; see DRIFT_SHARE for the polynomial
     """
     if not (cycles > 0.0 and margin >= 1.0 and 0.0 < tail_share < 1.0 and 0.0 < drift_share < 1.0):
-        raise ValueError("choose_corner: cycles must be above 0, margin at least 1, and both shares between 0 and 1")
+        raise InputError("choose_corner: cycles must be above 0, margin at least 1, and both shares between 0 and 1")
     if motion.samples < 100:
-        raise ValueError(f"choose_corner: a record of {motion.samples} samples is too short to choose a corner from")
+        raise InputError(f"choose_corner: a record of {motion.samples} samples is too short to choose a corner from")
     by_length = cycles / motion.duration
     reasons = [f"{cycles:g} periods in {motion.duration:g} s ask for {by_length:.3g} Hz"]
     corner, decided = by_length, "record length"
@@ -189,7 +190,7 @@ def choose_corner(
     else:
         count = _samples_before(motion, pre_event, "pre_event")
         if not 20 <= count <= motion.samples // 2:
-            raise ValueError(
+            raise InputError(
                 f"pre_event {pre_event:g} s holds {count} samples; noise needs at least 20 and at most half the record"
             )
         by_noise = _noise_corner(motion, count, margin)
@@ -209,7 +210,7 @@ def choose_corner(
             reasons.append(f"the displacement after {start:.3g} s is {rest:.1%} of its peak, its drift {drift:.1%}")
             return Corner(corner, f"{decided}: " + "; ".join(reasons))
         corner, decided = corner * 1.1, "displacement tail" if rest > tail_share else "displacement drift"
-    raise ValueError(
+    raise InputError(
         f"motion {motion.name!r}: no corner up to {HIGHEST_CORNER:g} Hz is enough ({'; '.join(reasons)}); give "
         f"highpass_hz, correct the baseline first, or use another record"
     )
@@ -226,19 +227,19 @@ def resample(motion: Motion, dt: float, *, method: Literal["fft", "lanczos"] = "
     raises : ValueError for a step that is not positive, that the method cannot reach, or longer than the record
     """
     if not (np.isfinite(dt) and 0.0 < dt <= motion.duration):
-        raise ValueError(f"dt must be above 0 and at most the record's {motion.duration:g} s, not {dt!r}")
+        raise InputError(f"dt must be above 0 and at most the record's {motion.duration:g} s, not {dt!r}")
     samples = int(np.floor(motion.duration / dt * (1.0 + 1e-12))) + 1
     if method == "fft":
         ratio = Fraction(motion.dt / dt).limit_denominator(1000)
         if abs(float(ratio) * dt / motion.dt - 1.0) > 1e-9:
-            raise ValueError(f"{motion.dt:g} s and {dt:g} s are not as two whole numbers up to 1000; use lanczos")
+            raise InputError(f"{motion.dt:g} s and {dt:g} s are not as two whole numbers up to 1000; use lanczos")
         out = _by_fourier(motion.acceleration, ratio, samples)
     elif method == "lanczos":
         if dt > motion.dt:
-            raise ValueError(f"lanczos does not filter, so dt must be at most {motion.dt:g} s, not {dt:g} s; use fft")
+            raise InputError(f"lanczos does not filter, so dt must be at most {motion.dt:g} s, not {dt:g} s; use fft")
         out = _by_lanczos(motion, dt, samples)
     else:
-        raise ValueError(f"method must be 'fft' or 'lanczos', not {method!r}")
+        raise InputError(f"method must be 'fft' or 'lanczos', not {method!r}")
     step = f"resampled from {motion.dt:g} s to {dt:g} s ({method})"
     return Motion(dt, out, motion.name, (*motion.steps, step), motion.source)
 
@@ -281,7 +282,7 @@ def _segment(motion: Motion, row: int) -> tuple[float, float]:
 def _samples_before(motion: Motion, until: float, name: str) -> int:
     count = int(np.floor(until / motion.dt * (1.0 + 1e-12))) if np.isfinite(until) else 0
     if not 2 <= count < motion.samples:
-        raise ValueError(
+        raise InputError(
             f"{name} must be a time in s with at least two samples before it, inside the record of "
             f"{motion.duration:g} s, not {until!r}"
         )
@@ -301,7 +302,7 @@ def _noise_corner(motion: Motion, count: int, margin: float) -> float:
         best = int(np.argmax(ratio))
         below = np.flatnonzero(ratio[: best + 1] < margin)
         if ratio[best] < margin:
-            raise ValueError(
+            raise InputError(
                 f"motion {motion.name!r}, component {'xyz'[row]}: the shaking is nowhere {margin:g} times the noise "
                 f"before it; check pre_event, or use another record"
             )

@@ -4,11 +4,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import ClassVar, Literal
 
+from pipeline.errors import InputError
+
 Judgement = Literal["clipping", "cut_off", "size", "orientation"]
 """Refusals that a person may overrule; what is corrupt is refused whatever is accepted."""
 
 
-class MotionError(ValueError):
+class MotionError(InputError):
     """A record or a manifest that Kouros refuses to assess anything with.
 
     The message names the file, the place in it (key path, component, sample), what is wrong and what mends it.

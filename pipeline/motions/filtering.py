@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from pipeline.errors import InputError
 from pipeline.quantities import Array
 
 POLES = 2
@@ -66,7 +67,7 @@ def _filtered(data: Array, dt: float, corner_hz: float, kind: Literal["highpass"
     from scipy.signal import butter, sosfiltfilt
 
     if not 0.0 < corner_hz < 0.5 / dt:
-        raise ValueError(f"{kind}_hz {corner_hz:g} must be below the Nyquist frequency of {0.5 / dt:g} Hz")
+        raise InputError(f"{kind}_hz {corner_hz:g} must be below the Nyquist frequency of {0.5 / dt:g} Hz")
     sos = butter(POLES, corner_hz, kind, fs=1.0 / dt, output="sos")
     pad = int(np.ceil(pad_seconds(corner_hz) / dt))
     padded = np.pad(data, ((0, 0), (pad, pad)))

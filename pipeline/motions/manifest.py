@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError, model_validator
 
+from pipeline.errors import InputError
 from pipeline.motions.errors import MotionError, refusal
 from pipeline.motions.record import PRINTABLE, BaselineTable, Horizontal, Record, Table, Text
 from pipeline.resources import small_text
@@ -46,12 +47,12 @@ class TargetTable(Table):
     @model_validator(mode="after")
     def _consistent(self) -> TargetTable:
         if len(self.periods_s) != len(self.psa_g):
-            raise ValueError(f"{len(self.periods_s)} periods_s and {len(self.psa_g)} psa_g; give one value a period")
+            raise InputError(f"{len(self.periods_s)} periods_s and {len(self.psa_g)} psa_g; give one value a period")
         if any(b <= a for a, b in pairwise(self.periods_s)):
-            raise ValueError("periods_s must increase")
+            raise InputError("periods_s must increase")
         low, high = self.compared
         if not (self.periods_s[0] <= low < high <= self.periods_s[-1]):
-            raise ValueError(f"period_range_s [{low:g}, {high:g}] must increase and lie inside periods_s")
+            raise InputError(f"period_range_s [{low:g}, {high:g}] must increase and lie inside periods_s")
         return self
 
 
@@ -79,10 +80,10 @@ class LevelTable(Table):
     @model_validator(mode="after")
     def _consistent(self) -> LevelTable:
         if bool(self.approved_by) != (self.approved_on is not None):
-            raise ValueError("approved_by and approved_on belong together; give both, or leave both out")
+            raise InputError("approved_by and approved_on belong together; give both, or leave both out")
         without = [record.name for record in self.record if record.scale_to_target]
         if without and self.target is None:
-            raise ValueError(f"record {without[0]!r} has scale_to_target, but the level has no target; add its table")
+            raise InputError(f"record {without[0]!r} has scale_to_target, but the level has no target; add its table")
         return self
 
 
@@ -139,20 +140,20 @@ class FloorTable(Table):
     @model_validator(mode="after")
     def _consistent(self) -> FloorTable:
         if self.name == GROUND_FLOOR:
-            raise ValueError(f"the name {GROUND_FLOOR!r} is the ground's own; call the floor otherwise")
+            raise InputError(f"the name {GROUND_FLOOR!r} is the ground's own; call the floor otherwise")
         computed = [key for key in ("height_ratio", "period_s", "method", *_MODAL) if getattr(self, key) is not None]
         if self.records:
             if computed:
-                raise ValueError(f"record and {', '.join(computed)} exclude each other; keep one of them")
+                raise InputError(f"record and {', '.join(computed)} exclude each other; keep one of them")
             return self
         if self.height_ratio is None:
-            raise ValueError("give height_ratio (with period_s where the building's period is known), or record alone")
+            raise InputError("give height_ratio (with period_s where the building's period is known), or record alone")
         modal = [key for key in ("period_s", *_MODAL) if getattr(self, key) is None]
         if self.method == "modal" and modal:
-            raise ValueError(f"the method modal needs {', '.join(modal)}")
+            raise InputError(f"the method modal needs {', '.join(modal)}")
         extra = [key for key in _MODAL if getattr(self, key) is not None]
         if self.method != "modal" and extra:
-            raise ValueError(f'{", ".join(extra)}: only of method = "modal"; name it, or drop them')
+            raise InputError(f'{", ".join(extra)}: only of method = "modal"; name it, or drop them')
         return self
 
 
@@ -198,18 +199,18 @@ class Manifest(Table):
         ):
             twice = sorted({name for name in names if names.count(name) > 1})
             if twice:
-                raise ValueError(f"two {key}s are called {twice[0]!r}; give each {key} its own name")
+                raise InputError(f"two {key}s are called {twice[0]!r}; give each {key} its own name")
         levels = [level.name for level in self.level]
         for floor in self.floor:
             named = [r.level for r in floor.records]
             for level in named:
                 if level is not None and level not in levels:
-                    raise ValueError(f"floor {floor.name!r}: there is no level {level!r}; use {', '.join(levels)}")
+                    raise InputError(f"floor {floor.name!r}: there is no level {level!r}; use {', '.join(levels)}")
             for level in levels:
                 if floor.records and level not in named and None not in named:
-                    raise ValueError(f"floor {floor.name!r} has no record for level {level!r}; add one")
+                    raise InputError(f"floor {floor.name!r} has no record for level {level!r}; add one")
             if any(r.scale_to_target for r in floor.records):
-                raise ValueError(f"floor {floor.name!r}: scale_to_target is for records of the ground; use scale")
+                raise InputError(f"floor {floor.name!r}: scale_to_target is for records of the ground; use scale")
         return self
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from pipeline.errors import InputError
 from pipeline.motions.spectra import response_history, response_spectra
 from pipeline.motions.synthesis import Direction, generator, one_direction, positive
 from pipeline.quantities import Array
@@ -55,9 +56,9 @@ def spectrum_compatible(
     f, wanted, check, wanted_there = _grid(periods, target, damping, band)
     positive(duration=duration, dt=dt, tolerance=tolerance)
     if duration < 3.0 / band[0]:
-        raise ValueError(f"duration must be at least {3.0 / band[0]:g} s, three periods of {band[0]:g} Hz")
+        raise InputError(f"duration must be at least {3.0 / band[0]:g} s, three periods of {band[0]:g} Hz")
     if dt > 0.25 / band[1]:
-        raise ValueError(f"dt must be at most {0.25 / band[1]:g} s, a quarter period of {band[1]:g} Hz, not {dt:g} s")
+        raise InputError(f"dt must be at most {0.25 / band[1]:g} s, a quarter period of {band[1]:g} Hz, not {dt:g} s")
     n = int(np.ceil(duration / dt * (1.0 - 1e-12))) + 1
     envelope = _envelope(n)
     numbers = generator(seed)
@@ -80,7 +81,7 @@ def spectrum_compatible(
         if least <= ACCEPTED:
             break
     if least > ACCEPTED:
-        raise ValueError(
+        raise InputError(
             f"target: the misfit stays at {least:.0%} for seed {seed}; smooth the target, lengthen the duration "
             f"({duration:g} s) or take another seed"
         )
@@ -97,20 +98,20 @@ def _grid(
     """Control frequencies and their target, and the same twice as dense."""
     t, s = np.asarray(periods, dtype=np.float64), np.asarray(target, dtype=np.float64)
     if t.ndim != 1 or t.shape != s.shape or t.size < 2:
-        raise ValueError(f"periods and target must be two lists of one length, at least 2: {t.shape} and {s.shape}")
+        raise InputError(f"periods and target must be two lists of one length, at least 2: {t.shape} and {s.shape}")
     for name, values in (("periods", t), ("target", s)):
         bad = ~np.isfinite(values) | (values <= 0.0)
         if bad.any():
-            raise ValueError(f"{name}: entry {int(np.argmax(bad))} is {values[bad][0]:g}; it must be a number above 0")
+            raise InputError(f"{name}: entry {int(np.argmax(bad))} is {values[bad][0]:g}; it must be a number above 0")
     if (np.diff(t) <= 0.0).any():
-        raise ValueError(f"periods must increase; entry {int(np.argmax(np.diff(t) <= 0.0)) + 1} does not")
+        raise InputError(f"periods must increase; entry {int(np.argmax(np.diff(t) <= 0.0)) + 1} does not")
     if not 0.005 <= damping < 1.0:
-        raise ValueError(f"damping must be from 0.005 to below 1, not {damping!r}")
+        raise InputError(f"damping must be from 0.005 to below 1, not {damping!r}")
     low, high = band
     if not 0.0 < low < high:
-        raise ValueError(f"band must be two frequencies in Hz, the lower one first and above 0, not {band!r}")
+        raise InputError(f"band must be two frequencies in Hz, the lower one first and above 0, not {band!r}")
     if t[0] > 1.0 / high * (1.0 + 1e-9) or t[-1] < 1.0 / low * (1.0 - 1e-9):
-        raise ValueError(
+        raise InputError(
             f"periods span {t[0]:g} to {t[-1]:g} s; the band needs {1.0 / high:g} to {1.0 / low:g} s: "
             f"give the target there, or narrow the band"
         )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.errors import InputError
 from pipeline.motions.baseline import (
     choose_corner,
     polynomial_baseline,
@@ -72,13 +73,13 @@ def process(
     if recording.processed:
         if record.raw_only:
             keys = ", ".join(record.raw_only)
-            raise ValueError(f"{keys}: the files say that the record is processed; drop what is for raw records")
+            raise InputError(f"{keys}: the files say that the record is processed; drop what is for raw records")
         motion = motion.called(motion.name, "processed by its source: no baseline correction, no filter")
     else:
         motion, corners = _filtered(_flattened(motion, record), record)
     if record.resample_s is not None:
         if recording.processed and record.resample_s > motion.dt:
-            raise ValueError(
+            raise InputError(
                 f"resample_s: a step above the record's {motion.dt:g} s would filter it again; use a shorter one"
             )
         motion = resample(motion, record.resample_s)
@@ -95,7 +96,7 @@ def process(
     motion, before = (_turned(one, recording.azimuths, x_azimuth) for one in (motion, before))
     if record.scale_to_target:
         if target is None:
-            raise ValueError("scale_to_target: the level has no target spectrum; add its table")
+            raise InputError("scale_to_target: the level has no target spectrum; add its table")
         wanted = [G * psa for psa in target.psa_g]
         fitted = scale_to_spectrum(
             motion,
@@ -116,7 +117,7 @@ def process(
         )
     peak = float(np.abs(motion.acceleration).max())
     if peak > PGA_MOST:
-        raise ValueError(f"scale: the scaled motion peaks at {peak / G:.3g} g, above 20 g; lower the scale")
+        raise InputError(f"scale: the scaled motion peaks at {peak / G:.3g} g, above 20 g; lower the scale")
     return Processed(motion, before, not recording.processed, corners, velocity)
 
 
@@ -155,7 +156,7 @@ def _filtered(motion: Motion, record: Record) -> tuple[Motion, tuple[float | Non
         motion = Motion(motion.dt, data, motion.name, (*motion.steps, said), motion.source, start)
     if record.lowpass_hz is not None:
         if corner is not None and corner >= record.lowpass_hz:
-            raise ValueError(f"lowpass_hz {record.lowpass_hz:g} must be above the high-pass corner of {corner:.4g} Hz")
+            raise InputError(f"lowpass_hz {record.lowpass_hz:g} must be above the high-pass corner of {corner:.4g} Hz")
         motion = motion.changed(*lowpass(motion.acceleration, motion.dt, record.lowpass_hz))
     return motion, (corner, record.lowpass_hz)
 
@@ -177,7 +178,7 @@ def _scaled_to_pga(motion: Motion, before: Motion, record: Record, recording: Re
         peaks = np.abs(motion.acceleration[:2]).max(axis=1)
         larger = int(np.argmax(peaks))
         if peaks[larger] == 0.0:
-            raise ValueError("scale_to_pga_g: both horizontal components are zero in the window; widen window_s")
+            raise InputError("scale_to_pga_g: both horizontal components are zero in the window; widen window_s")
         which = f"{recording.channels[larger]}, the larger recorded horizontal component"
         factor = record.scale_to_pga_g * G / float(peaks[larger])
         why = f"{which}, from {peaks[larger] / G:.4f} g to {record.scale_to_pga_g:g} g"
@@ -194,10 +195,10 @@ def cut(data: Array, dt: float, start: float, end: float) -> tuple[Array, str]:
     """
     last = (data.shape[1] - 1) * dt
     if end > last + 0.5 * dt:
-        raise ValueError(f"window_s ends at {end:g} s, after the record's end at {last:g} s; shorten it")
+        raise InputError(f"window_s ends at {end:g} s, after the record's end at {last:g} s; shorten it")
     a, b = round(start / dt), round(end / dt)
     if b - a < 1:
-        raise ValueError(f"window_s [{start:g}, {end:g}] holds fewer than two samples; widen it")
+        raise InputError(f"window_s [{start:g}, {end:g}] holds fewer than two samples; widen it")
     part = data[:, a : b + 1]
     left = dt * (part.sum(axis=1) - 0.5 * (part[:, 0] + part[:, -1]))
     told = ", ".join(f"{axis} {v:.2g}" for axis, v in zip("xyz", left, strict=True))
@@ -220,7 +221,7 @@ def rotate(data: Array, first: float, second: float, x_azimuth: float = EAST) ->
     """
     between = (second - first) % 180.0
     if abs(between - 90.0) > ORTHOGONAL_WITHIN:
-        raise ValueError(f"components: the horizontal azimuths {first:g} and {second:g} are not at right angles")
+        raise InputError(f"components: the horizontal azimuths {first:g} and {second:g} are not at right angles")
     axes = (
         "x east, y north"
         if x_azimuth == EAST

@@ -9,6 +9,7 @@ from math import exp
 
 import numpy as np
 
+from pipeline.errors import InputError
 from pipeline.quantities import Array
 
 PERIODS = (0.25, 15.0)
@@ -186,7 +187,7 @@ def _refined(acceleration: Array, dt: float, initial_velocity: float) -> tuple[A
     """Times, acceleration, velocity and displacement at the samples and at the zeros of the acceleration."""
     a = np.asarray(acceleration, dtype=np.float64)
     if a.ndim != 1 or a.size < 2 or not np.isfinite(a).all():
-        raise ValueError(f"half-cycles need a history of at least two finite values, not an array of shape {a.shape}")
+        raise InputError(f"half-cycles need a history of at least two finite values, not an array of shape {a.shape}")
     t = np.asarray(np.arange(a.size) * dt, dtype=np.float64)
     crossing = np.flatnonzero(a[:-1] * a[1:] < 0.0)
     share = a[crossing] / (a[crossing] - a[crossing + 1])
@@ -251,16 +252,16 @@ def _checked(velocity: Array, dt: float, rows: int) -> Array:
     shaped = v.ndim == 1 if rows == 1 else v.ndim == 2 and v.shape[0] in {2, 3}
     if not shaped:
         wanted = "(n,)" if rows == 1 else "(2, n) or (3, n), rows x and y"
-        raise ValueError(f"pulse identification: the velocity must have the shape {wanted}; it is {v.shape}")
+        raise InputError(f"pulse identification: the velocity must have the shape {wanted}; it is {v.shape}")
     v = v.reshape(-1, v.shape[-1])[:rows]
     if not np.isfinite(v).all():
-        raise ValueError("pulse identification: the velocity holds a value that is not finite; mend the record")
+        raise InputError("pulse identification: the velocity holds a value that is not finite; mend the record")
     if not (np.isfinite(dt) and dt > 0.0):
-        raise ValueError(f"pulse identification: dt must be a positive number of seconds, not {dt!r}")
+        raise InputError(f"pulse identification: dt must be a positive number of seconds, not {dt!r}")
     if (v.shape[1] - 1) * dt < PERIODS[0]:
-        raise ValueError(f"pulse identification: a record of {(v.shape[1] - 1) * dt:g} s is too short for any pulse")
+        raise InputError(f"pulse identification: a record of {(v.shape[1] - 1) * dt:g} s is too short for any pulse")
     if not v.any():
-        raise ValueError("pulse identification: the velocity is zero; there is nothing to look for")
+        raise InputError("pulse identification: the velocity is zero; there is nothing to look for")
     return v
 
 

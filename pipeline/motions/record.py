@@ -15,6 +15,7 @@ from pydantic import (
     model_validator,
 )
 
+from pipeline.errors import InputError
 from pipeline.motions.errors import Judgement
 
 # A control character in a name could rewrite a terminal or break a table; nothing that people write needs one.
@@ -29,7 +30,7 @@ def _inside(name: str) -> str:
     drive = re.match(r"[A-Za-z]:", name)
     control = re.search(r"[\x00-\x1f\x7f]", name)
     if not name or name.startswith("/") or drive or control or "\\" in name or ".." in name.split("/"):
-        raise ValueError(
+        raise InputError(
             f"{name!r} leaves the site's folder: name a file inside it, with / between folders and without '..'"
         )
     return name
@@ -99,9 +100,9 @@ class BaselineTable(Table):
         )
         for key, method in belongs.items():
             if getattr(self, key) is not None and self.method != method:
-                raise ValueError(f"{key} belongs to method {method!r}, not {self.method!r}; drop it")
+                raise InputError(f"{key} belongs to method {method!r}, not {self.method!r}; drop it")
         if self.method == "polynomial" and self.degree is None:
-            raise ValueError("a polynomial baseline needs its degree, 0 to 6")
+            raise InputError("a polynomial baseline needs its degree, 0 to 6")
         return self
 
 
@@ -180,23 +181,23 @@ class Record(Table):
     @model_validator(mode="after")
     def _consistent(self) -> Record:
         if len(set(self.all_files)) < len(self.all_files):
-            raise ValueError("files: a file is named twice; name each file once")
+            raise InputError("files: a file is named twice; name each file once")
         axes = sorted(c.axis for c in self.components.values())
         if axes != ["x", "y", "z"]:
-            raise ValueError(f"components: the axes are {', '.join(axes)}; give each of x, y and z exactly once")
+            raise InputError(f"components: the axes are {', '.join(axes)}; give each of x, y and z exactly once")
         given = [key for key in ("scale", "scale_to_pga_g", "scale_to_target") if getattr(self, key) is not None]
         if len(given) > 1:
-            raise ValueError(f"{' and '.join(given)} exclude each other; keep one")
+            raise InputError(f"{' and '.join(given)} exclude each other; keep one")
         if self.units is not None and self.response is not None:
-            raise ValueError("units and response exclude each other: the response turns counts into m/s2; drop one")
+            raise InputError("units and response exclude each other: the response turns counts into m/s2; drop one")
         if self.processed and self.raw_only:
-            raise ValueError(
+            raise InputError(
                 f"{', '.join(self.raw_only)}: a processed record is never processed again; drop it, or give raw files"
             )
         if self.corner_hz is not None and self.lowpass_hz is not None and self.corner_hz >= self.lowpass_hz:
-            raise ValueError(f"highpass_hz {self.corner_hz:g} must be below lowpass_hz {self.lowpass_hz:g}")
+            raise InputError(f"highpass_hz {self.corner_hz:g} must be below lowpass_hz {self.lowpass_hz:g}")
         if self.window_s is not None and self.window_s[0] >= self.window_s[1]:
-            raise ValueError(f"window_s {list(self.window_s)} must be [start, end] with start before end")
+            raise InputError(f"window_s {list(self.window_s)} must be [start, end] with start before end")
         if self.baseline is not None and self.baseline.method == "pre-event" and self.pre_event_s is None:
-            raise ValueError("baseline: the method pre-event needs pre_event_s, the seconds of noise at the start")
+            raise InputError("baseline: the method pre-event needs pre_event_s, the seconds of noise at the start")
         return self

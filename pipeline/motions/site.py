@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pipeline.errors import InputError
 from pipeline.motions.blas import one_thread
 from pipeline.motions.errors import MotionError, judged, refusal
 from pipeline.motions.intensity import integrate, measures, strong_part
@@ -133,7 +134,7 @@ def levels_at(site: Site, floor: str) -> tuple[Level, ...]:
         if table.name == floor:
             return tuple(replace(level, motions=_on_floor(site, number, table, level)) for level in site.levels)
     known = ", ".join([GROUND_FLOOR, *site.floors])
-    raise ValueError(f"{site.file}: there is no floor {floor!r}; it has {known}")
+    raise InputError(f"{site.file}: there is no floor {floor!r}; it has {known}")
 
 
 def _on_floor(site: Site, number: int, table: FloorTable, level: Level) -> tuple[SiteMotion, ...]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.errors import InputError
 from pipeline.kernels import samples
 from pipeline.kernels.linear import advance, transition
 from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
@@ -61,7 +62,7 @@ def standard_periods(n: int = 200) -> Array:
     raises : ValueError for fewer than two
     """
     if n < 2:
-        raise ValueError(f"a spectrum needs at least 2 periods, not {n}")
+        raise InputError(f"a spectrum needs at least 2 periods, not {n}")
     return np.geomspace(0.01, 20.0, n)
 
 
@@ -90,7 +91,7 @@ def response_spectra(
     wanted = tuple(dict.fromkeys(components))
     for name in wanted:
         if name not in COMPONENTS:
-            raise ValueError(f"component {name!r} is not known; use {', '.join(COMPONENTS)}")
+            raise InputError(f"component {name!r} is not known; use {', '.join(COMPONENTS)}")
     out: dict[str, Spectrum] = {}
     for name in wanted:
         if name in "xyz":
@@ -137,11 +138,11 @@ def response_history(motion: Motion, row: int, period: float, damping: float) ->
 def _allowed(name: str, values: Sequence[float] | Array, *, above: bool) -> Array:
     array = np.array(values, dtype=np.float64, ndmin=1)
     if array.ndim != 1 or array.size == 0:
-        raise ValueError(f"{name}: give a list of at least one number, not an array of shape {array.shape}")
+        raise InputError(f"{name}: give a list of at least one number, not an array of shape {array.shape}")
     bad = ~np.isfinite(array) | ((array <= 0.0) if above else (array < 0.0))
     if bad.any():
         at = int(np.argmax(bad))
-        raise ValueError(f"{name} must be {'above' if above else 'at least'} 0, not {array[at]:g} (entry {at})")
+        raise InputError(f"{name} must be {'above' if above else 'at least'} 0, not {array[at]:g} (entry {at})")
     return array
 
 

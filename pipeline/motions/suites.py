@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from pipeline.errors import InputError
 from pipeline.motions.intensity import measures
 from pipeline.motions.spectra import psa
 from pipeline.quantities import Array, G
@@ -21,10 +22,10 @@ def scale_to_pga(motion: Motion, pga: float, basis: Literal["larger", "resultant
     """
     _above_zero("pga", pga)
     if basis not in {"larger", "resultant"}:
-        raise ValueError(f"basis must be 'larger' or 'resultant', not {basis!r}")
+        raise InputError(f"basis must be 'larger' or 'resultant', not {basis!r}")
     found = measures(motion)["pga" if basis == "larger" else "pga_resultant"]
     if found == 0.0:
-        raise ValueError(f"motion {motion.name!r} has no horizontal shaking to scale")
+        raise InputError(f"motion {motion.name!r} has no horizontal shaking to scale")
     return motion.scaled(pga / found, f"PGA, {basis} horizontal, from {found / G:.4f} g to {pga / G:.4g} g")
 
 
@@ -36,16 +37,16 @@ def target_at(periods: Array, target_periods: Sequence[float] | Array, target: S
     """
     t, s = np.asarray(target_periods, dtype=np.float64), np.asarray(target, dtype=np.float64)
     if t.ndim != 1 or t.shape != s.shape or t.size < 2:
-        raise ValueError(
+        raise InputError(
             f"target: give two lists of one length, at least 2, not {t.shape} periods and {s.shape} values"
         )
     for name, values in (("target period", t), ("target", s)):
         if not (np.isfinite(values).all() and (values > 0.0).all()):
-            raise ValueError(f"{name}: every entry must be a number above 0")
+            raise InputError(f"{name}: every entry must be a number above 0")
     if (np.diff(t) <= 0.0).any():
-        raise ValueError("target periods must increase")
+        raise InputError("target periods must increase")
     if periods.min() < t[0] * (1.0 - 1e-9) or periods.max() > t[-1] * (1.0 + 1e-9):
-        raise ValueError(
+        raise InputError(
             f"target spans {t[0]:g} to {t[-1]:g} s, but {periods.min():g} to {periods.max():g} s are asked for; "
             f"extend the target or narrow the range"
         )
@@ -73,18 +74,18 @@ def scale_to_spectrum(
     """
     low, high = period_range
     if not (np.isfinite(high) and 0.0 < low < high):
-        raise ValueError(f"period_range must be two periods in s, the shorter first and above 0, not {period_range!r}")
+        raise InputError(f"period_range must be two periods in s, the shorter first and above 0, not {period_range!r}")
     periods = np.geomspace(low, high, 100)
     wanted = target_at(periods, target_periods, target)
     found = psa(motion, periods, damping, component)
     if (found == 0.0).any():
-        raise ValueError(f"motion {motion.name!r} has no shaking in component {component}; it cannot be scaled")
+        raise InputError(f"motion {motion.name!r} has no shaking in component {component}; it cannot be scaled")
     if measure == "log":
         factor = float(np.exp(np.mean(np.log(wanted / found))))
     elif measure == "linear":
         factor = float(found @ wanted / (found @ found))
     else:
-        raise ValueError(f"measure must be 'log' or 'linear', not {measure!r}")
+        raise InputError(f"measure must be 'log' or 'linear', not {measure!r}")
     left = float(np.sqrt(np.mean(np.log(factor * found / wanted) ** 2)))
     why = (
         f"{component} PSA at {damping:.0%} damping to the target by {measure} least squares from {low:g} to {high:g} "
@@ -95,4 +96,4 @@ def scale_to_spectrum(
 
 def _above_zero(name: str, value: float) -> None:
     if not (np.isfinite(value) and value > 0.0):
-        raise ValueError(f"{name} must be a number above 0, not {value!r}")
+        raise InputError(f"{name} must be a number above 0, not {value!r}")

@@ -10,6 +10,7 @@ from typing import Literal
 
 import numpy as np
 
+from pipeline.errors import InputError
 from pipeline.motions.intensity import measures
 from pipeline.quantities import Array
 from pipeline.records import Motion
@@ -69,7 +70,7 @@ def swept_sine(
     """
     positive(amplitude=amplitude, first=first, last=last, duration=duration, dt=dt)
     if first == last:
-        raise ValueError(f"swept_sine: first and last are both {first:g} Hz; use sine for a single frequency")
+        raise InputError(f"swept_sine: first and last are both {first:g} Hz; use sine for a single frequency")
     _below_nyquist("first and last", max(first, last), dt)
     t, step = _times(duration, dt)
     if sweep == "linear":
@@ -78,7 +79,7 @@ def swept_sine(
         rate = np.log(last / first) / duration
         turns = first * np.expm1(rate * t) / rate
     else:
-        raise ValueError(f"swept_sine: sweep must be 'linear' or 'logarithmic', not {sweep!r}")
+        raise InputError(f"swept_sine: sweep must be 'linear' or 'logarithmic', not {sweep!r}")
     a = amplitude * np.sin(2.0 * np.pi * turns) * _ramps(t, ramp)
     told = f"{sweep} sweep of {amplitude:.6g} m/s2 from {first:g} to {last:g} Hz in {duration:g} s, ramps {ramp:g} s"
     return one_direction(a, step, direction, f"sweep {first:g} to {last:g} Hz", told)
@@ -103,13 +104,13 @@ def band_limited_random(
     """
     positive(rms=rms, last=last, duration=duration, dt=dt)
     if not 0.0 <= first < last:
-        raise ValueError(f"band_limited_random: first must be at least 0 and below last ({last:g} Hz), not {first!r}")
+        raise InputError(f"band_limited_random: first must be at least 0 and below last ({last:g} Hz), not {first!r}")
     _below_nyquist("last", last, dt)
     t, step = _times(duration, dt)
     frequency = np.fft.rfftfreq(t.size, step)
     inside = (frequency >= first) & (frequency <= last) & (frequency > 0.0)
     if not inside.any():
-        raise ValueError(
+        raise InputError(
             f"band_limited_random: no line of a record of {duration:g} s lies from {first:g} to {last:g} Hz; "
             f"widen the band or lengthen the record"
         )
@@ -171,7 +172,7 @@ def ricker(
     elif of == "velocity":
         a, unit = peak * np.pi / period * (4.0 * x**3 - 6.0 * x) * bell, "m/s"
     else:
-        raise ValueError(f"ricker: of must be 'acceleration' or 'velocity', not {of!r}")
+        raise InputError(f"ricker: of must be 'acceleration' or 'velocity', not {of!r}")
     told = f"Ricker pulse in {of}, peak {peak:.6g} {unit}, period {period:g} s"
     return one_direction(a, step, direction, f"Ricker {period:g} s", told)
 
@@ -196,7 +197,7 @@ def mavroeidis_papageorgiou(
     """
     positive(amplitude=amplitude, period=period, dt=dt)
     if not (np.isfinite(cycles) and cycles > 1.0):
-        raise ValueError(f"mavroeidis_papageorgiou: cycles (gamma) must be above 1, not {cycles!r}")
+        raise InputError(f"mavroeidis_papageorgiou: cycles (gamma) must be above 1, not {cycles!r}")
     _below_nyquist("period", 4.0 / period, dt)
     t, step = _times(cycles * period, dt)
     w = 2.0 * np.pi / period
@@ -221,7 +222,7 @@ def to_peak(motion: Motion, pga: float) -> Motion:
     m = measures(motion)
     peak = max(m["pga_x"], m["pga_y"], m["pga_z"])
     if peak == 0.0:
-        raise ValueError(f"motion {motion.name!r} does not move; nothing to scale")
+        raise InputError(f"motion {motion.name!r} does not move; nothing to scale")
     return motion.scaled(pga / peak, f"peak acceleration to {pga:g} m/s2")
 
 
@@ -231,7 +232,7 @@ def one_direction(a: Array, dt: float, direction: str, name: str, told: str) -> 
     raises : ValueError for a direction that is not x, y or z
     """
     if direction not in {"x", "y", "z"}:
-        raise ValueError(f"direction must be 'x', 'y' or 'z', not {direction!r}")
+        raise InputError(f"direction must be 'x', 'y' or 'z', not {direction!r}")
     rows = np.zeros((3, a.size))
     rows["xyz".index(direction)] = a
     return Motion(dt, rows, name, (f"{told}; direction {direction}, time step {dt:.6g} s",), SOURCE)
@@ -240,7 +241,7 @@ def one_direction(a: Array, dt: float, direction: str, name: str, told: str) -> 
 def _times(duration: float, dt: float) -> tuple[Array, float]:
     """Samples from 0 to exactly the duration, no farther apart than dt, and their step."""
     if duration / dt > MOST_SAMPLES:
-        raise ValueError(
+        raise InputError(
             f"{duration:g} s in steps of {dt:g} s are more than {MOST_SAMPLES} samples; shorten it or lengthen dt"
         )
     # A duration that is a whole number of steps but for rounding keeps the step that was asked for.
@@ -251,7 +252,7 @@ def _times(duration: float, dt: float) -> tuple[Array, float]:
 
 def _ramps(t: Array, ramp: float) -> Array:
     if not (np.isfinite(ramp) and 0.0 <= ramp <= 0.5 * t[-1]):
-        raise ValueError(f"ramp must be from 0 to half the duration ({0.5 * t[-1]:g} s), not {ramp!r}")
+        raise InputError(f"ramp must be from 0 to half the duration ({0.5 * t[-1]:g} s), not {ramp!r}")
     if ramp == 0.0:
         return np.ones(t.size)
     edge = np.minimum(1.0, np.minimum(t, t[-1] - t) / ramp)
@@ -264,7 +265,7 @@ def generator(seed: int) -> np.random.Generator:
     raises : ValueError unless it is a whole number from 0
     """
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise ValueError(f"seed must be a whole number from 0, not {seed!r}")
+        raise InputError(f"seed must be a whole number from 0, not {seed!r}")
     return np.random.default_rng(seed)
 
 
@@ -275,20 +276,20 @@ def positive(**values: float) -> None:
     """
     for name, value in values.items():
         if not (np.isfinite(value) and value > 0.0):
-            raise ValueError(f"{name} must be a number above 0, not {value!r}")
+            raise InputError(f"{name} must be a number above 0, not {value!r}")
 
 
 def _finite(name: str, value: float) -> float:
     if not np.isfinite(value):
-        raise ValueError(f"{name} must be a finite number, not {value!r}")
+        raise InputError(f"{name} must be a finite number, not {value!r}")
     return value
 
 
 def _nonzero(name: str, value: float) -> None:
     if _finite(name, value) == 0.0:
-        raise ValueError(f"{name} must not be 0")
+        raise InputError(f"{name} must not be 0")
 
 
 def _below_nyquist(name: str, frequency: float, dt: float) -> None:
     if frequency >= 0.5 / dt:
-        raise ValueError(f"{name}: {frequency:g} Hz needs a time step below {0.5 / frequency:.3g} s; dt is {dt:g} s")
+        raise InputError(f"{name}: {frequency:g} Hz needs a time step below {0.5 / frequency:.3g} s; dt is {dt:g} s")

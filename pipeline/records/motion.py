@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pipeline.errors import InputError
 from pipeline.quantities import Array
 
 
@@ -48,19 +49,19 @@ class Motion:
     ) -> None:
         a = np.array(acceleration, dtype=np.float64, order="C", copy=True)
         if a.ndim != 2 or a.shape[0] != 3 or a.shape[1] == 0:
-            raise ValueError(f"motion {name!r}: acceleration must have the shape (3, n), rows x, y, z; it is {a.shape}")
+            raise InputError(f"motion {name!r}: acceleration must have the shape (3, n), rows x, y, z; it is {a.shape}")
         bad = ~np.isfinite(a)
         if bad.any():
             row, sample = (int(i[0]) for i in np.nonzero(bad))
-            raise ValueError(f"motion {name!r}: component {'xyz'[row]} is {a[row, sample]} at sample {sample}")
+            raise InputError(f"motion {name!r}: component {'xyz'[row]} is {a[row, sample]} at sample {sample}")
         if not (np.isfinite(dt) and dt > 0.0):
-            raise ValueError(f"motion {name!r}: dt must be a positive number of seconds, not {dt!r}")
+            raise InputError(f"motion {name!r}: dt must be a positive number of seconds, not {dt!r}")
         a.setflags(write=False)
         begin = tuple(float(v) for v in start)
         if len(begin) != 3 or not np.isfinite(begin).all():
-            raise ValueError(f"motion {name!r}: start must be three finite velocities in m/s, not {begin}")
+            raise InputError(f"motion {name!r}: start must be three finite velocities in m/s, not {begin}")
         if v_max is not None and not (np.isfinite(v_max) and v_max > 0.0):
-            raise ValueError(f"motion {name!r}: v_max must be a velocity above 0 m/s, not {v_max!r}")
+            raise InputError(f"motion {name!r}: v_max must be a velocity above 0 m/s, not {v_max!r}")
         given = {"dt": float(dt), "acceleration": a, "name": name, "source": source, "start": begin, "v_max": v_max}
         for key, value in given.items():
             object.__setattr__(self, key, value)

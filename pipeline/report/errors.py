@@ -2,8 +2,10 @@
 
 from pathlib import Path
 
+from pipeline.errors import InputError
 
-class ReportError(ValueError):
+
+class ReportError(InputError):
     """A run that cannot be shown; the message names the object, the field and the remedy."""
 
 

@@ -8,6 +8,7 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field, RootModel, ValidationError, field_validator, model_validator
 
+from pipeline.errors import InputError
 from pipeline.resources import small_text
 from pipeline.settings.operations import OPERATIONS, Hooks, Limits, Logs, Retention
 from pipeline.settings.operations import Part as _Part
@@ -24,17 +25,15 @@ _PASSWORD = re.compile(r"://[^:/@\s]*:([^@\s]+)@")
 _VARIABLE = re.compile(r"\$\{[A-Za-z_][A-Za-z0-9_]*\}")
 
 
-class SettingsError(ValueError):
+class SettingsError(InputError):
     """Settings that cannot be used: the message names file, key and remedy."""
-
-    exit_code = 2
 
 
 def _without_password(where: str) -> str:
     """Refuse an address that holds a password itself and not the name of a variable."""
     password = _PASSWORD.search(where)
     if password and not _VARIABLE.fullmatch(password[1]):
-        raise ValueError(
+        raise InputError(
             "a password stands in this file, where others can read it; put it into an environment variable "
             f"and write ${{NAME}} in its place, or put the whole address into {DATABASE_VARIABLE}"
         )
@@ -85,7 +84,7 @@ class Floors(RootModel[dict[str, tuple[str, ...]]]):
         named = [gallery for galleries in self.root.values() for gallery in galleries]
         twice = sorted({gallery for gallery in named if named.count(gallery) > 1})
         if twice:
-            raise ValueError(f"gallery {twice[0]!r} is on two floors; keep one")
+            raise InputError(f"gallery {twice[0]!r} is on two floors; keep one")
         return self
 
     def of(self, gallery: str) -> str | None:

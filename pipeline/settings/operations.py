@@ -5,6 +5,8 @@ from urllib.parse import urlsplit
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
+from pipeline.errors import InputError
+
 Event = Literal["changed", "failed", "shrunk"]
 """Verdicts changed; the run failed; the collection shrank suspiciously, and nothing was published."""
 
@@ -33,7 +35,7 @@ class CommandHook(_Hook):
     @classmethod
     def _startable(cls, words: tuple[str, ...]) -> tuple[str, ...]:
         if not words[0].strip() or any("\0" in word for word in words):
-            raise ValueError("the first word names a program, and no word holds a NUL character")
+            raise InputError("the first word names a program, and no word holds a NUL character")
         return words
 
 
@@ -48,7 +50,7 @@ class WebhookHook(_Hook):
     @model_validator(mode="after")
     def _one_address(self) -> "WebhookHook":
         if bool(self.url) == bool(self.url_from):
-            raise ValueError("give either url, or url_from with the name of an environment variable")
+            raise InputError("give either url, or url_from with the name of an environment variable")
         if self.url:
             check_address(self.url)
         return self
@@ -61,9 +63,9 @@ def check_address(url: str) -> None:
     """
     parts = urlsplit(url)
     if parts.scheme not in ("http", "https") or not parts.hostname:
-        raise ValueError("a webhook's address begins with https:// (or http://) and names a host")
+        raise InputError("a webhook's address begins with https:// (or http://) and names a host")
     if parts.username or parts.password:
-        raise ValueError("a webhook's address holds no password; put a token into a variable and name it in token_from")
+        raise InputError("a webhook's address holds no password; put a token into a variable and name it in token_from")
 
 
 class EmailHook(_Hook):
@@ -87,15 +89,15 @@ class EmailHook(_Hook):
             if not (
                 name and domain and address.isascii() and address.isprintable() and not set(" ,;<>") & set(address)
             ):
-                raise ValueError("an e-mail address is name@domain, without a display name")
+                raise InputError("an e-mail address is name@domain, without a display name")
         return value
 
     @model_validator(mode="after")
     def _password_is_protected(self) -> "EmailHook":
         if bool(self.user) != bool(self.password_from):
-            raise ValueError("user and password_from belong together")
+            raise InputError("user and password_from belong together")
         if self.user and self.security == "none":
-            raise ValueError('a password is never sent in clear: say security = "starttls" or "tls"')
+            raise InputError('a password is never sent in clear: say security = "starttls" or "tls"')
         return self
 
 

@@ -17,13 +17,15 @@ from typing import Any
 from pydantic import ConfigDict, TypeAdapter
 from pydantic_core import PydanticSerializationError, from_json
 
+from pipeline.errors import InputError
+
 _SUB = "\x1a"
 _TAGS = {"$float": float, "$tuple": tuple}
 NOT_FINITE = ("Infinity", "-Infinity", "NaN")
 """The JSON strings that stand for a float that is not finite."""
 
 
-class StoreError(ValueError):
+class StoreError(InputError):
     """The store cannot do what it was asked to; the message says why and what mends it."""
 
 

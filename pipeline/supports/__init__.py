@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.errors import InputError
 from pipeline.models.friction_isolator import FRICTION_ISOLATOR
 from pipeline.models.horizontal_isolator import HORIZONTAL_ISOLATOR
 from pipeline.models.oscillator import OSCILLATOR
@@ -123,4 +124,4 @@ def support_named(name: str) -> SupportModel:
     for support in SUPPORTS:
         if support.name == name:
             return support
-    raise ValueError(f"there is no support {name!r}; the supports are: {', '.join(s.name for s in SUPPORTS)}")
+    raise InputError(f"there is no support {name!r}; the supports are: {', '.join(s.name for s in SUPPORTS)}")

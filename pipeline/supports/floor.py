@@ -7,6 +7,7 @@ from math import ceil
 
 import numpy as np
 
+from pipeline.errors import InputError
 from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_history
 from pipeline.quantities import Array
@@ -45,7 +46,7 @@ def carried(
     if not any(given):
         return scale_to_floor(resampled(motion, refine), height_ratio, period)
     if period is None or damping is None or stiffness_ratio is None or modes is None:
-        raise ValueError("a floor by its modes needs period, damping, stiffness_ratio and modes, all four")
+        raise InputError("a floor by its modes needs period, damping, stiffness_ratio and modes, all four")
     shortest = period * float(beam_modes(stiffness_ratio, modes).period_ratios[-1])
     least = min(MOST_REFINED, max(1, ceil(MODE_POINTS * motion.dt / shortest)))
     return floor_motion(
@@ -63,7 +64,7 @@ def floor_factor(height_ratio: float, period: float | None = None) -> float:
                    a2 = max(0, 1 - (0.4/T_a)^2); 1 + 2.5 z/h where the period is unknown
     """
     if not 0.0 <= height_ratio <= 1.0:
-        raise ValueError(f"height_ratio must be from 0 (base) to 1 (roof), not {height_ratio!r}")
+        raise InputError(f"height_ratio must be from 0 (base) to 1 (roof), not {height_ratio!r}")
     if period is None:
         return 1.0 + 2.5 * height_ratio
     _positive("period", period)
@@ -125,9 +126,9 @@ def beam_modes(alpha0: float, modes: int) -> BeamModes:
     from scipy.optimize import brentq
 
     if not 0.0 <= alpha0 <= _SHEAR_LIMIT:
-        raise ValueError(f"alpha0 must be from 0 (bending) to {_SHEAR_LIMIT:g} (shear), not {alpha0!r}")
+        raise InputError(f"alpha0 must be from 0 (bending) to {_SHEAR_LIMIT:g} (shear), not {alpha0!r}")
     if isinstance(modes, bool) or not isinstance(modes, int) or not 1 <= modes <= 30:
-        raise ValueError(f"modes must be a whole number from 1 to 30, not {modes!r}")
+        raise InputError(f"modes must be a whole number from 1 to 30, not {modes!r}")
 
     def missing(g: float) -> float:
         # Divided by cosh(b), which would overflow.
@@ -174,13 +175,13 @@ def floor_motion(
     source       : Miranda and Taghavi (2005), as `beam_modes`; both horizontals alike, the vertical as on the ground
     """
     if not 0.0 <= height_ratio <= 1.0:
-        raise ValueError(f"height_ratio must be from 0 (base) to 1 (roof), not {height_ratio!r}")
+        raise InputError(f"height_ratio must be from 0 (base) to 1 (roof), not {height_ratio!r}")
     _positive("period", period)
     if not 0.0 < damping < 1.0:
-        raise ValueError(f"damping must be above 0 and below 1, not {damping!r}")
+        raise InputError(f"damping must be above 0 and below 1, not {damping!r}")
     after = float(-np.log(_SETTLED) * period / (2.0 * np.pi * damping)) if tail is None else tail
     if not (np.isfinite(after) and after >= 0.0):
-        raise ValueError(f"tail must be at least 0 s, not {tail!r}")
+        raise InputError(f"tail must be at least 0 s, not {tail!r}")
     beam = beam_modes(alpha0, modes)
     effect = beam.participation * beam.shapes(height_ratio)[:, 0]
     ground = motion.acceleration
@@ -218,4 +219,4 @@ def _shapes(alpha0: float, gamma: Array, x: Array) -> Array:
 
 def _positive(name: str, value: float) -> None:
     if not (np.isfinite(value) and value > 0.0):
-        raise ValueError(f"{name} must be a number above 0, not {value!r}")
+        raise InputError(f"{name} must be a number above 0, not {value!r}")

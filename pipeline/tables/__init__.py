@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
 
+from pipeline.errors import InputError
+
 Row = Mapping[str, str]
 
 FOLDER = Path(__file__).resolve().parent
 
 
-class TableError(ValueError):
+class TableError(InputError):
     """A table that cannot be used: the message names file, row, column and remedy."""
 
 

@@ -7,6 +7,7 @@ from pipeline.collection.dimensions.quantities import Group, Quantity
 from pipeline.collection.dimensions.reader import Reader
 from pipeline.collection.dimensions.result import Dimensions, Note, Part
 from pipeline.collection.dimensions.tokens import tokens_of
+from pipeline.errors import InputError
 
 LONGEST = 2000
 """Characters of a text that are read; what follows is noted, not read."""
@@ -31,9 +32,9 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> 
         default = units().get(default_unit)
         if default is None or default.kind != "length":
             known = ", ".join(unit.name for unit in units().values() if unit.kind == "length")
-            raise ValueError(f"default_unit must be one of {known}, not {default_unit!r}")
+            raise InputError(f"default_unit must be one of {known}, not {default_unit!r}")
     if decimal not in (".", ","):
-        raise ValueError(f'decimal must be "." or ",", not {decimal!r}')
+        raise InputError(f'decimal must be "." or ",", not {decimal!r}')
     head = text[:LONGEST]
     reader = Reader(head, tokens_of(head, decimal), default is not None)
     reader.read()

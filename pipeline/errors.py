@@ -1,0 +1,21 @@
+"""Errors that people can mend, and the exit code that each of them ends a command with.
+
+Whatever is raised that is no `KourosError` is a fault of Kouros, however it is called: a ValueError from inside a
+library is not the user's.
+"""
+
+from typing import ClassVar
+
+
+class KourosError(Exception):
+    """Something that a person can mend: the message names file, row or field, what is wrong and the remedy.
+
+    exit_code : of the command that ends with it: 2 usage or settings, 4 a motion was refused, 5 collection unreachable,
+                6 another run holds the lock, 7 input shrank suspiciously
+    """
+
+    exit_code: ClassVar[int] = 2
+
+
+class InputError(KourosError, ValueError):
+    """A value that was given, in a call, a file or a table, and cannot be used."""
