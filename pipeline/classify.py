@@ -11,9 +11,12 @@ from functools import cache, lru_cache
 from math import pi
 
 from pipeline.errors import InputError
-from pipeline.records import Estimate, Item, Origin, Scene, Support
+from pipeline.records import SECTION_SHAPES, Estimate, Item, Origin, Scene, Support
 from pipeline.rules import Table, rule_for
 from pipeline.tables import Range, Row, damping_of, friction_of, material_in, spread, table
+
+NO_MODEL, WHEN_HELD = "none", "held"
+"""In the column models of classes.csv: no generic model applies; none does until it is recorded how it is held."""
 
 SLENDEREST = 9.0
 """Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
@@ -96,6 +99,7 @@ class _Builder:
         self.material = material_of(item)
         self.found: dict[str, Estimate] = {}
         self.missing: list[str] = []
+        self.doubts: list[str] = []
 
     def build(self) -> None:
         if self.support in (Support.HUNG, Support.SUSPENDED):
@@ -130,7 +134,7 @@ class _Builder:
 
     def _standing(self) -> None:
         item = self.item
-        width, depth = self._plan()
+        width, depth, lost = self._plan()
         if width is not None and depth is not None:
             narrow = min(width, depth, key=lambda e: e.value)
             low, high = min(width.low, depth.low), min(width.high, depth.high)
@@ -145,42 +149,49 @@ class _Builder:
                 self._keep("half_base_width", _half(width))
                 self._keep("half_base_depth", _half(depth))
         cg = _measured(item.cg_height_m, "m")
-        if cg is None and item.height_m is not None:
+        if cg is None and item.height_m is not None and self.row["cg_ratio"]:
             cg = _times(self.row, "cg", item.height_m, "m", "height of the centre of gravity", "height")
         if cg is None:
-            self.missing.append("height")
+            self.missing.append("height" if self.row["cg_ratio"] else "height of the centre of gravity")
         self._keep("cg_height", cg)
         self._friction()
         self._mass()
-        self._section(width, depth)
+        if not self._section(width, depth) and self.support is Support.FASTENED:
+            # What is made fast is judged by its weakest section alone.
+            self.missing.extend(lost if self.row["section"] else ["width of its weakest section"])
+            if "mass" not in self.found:
+                self.missing.append("mass")
+        elif self.support is not Support.FASTENED:
+            self.missing.extend(lost)
         if item.frequency_hz is not None:
             self._keep("frequency", _measured(item.frequency_hz, "Hz"))
             note = "damping of the object itself: 2 % (1 to 5 %), assumed"
             self._keep("damping", _measured(item.damping, "-") or _assumed(0.02, 0.01, 0.05, "-", note, "judgement"))
 
-    def _plan(self) -> tuple[Estimate | None, Estimate | None]:
+    def _plan(self) -> tuple[Estimate | None, Estimate | None, list[str]]:
+        """Return the sides of its base, None where they are not known, and what must be recorded to know them."""
         item, row = self.item, self.row
+        assumes = bool(row["base_ratio"])
         sides: list[Estimate | None] = []
         pairs = ((item.base_width_m, item.width_m, "width"), (item.base_depth_m, item.depth_m, "depth"))
         for measured, largest, name in pairs:
             side = _measured(measured, "m")
-            if side is None and largest is not None:
+            if side is None and largest is not None and assumes:
                 side = _times(row, "base", largest, "m", f"base {name}", name)
             sides.append(side)
         width, depth = sides
         if width is None and depth is None:
-            self.missing.append("width (or diameter)")
-        elif width is None or depth is None:
+            return None, None, ["width (or diameter)"] if assumes else ["base width", "base depth"]
+        if width is None or depth is None:
             known, lost = (width, "depth") if depth is None else (depth, "width")
             if row["round"] != "yes" or known is None:
-                self.missing.append(lost)
-                return None, None
+                return None, None, [lost if assumes else f"base {lost}"]
             note = f"{lost} not recorded: taken as round"
             other = _assumed(
                 known.value, known.low, known.high, "m", note, known.source or f"classes.csv, {row['class']}"
             )
-            return (width, other) if depth is None else (other, depth)
-        return width, depth
+            return (known, other, []) if depth is None else (other, known, [])
+        return width, depth, []
 
     def _friction(self) -> None:
         item = self.item
@@ -221,7 +232,8 @@ class _Builder:
             )
         self._keep("mass", mass)
 
-    def _section(self, width: Estimate | None, depth: Estimate | None) -> None:
+    def _section(self, width: Estimate | None, depth: Estimate | None) -> bool:
+        """Keep what the stress in the weakest section hangs on; say whether all of it is known."""
         item = self.item
         where = f"materials.csv, {self.material['material']}"
         condition = 1.0 if item.condition is None else item.condition
@@ -239,7 +251,7 @@ class _Builder:
         mass, cg = self.found.get("mass"), self.found.get("cg_height")
         section = self._section_size(width, depth)
         if mass is None or cg is None or section is None:
-            return
+            return False
         shape, size, deep, count, wall, base = section
         self._keep("allowable_stress", allowable)
         height = item.section_height_m or 0.0
@@ -266,6 +278,7 @@ class _Builder:
             for name, along, across in sides:
                 value = count * rectangle_modulus(along.value, across.value, wall)
                 self._keep(name, Estimate(value, "m3", size.origin, value, value, base, size.source))
+        return True
 
     def _section_size(
         self, width: Estimate | None, depth: Estimate | None
@@ -274,9 +287,15 @@ class _Builder:
         if item.section_width_m is not None:
             size = Estimate.measured(item.section_width_m, "m")
             deep = Estimate.measured(item.section_depth_m or item.section_width_m, "m")
-            shape = item.section_shape or "rectangle"
-            wall = item.section_wall_m or 0.0
-            return shape, size, deep, item.section_count or 1, wall, f"section: {shape}, as recorded"
+            shape = SECTION_SHAPES.get(item.section_shape.strip().casefold() or "rectangle", "")
+            if shape == "hollow round" and item.section_wall_m is None:
+                self.missing.append("wall of its weakest section")
+            elif shape:
+                recorded = item.section_shape or shape
+                wall = item.section_wall_m or 0.0
+                return shape, size, deep, item.section_count or 1, wall, f"section: {recorded}, as recorded"
+            else:
+                self.doubts.append(f"section: the recorded shape {item.section_shape!r} is not known, and not used")
         if not row["section"] or width is None or depth is None:
             return None
         narrow = min(width, depth, key=lambda e: e.value)
@@ -305,17 +324,17 @@ def section_properties(shape: str, width: float, depth: float, count: int, wall:
     if shape == "ring":
         width, wall = wall, min(width, 0.5 * wall)
         shape = "round"
-    if shape in ("round", "solid round", "hollow round"):
+    if shape in ("round", "hollow round"):
         inner = max(width - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
         area = 0.25 * pi * (width**2 - inner**2)
         modulus = pi * (width**4 - inner**4) / (32.0 * width)
-    elif shape in ("rectangle", "legs"):
+    elif shape == "rectangle":
         narrow, wide = min(width, depth), max(width, depth)
         inner = max(narrow - 2.0 * wall, 0.0) * max(wide - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
         area = narrow * wide - inner
         modulus = rectangle_modulus(narrow, wide, wall)
     else:
-        raise InputError(f"section_shape {shape!r} is not known; use round, rectangle, or legs with section_count")
+        raise InputError(f"section_shape {shape!r} is not known; use round, hollow round, rectangle or ring")
     return count * area, count * modulus
 
 
@@ -345,18 +364,19 @@ def classify(item: Item, rules: Table | None = None, decided: tuple[str, str] | 
         object_class, words = decided
     row = _classes()[object_class]
     support = item.support or Support(row["support"])
-    models = tuple(m for m in row["models"].split("|") if m and m != "none")
-    if not models and item.support is None:
+    own = Support(row["support"])
+    models = () if row["models"] in (NO_MODEL, WHEN_HELD) else tuple(row["models"].split("|"))
+    if not models and (item.support is None or (row["models"] == NO_MODEL and item.support is own)):
         why = f"no generic model applies: it {row['why']}"
         return Scene(item, row["class"], words, support, (), {}, (), (why,))
-    if item.support is not None and item.support is not Support(row["support"]):
+    if item.support is not None and (item.support is not own or not models):
         models = MODELS_OF[item.support]
     elif item.frequency_hz is not None and "stress" in models:
         models = (*models, "flexible_stress")
     builder = _Builder(item, row, support)
     builder.build()
     builder.missing.extend(_unheld(item, support))
-    assumptions = [e.note for e in builder.found.values() if e.origin is Origin.ASSUMED and e.note]
+    assumptions = [e.note for e in builder.found.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
     if item.support is None:
         assumptions.insert(0, f"support: {support.value}, assumed for: {row['title'].lower()}; not recorded")
     missing = builder.missing if needs_size(models) else []
@@ -370,6 +390,11 @@ def classify(item: Item, rules: Table | None = None, decided: tuple[str, str] | 
         tuple(dict.fromkeys(assumptions)),
         tuple(missing),
     )
+
+
+def unclassified(item: Item) -> Scene:
+    """Return the scene of an object that nothing can be said of."""
+    return Scene(item, "object", "", item.support or Support.FREESTANDING, (), {})
 
 
 def _unheld(item: Item, support: Support) -> list[str]:

@@ -4,7 +4,11 @@ Whatever is raised that is no `KourosError` is a fault of Kouros, however it is 
 library is not the user's.
 """
 
+import traceback
+from pathlib import Path
 from typing import ClassVar
+
+_PACKAGE = Path(__file__).parent
 
 
 class KourosError(Exception):
@@ -19,3 +23,11 @@ class KourosError(Exception):
 
 class InputError(KourosError, ValueError):
     """A value that was given, in a call, a file or a table, and cannot be used."""
+
+
+def fault_words(problem: BaseException) -> str:
+    """Return an unexpected error in words, with the place in Kouros that it came from."""
+    own = [step for step in traceback.extract_tb(problem.__traceback__) if _PACKAGE in Path(step.filename).parents]
+    at = "".join(f" ({Path(s.filename).relative_to(_PACKAGE).as_posix()}, line {s.lineno}, {s.name})" for s in own[-1:])
+    said = str(problem)
+    return f"{type(problem).__name__}{': ' if said else ''}{said}{at}"

@@ -165,6 +165,8 @@ def _reason(model: Model, scene: Scene) -> str:
     if scene.missing:
         return f"not recorded: {', '.join(scene.missing)}"
     reason = model.applies(scene)
+    if not reason and isinstance(model.capacity, str) and model.capacity not in scene.parameters:
+        reason = f"not recorded: {model.capacity.replace('_', ' ')}"
     if not reason and model.name not in scene.models:
         return f"not required: {scene.rule.partition(': ')[2]}; it is free to move instead"
     return reason

@@ -57,6 +57,12 @@ _MISSING = {
     "width": "width_m",
     "depth": "depth_m",
     "height or suspension length": "suspension_length_m",
+    "height of the centre of gravity": "cg_height_m",
+    "base width": "base_width_m",
+    "base depth": "base_depth_m",
+    "mass": "mass_kg",
+    "width of its weakest section": "section_width_m",
+    "wall of its weakest section": "section_wall_m",
     "support": "support",
 }
 """How a scene's words for what is missing begin, and the field that would mend it."""
@@ -151,10 +157,15 @@ def _inputs(name: str) -> frozenset[str]:
     return frozenset(model.inputs) | ({model.capacity} if isinstance(model.capacity, str) else frozenset())
 
 
+def measurable_of(words: str) -> str | None:
+    """Return the field that would mend what a scene says is missing; None where no measurement would."""
+    return next((f for start, f in _MISSING.items() if words == start or words.startswith(f"{start} (")), None)
+
+
 def _missing(scene: Scene) -> list[_Trial]:
     out = []
     for words in scene.missing:
-        field = next((f for start, f in _MISSING.items() if words == start or words.startswith(f"{start} (")), None)
+        field = measurable_of(words)
         if field is not None:
             measurable = next(m for m in measurables() if m.field == field)
             out.append(_Trial(scene, measurable, frozenset(), (), f"not recorded: {words}", len(scene.models)))

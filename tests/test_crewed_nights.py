@@ -3,11 +3,14 @@
 import os
 import signal
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Barrier
 
 import pytest
 from distributed import LocalCluster
 
+from pipeline.charting import Shelf
 from pipeline.jobs import rounds
 from pipeline.settings import Settings
 
@@ -72,6 +75,34 @@ def test_a_cluster_given_by_its_address(alone: Settings, cluster: LocalCluster, 
     assert night(settings).fresh == len(OBJECTS)
     assert found(settings).assessments == found(alone).assessments
     assert files(settings) == files(alone)
+
+
+@pytest.mark.usefixtures("shared")
+def test_a_worker_with_several_threads(alone: Settings, tmp_path: Path) -> None:
+    """As `dask worker` has by default: batches that are worked on at once know nothing of each other."""
+    with LocalCluster(n_workers=1, threads_per_worker=4, processes=False, dashboard_address=":0") as made:
+        settings = museum(tmp_path / "threads", OBJECTS)
+        execution = settings.execution.model_copy(update={"cluster": made.scheduler_address})
+        settings = settings.model_copy(update={"execution": execution})
+        assert night(settings).fresh == len(OBJECTS)
+    assert found(settings).assessments == found(alone).assessments
+    assert files(settings) == files(alone)
+
+
+def test_each_thread_remembers_the_histories_of_its_own_work(tmp_path: Path) -> None:
+    """Before: whoever began last was remembered by all, and whoever ended first was forgotten by all."""
+    shelf, both = Shelf(), Barrier(2)
+
+    def own(file: Path) -> bool:
+        with shelf.remembering(file):
+            both.wait(10)
+            mine = shelf.histories
+            both.wait(10)
+        both.wait(10)
+        return mine is not None and shelf.histories is None and mine._file == file
+
+    with ThreadPoolExecutor(2) as pool:
+        assert list(pool.map(own, [tmp_path / "a.npz", tmp_path / "b.npz"])) == [True, True]
 
 
 @pytest.mark.usefixtures("shared")

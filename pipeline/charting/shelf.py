@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection, Iterator, Set
 from concurrent.futures import Future
 from contextlib import contextmanager
 from pathlib import Path
-from threading import Lock
+from threading import Lock, local
 
 from pipeline.charting.histories import Histories
 from pipeline.charting.keeping import keep, prune, recall
@@ -26,9 +26,15 @@ class Shelf:
 
     def __init__(self, folder: Path | None = None, kept: int = KEPT, *, admitted: Set[str] | None = None) -> None:
         self._folder, self._kept, self._admitted = folder, kept, admitted
-        self.histories: Histories | None = None
+        self._remembered = local()
         self._lock = Lock()
         self._charts: OrderedDict[str, Future[ResponseChart]] = OrderedDict()
+
+    @property
+    def histories(self) -> Histories | None:
+        """Those that this thread takes over and keeps (see `remembering`): others may work on other objects at once."""
+        found: Histories | None = getattr(self._remembered, "histories", None)
+        return found
 
     def get(self, key: str, axis: ChartAxis, build: Callable[[], ResponseChart]) -> ResponseChart:
         """Return the chart of that identity: from memory, from the folder, or built."""
@@ -61,12 +67,12 @@ class Shelf:
 
         file : None: until the end only
         """
-        self.histories = histories = Histories(file)
+        self._remembered.histories = histories = Histories(file)
         try:
             yield
             histories.keep()
         finally:
-            self.histories = None
+            del self._remembered.histories
 
     def pays(self, group: str, key: str, axis: ChartAxis, asking: int, least: int) -> bool:
         """Say whether a chart is to be used by some who could be integrated too.

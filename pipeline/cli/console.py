@@ -94,6 +94,10 @@ def summary_lines(summary: "Summary") -> list[str]:
     lines += [f"  {'':>{width}}    {number:>4}  {_short(reason)}" for reason, number in reasons[:5]]
     if len(reasons) > 5:
         lines.append(f"  {'':>{width}}    {sum(n for _, n in reasons[5:]):>4}  for other reasons, named in the report")
+    if summary.faults:
+        lines.append(
+            count(summary.faults, "of all these met a fault of Kouros: see the log, and please tell its makers")
+        )
     lines += ["", "  Recommended, each run again and passing:"]
     lines += [count(number, title) for title, number in summary.measures.items()]
     if summary.worth is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from pipeline.records import Problem
+from pipeline.records import SECTION_SHAPES, Problem
 
 HEAVIEST = 22_600.0
 """Density of osmium [kg/m3], the heaviest thing there is: no object is heavier than a box of it."""
@@ -36,6 +36,11 @@ def contradictions(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
             message = f"the base is {value:.4g} m wide, the object at its widest {across:.4g} m"
             remedy = "measure both again; the base is used, as overall sizes are often given without it"
             out.append(("", Problem(field, message, remedy)))
+    shape = str(values.get("section_shape") or "").strip()
+    if shape and shape.casefold() not in SECTION_SHAPES:
+        message = f"{shape[:40]!r} is no shape of a section that Kouros knows"
+        remedy = f"record one of {', '.join(sorted(set(SECTION_SHAPES.values())))}; it is not used until then"
+        out.append(("", Problem("section_shape", message, remedy)))
     out += _density(values)
     return out
 

@@ -17,6 +17,7 @@ from pipeline.collection.listing import Listing
 from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
 from pipeline.jobs.desk import Brief, ChartErrand, motions_of
+from pipeline.jobs.faults import sound
 from pipeline.jobs.levels import floors_of, notes
 from pipeline.jobs.pictures import Pictures
 from pipeline.jobs.reporting import manner
@@ -140,7 +141,9 @@ def popular(
     """
     every = max(1, len(chosen) // SAMPLE)
     sample = catalogue.items([one.object_number for one in chosen[::every]])
-    scenes = [classify(item, rules) for item in sample.values()]
+    # What cannot even be planned for is told by the sheet that it is on.
+    scenes = sound(lambda some: [classify(item, rules) for item in some], list(sample.values()))
+    scenes = sound(lambda some: (plan(some, x_azimuth), plan(padded(some, means), x_azimuth)) and some, scenes)
     asking: dict[str, float] = {}
     found: dict[str, Group] = {}
     for some, share in ((scenes, 1.0), (padded(scenes, means), PADDED)):

@@ -6,7 +6,7 @@ back depends on these two alone: the same on this machine and on another, whoeve
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from hashlib import sha256
 from pathlib import Path
 from time import perf_counter
@@ -20,26 +20,31 @@ from pipeline.execute import Threads
 from pipeline.execute.memory import give_back
 from pipeline.fragility.objects import fragilities
 from pipeline.jobs.doubts import now, standing
+from pipeline.jobs.faults import Fault, apart, each_apart, fault, fitting, unassessed
 from pipeline.jobs.levels import Storey
 from pipeline.jobs.twins import Known, Twins, as_own, likeness
 from pipeline.jobs.workspace import HISTORIES
 from pipeline.mitigate import Means, advise
 from pipeline.mitigate.bench import Carriage
 from pipeline.mitigate.installed import Measure, Placed, assess_above, placed
+from pipeline.models import model_named
 from pipeline.neighbours import neighbours
 from pipeline.records import (
     Assessment,
     Decision,
     DecisionKind,
+    Finding,
     Found,
     Fragility,
     Item,
     Motion,
     RunRecord,
+    Scene,
     Sheet,
     Silent,
     Standing,
     Support,
+    Wish,
 )
 from pipeline.report.language import language
 from pipeline.report.sheets import Drawn, Pen
@@ -208,17 +213,19 @@ def find_kinds(brief: Brief, errand: KindErrand) -> Parcel:
     first: dict[Hashable, int] = {}
     chosen, same = {}, {}
     for kind, one in zip(errand.kinds, _placed(brief, storey, read_packed(errand.records), {}), strict=True):
-        like = likeness(one.scene)
-        if like is None:
+        like = likeness(one.scene) if isinstance(one, Placed) else None
+        if like is None or not isinstance(one, Placed):
             continue
         if first.setdefault(like, kind) == kind:
             chosen[kind] = one
         else:
             same[kind] = first[like]
     with brief.shelf.remembering(brief.memory("kinds", errand.floor, errand.part)):
-        known = _assessed(brief, storey, list(chosen.values()))
-    found = Parcel.of(Known, dict(zip(chosen, known, strict=True)), same)
-    del chosen, known
+        known = _each_assessed(brief, storey, list(chosen.values()))
+    # What Kouros failed on is told by the sheet that it is on.
+    sound = {kind: one for kind, one in zip(chosen, known, strict=True) if not isinstance(one, Exception)}
+    found = Parcel.of(Known, sound, {kind: of for kind, of in same.items() if of in sound})
+    del chosen, known, sound
     # What follows, sheet by sheet, takes far less.
     give_back()
     return found
@@ -243,21 +250,23 @@ class Done:
     drawn    : the page, where it was wanted
     standing : the decisions about its objects as they stand
     seconds  : what finding out what is worth measuring cost
+    faults   : the objects that Kouros failed on just now
     """
 
     result: Encoded | None
     drawn: Drawn | None
     standing: tuple[Standing, ...]
     seconds: float = 0.0
+    faults: tuple[Fault, ...] = ()
 
 
 def work(brief: Brief, batch: Batch) -> tuple[Done, ...]:
     """Do what there is to do for some sheets of one floor; what must be found is found together, which is quicker.
 
-    raises : StoreError and ReportError naming the object, for what can neither be kept nor shown
+    What Kouros fails on costs the object its answer, and is told (see `pipeline.jobs.faults`).
     """
     fresh = [errand for errand in batch.errands if errand.found is None]
-    seconds = 0.0
+    seconds, faults = 0.0, list[Fault]()
     results: dict[str, tuple[Found, Encoded]] = {}
     if fresh:
         items = [read_packed(errand.records) for errand in fresh]
@@ -272,19 +281,37 @@ def work(brief: Brief, batch: Batch) -> tuple[Done, ...]:
                 twins.learn(unpacked(earlier))
         sheets = ((e.sheet.gallery, e.sheet.on_display, e.sheet.number, e.floor) for e in fresh)
         with brief.shelf.remembering(brief.memory(*sheets)):
-            whole, seconds = find(brief, brief.storeys[floor], everything, decisions, twins)
+            whole, seconds, faults = find(brief, brief.storeys[floor], everything, decisions, twins)
         for errand, found in zip(fresh, parted(whole, [len(some) for some in items]), strict=True):
-            results[errand.sheet.key] = (found, encode(errand.sheet.key, errand.basis, found, tally))
+            results[errand.sheet.key] = fitting(found, partial(_encoded, brief, errand), faults)
     done = []
+    # What draws is made outside of any object's guard: a language without a catalogue is nobody's fault here.
+    pen = brief.pen if any(errand.draw for errand in batch.errands) else None
     for errand in batch.errands:
         known = errand.found
         found = results[errand.sheet.key][0] if known is None else unpacked(known)
         result = results[errand.sheet.key][1] if known is None else None
         there = stand(brief.head, found, errand)
-        drawn = brief.pen.draw(errand.sheet, found, there) if errand.draw else None
-        done.append(Done(result, drawn, there, seconds))
-        seconds = 0.0
+        drawn = None
+        if pen is not None and errand.draw:
+            shown, drawn = fitting(found, partial(_drawn, pen, errand.sheet, there), faults)
+            if shown is not found and result is not None:
+                result = _encoded(brief, errand, shown)
+        done.append(Done(result, drawn, there, seconds, tuple(faults)))
+        seconds, faults = 0.0, []
     return tuple(done)
+
+
+def _encoded(brief: Brief, errand: Errand, found: Found) -> Encoded:
+    key = errand.sheet.key
+    if any(assessment.fault for assessment in found.assessments):
+        # Under a key of its own: what failed is tried again every night, whatever it depends on.
+        key = f"{key}:{brief.head.run_id}"
+    return encode(key, errand.basis, found, tally)
+
+
+def _drawn(pen: Pen, sheet: Sheet, decisions: Sequence[Standing], found: Found) -> Drawn:
+    return pen.draw(sheet, found, decisions)
 
 
 def parted(whole: Found, sizes: Sequence[int]) -> list[Found]:
@@ -331,40 +358,79 @@ def place(item: Item, rules: Table | None, decisions: Sequence[Decision]) -> Pla
 
 def find(
     brief: Brief, storey: Storey, items: Sequence[Item], decisions: Sequence[Decision], twins: Twins
-) -> tuple[Found, float]:
+) -> tuple[Found, float, list[Fault]]:
     """Run everything that objects on one floor require under its motions, judge it and advise.
 
     decisions : those in force: classes and installed measures change what is run
     twins     : what is known of objects that these may be like
-    returns   : what was found, and the seconds that finding out what is worth measuring cost
+    returns   : what was found, the seconds that finding out what is worth measuring cost, and what Kouros failed on
     """
     about: dict[str, list[Decision]] = {}
     for decision in decisions:
         about.setdefault(decision.object_number, []).append(decision)
+    faults: list[Fault] = []
     objects = _placed(brief, storey, items, about)
-    whole = _found(_known(brief, storey, objects, [item.object_number in about for item in items], twins))
-    scenes, findings = [a.scene for a in whole.assessments], [a.findings for a in whole.assessments]
+    sound = [one for one in objects if isinstance(one, Placed)]
+    decided = [one.scene.item.object_number in about for one in sound]
+    known = iter(_known(brief, storey, sound, decided, twins, faults))
+    every = [
+        next(known) if isinstance(one, Placed) else _failed(item, one, faults)
+        for item, one in zip(items, objects, strict=True)
+    ]
+    assessments = tuple(assessment for assessment, _ in every)
     began = perf_counter()
-    wished = None
+    wished: tuple[Wish, ...] | None = None
     if brief.surveyed:
         fidelity, step = _integrating(brief), brief.analysis.azimuth_step
         # Each trial is asked once: a chart would not pay.
-        asked = wishes(scenes, findings, storey.shaking, brief.executor, Silent(), fidelity=fidelity, azimuth_step=step)
+        assessments, asked = each_apart(
+            assessments,
+            lambda scenes, found: wishes(
+                scenes, found, storey.shaking, brief.executor, Silent(), fidelity=fidelity, azimuth_step=step
+            ),
+            "what is worth measuring on it is not known",
+            faults,
+        )
         wished = tuple(in_order(asked))
     seconds = perf_counter() - began if brief.surveyed else 0.0
-    return replace(whole, wishes=wished, spacings=tuple(neighbours(scenes, findings, storey.shaking))), seconds
+    assessments, spacings = each_apart(
+        assessments,
+        lambda scenes, found: neighbours(scenes, found, storey.shaking),
+        "how near its neighbours come is not known",
+        faults,
+    )
+    needing = {a.scene.item.object_number: counts for a, counts in every if counts}
+    return Found(assessments, wished, tuple(spacings), needing), seconds, faults
 
 
 def _placed(
     brief: Brief, storey: Storey, items: Sequence[Item], about: Mapping[str, Sequence[Decision]]
-) -> list[Placed]:
-    objects = [place(item, brief.rules, about.get(item.object_number, ())) for item in items]
-    return [replace(one, scene=replace(one.scene, floor=storey.name)) for one in objects]
+) -> list[Placed | Exception]:
+    """Return each object as it stands, or the error that placing it came to."""
+
+    def some(these: Sequence[Item]) -> list[Placed]:
+        objects = [place(item, brief.rules, about.get(item.object_number, ())) for item in these]
+        return [replace(one, scene=replace(one.scene, floor=storey.name)) for one in objects]
+
+    return apart(some, items, lambda item: item.support)
 
 
-def _found(known: Sequence[Known]) -> Found:
-    assessments = tuple(assessment for assessment, _ in known)
-    return Found(assessments, needing={a.scene.item.object_number: counts for a, counts in known if counts})
+def _failed(item: Item | Scene, problem: Exception, faults: list[Fault]) -> Known:
+    """Return what is said of an object that Kouros failed on."""
+    told = fault(item if isinstance(item, Item) else item.item, problem)
+    faults.append(told)
+    return unassessed(item, told), {}
+
+
+def _each_assessed(brief: Brief, storey: Storey, objects: Sequence[Placed]) -> list[Known | Exception]:
+    """Return what is found of each object, or the error that finding it came to."""
+    return apart(
+        lambda some: _assessed(brief, storey, some),
+        objects,
+        lambda one: (one.scene.object_class, one.scene.support),
+        # What is advised for a case depends on all that stand in it.
+        lambda one: (one.scene.item.gallery, one.scene.item.case) if one.scene.item.case.strip() else None,
+    )
 
 
 def _integrating(brief: Brief) -> str:
@@ -372,7 +438,7 @@ def _integrating(brief: Brief) -> str:
 
 
 def _known(
-    brief: Brief, storey: Storey, objects: Sequence[Placed], decided: Sequence[bool], twins: Twins
+    brief: Brief, storey: Storey, objects: Sequence[Placed], decided: Sequence[bool], twins: Twins, faults: list[Fault]
 ) -> list[Known]:
     """Return what is found of each object, where several are alike that of the first."""
     likes: list[Hashable] = []
@@ -385,11 +451,14 @@ def _known(
     for at, like in enumerate(likes):
         if like not in known:
             fresh.setdefault(like, at)
-    own = dict(zip(fresh, _assessed(brief, storey, [objects[at] for at in fresh.values()]), strict=True))
-    for like, (assessment, needing) in own.items():
+    own = _each_assessed(brief, storey, [objects[at] for at in fresh.values()])
+    for (like, at), came in zip(fresh.items(), own, strict=True):
+        if isinstance(came, Exception):
+            known[like] = _failed(objects[at].scene, came, faults)
+            continue
+        known[like] = came
         if not isinstance(like, int):
-            twins.note(like, assessment, needing)
-    known |= own
+            twins.note(like, *came)
     out = []
     for at, (like, one) in enumerate(zip(likes, objects, strict=True)):
         assessment, needing = known[like]
@@ -433,7 +502,19 @@ def _assessed(brief: Brief, storey: Storey, objects: Sequence[Placed]) -> list[K
         # What an isolator passes on would have to be scaled too.
         shown = [s.item.on_display and s.support is not Support.ISOLATED for s in scenes]
         curves = fragilities(scenes, plan.work, storey.stripes, executor, told, chosen=shown)
+    scenes = [_needing(scene, those) for scene, those in zip(scenes, findings, strict=True)]
     return [
         (Assessment(scene, tuple(those), tuple(advised), curve), counts)
         for scene, those, advised, curve, counts in zip(scenes, findings, advice, curves, needing, strict=True)
     ]
+
+
+def _needing(scene: Scene, findings: Sequence[Finding]) -> Scene:
+    """Say what is missing where none of an object's models could be run."""
+    if findings or scene.missing:
+        return scene
+    titles = [model_named(name).title for name in scene.models]
+    reasons = dict.fromkeys(scene.skipped[title] for title in titles if title in scene.skipped)
+    return replace(
+        scene, missing=(f"what its models need: {'; '.join(reasons) or 'none applies to it as it is held'}",)
+    )

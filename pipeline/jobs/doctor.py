@@ -1,8 +1,9 @@
 """Whether the next night can run, and what to mend if not."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from time import monotonic
 
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.collection.sources.opening import is_database
@@ -10,7 +11,11 @@ from pipeline.jobs import checkup
 from pipeline.jobs.lasting import mapping_of
 from pipeline.jobs.secrets import hider
 from pipeline.jobs.workspace import Workspace, open_workspace
+from pipeline.records import Item
 from pipeline.settings import Settings, load_settings
+
+LONGEST = 10.0
+"""Seconds that objects are tried for: some 100,000 of them."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +52,7 @@ def _each(settings: Settings, workspace: Workspace | None) -> list[Diagnosis]:
         looks += [
             ("measures", lambda: _means(workspace)),
             ("inventory", lambda: _inventory(workspace)),
+            ("objects", lambda: _objects(workspace)),
         ]
     looks += checkup.looks(settings, workspace)
     hide = hider(settings)
@@ -110,3 +116,31 @@ def _inventory(workspace: Workspace) -> tuple[str, str]:
     if doubts:
         return "warning", "; ".join(doubts)
     return "ok", f"{len(items)} objects, {shown} on display, from {info.source} on {info.imported_at}"
+
+
+def _objects(workspace: Workspace) -> tuple[str, str]:
+    """Try on every object what comes before the models: its class, its numbers, its measures, what is to be run."""
+    from pipeline.jobs.deciding import decided
+    from pipeline.jobs.desk import place
+    from pipeline.jobs.faults import apart, fault
+    from pipeline.plan import plan
+
+    items, decisions = [item for item in read_inventory(workspace.engine) if item.on_display], decided(workspace)
+
+    def tried(some: Sequence[Item]) -> Sequence[Item]:
+        plan([place(item, workspace.rules, decisions.get(item.object_number, ())).scene for item in some])
+        return some
+
+    bad, until, looked = [], monotonic() + LONGEST, 0
+    while looked < len(items) and monotonic() < until:
+        some = items[looked : looked + 1000]
+        looked += len(some)
+        found = zip(some, apart(tried, some, lambda item: item.support), strict=True)
+        bad += [fault(item, problem) for item, problem in found if isinstance(problem, Exception)]
+    text = f"{looked:,} of {len(items):,} on display tried: each can be classed and planned for"
+    if not bad:
+        return "ok", text
+    return "warning", (
+        f"Kouros fails on {len(bad):,} of {looked:,} objects, such as {bad[0].object_number}: {bad[0].words}; "
+        "a night goes on without them, but please tell its makers"
+    )

@@ -12,6 +12,7 @@ from pipeline.collection.listing import Listing
 from pipeline.errors import InputError
 from pipeline.jobs.briefing import admit, brief_for
 from pipeline.jobs.deciding import decided
+from pipeline.jobs.faults import LIKE
 from pipeline.jobs.importing import import_collection, source_of
 from pipeline.jobs.lasting import remember, unchanged
 from pipeline.jobs.outcome import write_summary
@@ -51,6 +52,7 @@ class Summary:
     worth         : how many measurements would settle a verdict, None where that was not asked
     survey_seconds: what asking cost
     missing       : why objects could not be assessed, with how many of each
+    faults        : how many objects Kouros itself failed on; the log has the tracebacks
     decisions     : how many of each kind are in force
     doubted       : those of them that must be looked at again, with the reasons
     efforts       : what the verdicts of each model took, see `pipeline.climb.Effort`
@@ -75,6 +77,7 @@ class Summary:
     measures: Mapping[str, int]
     missing: Mapping[str, int]
     first: Sequence[str]
+    faults: int = 0
     fresh: int = 0
     worth: int | None = None
     survey_seconds: float = 0.0
@@ -133,6 +136,7 @@ def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool)
         return summarise(_ended(night, chosen), night.sheets, found)
     with night.edition() as edition:
         found = night.publish(edition, progress)
+        _stand_by(night, found)
         head = _ended(night, chosen)
         # A part is not compared: what was left out of it has not changed.
         before = [] if chosen else whole_runs(engine)[:1]
@@ -152,6 +156,18 @@ def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool)
     if latest is not None:
         mark_good(workspace.settings, summary)
     return summary
+
+
+def _stand_by(night: Round, found: Tally) -> None:
+    """Refuse a night in which Kouros failed on every object that it assessed: that is no object's doing.
+
+    raises : RuntimeError with the first failure; the last report stays
+    """
+    answered = sum(number for state, number in found.states.items() if state != "unknown")
+    if night.faults and not answered and found.faults > LIKE:
+        raise RuntimeError(
+            f"nothing could be assessed: Kouros failed on {found.faults:,} objects: {night.faults[0].words}"
+        )
 
 
 def _ended(night: Round, chosen: Selection) -> RunRecord:
@@ -264,6 +280,7 @@ def summarise(head: RunRecord, sheets: Sequence[Sheet], found: Tally) -> Summary
         measures=found.measures,
         missing=found.missing,
         first=[f"{u.object_number}  {u.title[:48]}  ({u.gallery}): {u.outcome}" for u in _unsettled(head, found)],
+        faults=found.faults,
         worth=found.worth if found.surveyed else None,
         survey_seconds=float(head.settings.get(SURVEY_SECONDS, 0.0)),
         decisions=dict(Counter(s.decision.kind.value for s in head.decisions)),

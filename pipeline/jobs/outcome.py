@@ -3,13 +3,12 @@
 import json
 import math
 import os
-import traceback
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pipeline.errors import KourosError
+from pipeline.errors import KourosError, fault_words
 from pipeline.records import RunChanges
 
 if TYPE_CHECKING:
@@ -20,8 +19,6 @@ SUMMARY = "summary.json"
 
 LISTED = 1000
 """Changes of each kind that the file lists; `kouros diff --json` has all."""
-
-_PACKAGE = Path(__file__).resolve().parents[1]
 
 _KINDS = ("added", "removed", "moved", "inputs", "verdicts", "motions", "decisions", "settings", "versions")
 
@@ -83,13 +80,10 @@ def words_of(problem: BaseException) -> str:
     """Return an error in words: what people can mend as it says; a fault of Kouros as such, with its place."""
     if isinstance(problem, KourosError) or not isinstance(problem, Exception):
         return str(problem)
-    steps = traceback.extract_tb(problem.__traceback__)
-    own = [step for step in steps if _PACKAGE in Path(step.filename).resolve().parents]
-    at = "".join(f", {Path(s.filename).resolve().relative_to(_PACKAGE)}, line {s.lineno} ({s.name})" for s in own[-1:])
-    kind = type(problem).__name__
+    hint = "run again with --debug for the traceback"
     if isinstance(problem, OSError) and problem.errno is not None:
-        return f"{problem} ({kind}{at}; run again with --debug for the traceback)"
-    return f"a fault of Kouros, not of yours: {kind}: {problem}{at} (run again with --debug for the traceback)"
+        return f"{problem} ({type(problem).__name__}; {hint})"
+    return f"a fault of Kouros, not of yours: {fault_words(problem)}; {hint}"
 
 
 def write_summary(summary: "Summary", folder: Path) -> None:

@@ -1,5 +1,6 @@
 """One round through the sheets of a collection: which have results, who finds the others, what becomes of all."""
 
+import logging
 from collections import Counter
 from collections.abc import Callable, Container, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
@@ -16,6 +17,8 @@ from pipeline.execute.crew import Crew, cores, crew
 from pipeline.execute.memory import give_back
 from pipeline.jobs.desk import Batch, Brief, ChartErrand, Done, Errand, KindErrand, build, find_kinds, stand, work
 from pipeline.jobs.doubts import now, standing
+from pipeline.jobs.faults import Fault
+from pipeline.jobs.journal import note
 from pipeline.jobs.levels import floor_name
 from pipeline.jobs.sheets import Keys, Part, cut
 from pipeline.jobs.versions import rules_digest
@@ -111,6 +114,7 @@ class Round:
         self.fresh = sum(len(piece.part.objects) for piece in self._pieces if piece.kept is None)
         self.seconds = 0.0
         self.charts: Sequence[ChartErrand] = ()
+        self.faults: list[Fault] = []
         self._tallies: list[Tally] = []
         self._sheets: list[Sheet] = []
 
@@ -304,8 +308,19 @@ class Round:
         if came is not None:
             piece.there = came.standing
             self.seconds += came.seconds
+            for one in came.faults:
+                note(
+                    "object.failed",
+                    level=logging.ERROR,
+                    object=one.object_number,
+                    message=one.words,
+                    traceback=one.traceback,
+                )
+            self.faults.extend(came.faults)
             if came.result is not None:
-                sheet, tally = replace(sheet, counts=came.result.counts), came.result.tally
+                # Perhaps under a key of its own.
+                piece.key = came.result.key
+                sheet, tally = replace(self._sheet(piece), counts=came.result.counts), came.result.tally
         if tally is not None:
             self._tallies.append(tally)
         self._sheets.append(sheet)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pipeline.charting import Shelf
 from pipeline.classify import classify
 from pipeline.collection.inventory import read_inventory
+from pipeline.jobs.faults import sound
 from pipeline.jobs.records import desk
 from pipeline.jobs.workspace import KEPT, UsageError, charts_of, open_workspace
 from pipeline.kernels import KERNEL_VERSION
@@ -159,7 +160,7 @@ def measure(
     error   : against a step TRUTH times finer than the coarsest, and directions every AZIMUTH_TRUTH degrees
     """
     chosen = [model_named(name) for name in models] or list(MODELS)
-    scenes = [classify(item) for item in items]
+    scenes = sound(lambda some: [classify(item) for item in some], items)
     samples, settings = [], []
     shelf = Shelf() if charts is None else charts
     for done, model in enumerate(chosen):

@@ -8,8 +8,10 @@ from collections import OrderedDict
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import replace
 from operator import attrgetter
+from threading import Lock
 
 from pipeline.collection.record import INDIVIDUAL
+from pipeline.jobs.faults import Fault, unassessed
 from pipeline.records import ITEM_FIELDS, Assessment, Found, Scene, Support
 
 MOST = 100_000
@@ -43,6 +45,8 @@ class Twins:
     def __init__(self, most: int = MOST) -> None:
         self._most = most
         self._known: OrderedDict[Hashable, Known] = OrderedDict()
+        # A worker of a museum's own cluster may have several threads.
+        self._lock = Lock()
 
     def get(self, like: Hashable) -> Known | None:
         """Return what is known of such an object."""
@@ -50,9 +54,10 @@ class Twins:
 
     def note(self, like: Hashable, assessment: Assessment, needing: Mapping[str, int]) -> None:
         """Take down what was found of an object."""
-        self._known[like] = (assessment, needing)
-        if len(self._known) > self._most:
-            self._known.popitem(last=False)
+        with self._lock:
+            self._known[like] = (assessment, needing)
+            if len(self._known) > self._most:
+                self._known.popitem(last=False)
 
     def learn(self, found: Found) -> None:
         """Take down what an earlier night found, under the same shaking and by the same rules and code."""
@@ -69,8 +74,10 @@ class Twins:
 def as_own(scene: Scene, twin: Assessment) -> Assessment:
     """Return what was found of a twin as found of this object."""
     number, gallery = scene.item.object_number, scene.item.gallery
+    if twin.fault:
+        return unassessed(scene, Fault(number, twin.fault, ""))
     return Assessment(
-        replace(scene, skipped=twin.scene.skipped),
+        replace(scene, skipped=twin.scene.skipped, missing=twin.scene.missing),
         tuple(replace(one, object_number=number, gallery=gallery) for one in twin.findings),
         tuple(replace(one, object_number=number, gallery=gallery) for one in twin.recommendations),
         tuple(replace(one, object_number=number) for one in twin.fragilities),

@@ -111,9 +111,9 @@ def placed(scene: Scene, measures: Sequence[Measure]) -> Placed:
             # What is on a rotational isolator is mounted on it; on another it stands as it stood.
             stands = Placed(after, held(before) if measure.name == "rotational_isolator" else before, measure.name)
         elif stands.above is not None:
-            stands = replace(stands, above=_needing(after))
+            stands = replace(stands, above=after)
         else:
-            stands = Placed(_needing(after))
+            stands = Placed(after)
     return stands
 
 
@@ -127,14 +127,6 @@ def _told(before: Scene, after: Scene, words: str) -> Scene:
     kept = tuple(text for text in after.assumptions if text not in old)
     rule = f"{after.rule}; it stands as {words}" if after.support is not before.support else after.rule
     return replace(after, parameters={**after.parameters, **told}, assumptions=kept, rule=rule)
-
-
-def _needing(scene: Scene) -> Scene:
-    """Say what is missing where the measure leaves models none of which can be run."""
-    reasons = [model_named(name).applies(scene) for name in scene.models]
-    if scene.missing or not reasons or not all(reasons):
-        return scene
-    return replace(scene, missing=(f"what its models need with the measure in place ({reasons[0]})",))
 
 
 def assess_above(

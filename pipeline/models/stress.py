@@ -107,10 +107,13 @@ def _say(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
     return f"Tilt test: would it break if it were tilted {row['tilt']:.0f} degrees?"
 
 
-def _push(parameters: Mapping[str, float], tension: float) -> float:
-    # The acceleration behind a tension: the inverse of section_stresses.
+def _mark(frequency: float, parameters: Mapping[str, float], tension: float) -> tuple[str, float, float] | None:
+    # The acceleration behind a tension: the inverse of section_stresses; none where nothing is above the section.
+    moment = parameters["mass"] * parameters["lever"]
+    if moment <= 0.0:
+        return None
     weight = parameters["mass"] * G / parameters["area"]
-    return (tension + weight) * parameters["section_modulus"] / (parameters["mass"] * parameters["lever"])
+    return "spectrum", frequency, (tension + weight) * parameters["section_modulus"] / moment
 
 
 def _holds(scene: Scene, flexible: bool) -> str:
@@ -147,7 +150,7 @@ STRESS = Model(
     certificate=lambda motion, parameters: _run(motion, parameters, 1, False)["tension"],
     exact=True,
     uncharted="its closed form costs less than a lookup",
-    mark=lambda parameters, demand: ("spectrum", RIGID_FREQUENCY, _push(parameters, demand)),
+    mark=lambda parameters, demand: _mark(RIGID_FREQUENCY, parameters, demand),
     demand="tension",
     capacity="allowable_stress",
     applies=lambda scene: _holds(scene, flexible=False),
@@ -171,7 +174,7 @@ FLEXIBLE_STRESS = Model(
     run=_run_flexible,
     bound=_bound_flexible,
     say_screen=_say,
-    mark=lambda parameters, demand: ("spectrum", parameters["frequency"], _push(parameters, demand)),
+    mark=lambda parameters, demand: _mark(parameters["frequency"], parameters, demand),
     uncharted=OSCILLATES,
     demand="tension",
     capacity="allowable_stress",

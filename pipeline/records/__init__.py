@@ -21,11 +21,22 @@ from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress, Silent
 from pipeline.records.result import Assessment, Check, Finding, Recommendation, Spacing, Verdict
 from pipeline.records.run import RunRecord
-from pipeline.records.scene import ITEM_FIELDS, Estimate, Item, Origin, Problem, Provenance, Scene, Support
+from pipeline.records.scene import (
+    ITEM_FIELDS,
+    SECTION_SHAPES,
+    Estimate,
+    Item,
+    Origin,
+    Problem,
+    Provenance,
+    Scene,
+    Support,
+)
 from pipeline.records.wish import Wish
 
 __all__ = [
     "ITEM_FIELDS",
+    "SECTION_SHAPES",
     "Assessment",
     "Axis",
     "Basis",

@@ -61,6 +61,7 @@ class Tally:
     first    : the worst objects on display, the worst first
     efforts  : by the title of each model, by what its verdicts were decided
     worth, waste, wished : measurements that would settle something, that would not, and the objects of the former
+    faults   : objects that Kouros itself failed on
     """
 
     states: Mapping[str, int]
@@ -75,6 +76,7 @@ class Tally:
     worth: int = 0
     waste: int = 0
     wished: int = 0
+    faults: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -105,12 +105,14 @@ class Assessment:
     """One object with everything that was found about it.
 
     fragilities : one for each way to fail, what fails first to begin with; none where they were not asked for
+    fault       : where Kouros itself failed on the object, what went wrong and where; "" where it did not
     """
 
     scene: Scene
     findings: tuple[Finding, ...]
     recommendations: tuple[Recommendation, ...]
     fragilities: tuple[Fragility, ...] = ()
+    fault: str = ""
 
     @property
     def assessed(self) -> bool:

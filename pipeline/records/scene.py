@@ -25,6 +25,14 @@ class Origin(StrEnum):
     ASSUMED = "assumed"
 
 
+SECTION_SHAPES: Mapping[str, str] = {
+    **dict.fromkeys(("round", "circle", "circular", "solid round"), "round"),
+    **dict.fromkeys(("hollow round", "ring", "tube"), "hollow round"),
+    **dict.fromkeys(("rectangle", "rectangular", "square", "legs"), "rectangle"),
+}
+"""What a museum may call the shape of a cross-section, and which shape that is."""
+
+
 @dataclass(frozen=True, slots=True)
 class Problem:
     """Something wrong with a record: which field, what is wrong, and what mends it."""

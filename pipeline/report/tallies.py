@@ -31,6 +31,7 @@ def tally(found: Found) -> Tally:
         worth=len(worth),
         waste=len(found.wishes or ()) - len(worth),
         wished=len({w.object_number for w in worth}),
+        faults=sum(bool(a.fault) for a in found.assessments),
     )
 
 
@@ -50,6 +51,7 @@ def total(tallies: Iterable[Tally]) -> Tally:
         worth=sum(t.worth for t in listed),
         waste=sum(t.waste for t in listed),
         wished=sum(t.wished for t in listed),
+        faults=sum(t.faults for t in listed),
     )
 
 
