@@ -5,6 +5,7 @@ from typing import Any
 
 from sqlalchemy import Engine, MetaData, create_engine, event
 from sqlalchemy.engine import URL, make_url
+from sqlalchemy.exc import ArgumentError
 from sqlalchemy.pool import NullPool
 
 from pipeline.errors import InputError
@@ -28,10 +29,17 @@ METADATA = MetaData(
 def database_url(where: str | Path) -> URL:
     """Turn a path or a URL into a database URL; a path means an SQLite file.
 
-    raises : ValueError for a URL of a kind that Kouros does not keep its own tables in
+    raises : InputError for what is no URL, and for one of a kind that Kouros does not keep its own tables in
     """
     text = str(where)
-    url = make_url(text) if "://" in text else URL.create("sqlite", database=text)
+    try:
+        url = make_url(text) if "://" in text else URL.create("sqlite", database=text)
+    except (ArgumentError, ValueError):
+        # The address may hold a password: neither it nor what is said of it is repeated.
+        raise InputError(
+            "the address of Kouros's own database cannot be read; write postgresql://user:${NAME}@host:port/database, "
+            "with what is special in a password percent-encoded, or the path of an SQLite file"
+        ) from None
     if url.get_backend_name() not in {"sqlite", "postgresql"}:
         raise InputError(f"Kouros keeps its own tables in SQLite or PostgreSQL, not in {url.get_backend_name()!r}")
     return url.set(drivername="postgresql+psycopg") if url.drivername == "postgresql" else url
