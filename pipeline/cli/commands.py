@@ -87,6 +87,7 @@ def survey(options: Options, galleries: tuple[str, ...], out: Path | None, as_js
     click.echo(f"{found.quantities:,} measurements on {found.objects:,} objects are worth making: {found.path}")
     click.echo(f"{found.waste:,} others would settle nothing wherever in their range they fall, and are left out")
     listed("first", [f"{w.object_number} ({w.gallery}): {w.field}: {w.reason}" for w in found.wishes if not w.waste])
+    listed("Kouros failed on", [f"{one.object_number}: {one.words}; please tell its makers" for one in found.faults])
 
 
 @click.command()

@@ -1,7 +1,9 @@
 """What to measure first, as a workbook to print, fill in and import again."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 
 from pipeline.assess import assess
@@ -12,24 +14,27 @@ from pipeline.collection.reading import Reading, read_items
 from pipeline.execute import Threads
 from pipeline.jobs.deciding import decided
 from pipeline.jobs.desk import place
+from pipeline.jobs.faults import Fault, apart, fault
 from pipeline.jobs.levels import storeys
 from pipeline.jobs.workspace import Workspace
-from pipeline.records import Progress, Wish
+from pipeline.records import Item, Progress, Wish
 from pipeline.report.survey_sheet import HEADER_ROW, column_name, sheet_title, write_survey
 from pipeline.survey import in_order, measurables, wishes
+from pipeline.verdicts import LevelMotions
 
 LENGTH_UNITS = ("cm", "mm", "m", "in", "ft")
 
 
 @dataclass(frozen=True)
 class Surveyed:
-    """What a survey asks for, and where its workbook is."""
+    """What a survey asks for, where its workbook is, and the objects that Kouros failed on."""
 
     path: Path
     wishes: tuple[Wish, ...]
     objects: int
     quantities: int
     waste: int
+    faults: tuple[Fault, ...] = ()
 
 
 def survey(
@@ -57,16 +62,27 @@ def survey(
         fidelity = "auto"
     found: list[Wish] = []
     decisions = decided(workspace)
+    faults: list[Fault] = []
+
+    def asked(shaking: Sequence[LevelMotions], some: Sequence[Item]) -> list[list[Wish]]:
+        scenes = [place(item, workspace.rules, decisions.get(item.object_number, ())).scene for item in some]
+        _, findings = assess(scenes, shaking, executor, progress, fidelity=fidelity, azimuth_step=step, outcomes=False)
+        by_object: dict[str, list[Wish]] = {item.object_number: [] for item in some}
+        for wish in wishes(scenes, findings, shaking, executor, progress, fidelity=fidelity, azimuth_step=step):
+            by_object[wish.object_number].append(wish)
+        return list(by_object.values())
+
     for storey in storeys(settings, site, items):
         here = [items[index] for index in storey.members]
-        scenes = [place(item, workspace.rules, decisions.get(item.object_number, ())).scene for item in here]
-        shaking = storey.shaking
-        _, findings = assess(scenes, shaking, executor, progress, fidelity=fidelity, azimuth_step=step, outcomes=False)
-        found += wishes(scenes, findings, shaking, executor, progress, fidelity=fidelity, azimuth_step=step)
+        for item, came in zip(here, apart(partial(asked, storey.shaking), here, lambda one: one.support), strict=True):
+            if isinstance(came, Exception):
+                faults.append(fault(item, came))
+            else:
+                found += came
     found = in_order(found)
     target = path or settings.path(f"survey-{datetime.now():%Y-%m-%d}.xlsx")
     counts = write_survey(target, found, measurables(), length=settings.report.length)
-    return Surveyed(target, tuple(found), **counts)
+    return Surveyed(target, tuple(found), **counts, faults=tuple(faults))
 
 
 def read_sheet(path: Path) -> Reading:
