@@ -215,7 +215,7 @@ Variant = tuple[str, tuple[tuple[str, float], ...]]
 
 
 def _variants(place: Place) -> list[Variant]:
-    """Return the parameter sets of an object: the best estimates, then one input at a time at its ends."""
+    """Return the parameter sets of an object: the best estimates, then all corners of what is uncertain."""
     known = place.scene.parameters
     names = [q.name for q in model_named(place.model).needs if q.name in known]
     best, low, high = (np.array([[getattr(known[n], end) for n in names]]) for end in ("value", "low", "high"))

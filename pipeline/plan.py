@@ -3,6 +3,7 @@
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ Indices = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Spans:
-    """What analyses look at: parameter sets, first with the best estimates, then with one input at a time at an end.
+    """What analyses look at: parameter sets, first with the best estimates, then at all corners of what is uncertain.
 
     rows   : (v, a) rows of the work's values; a is 2 where an object is shaken along each of its own axes in turn, of
              which the larger demand counts
@@ -261,20 +262,28 @@ def _estimates(
 
 
 def corners(base: Array, low: Array, high: Array, uncertain: NDArray[np.bool_]) -> tuple[Array, Indices]:
-    """Return the best estimates (m, n), each followed by copies with one uncertain input at its low or high end.
+    """Return the best estimates (m, n), each followed by every combination of the ends of its uncertain inputs.
 
-    What each of them can do to the demand on its own.
+    Of k uncertain inputs there are 2^k corners; objects have at most five in any model.  All of them, because an input
+    that is harmless on its own may not be so where another is at its worst: with one input at a time at an end, 151 of
+    819 decided verdicts changed where two were.  A demand that rises or falls with each input, whatever the others are,
+    is largest and least at a corner, so that of uplift, tension and compression the whole range is covered.  Of others,
+    such as how far a pendulum swings, only the ends are, and not what lies between them.
     returns : (v, n) parameter sets, and of which analysis (v,) each is
     """
-    every = np.arange(base.shape[0])
-    sets, analyses = [base], [every]
-    for at in range(base.shape[1]):
-        varied = np.flatnonzero(uncertain[:, at])
-        for end in (low, high):
-            one = base[varied].copy()
-            one[:, at] = end[varied, at]
-            sets.append(one)
-            analyses.append(varied)
+    sets, analyses = [base], [np.arange(base.shape[0])]
+    patterns, pattern = np.unique(uncertain, axis=0, return_inverse=True)
+    for at, varied in enumerate(patterns):
+        which = np.flatnonzero(varied)
+        if which.size == 0:
+            continue
+        members = np.flatnonzero(pattern.reshape(-1) == at)
+        ends = np.array(list(product((False, True), repeat=which.size)))
+        own = np.repeat(members, ends.shape[0])
+        one = base[own].copy()
+        one[:, which] = np.where(np.tile(ends, (members.size, 1)), high[own][:, which], low[own][:, which])
+        sets.append(one)
+        analyses.append(own)
     analysis = np.concatenate(analyses)
     order = np.argsort(analysis, kind="stable")
     return np.concatenate(sets)[order], analysis[order]

@@ -154,21 +154,28 @@ def _record(measured: float, motions: int) -> tuple[float, bool]:
 
 
 def _inputs(factors: Array, starts: Indices, lengths: Indices) -> Array:
-    """Return the dispersion (m,) that the uncertain inputs and the uncertain capacity make, one by one, squares summed.
+    """Return the dispersion (m,) that the uncertain inputs and the uncertain capacity make, squares summed.
 
+    Over all corners of the inputs the variance is the sum of the squares of what each of them does, halved, on its own
+    and of what several do together beyond that (a two-level factorial design: Box, Hunter and Hunter 2005); with one
+    input it is the square of half its span.
     factors : (v + 2m, n) as `Questions.of` orders them.  What never fails, or fails at once, is taken at the end of
               the scaling, so that the dispersion is not too large
     """
     count = starts.size
     logs: Array = np.log(np.clip(factors, FACTORS[0], FACTORS[-1]))
     sets = logs.shape[0] - 2 * count
-    ends = np.ones(sets, dtype=bool)
-    ends[starts] = False
-    pairs = logs[:sets][ends].reshape(-1, 2, logs.shape[1])
-    analysis = np.repeat(np.arange(count), (lengths - 1) // 2)
     square = np.zeros(count)
-    # Under the several motions an input does different things; their mean square counts.
-    np.add.at(square, analysis, (from_span(pairs[:, 0], pairs[:, 1]) ** 2).mean(axis=1))
+    varied = np.flatnonzero(lengths > 1)
+    if varied.size:
+        ends = np.ones(sets, dtype=bool)
+        ends[starts] = False
+        each, lasting = logs[:sets][ends], lengths[varied] - 1
+        first = np.concatenate([[0], np.cumsum(lasting)[:-1]])
+        mean = np.add.reduceat(each, first) / lasting[:, None]
+        apart = np.add.reduceat((each - np.repeat(mean, lasting, axis=0)) ** 2, first) / lasting[:, None]
+        # Under the several motions an input does different things; their mean square counts.
+        square[varied] = apart.mean(axis=1) / NINETY**2
     square += (from_span(logs[sets : sets + count], logs[sets + count :]) ** 2).mean(axis=1)
     return np.asarray(np.sqrt(square))
 

@@ -40,7 +40,7 @@ class Questions:
     def of(cls, work: Work, output: str, members: Indices, capacities: Sequence[Estimate]) -> "Questions":
         """Return, for some analyses of a work, all their parameter sets, then the best ones at both ends of capacity.
 
-        The sets of an analysis come as in the work: the best one first, then pairs of ends of its uncertain inputs.
+        The sets of an analysis come as in the work: the best one first, then the corners of its uncertain inputs.
         """
         spans = work.spans.take(members)
         low, best, high = (np.array([getattr(c, end) for c in capacities]) for end in ("low", "value", "high"))

@@ -79,6 +79,10 @@ class Passed:
     shaking: LevelMotions
 
 
+Bodies = tuple[tuple[float, float], ...]
+"""What an object on a pad may be: the height of its centre of gravity [m] with its inertia ratio."""
+
+
 class Ground:
     """What a level of shaking is to all objects on the same floor, each worked out once."""
 
@@ -135,7 +139,7 @@ class Bench:
         carriage = carriage or Carriage()
         self._grounds = [carriage.ground(level) for level in self.levels]
         self._carried: dict[Isolator, Carried] = {}
-        self._on_pads: dict[tuple[Isolator, tuple[float, ...], float], tuple[float, float]] = {}
+        self._on_pads: dict[tuple[Isolator, Bodies], tuple[float, float]] = {}
 
     def most(self, of: Callable[[Motion], float]) -> float:
         """Return the largest over the levels of what is combined from the motions of each."""
@@ -201,27 +205,26 @@ class Bench:
                 )
         return sorted((self._carried[isolator] for isolator in listed), key=lambda one: one.stroke)
 
-    def on_pad(self, pad: Isolator, cg_height: Sequence[float], inertia_ratio: float) -> tuple[float, float]:
+    def on_pad(self, pad: Isolator, bodies: Bodies) -> tuple[float, float]:
         """Return the largest rotation [rad] of an object on a rotational pad, and A at its centre over A_max [-].
 
-        cg_height : what its height may be; the largest of each output counts
+        bodies : what it may be; the largest of each output counts
         """
-        key = (pad, tuple(cg_height), inertia_ratio)
-        if key not in self._on_pads:
-            self.on_pads(pad, [(cg_height, inertia_ratio)])
-        return self._on_pads[key]
+        if (pad, bodies) not in self._on_pads:
+            self.on_pads(pad, [bodies])
+        return self._on_pads[pad, bodies]
 
-    def on_pads(self, pad: Isolator, objects: Sequence[tuple[Sequence[float], float]]) -> None:
+    def on_pads(self, pad: Isolator, objects: Sequence[Bodies]) -> None:
         """Run many objects on a pad together, for `on_pad` to be asked about each: one by one costs ten times as much.
 
-        objects : what the height of its centre may be, and its inertia ratio, of each
+        objects : what each may be
         """
-        fresh = list(dict.fromkeys((tuple(cg), ratio) for cg, ratio in objects))
+        fresh = list(dict.fromkeys(objects))
         if not fresh:
             return
-        heights = [height for cg, _ in fresh for height in cg]
-        ratios = [ratio for cg, ratio in fresh for _ in cg]
-        starts = np.cumsum([0, *(len(cg) for cg, _ in fresh)])[:-1]
+        heights = [height for bodies in fresh for height, _ in bodies]
+        ratios = [ratio for bodies in fresh for _, ratio in bodies]
+        starts = np.cumsum([0, *map(len, fresh)])[:-1]
         turns = np.zeros((len(self.levels), len(fresh)))
         shares = np.zeros(len(fresh))
         for at, level in enumerate(self.levels):
@@ -242,7 +245,7 @@ class Bench:
                 shares = np.maximum(shares, most / _push(motion))
             turns[at] = level.over(rotations)
         for one, turn, share in zip(fresh, turns.max(axis=0).tolist(), shares.tolist(), strict=True):
-            self._on_pads[(pad, *one)] = (turn, share)
+            self._on_pads[pad, one] = (turn, share)
 
 
 def _carry(task: tuple[Ground, Isolator]) -> Passed:

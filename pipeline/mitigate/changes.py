@@ -58,8 +58,9 @@ def _ballasted(scene: Scene, parameters: Mapping[str, float]) -> Scene:
         return (own * height + ballast * at) / (own + ballast)
 
     note = "height of the centre of gravity with the ballast"
-    value, low, high = lowered(mass.value, cg.value), lowered(mass.low, cg.low), lowered(mass.high, cg.high)
-    return _with(scene, cg_height=Estimate(value, "m", Origin.DERIVED, low, high, note))
+    ends = [lowered(own, height) for own in (mass.low, mass.high) for height in (cg.low, cg.high)]
+    value = lowered(mass.value, cg.value)
+    return _with(scene, cg_height=Estimate(value, "m", Origin.DERIVED, min(ends), max(ends), note))
 
 
 def _widened(scene: Scene, parameters: Mapping[str, float]) -> Scene:
@@ -104,15 +105,17 @@ def _on_springs(scene: Scene, parameters: Mapping[str, float]) -> Scene:
 def _on_rubber(scene: Scene, parameters: Mapping[str, float]) -> Scene:
     """Put it on an elastomeric pad; the inertia is that of a uniform body about the middle of its base.
 
-    I = m h^2 + m (b^2 + h^2) / 3, so that I / (m h^2) = 1 + (b^2 / h^2 + 1) / 3.
+    I = m h^2 + m (b^2 + h^2) / 3, so that I / (m h^2) = 1 + (b^2 / h^2 + 1) / 3, at the ends of what b/h may be.
     """
     cg = scene.parameters["cg_height"]
     half = scene.parameters.get("half_width")
-    slope = 0.5 if half is None else half.value / cg.value
+    slopes = (0.5, 0.5, 0.5) if half is None else (half.value / cg.value, half.low / cg.high, half.high / cg.low)
+    ratio, low, high = (1.0 + (slope**2 + 1.0) / 3.0 for slope in slopes)
+    uniform = "a uniform body about the middle of its base"
     found = {
         "frequency": _exactly(parameters["frequency"], "Hz", "frequency of its pad"),
         "damping": _exactly(parameters["damping"], "-", "damping of its pad"),
-        "inertia_ratio": _exactly(1.0 + (slope**2 + 1.0) / 3.0, "-", "a uniform body about the middle of its base"),
+        "inertia_ratio": Estimate(ratio, "-", Origin.DERIVED, low, high, uniform),
         "rotation_limit": _exactly(parameters["rotation_limit"], "rad", "largest turn that its mount allows"),
     }
     return _isolated(_with(scene, **found), "rotational_isolator")

@@ -3,10 +3,11 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import product
 from math import ceil, inf, isfinite
 
 from pipeline.classify import material_of
-from pipeline.mitigate.bench import Bench, Trial
+from pipeline.mitigate.bench import Bench, Bodies, Trial
 from pipeline.mitigate.changes import changed, held, knows_section
 from pipeline.mitigate.holding import footing, force_and_moment, strengths, wax_area, wax_checks
 from pipeline.mitigate.means import Isolator, Means, Measure
@@ -167,11 +168,11 @@ def ballast(need: Need, bench: Bench, measure: Measure) -> Proposal:
         return refused("objects of its kind have no room for ballast")
     mass, cg, half = (scene.parameters[name] for name in ("mass", "cg_height", "half_width"))
     at = measure.limit_high * cg.value
-    # One uncertain input at a time, as the trial sees it: (own mass, own height, the height that may be left).
-    corners = ((mass.value, cg.value, half.low / bench.lift), (mass.high, cg.high, half.value / bench.lift))
-    if any(left <= at for _, _, left in corners):
+    # At the worst of what is uncertain: the heaviest and highest body, and the least height that may be left.
+    left = half.low / bench.lift
+    if left <= at:
         return refused("no ballast brings its centre of gravity low enough")
-    needed = SPARE * max(own * (height - left) / (left - at) for own, height, left in corners)
+    needed = SPARE * mass.high * (cg.high - left) / (left - at)
     share = needed / mass.value
     if share > measure.limit:
         return refused(f"it would need {100 * share:.0f} % of its mass; {100 * measure.limit:.0f} % is allowed")
@@ -242,7 +243,7 @@ def low_friction_pad(need: Need, bench: Bench, measure: Measure) -> Proposal:
     if not {"half_width", "cg_height"} <= set(scene.parameters):
         return refused("whether it rocks is not known")
     half, cg = scene.parameters["half_width"], scene.parameters["cg_height"]
-    if bench.lift > min(half.low / cg.value, half.value / cg.high):
+    if bench.lift > half.low / cg.high:
         return refused("it may rock: a low friction never excuses that")
     upright = replace(scene, support=Support.FREESTANDING, models=("rocking",))
     offers = []
@@ -274,14 +275,13 @@ def rotational_isolator(need: Need, bench: Bench, measure: Measure) -> Proposal:
         return UNKNOWN_SECTION
     if STRESS.applies(held(scene)):
         return refused("it is flexible itself: no model has a flexible object on a pad that turns")
-    cg = scene.parameters["cg_height"]
     offers = []
     for pad in bench.means.of("rotational_isolator"):
         numbers = _turning_numbers(pad, measure)
         turning = on_floor(need, measure, numbers)
-        ratio = turning.parameters["inertia_ratio"].value
-        rotation, share = bench.on_pad(pad, (cg.low, cg.value, cg.high), ratio)
+        rotation, share = bench.on_pad(pad, _bodies(turning))
         numbers |= {"rotation": (rotation, "rad"), "acceleration": (share * bench.push, "m/s2")}
+        cg = scene.parameters["cg_height"]
         amplified = replace(cg, value=share, low=share, high=share, unit="-", note="on its pad")
         bent = held(scene)
         bent = replace(bent, models=("stress",), parameters={**bent.parameters, "amplification": amplified})
@@ -307,10 +307,14 @@ def turn_together(needs: Sequence[Need], bench: Bench, measure: Measure) -> None
             scene = need.scene
             stands = scene.support in (Support.FREESTANDING, Support.FASTENED)
             if stands and knows_section(scene) and "cg_height" in scene.parameters and not STRESS.applies(held(scene)):
-                cg = scene.parameters["cg_height"]
-                ratio = on_floor(need, measure, numbers).parameters["inertia_ratio"].value
-                objects.append(((cg.low, cg.value, cg.high), ratio))
+                objects.append(_bodies(on_floor(need, measure, numbers)))
         bench.on_pads(pad, objects)
+
+
+def _bodies(turning: Scene) -> Bodies:
+    """Return the best estimates of an object on a pad, and all ends of what is uncertain."""
+    cg, ratio = turning.parameters["cg_height"], turning.parameters["inertia_ratio"]
+    return (cg.value, ratio.value), *product((cg.low, cg.high), (ratio.low, ratio.high))
 
 
 def strengthen(need: Need, bench: Bench, measure: Measure) -> Proposal:
