@@ -12,6 +12,7 @@ from pipeline.models.common import words
 from pipeline.plan import Indices, Work
 from pipeline.quantities import Array
 from pipeline.records import Columns, Estimate, Finding, Mark, Model, Origin, Scene, Verdict
+from pipeline.records.result import BOUNDS, DEMANDS
 from pipeline.response import run_model
 from pipeline.verdicts import LevelMotions, Mask, utilisation
 
@@ -24,6 +25,7 @@ class _Numbers:
 
     motion, row : under which motion the best estimates demand most, and their row of the work's values
     at_most     : whether the demand is a bound, and by how much it may be less
+    enclosed    : whether an end of the range is a bound: the range lies between low and high, and may be narrower
     """
 
     demand: Array
@@ -34,6 +36,7 @@ class _Numbers:
     row: Indices
     at_most: Mask
     slack: Array
+    enclosed: Mask
 
 
 def _numbers(climb: Climb, case: Case) -> _Numbers:
@@ -45,15 +48,18 @@ def _numbers(climb: Climb, case: Case) -> _Numbers:
     if level.combine == "max":
         # Under the other motions it may be less by more.
         slack = np.array([_gap(low[row], high[row]) for low, high in points])[motion, np.arange(row.size)]
+    lows = [level.over([spans.lowest(side) for side in sides]) for sides in zip(*points, strict=True)]
+    highs = [level.over([spans.highest(side) for side in sides]) for sides in zip(*points, strict=True)]
     return _Numbers(
         demand,
-        level.over([spans.lowest(low) for low, _ in points]),
-        level.over([spans.highest(high) for _, high in points]),
+        lows[0],
+        highs[1],
         utilisation(demand, case.capacity[1]),
         motion,
         row,
         np.asarray(slack > 0.0),
         slack,
+        np.asarray((_gap(*lows) > 0.0) | (_gap(*highs) > 0.0)),
     )
 
 
@@ -71,15 +77,16 @@ def findings(climb: Climb, case: Case, known: Known, scenes: Sequence[Scene]) ->
     rows = _Rows(climb, case, numbers)
     out = []
     columns = (numbers.demand, numbers.low, numbers.high, numbers.used, numbers.motion, numbers.row, numbers.at_most)
-    lists = [column.tolist() for column in (*columns, numbers.slack, work.scenes[case.analyses])]
+    lists = [column.tolist() for column in (*columns, numbers.slack, numbers.enclosed, work.scenes[case.analyses])]
     steps = climb.decided[case.analyses].tolist()
     verdicts = _verdicts(known)
-    for demand, low, high, used, at, row, at_most, slack, index, step, verdict, capacity in zip(
+    for demand, low, high, used, at, row, at_most, slack, enclosed, index, step, verdict, capacity in zip(
         *lists, steps, verdicts, case.estimates, strict=True
     ):
         scene, motion, said = scenes[index], level.motions[at], rows.said(row, at)
         other = model.otherwise(scene)
-        sentence = other[2] if other else model.at_most if at_most else model.sentence
+        bound = model.at_most if at_most or enclosed else ""
+        sentence = other[2] if other else bound or model.sentence
         marked = model.mark(said.parameters, demand)
         out.append(
             Finding(
@@ -93,6 +100,7 @@ def findings(climb: Climb, case: Case, known: Known, scenes: Sequence[Scene]) ->
                 unit=unit,
                 low=low,
                 high=high,
+                range_is=BOUNDS if enclosed else DEMANDS,
                 capacity=capacity.value,
                 capacity_origin=capacity.origin,
                 utilisation=used,
@@ -104,7 +112,8 @@ def findings(climb: Climb, case: Case, known: Known, scenes: Sequence[Scene]) ->
                 motion_hash=motion.hash,
                 sentence=f"{sentence} {said.sentence}" if said.sentence else sentence,
                 screen=said.screen,
-                outcome=said.outcome if said.outcome or verdict is Verdict.PASS else model.fails,
+                # What it does by the best estimates, as the demand and the utilisation are.
+                outcome=(said.outcome or model.fails) if used > 1.0 else "",
                 note=said.note,
                 assumptions=_assumptions(scene, model, capacity),
                 mark=None if marked is None else Mark(f"{marked[0]}:{motion.hash[:16]}", marked[1], marked[2]),

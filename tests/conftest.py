@@ -27,6 +27,7 @@ LONGEST = frozenset(
         "test_demo.py",
         "test_night_changes.py",
         "test_crewed_nights.py",
+        "test_findings.py",
         "test_fragility.py",
         "test_import_command.py",
         "test_chart_nights.py",

@@ -19,11 +19,18 @@ class Verdict(StrEnum):
     UNDETERMINED = "undetermined"
 
 
+DEMANDS, BOUNDS = "demands", "bounds"
+"""What the ends of a range are: demands that were found, or bounds between which these lie for certain."""
+
+
 @dataclass(frozen=True, slots=True)
 class Finding:
     """One demand set against one capacity (contract "A finding").
 
-    low, high : the range of the demand that the uncertain inputs span
+    low, high : the range of the demand over the best estimates and all corners of the uncertain inputs
+    range_is  : "demands" where low and high are; "bounds" where these lie between low and high for certain and were
+                not looked for, because nothing hangs on them
+    outcome   : what the object does by the best estimates beyond its capacity ("rocks"); "" where it stays within
     sentence  : what it means, with {demand}, {capacity}, {low} and {high} to be filled in the reader's units
     title     : the failure in the field's words ("Rocking", "Sliding")
     screen    : the paper's closed-form criterion in words; reported, never deciding
@@ -54,6 +61,7 @@ class Finding:
     note: str = ""
     assumptions: tuple[str, ...] = ()
     mark: Mark | None = None
+    range_is: str = DEMANDS
     version: str = ""
 
 

@@ -19,9 +19,10 @@ from pipeline.records import (
     Support,
     Wish,
 )
+from pipeline.records.result import BOUNDS
 from pipeline.report.decided import Decided
 from pipeline.report.errors import ReportError
-from pipeline.report.judging import fragility_views
+from pipeline.report.judging import fragility_views, most, spanned
 from pipeline.report.language import _, said
 from pipeline.report.ranking import finding_order, finding_state, grave, state_of
 from pipeline.report.survey_words import wish_views
@@ -207,7 +208,7 @@ class Describer:
         )
 
     def _sums(self, f: Finding, utilisation: str) -> str:
-        span = self._span(f.low, f.high, f.unit)
+        span = spanned(f, self._units)
         error = "" if f.fidelity == "bound" else self._error(f)
         by = {"means": decided(f.decided_by), "error": error}
         means = (_("Decided by %(means)s, error %(error)s.") if error else _("Decided by %(means)s.")) % by
@@ -220,9 +221,7 @@ class Describer:
             # Of a share of what is allowed nothing is left to say.
             return means
         if "demand" not in asked or not ranged:
-            demand = self._units.text(f.demand, f.unit)
-            if f.fidelity == "bound" and f.error:
-                demand = _("at most %(demand)s") % {"demand": demand}
+            demand = most(f, self._units)
             demand += " " + _("(%(range)s with what is uncertain)") % {"range": span} if span else ""
             phrase = _("Demand %(demand)s, capacity %(capacity)s, utilisation %(utilisation)s.")
         else:
@@ -234,7 +233,8 @@ class Describer:
     @staticmethod
     def _certain(f: Finding, sentence: str) -> str:
         """Return the sentence without its brackets about a range where nothing is uncertain."""
-        return _RANGE.sub("", sentence) if f.low == f.demand == f.high else sentence
+        low = f.demand if f.range_is == BOUNDS else f.low
+        return _RANGE.sub("", sentence) if low == f.demand == f.high else sentence
 
     def _motion(self, motion_hash: str, name: str) -> MotionLink:
         key = (motion_hash, name)

@@ -34,6 +34,7 @@ FINDING_COLUMNS = (
     "unit",
     "low",
     "high",
+    "range_is",
     "capacity",
     "capacity_origin",
     "utilisation",
@@ -108,12 +109,13 @@ class Fragment:
 def fragment(record: RunRecord, run: str, page: str, anchors: Callable[[Assessment], str], units: Units) -> Fragment:
     """Return what the objects of a sheet add to the exports.
 
-    Numbers are in SI; ``unit`` names the unit of demand, low, high, capacity and error.  CSV files are UTF-8 with a
-    header row; an unknown number is an empty cell and an endless one is ``inf``.  In CSV a text that starts with
-    ``=``, ``+``, ``-``, ``@``, a tab or a carriage return gets a leading apostrophe, because a spreadsheet would run
-    it as a formula; JSON Lines and Parquet keep the text as it is.  JSON has no infinity: it is the text "inf" there.
-    Only the sentences of recommendations are in the reader's units.  objects.csv has one row for every object, so that
-    what could not be assessed is not lost.
+    Numbers are in SI; ``unit`` names the unit of demand, low, high, capacity and error, 1 for a ratio.  ``range_is``
+    says whether low and high are demands, or bounds around them.  CSV files are UTF-8 with a header row; an unknown
+    number is an empty cell and an endless one is ``inf``.  In CSV a text that starts with ``=``, ``+``, ``-``, ``@``, a
+    tab or a carriage return gets a leading apostrophe, because a spreadsheet would run it as a formula; JSON Lines and
+    Parquet keep the text as it is.  JSON has no infinity: it is the text "inf" there.  Only the sentences of
+    recommendations are in the reader's units.  objects.csv has one row for every object, so that what could not be
+    assessed is not lost.
 
     record : the sheet's objects
     run    : the run that found it
@@ -139,6 +141,9 @@ def workbook(folder: Path, started: str) -> None:
     write_workbook(folder / WORKBOOK, tables, _began(started))
 
 
+ONE = "1"
+"""The unit of a ratio, as UCUM writes it."""
+
 _BEGINS = frozenset("=+-@\t\r\n\uff1d\uff0b\uff0d\uff20")
 _INSIDE = re.compile("([;\t\r\n])(?=[=+\\-@\uff1d\uff0b\uff0d\uff20])")
 """Where a formula begins for programs that cut the line of a CSV file at other separators than the comma, whatever its
@@ -163,9 +168,15 @@ def _began(started: str) -> datetime:
         return datetime(1980, 1, 1, tzinfo=UTC)
 
 
+def exported_unit(unit: str) -> str:
+    """Return a unit as other programs read it: 1 for a ratio, which a "-" would be a formula to a spreadsheet."""
+    return ONE if unit == "-" else unit
+
+
 def _finding(run: str, f: Finding) -> dict[str, Any]:
     row: dict[str, Any] = {name: getattr(f, name) for name in FINDING_COLUMNS if name != "run"}
     row["run"] = run
+    row["unit"] = exported_unit(f.unit)
     row["verdict"] = f.verdict.value
     row["capacity_origin"] = f.capacity_origin.value if f.capacity_origin else None
     row["assumptions"] = list(f.assumptions)
@@ -182,10 +193,10 @@ def _recommendation(run: str, r: Recommendation, units: Units) -> dict[str, Any]
         "measure": r.measure,
         "title": r.title,
         "sentence": units.fill(r.sentence, values, f"object {r.object_number}, recommendation {r.measure}"),
-        "parameters": [f"{k}={v!r} {r.units.get(k, '')}".rstrip() for k, v in r.parameters.items()],
+        "parameters": [f"{k}={v!r} {exported_unit(r.units.get(k, ''))}".rstrip() for k, v in r.parameters.items()],
         "checks": [
-            f"{c.model}: {'' if c.before is None else f'{c.before!r} -> '}{c.demand!r} of {c.capacity!r} {c.unit}, "
-            f"{'passes' if c.passes else 'fails'}"
+            f"{c.model}: {'' if c.before is None else f'{c.before!r} -> '}{c.demand!r} of {c.capacity!r} "
+            f"{exported_unit(c.unit)}, {'passes' if c.passes else 'fails'}"
             for c in r.checks
         ],
         "rejected": list(r.rejected),

@@ -9,8 +9,9 @@ from markupsafe import Markup
 
 from pipeline.fragility.published import all_published
 from pipeline.quantities import G
-from pipeline.records import Assessment, Fragility, Spacing, Support, Verdict
+from pipeline.records import Assessment, Finding, Fragility, Spacing, Support, Verdict
 from pipeline.records.fragility import ABOVE, BELOW
+from pipeline.records.result import BOUNDS
 from pipeline.report.language import _, ngettext, said
 from pipeline.report.svg import path
 from pipeline.report.text import clean, count
@@ -239,12 +240,27 @@ def room_views(members: Sequence[Assessment], units: Units) -> tuple[RoomView, .
         RoomView(
             clean(f.object_number),
             clean(f.level),
-            units.text(f.demand, f.unit),
-            units.pair(f.low or 0.0, f.high or 0.0, f.unit),
+            most(f, units),
+            spanned(f, units) or most(f, units),
             units.text(f.capacity, f.unit),
         )
         for f in moving
     )
+
+
+def most(f: Finding, units: Units) -> str:
+    """Write a demand, and that it is only known not to be more where that is so."""
+    demand = units.text(f.demand, f.unit)
+    return _("at most %(demand)s") % {"demand": demand} if f.fidelity == "bound" and f.error else demand
+
+
+def spanned(f: Finding, units: Units) -> str:
+    """Write the range of a demand; "" where it has none.  Of bounds only the upper one tells anything of it."""
+    if f.low is None or f.high is None or f.low == f.high or (f.range_is == BOUNDS and f.high == f.demand):
+        return ""
+    if f.range_is == BOUNDS:
+        return _("at most %(demand)s") % {"demand": units.text(f.high, f.unit)}
+    return units.pair(f.low, f.high, f.unit)
 
 
 def first_failure(assessment: Assessment) -> dict[str, str | float | None]:

@@ -96,6 +96,24 @@ def test_recommendations_carry_their_evidence(report: Path) -> None:
     assert row["checks"] == "sliding: 0.131 of 0.14 m, passes"
 
 
+def test_the_unit_of_a_ratio_is_1_in_every_format(report: Path) -> None:
+    """A "-" would be the beginning of a formula, and have an apostrophe put before it in one format alone."""
+    ratios = [i for i, finding in enumerate(FINDINGS) if finding.unit == "-"]
+    assert ratios
+    book = openpyxl.load_workbook(report / "findings.xlsx")["findings"]
+    column = [cell.value for cell in book[1]].index("unit")
+    formats = {
+        "csv": [row["unit"] for row in _rows(report / "findings.csv")],
+        "jsonl": [row["unit"] for row in _jsonl(report / "findings.jsonl")],
+        "parquet": pq.read_table(report / "findings.parquet")["unit"].to_pylist(),
+        "xlsx": [row[column] for row in book.iter_rows(min_row=2, values_only=True)],
+    }
+    for name, units in formats.items():
+        assert units == ["1" if finding.unit == "-" else finding.unit for finding in FINDINGS], name
+    for row in _rows(report / "recommendations.csv"):
+        assert not re.search(r" -(;|,|$)", row["parameters"] + ";" + row["checks"])
+
+
 @pytest.mark.parametrize("start", ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1"])
 def test_no_cell_is_taken_for_a_formula(start: str) -> None:
     assert safe_cell(start).startswith("'" + start[0])
