@@ -283,12 +283,17 @@ def test_two_levels_give_a_rate_and_one_says_why_not() -> None:
 
 def test_the_friction_says_which_shelf() -> None:
     assert {p.what: p.median / G for p in all_published()} == pytest.approx(
-        {"objects on shelves": 0.4, "objects on a slippery shelf": 0.25, "objects on shelves held by museum putty": 1.0}
+        {
+            "objects on shelves, restraint unknown": 0.4,
+            "objects on a slippery shelf": 0.25,
+            "objects on shelves in cabinets with latches": 0.6,
+            "objects held by museum putty in cabinets with latches": 1.0,
+        }
     )
     rough, smooth = (published(classify(replace(BLOCK, friction=mu))) for mu in (0.3, 0.1))
     assert rough is not None
     assert smooth is not None
-    assert (rough.what, smooth.what) == ("objects on shelves", "objects on a slippery shelf")
+    assert (rough.what, smooth.what) == ("objects on shelves, restraint unknown", "objects on a slippery shelf")
     assert published(classify(Item("2", "A", "Painting", support=Support.HUNG, height_m=1.0))) is None
 
 

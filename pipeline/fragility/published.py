@@ -11,12 +11,11 @@ from pipeline.tables import number, table
 
 @dataclass(frozen=True)
 class Published:
-    """A published fragility: median [m/s2], the span of its dispersion, what it is of, and who says so."""
+    """A published fragility: median [m/s2], dispersion, what it is of, and who says so."""
 
     what: str
     median: float
-    dispersion_low: float
-    dispersion_high: float
+    dispersion: float
     support: str
     friction_below: float
     source: str
@@ -32,8 +31,7 @@ def all_published() -> Sequence[Published]:
         Published(
             row["what"],
             number(row, "median_g", "fragility.csv") * G,
-            number(row, "dispersion_low", "fragility.csv"),
-            number(row, "dispersion_high", "fragility.csv"),
+            number(row, "dispersion", "fragility.csv"),
             row["support"],
             number(row, "friction_below", "fragility.csv") if row["friction_below"] else float("inf"),
             row["source"],

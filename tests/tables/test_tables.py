@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import csv
+from math import exp
 
 import pytest
 
 from pipeline.classify import NO_MODEL, WHEN_HELD
 from pipeline.models import MODELS, model_named
-from pipeline.quantities import Quantity
+from pipeline.quantities import G, Quantity
 from pipeline.records import ITEM_FIELDS, Support
 from pipeline.supports import SUPPORTS
 from pipeline.tables import FOLDER, TableError, damping_of, friction_of, number, spread, table
@@ -97,6 +98,34 @@ def test_every_range_is_in_order(name: str) -> None:
             if any(cells):
                 out = spread(row, value, low, high, name)
                 assert out.low <= out.value <= out.high
+
+
+# Medians [g] and dispersions as published, by the number of the component: FEMA P-58 (2018), fragility database v3.1.2,
+# as in DamageAndLossModelLibrary of NHERI SimCenter (seismic/building/component/FEMA P-58 2nd Edition/fragility.csv).
+P_58 = {
+    "E2022.010": (0.40, 0.6),
+    "E2022.011": (1.00, 0.5),
+    "E2022.012": (0.60, 0.6),
+    "E2022.013": (0.25, 0.5),
+}
+
+
+def test_fragilities_are_those_of_p_58() -> None:
+    told = {
+        row["source"].partition("v3.1.2, ")[2].partition(":")[0]: (float(row["median_g"]), float(row["dispersion"]))
+        for row in table("fragility")
+    }
+    assert told == P_58
+
+
+def test_shaking_that_wax_holds_is_one_published_dispersion_about_the_published_median() -> None:
+    median, dispersion = P_58["E2022.011"]
+    (row,) = (row for row in table("fixings") if row["property"] == "acceleration")
+    found = spread(row, "value", "low", "high", "fixings.csv")
+    ends = [median * G * exp(times * dispersion) for times in (-1.0, 0.0, 1.0)]
+    # The table has five digits.
+    assert [found.low, found.value, found.high] == pytest.approx(ends, rel=1e-4)
+    assert "E2022.011" in row["source"]
 
 
 def test_table_1_and_2_of_the_paper() -> None:
