@@ -59,3 +59,11 @@ class Quantity:
         if self.high < inf:
             parts.append(f"at most {self.high:g}")
         return f"a finite number{' ' if parts else ''}{' and '.join(parts)}{unit}"
+
+
+def counted(number: int, one: str, many: str = "") -> str:
+    """Return a number with its noun: "1 run", "2,000 runs".
+
+    many : the plural, where it is not the singular with an s
+    """
+    return f"{number:,} {one if number == 1 else many or f'{one}s'}"

@@ -9,6 +9,7 @@ from pathlib import Path
 from pipeline.jobs.hooks import look, named
 from pipeline.jobs.standing import FAILED, GOOD, RUNNING, last_good, status
 from pipeline.jobs.workspace import KEPT, LockedError, Workspace, locked
+from pipeline.quantities import counted
 from pipeline.settings import Settings
 from pipeline.store.runs import list_runs
 
@@ -85,8 +86,8 @@ def _kernels() -> Found:
         return "warning", f"{folder} cannot be written, so that every run compiles anew; set KOUROS_CACHE"
     compiled = sum(1 for _ in folder.rglob("*.nbc")) if folder.is_dir() else 0
     others = sum(1 for other in folder.parent.glob("kernels-*") if other != folder)
-    text = f"version {KERNEL_VERSION}, {compiled} pieces of compiled code in {folder}"
-    return "ok", f"{text}; {others} folders of other versions may be deleted" if others else text
+    text = f"version {KERNEL_VERSION}, {counted(compiled, 'piece')} of compiled code in {folder}"
+    return "ok", f"{text}; {counted(others, 'folder')} of other versions may be deleted" if others else text
 
 
 def _lock(settings: Settings) -> Found:
@@ -124,11 +125,11 @@ def _retention(settings: Settings) -> Found:
     if not (limits.runs or limits.reports or limits.days):
         return "warning", "every run and every report is kept for ever; set [retention] before the disk is full"
     said = [
-        f"{limits.runs} runs" if limits.runs else "",
-        f"{limits.reports} reports" if limits.reports else "",
-        f"{limits.days:g} days" if limits.days else "",
+        counted(limits.runs, "run") if limits.runs else "",
+        counted(limits.reports, "report") if limits.reports else "",
+        f"{limits.days:g} {'day' if limits.days == 1 else 'days'}" if limits.days else "",
     ]
-    return "ok", f"{', '.join(filter(None, said))} are kept; the last good ones always"
+    return "ok", f"{', '.join(filter(None, said))} kept at most; the last good ones always"
 
 
 def _hooks(settings: Settings) -> Found:
@@ -147,7 +148,7 @@ def _log(settings: Settings) -> Found:
     path = settings.path(settings.logs.file)
     if path.exists() and not (path.is_file() and os.access(path, os.W_OK)):
         return "wrong", f"{path} cannot be written; change its permissions or [logs] file"
-    return "ok", f"{path}, {settings.logs.keep + 1} files of {settings.logs.megabytes:g} MB at most"
+    return "ok", f"{path}, {counted(settings.logs.keep + 1, 'file')} of {settings.logs.megabytes:g} MB at most"
 
 
 def _clock(workspace: Workspace) -> Found:

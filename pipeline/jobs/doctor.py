@@ -11,6 +11,7 @@ from pipeline.jobs import checkup
 from pipeline.jobs.lasting import mapping_of
 from pipeline.jobs.secrets import hider
 from pipeline.jobs.workspace import Workspace, open_workspace
+from pipeline.quantities import counted
 from pipeline.records import Item
 from pipeline.settings import Settings, load_settings
 
@@ -101,7 +102,7 @@ def _motions(settings: Settings) -> tuple[str, str]:
 
 def _means(workspace: Workspace) -> tuple[str, str]:
     have = workspace.means
-    return "ok", f"{len(have.measures)} measures, {len(have.isolators)} isolators"
+    return "ok", f"{counted(len(have.measures), 'measure')}, {counted(len(have.isolators), 'isolator')}"
 
 
 def _inventory(workspace: Workspace) -> tuple[str, str]:
@@ -115,7 +116,7 @@ def _inventory(workspace: Workspace) -> tuple[str, str]:
     doubts = strangers(workspace.settings.floors, {item.gallery for item in items})
     if doubts:
         return "warning", "; ".join(doubts)
-    return "ok", f"{len(items)} objects, {shown} on display, from {info.source} on {info.imported_at}"
+    return "ok", f"{counted(len(items), 'object')}, {shown} on display, from {info.source} on {info.imported_at}"
 
 
 def _objects(workspace: Workspace) -> tuple[str, str]:

@@ -24,6 +24,7 @@ from urllib.parse import urlsplit
 
 from pipeline import __version__
 from pipeline.errors import KourosError
+from pipeline.quantities import counted
 from pipeline.report.text import plain
 from pipeline.settings import DATABASE_VARIABLE
 from pipeline.settings.operations import CommandHook, EmailHook, Event, Hooks, WebhookHook, check_address
@@ -231,14 +232,14 @@ def _webhook(hook: WebhookHook, event: Event, body: bytes, known: Mapping[str, s
         except requests.RequestException as problem:
             if last:
                 # The exception's own text holds the whole address.
-                raise HookError(f"no answer: {_kind(problem)}, after {attempt + 1} attempts") from None
+                raise HookError(f"no answer: {_kind(problem)}, after {counted(attempt + 1, 'attempt')}") from None
             continue
         if 200 <= code < 300:
             return
         if 300 <= code < 400:
             raise HookError(f"answered {code}, a redirection, which is never followed; give the address it leads to")
         if last or not (code == 429 or code >= 500):
-            raise HookError(f"answered {code}, after {attempt + 1} attempts")
+            raise HookError(f"answered {code}, after {counted(attempt + 1, 'attempt')}")
 
 
 def _kind(problem: Exception) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 
 from pipeline.jobs.extremes import MODELS, PROMISED, along_x, complaint, motions, objects, shaking
 from pipeline.jobs.selftest import Outcome
-from pipeline.quantities import Array, G
+from pipeline.quantities import Array, G, counted
 from pipeline.records import Motion
 from pipeline.response import respond, trace
 
@@ -232,7 +232,7 @@ def _unexplained(name: str, directions: int | None) -> float:
         if (said := complaint(row))
     ]
     if problems:
-        raise ArithmeticError(f"{len(problems)} results, such as {problems[0]}")
+        raise ArithmeticError(f"{counted(len(problems), 'result')}, such as {problems[0]}")
     return 0.0
 
 
@@ -280,7 +280,7 @@ def _cases() -> Iterator[Case]:
     for name, ways in MODELS:
         what = name if ways is None else f"{name}, {ways} direction{'s'[: ways - 1]}"
         yield Case(
-            f"{what}: {len(motions())} motions, extreme objects",
+            f"{what}: {counted(len(motions()), 'motion')}, extreme objects",
             "no NaN without a reason",
             0.0,
             partial(_unexplained, name, ways),

@@ -80,7 +80,8 @@ def compare(settings: Settings, old: str | None, new: str | None) -> RunChanges:
     if new is None:
         if not runs or (old is None and len(runs) < 2):
             raise UsageError(
-                f"there are {len(runs)} finished runs of the whole collection and two are needed; "
+                f"of finished runs of the whole collection there {'is' if len(runs) == 1 else 'are'} {len(runs)}, "
+                "and two are needed; "
                 "make another with `kouros run`"
             )
         new = runs[0]

@@ -13,6 +13,7 @@ from pydantic import TypeAdapter
 
 from pipeline import __version__
 from pipeline.jobs.workspace import KEPT
+from pipeline.quantities import counted
 from pipeline.resources import replacing
 from pipeline.settings import Settings
 
@@ -54,7 +55,8 @@ class SelfTest:
 
 def machine() -> str:
     """Return what the kernels are compiled for, without the machine's name: reports are handed around."""
-    return f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
+    cores = counted(os.cpu_count() or 1, "core")
+    return f"{platform.system()} {platform.machine()}, {cores}, Python {platform.python_version()}"
 
 
 def self_test(settings: Settings | None) -> Iterator[Outcome]:

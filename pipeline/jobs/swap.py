@@ -14,6 +14,7 @@ from pipeline.jobs.pictures import pictures
 from pipeline.jobs.rounds import Round
 from pipeline.jobs.workspace import KEPT, Workspace, open_workspace
 from pipeline.motions.site import Level, Site, read_site
+from pipeline.quantities import counted
 from pipeline.records import Progress, VerdictChange
 from pipeline.settings import Settings
 from pipeline.store import migrate
@@ -121,7 +122,7 @@ def _verdicts(
         engine.dispose()
     basis = f"the verdicts of the last run, {runs[0]}"
     if fresh:
-        basis += f"; {fresh:,} objects that it did not have on these motions and records were run now"
+        basis += f"; run now: {counted(fresh, 'object')} that it did not have on these motions and records"
     return basis, changes.verdicts
 
 

@@ -17,6 +17,7 @@ from pipeline.jobs.outcome import exit_code_of, summary_document, words_of
 from pipeline.jobs.retention import prune
 from pipeline.jobs.standing import last_good, mark_failed
 from pipeline.jobs.workspace import LockedError
+from pipeline.quantities import counted
 from pipeline.settings import Settings
 from pipeline.settings.operations import Event
 
@@ -87,9 +88,11 @@ def _finished(settings: Settings, summary: Summary, hide: Callable[[str], str], 
     if not whole:
         return
     if changes is not None and changes.verdicts:
+        objects = len({change.object_number for change in changes.verdicts})
         words = (
-            f"{len(changes.verdicts):,} verdicts changed: {len(changes.worsened):,} worse, "
-            f"{len(changes.fixed):,} fixed, {len(changes.others):,} other."
+            f"{counted(len(changes.verdicts), 'verdict')} of {counted(objects, 'object')} changed: "
+            f"{len(changes.worsened):,} passed and no longer, {len(changes.fixed):,} failed and now pass, "
+            f"{len(changes.others):,} otherwise."
         )
         root = settings.path(settings.report.folder)
         plain = summary_document(summary, most=TOLD, base=root)

@@ -60,8 +60,8 @@ def mentioned(changes: RunChanges) -> set[str]:
 
 def _counts(changes: RunChanges) -> list[tuple[str, int]]:
     return [
-        (_("verdicts worse"), len(changes.worsened)),
-        (_("verdicts fixed"), len(changes.fixed)),
+        (_("verdicts that passed and no longer do"), len(changes.worsened)),
+        (_("verdicts that failed and pass"), len(changes.fixed)),
         (_("verdicts otherwise changed"), len(changes.others)),
         (_("objects new"), len(changes.added)),
         (_("objects gone"), len(changes.removed)),

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable, Iterator
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -80,6 +81,10 @@ def test_a_week_of_nights(museum: Callable[..., Path], server: Web, monkeypatch:
     assert kept == printed | {"report": "index.html", "latest": "../latest"}
     assert standing(folder)["state"] == "good"
     assert f'href="{printed["run_id"]}/index.html"' in landing(folder)
+    # Whether a night was due and never began, this page cannot know: it says when the last one ended.
+    assert "failed since" not in landing(folder)
+    ended = datetime.fromisoformat(standing(folder)["since"])
+    assert f"that of the last run, which ended at {ended:%Y-%m-%d %H:%M} UTC" in landing(folder)
     assert kouros("report").returncode == 0
     # Rendered again: the same run, in another folder, with the time that is known of it.
     again = standing(folder)["last_good"]
@@ -98,7 +103,8 @@ def test_a_week_of_nights(museum: Callable[..., Path], server: Web, monkeypatch:
     assert headers["Authorization"] == f"Bearer {TOKEN}"
     assert (event["event"], event["error"]) == ("changed", None)
     counts = event["summary"]["changes"]["counts"]
-    assert event["message"].startswith(f"{counts['verdicts']} verdicts changed: {counts['worsened']} worse")
+    changed = "1 verdict" if counts["verdicts"] == 1 else f"{counts['verdicts']} verdicts"
+    assert event["message"].startswith(f"{changed} of 1 object changed: {counts['worsened']} passed and no longer")
     assert counts["worsened"] > 0
     assert event["summary"]["report"] == event["last_good"]["report"] == f"{event['summary']['run_id']}/index.html"
     # The other hook failed: it is said and logged, and the night's own code is that of a good one.
