@@ -1,9 +1,9 @@
 """From bounds over charts to histories, as far up as the verdicts of a level need: the fidelity `auto`.
 
-Each analysis asks whether its highest demand is within the capacity (it passes) and whether its lowest is above it (it
-fails).  Every parameter set has an interval in which its history lies for certain, or within the error that a chart
-states; both questions are answered as soon as the intervals answer them, and only the sets of analyses that are still
-open, and of those only the ones that the answer hangs on, climb to the next step.
+Each analysis asks whether its highest demand, over its parameter sets, is within the capacity (it passes) and whether
+its lowest is above it (it fails).  Every parameter set has an interval in which its history lies for certain, or
+within the error that a chart states; both questions are answered as soon as the intervals answer them, and only the
+sets of analyses that are still open, and of those only the ones that the answer hangs on, climb to the next step.
 """
 
 from collections.abc import Callable, Sequence

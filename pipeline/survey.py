@@ -1,8 +1,8 @@
 """Which missing measurement would settle a verdict: the models are run at the ends of what is assumed.
 
 A verdict is open because inputs are uncertain.  For each of them in turn, the object is assessed as if that one had
-been measured, as low, best and high; the others stay as uncertain as they are.  If the verdict stays open wherever it
-falls, measuring is a waste.
+been measured, as low, best and high; the others stay as uncertain as they are.  If the verdict stays open at all three,
+measuring that alone is taken for a waste.
 """
 
 from collections.abc import Mapping, Sequence

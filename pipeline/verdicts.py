@@ -52,8 +52,9 @@ class Judgement:
 
 
 def judge(demand: float, low: float, high: float, capacity: Estimate) -> Judgement:
-    """Compare: pass or fail only where the whole range of the uncertain inputs says so, else undetermined.
+    """Compare: pass or fail only where both ends of the demand and of the capacity say so, else undetermined.
 
+    low, high : of the demand, over all that was looked at of what is uncertain (see `pipeline.plan.corners`)
     A demand of exactly the capacity passes.
     """
     used = utilisation(np.array([demand, high, low]), np.array([capacity.value, capacity.low, capacity.high]))

@@ -12,8 +12,17 @@ from pathlib import Path
 import pytest
 
 import pipeline
+from pipeline.classify import MODELS_OF
+from pipeline.jobs.tradeoff import PLAUSIBLE
 from pipeline.kernels import cache_folder
+from pipeline.mitigate.changes import CHANGES
+from pipeline.mitigate.installed import PARAMETERS
+from pipeline.mitigate.means import LAST, TERMS
+from pipeline.mitigate.measures import MEASURES
+from pipeline.mitigate.shared import SHARED
+from pipeline.models import MODELS
 from pipeline.resources import resource
+from pipeline.tables import table
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -31,6 +40,36 @@ def test_the_public_names_are_handed_on() -> None:
     assert all(callable(name) for name in (Motion, read_motion, respond, trace, transmit))
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = pipeline.nothing
+
+
+def told(begins: str) -> dict[str, str]:
+    """What a point of the README says of adding something: names of code, and the file that it says they are in."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    (point,) = re.findall(rf"^- {begins}: .*?(?=^- |\n\n)", text, re.M | re.S)
+    return {
+        name: path
+        for part in re.split(r"[;.] ", " ".join(point.split()))
+        for path in re.findall(r"\]\((pipeline/[^)]*\.py)\)", part)
+        for name in re.findall(r"`([A-Z_]+)`", part.partition(path)[0].rpartition(".py)")[2])
+    }
+
+
+def test_the_readme_names_every_place_where_a_model_or_a_measure_is_registered() -> None:
+    """Each name is in the file that is told, and holds every model or measure there is."""
+    for begins in ("a model", "a measure"):
+        for name, path in told(begins).items():
+            assert re.search(rf"^{name}\b", (ROOT / path).read_text(encoding="utf-8"), re.M), (name, path)
+    assert set(told("a model")) == {"MODELS_OF", "PLAUSIBLE", "DISPLACEMENTS"}
+    assert set(told("a measure")) == {"TERMS", "CHANGES", "MEASURES", "SHARED", "PARAMETERS"}
+    names = {model.name for model in MODELS}
+    assert set(PLAUSIBLE) == names
+    assert {row["model"] for row in table("generic_models")} == names - {"oscillator"}
+    given = {name for row in table("classes") for name in row["models"].split("|")}
+    given |= {name for several in MODELS_OF.values() for name in several}
+    assert given - {"none", ""} == names - {"oscillator"}
+    measures = {row["measure"] for row in table("measures")}
+    assert set(TERMS) == set(MEASURES) | set(SHARED) == set(CHANGES) | {LAST} == measures
+    assert set(PARAMETERS) < measures
 
 
 def test_importing_the_package_is_free_and_the_names_survive_any_order() -> None:

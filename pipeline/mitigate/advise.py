@@ -42,11 +42,11 @@ def advise(
     """Recommend a measure for each object and level at which something fails, or is open for want of room alone.
 
     A measure is a changed scene, and it passes where every model of that scene passes under all motions of all levels,
-    whatever its uncertain inputs are within their ranges.  So an object whose sliding fails while its rocking is open
-    is not told to keep clear: what is advised also keeps it from rocking.  And what is advised for a weak level is
-    built for the strong one too: one measure for all of them.  Only where there is none is one sought for each level
-    alone, and its sentence says so.  Where nothing fails and something else than room is open, nothing is advised: a
-    measurement settles that (`pipeline.survey`).
+    by the best estimates and at every combination of the ends of its uncertain inputs.  So an object whose sliding
+    fails while its rocking is open is not told to keep clear: what is advised also keeps it from rocking.  And what is
+    advised for a weak level is built for the strong one too: one measure for all of them.  Only where there is none is
+    one sought for each level alone, and its sentence says so.  Where nothing fails and something else than room is
+    open, nothing is advised: a measurement settles that (`pipeline.survey`).
 
     levels   : of shaking, with the motions that the findings were made under
     means    : the measures and isolators that there are; None: Kouros's own tables

@@ -1,4 +1,4 @@
-"""The registry of generic models: one file and one row each.  To add a model, write its file and name it in MODELS."""
+"""The registry of generic models: one file and one row each.  Where else a new one is named: README."""
 
 from difflib import get_close_matches
 
