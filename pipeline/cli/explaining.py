@@ -62,7 +62,8 @@ def _reasoning(reasoning: "Reasoning") -> Iterator[str]:
         yield f"    {taken.step:<10}{taken.motion}, {taken.inputs}: {taken.told or _taken(taken)}"
     yield f"    capacity  {_estimate(reasoning.capacity)}"
     at_most = "at most " if finding.fidelity == "bound" and finding.error else ""
-    yield f"    demand    {at_most}{_number(finding.demand)} ({_number(finding.low)} to {_number(finding.high)})"
+    span = "at most" if finding.range_is == "bounds" else f"{_number(finding.low)} to"
+    yield f"    demand    {at_most}{_number(finding.demand)} ({span} {_number(finding.high)})"
     outcome = f", {finding.outcome}" if finding.outcome else ""
     yield f"    verdict   {finding.verdict.value}{outcome}, decided by {finding.decided_by}, under {finding.motion}"
     if finding.note:

@@ -46,7 +46,7 @@ def advise(
     fails while its rocking is open is not told to keep clear: what is advised also keeps it from rocking.  And what is
     advised for a weak level is built for the strong one too: one measure for all of them.  Only where there is none is
     one sought for each level alone, and its sentence says so.  Where nothing fails and something else than room is
-    open, nothing is advised: a measurement settles that (`pipeline.survey`).
+    open, nothing is advised: a measurement may settle that (`pipeline.survey`).
 
     levels   : of shaking, with the motions that the findings were made under
     means    : the measures and isolators that there are; None: Kouros's own tables
