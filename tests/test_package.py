@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import pipeline
-from pipeline.classify import MODELS_OF
+from pipeline.classify import MODELS_OF, NO_MODEL, WHEN_HELD
 from pipeline.jobs.tradeoff import PLAUSIBLE
 from pipeline.kernels import cache_folder
 from pipeline.mitigate.changes import CHANGES
@@ -66,7 +66,7 @@ def test_the_readme_names_every_place_where_a_model_or_a_measure_is_registered()
     assert {row["model"] for row in table("generic_models")} == names - {"oscillator"}
     given = {name for row in table("classes") for name in row["models"].split("|")}
     given |= {name for several in MODELS_OF.values() for name in several}
-    assert given - {"none", ""} == names - {"oscillator"}
+    assert given - {NO_MODEL, WHEN_HELD, ""} == names - {"oscillator"}
     measures = {row["measure"] for row in table("measures")}
     assert set(TERMS) == set(MEASURES) | set(SHARED) == set(CHANGES) | {LAST} == measures
     assert set(PARAMETERS) < measures

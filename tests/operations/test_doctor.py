@@ -40,7 +40,7 @@ def test_a_new_museum_is_well_but_for_its_first_night(museum: Museum) -> None:
     looked = found(museum(more="[retention]\nruns = 3\n"))
     assert {what for what, d in looked.items() if d.state == "wrong"} == set()
     assert "no good report yet" in looked["last report"].message
-    assert looked["retention"].message.startswith("3 runs are kept")
+    assert looked["retention"].message.startswith("3 runs kept at most")
     assert looked["lock"].state == looked["disk"].state == looked["permissions"].state == "ok"
 
 
