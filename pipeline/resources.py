@@ -1,12 +1,19 @@
-"""Where the files that travel with Kouros are, in a checkout and in a wheel alike, and how files are read."""
+"""Where the files that travel with Kouros are, in a checkout and in a wheel alike, and how files are read and written.
+
+A file or folder that is being written has a name of its own until it is whole (`aside_of`), and what a process that
+died left under such a name is removed later (`sweep`).
+"""
 
 import errno
 import hashlib
 import os
+import re
+import shutil
+import time
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from threading import RLock
+from threading import RLock, get_ident
 from typing import Any
 
 import numpy as np
@@ -34,15 +41,83 @@ def digest_of(*parts: str, kinds: Iterable[str] = (".py",), but: Iterable[str] =
     return digest.hexdigest()
 
 
+_BEGAN = time.time()
+
+_ASIDE = re.compile(r"\..+\.(?P<pid>\d{1,9})-\d+\.kouros\.partial")
+
+_STALE = 2 * 86_400.0
+"""Seconds after which nobody is writing any more, whoever has the number of the process that was: two days."""
+
+
+def aside_of(path: Path) -> Path:
+    """Return the name under which a thread writes a file or a folder before it gives it its own name."""
+    return path.with_name(f".{path.name}.{os.getpid()}-{get_ident()}.kouros.partial")
+
+
 @contextmanager
 def replacing(file: Path) -> Iterator[Path]:
     """Yield the path of a file to be written; it takes the place of another when it is whole, and is else removed."""
-    aside = file.with_name(f".{file.name}.{os.getpid()}")
+    aside = aside_of(file)
     try:
-        yield aside
-        aside.replace(file)
-    finally:
-        aside.unlink(missing_ok=True)
+        with naming(file):
+            yield aside
+            aside.replace(file)
+    except BaseException:
+        with suppress(OSError):
+            aside.unlink(missing_ok=True)
+        raise
+
+
+@contextmanager
+def naming(file: Path) -> Iterator[None]:
+    """Let an OSError that names no file, as those of writing do not, name this one."""
+    try:
+        yield
+    except OSError as problem:
+        if problem.errno is not None and problem.filename is None:
+            problem.filename = str(file)
+        raise
+
+
+def sweep(folder: Path) -> None:
+    """Remove what processes that are gone left unfinished in a folder, but not in the folders below it.
+
+    Nothing else is touched, and what cannot be removed stays.
+    """
+    try:
+        inside = list(folder.iterdir())
+    except OSError:
+        return
+    for left in inside:
+        match = _ASIDE.fullmatch(left.name)
+        if match is None or _being_written(left, int(match["pid"])):
+            continue
+        with suppress(OSError):
+            if left.is_dir() and not left.is_symlink():
+                shutil.rmtree(left)
+            else:
+                left.unlink()
+
+
+def _being_written(path: Path, pid: int) -> bool:
+    try:
+        written = path.lstat().st_mtime
+    except OSError:
+        return False
+    if pid == os.getpid():
+        # Numbers are given again, in a container every night: what is older than this process is another's.
+        return written >= _BEGAN
+    if time.time() - written > _STALE:
+        return False
+    if os.name != "posix":
+        return True  # There a signal, even 0, would end the process.
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        pass  # It is somebody else's, and alive.
+    return True
 
 
 _READING = RLock()

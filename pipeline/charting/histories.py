@@ -6,12 +6,10 @@ night that must judge a sheet again because something changed finds here all tha
 
 import hashlib
 import json
-import os
 import time
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from threading import get_ident
 from typing import Any
 from zipfile import BadZipFile
 
@@ -21,7 +19,7 @@ from numpy.typing import NDArray
 from pipeline.charting.keeping import DAY, code_version, remove
 from pipeline.quantities import Array
 from pipeline.records import Columns
-from pipeline.resources import arrays
+from pipeline.resources import arrays, replacing
 
 _UNREADABLE = (OSError, ValueError, KeyError, BadZipFile, EOFError, TypeError)
 
@@ -72,20 +70,15 @@ class Histories:
         """Write what was used, atomically; a folder that cannot be written only costs the next night its time."""
         if self._file is None:
             return
-        tables = {}
+        tables: dict[str, Any] = {"code": np.array(code_version())}
         for number, (key, used) in enumerate((key, used) for key, used in self._used.items() if used):
             parameters = np.frombuffer(b"".join(used), dtype=np.float64).reshape(len(used), -1)
             tables[f"t{number}"] = np.hstack([parameters, np.array(list(used.values()))])
             tables[f"k{number}"] = np.array(json.dumps([key, *self._names[key]]))
-        aside = self._file.with_name(f".{self._file.stem}-{os.getpid()}-{get_ident()}.npz")
-        try:
+        with suppress(OSError):
             self._file.parent.mkdir(parents=True, exist_ok=True)
-            arrays: dict[str, Any] = {"code": np.array(code_version()), **tables}
-            np.savez(aside, **arrays)
-            aside.replace(self._file)
-        except OSError:
-            with suppress(OSError):
-                aside.unlink(missing_ok=True)
+            with replacing(self._file) as aside, aside.open("wb") as stream:
+                np.savez(stream, **tables)
 
 
 def prune(folder: Path, *, days: float, most_bytes: int) -> None:
@@ -97,9 +90,7 @@ def prune(folder: Path, *, days: float, most_bytes: int) -> None:
             facts = file.stat()
             files.append((facts.st_mtime, facts.st_size, file))
     for used, size, file in sorted(files, key=lambda one: (-one[0], one[2].name)):
-        # What begins with a dot was left behind by a process that died while it wrote.
-        last = 1.0 if file.name.startswith(".") else days
-        if now - used > last * DAY or total + size > most_bytes:
+        if now - used > days * DAY or total + size > most_bytes:
             remove(file)
         else:
             total += size

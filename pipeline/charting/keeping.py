@@ -12,7 +12,6 @@ from contextlib import suppress
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
-from threading import get_ident
 from typing import Any
 from zipfile import BadZipFile
 
@@ -22,7 +21,7 @@ from pipeline.charting.refine import Cells
 from pipeline.charting.response_chart import ResponseChart
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.records import ChartAxis
-from pipeline.resources import arrays, digest_of
+from pipeline.resources import arrays, digest_of, replacing
 
 LARGEST = 16_000_000
 """Bytes beyond which a file is no chart: the largest have 0.5 MB."""
@@ -81,14 +80,10 @@ def keep(folder: Path, key: str, chart: ResponseChart) -> None:
         }
     )
     cells: dict[str, Any] = {name: np.asarray(getattr(chart.cells, name)) for name in _CELLS}
-    aside = folder / f".{os.getpid()}-{get_ident()}.npz"
-    try:
+    with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
-        np.savez(aside, said=np.array(said), seal=np.array(_seal(said, cells)), **cells)
-        aside.replace(folder / f"{key}.npz")
-    except OSError:
-        with suppress(OSError):
-            aside.unlink(missing_ok=True)
+        with replacing(folder / f"{key}.npz") as aside, aside.open("wb") as stream:
+            np.savez(stream, said=np.array(said), seal=np.array(_seal(said, cells)), **cells)
 
 
 def recall(folder: Path, key: str, axis: ChartAxis) -> ResponseChart | None:
@@ -147,13 +142,9 @@ def prune(folder: Path, *, days: float, most_bytes: int, using: Collection[str] 
         except OSError:
             continue
         parts = file.stem.split("-")
-        if file.name.startswith("."):
-            # Left behind by a process that died while it wrote.
-            if now - facts.st_mtime > DAY:
-                remove(file)
-        elif len(parts) != 4:
+        if len(parts) != 4:
             continue
-        elif f"{parts[0]}-{parts[1]}" != version:
+        if f"{parts[0]}-{parts[1]}" != version:
             remove(file)
         elif parts[2] in used:
             with suppress(OSError):

@@ -16,6 +16,7 @@ from pipeline.cli.console import Guarded
 from pipeline.cli.options import Options
 from pipeline.execute.crew import RARELY
 from pipeline.jobs.journal import note
+from pipeline.jobs.stopping import stoppable
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -61,12 +62,13 @@ def main() -> None:
         else:
             warnings.formatwarning = _warned
         try:
-            code = kouros.main(standalone_mode=False)
+            with stoppable(lambda _problem: None):
+                code = kouros.main(standalone_mode=False)
         except click.exceptions.Exit as leaving:
             code = leaving.exit_code
-        except click.Abort:
+        except click.Abort as leaving:
             print("kouros: stopped", file=sys.stderr)
-            code = 130
+            code = getattr(leaving.__cause__, "exit_code", 130)
         except click.ClickException as problem:
             problem.show()
             code = 2

@@ -41,10 +41,14 @@ def demo(options: Options, folder: Path, as_json: bool) -> None:
 
     Example: kouros demo
     """
-    from pipeline.jobs.demo import demo as job
+    from pipeline.jobs.demo import demonstration
+    from pipeline.jobs.nightly import run as job
+    from pipeline.jobs.secrets import hider
+    from pipeline.jobs.watch import watched
 
+    settings = demonstration(folder)
     with options.console() as console:
-        summary = job(folder, console)
+        summary = watched(settings, lambda: job(settings, console), hider(settings), whole=True)
     _print_summary(summary, as_json)
 
 

@@ -1,14 +1,17 @@
 """One way to a database: embedded SQLite by default, PostgreSQL where the museum has a server."""
 
+import errno
+import os
+import sqlite3
 from pathlib import Path
 from typing import Any
 
 from sqlalchemy import Engine, MetaData, create_engine, event
-from sqlalchemy.engine import URL, make_url
+from sqlalchemy.engine import URL, ExceptionContext, make_url
 from sqlalchemy.exc import ArgumentError
 from sqlalchemy.pool import NullPool
 
-from pipeline.errors import InputError
+from pipeline.errors import InputError, KourosError
 
 Database = Engine
 """An open database, for those floors that hand it on without speaking SQL."""
@@ -54,7 +57,27 @@ def open_database(where: str | Path) -> Engine:
     engine = create_engine(url, poolclass=NullPool)
     if url.get_backend_name() == "sqlite":
         event.listen(engine, "connect", _prepare_sqlite)
+        event.listen(engine, "handle_error", _say_no_room)
     return engine
+
+
+class DatabaseFileError(KourosError):
+    """The file of the database cannot be written, most often because the disk is full."""
+
+    exit_code = 1
+
+
+def _say_no_room(context: ExceptionContext) -> None:
+    """Raise what a full disk is everywhere else for what SQLite says of it."""
+    problem, engine = context.original_exception, context.engine
+    file = "" if engine is None else engine.url.database or ""
+    # Of the extended codes the last eight bits are the kind.
+    kind = getattr(problem, "sqlite_errorcode", 0) & 0xFF
+    if kind == sqlite3.SQLITE_FULL:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), file) from problem
+    if kind in (sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN) and os.access(file, os.R_OK | os.W_OK):
+        remedy = "see that there is room on its disk, and that files can be made in its folder; then run again"
+        raise DatabaseFileError(f"the database {file} cannot be written ({problem}): {remedy}") from problem
 
 
 def _prepare_sqlite(connection: Any, _record: Any) -> None:

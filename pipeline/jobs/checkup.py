@@ -92,7 +92,7 @@ def _kernels() -> Found:
 
 def _lock(settings: Settings) -> Found:
     try:
-        with locked(settings):
+        with locked(settings, sweeping=False):
             return "ok", "no other run is at work"
     except LockedError as problem:
         now = status(settings)

@@ -5,13 +5,14 @@ from pathlib import Path
 from pipeline.jobs.importing import bundled_collection
 from pipeline.jobs.nightly import Summary, run
 from pipeline.records import Progress
-from pipeline.settings import load_settings, template
+from pipeline.resources import replacing
+from pipeline.settings import Settings, load_settings, template
 
 MUSEUM = "Carnegie Museum of Art (demonstration)"
 
 
-def demo(folder: Path, progress: Progress) -> Summary:
-    """Write the demonstration's settings where they are missing, and run the night with them.
+def demonstration(folder: Path) -> Settings:
+    """Return the demonstration's settings, written where they are missing.
 
     folder : kept from one demonstration to the next; the reports lie below it
     """
@@ -19,6 +20,11 @@ def demo(folder: Path, progress: Progress) -> Summary:
     file = folder / "kouros.toml"
     if not file.exists():
         text = template(museum=MUSEUM, source=str(bundled_collection()), mapping="carnegie", site="demo")
-        file.write_text(text, encoding="utf-8")
-    settings = load_settings(file).model_copy(update={"demonstration": True})
-    return run(settings, progress)
+        with replacing(file) as aside:
+            aside.write_text(text, encoding="utf-8")
+    return load_settings(file).model_copy(update={"demonstration": True})
+
+
+def demo(folder: Path, progress: Progress) -> Summary:
+    """Run the night with the demonstration's settings."""
+    return run(demonstration(folder), progress)

@@ -16,16 +16,14 @@ from pipeline.collection.reading import Reading, read_items
 from pipeline.collection.sources.opening import is_database
 from pipeline.collection.suspicion import Suspicion
 from pipeline.jobs.lasting import known_blocks, mapping_of
-from pipeline.jobs.workspace import Workspace
+from pipeline.jobs.workspace import IMPORTS, Workspace
 from pipeline.records import Item, Problem
 from pipeline.report.exports import safe_cell
+from pipeline.resources import replacing
 from pipeline.settings import Settings
 
 if TYPE_CHECKING:
     from pipeline.collection.guess import Guess
-
-LOGS = "imports"
-"""Folder beside the settings that holds the log of every import that changed something."""
 
 LOG_COLUMNS = ("row", "line", "object_number", "field", "what", "message", "remedy")
 
@@ -132,7 +130,7 @@ def import_collection(
     after = latest_import(workspace.engine)
     if after is None or last == after:
         return Imported(reading, changes)
-    log = workspace.settings.path(LOGS) / f"{after.id:05d}-{after.imported_at[:10]}.csv"
+    log = workspace.settings.path(IMPORTS) / f"{after.id:05d}-{after.imported_at[:10]}.csv"
     _write_log(log, reading, changes)
     return Imported(reading, changes, log=log)
 
@@ -147,7 +145,7 @@ def go_back(workspace: Workspace, version: int) -> Difference:
 
 def _write_log(path: Path, reading: Reading, changes: Difference) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", encoding="utf-8", newline="") as stream:
+    with replacing(path) as aside, aside.open("w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream)
         writer.writerow(LOG_COLUMNS)
         writer.writerows(

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from pipeline.jobs.workspace import UsageError, open_workspace
+from pipeline.resources import replacing
 from pipeline.settings import load_settings, template
 
 MANIFEST = """\
@@ -53,11 +54,14 @@ def initialise(folder: Path) -> list[Path]:
         raise UsageError(f"{file} is there already; remove it, or choose another folder")
     manifest = folder / "site_motions" / "site" / "manifest.toml"
     manifest.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(template(museum="", source="", mapping="kouros", site="site_motions/site"), encoding="utf-8")
     made = [file]
     if not manifest.exists():
-        manifest.write_text(MANIFEST, encoding="utf-8")
+        with replacing(manifest) as aside:
+            aside.write_text(MANIFEST, encoding="utf-8")
         made.append(manifest)
+    # Last, for where it is, nothing more is made.
+    with replacing(file) as aside:
+        aside.write_text(template(museum="", source="", mapping="kouros", site="site_motions/site"), encoding="utf-8")
     workspace = open_workspace(load_settings(file))
     database = workspace.engine.url.database
     return [*made, Path(database)] if workspace.engine.dialect.name == "sqlite" and database else made

@@ -8,7 +8,7 @@ import json
 import logging
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from logging.handlers import RotatingFileHandler
 from typing import TYPE_CHECKING, Any
@@ -56,6 +56,23 @@ class _Lines(logging.Formatter):
         return self._hide(str(value))
 
 
+class _File(RotatingFileHandler):
+    """A file of lines: where one cannot be written, the others are tried, and it is said once."""
+
+    _said = False
+
+    def handleError(self, record: logging.LogRecord) -> None:  # noqa: ARG002, N802 - as the standard library calls it
+        """Say in a sentence what the standard library would print a traceback for."""
+        if not self._said:
+            self._said = True
+            print(f"kouros: the log cannot be written: {sys.exc_info()[1]}; mend [logs] file", file=sys.stderr)
+
+    def close(self) -> None:
+        """Close the file; what could not be written is lost, and was told."""
+        with suppress(OSError):
+            super().close()
+
+
 @contextmanager
 def journal(settings: "Settings | None", hide: Callable[[str], str], *, to_stderr: bool = False) -> Iterator[None]:
     """Write what is noted to the file of the settings, to standard error, to both or to neither.
@@ -71,9 +88,7 @@ def journal(settings: "Settings | None", hide: Callable[[str], str], *, to_stder
             path = settings.path(wanted.file)
             path.parent.mkdir(parents=True, exist_ok=True)
             handlers.append(
-                RotatingFileHandler(
-                    path, maxBytes=round(1e6 * wanted.megabytes), backupCount=wanted.keep, encoding="utf-8"
-                )
+                _File(path, maxBytes=round(1e6 * wanted.megabytes), backupCount=wanted.keep, encoding="utf-8")
             )
         except OSError as problem:
             refused = problem

@@ -15,15 +15,15 @@ from pipeline.jobs.deciding import decided
 from pipeline.jobs.faults import LIKE
 from pipeline.jobs.importing import import_collection, source_of
 from pipeline.jobs.lasting import remember, unchanged
-from pipeline.jobs.outcome import write_summary
+from pipeline.jobs.outcome import SUMMARY, summary_text
 from pipeline.jobs.pictures import pictures
-from pipeline.jobs.retention import sweep
 from pipeline.jobs.rounds import Round
-from pipeline.jobs.standing import Status, mark_good, mark_running, status
+from pipeline.jobs.standing import Status, last_good, mark_good, mark_running, status
+from pipeline.jobs.stopping import uninterrupted
 from pipeline.jobs.workspace import UsageError, Workspace, locked, near, open_workspace, tidy
 from pipeline.motions.site import Site
 from pipeline.records import Progress, RunChanges, RunRecord, Sheet, Tally, Urgent
-from pipeline.report import publish
+from pipeline.report import lasting_name, publish
 from pipeline.report.decided import by_object
 from pipeline.report.survey_words import SURVEY_SECONDS
 from pipeline.settings import Settings
@@ -105,13 +105,16 @@ def run(
     raises  : errors with an `exit_code`: settings 2, motions 4, collection 5, lock 6, shrunk 7
     """
     chosen = selection or Selection()
-    with locked(settings):
+    with locked(settings, sweeping=not dry_run):
         started = datetime.now(UTC)
         cut_off = status(settings)
         if not (chosen or dry_run):
             mark_running(settings)
-        sweep(settings)
         workspace = open_workspace(settings)
+        shown = last_good(settings)
+        if shown is not None and not dry_run:
+            # A run that was cut off when its report was shown already, and that the database did not hear of.
+            mark_finished(workspace.engine, shown.run_id)
         site = _read_site(workspace, progress)
         with pictures(workspace, site) as drawing:
             if not (resume and _was_read(workspace, cut_off)):
@@ -145,16 +148,21 @@ def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool)
         commit_run(engine, whole, night.sheets, published=False)
         changes = compare_runs(engine, before[0], head.run_id) if before else None
         progress.step("report", 0, 1)
-        index = edition.finish(replace(head, decisions=strangers), found, changes, night.links(changes))
         # A part of the collection is worth a report, but not the name of the museum's latest one.
-        latest = None if chosen else publish(index.parent, workspace.reports)
+        latest = None if chosen else lasting_name(workspace.reports)
+        summary = summarise(whole, night.sheets, found)
+        index = edition.folder / "index.html"
+        summary = replace(summary, fresh=night.fresh, report=index, latest=latest, changes=changes)
+        beside = {SUMMARY: summary_text(summary, edition.folder)}
+        edition.finish(replace(head, decisions=strangers), found, changes, night.links(changes), beside)
+    with uninterrupted():
+        # From here on the report is whole: first it is shown, then said to be good.
+        if latest is not None:
+            publish(edition.folder, workspace.reports)
         mark_finished(engine, head.run_id)
-        progress.step("report", 1, 1)
-    summary = summarise(whole, night.sheets, found)
-    summary = replace(summary, fresh=night.fresh, report=index, latest=latest, changes=changes)
-    write_summary(summary, index.parent)
-    if latest is not None:
-        mark_good(workspace.settings, summary)
+        if latest is not None:
+            mark_good(workspace.settings, summary)
+    progress.step("report", 1, 1)
     return summary
 
 
@@ -182,7 +190,12 @@ def _ended(night: Round, chosen: Selection) -> RunRecord:
 def _was_read(workspace: Workspace, cut_off: Status | None) -> bool:
     """Say whether the run that was cut off had brought the museum's source into the inventory."""
     info = latest_import(workspace.engine)
-    return info is not None and cut_off is not None and cut_off.stale and info.imported_at >= cut_off.since
+    return (
+        info is not None
+        and cut_off is not None
+        and cut_off.stale
+        and info.imported_at >= (cut_off.began or cut_off.since)
+    )
 
 
 def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None:

@@ -1,5 +1,6 @@
 """What a night came to, for programs: the document of `kouros run --json`, of summary.json and of the hooks."""
 
+import errno
 import json
 import math
 import os
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from pipeline.errors import KourosError, fault_words
 from pipeline.records import RunChanges
+from pipeline.resources import replacing
 
 if TYPE_CHECKING:
     from pipeline.jobs.nightly import Summary
@@ -19,6 +21,8 @@ SUMMARY = "summary.json"
 
 LISTED = 1000
 """Changes of each kind that the file lists; `kouros diff --json` has all."""
+
+_FULL = frozenset({errno.ENOSPC, errno.EDQUOT})
 
 _KINDS = ("added", "removed", "moved", "inputs", "verdicts", "motions", "decisions", "settings", "versions")
 
@@ -72,34 +76,34 @@ def json_ready(value: Any) -> Any:
 def exit_code_of(problem: BaseException) -> int:
     """Return the exit code of the command that ends with this error."""
     if not isinstance(problem, Exception):
-        return 130  # stopped by hand
+        return getattr(problem, "exit_code", 130)  # stopped, see `pipeline.jobs.stopping`
     return problem.exit_code if isinstance(problem, KourosError) else 1
 
 
 def words_of(problem: BaseException) -> str:
     """Return an error in words: what people can mend as it says; a fault of Kouros as such, with its place."""
+    if isinstance(problem, KeyboardInterrupt):
+        return str(problem) or "it was stopped by hand"
     if isinstance(problem, KourosError) or not isinstance(problem, Exception):
         return str(problem)
     hint = "run again with --debug for the traceback"
+    if isinstance(problem, OSError) and problem.errno in _FULL:
+        where = "the disk" if problem.filename is None else f"the disk of {problem.filename}"
+        return f"there is no room left on {where}: make room (`kouros prune` removes old reports), then run again"
     if isinstance(problem, OSError) and problem.errno is not None:
         return f"{problem} ({type(problem).__name__}; {hint})"
     return f"a fault of Kouros, not of yours: {fault_words(problem)}; {hint}"
 
 
-def write_summary(summary: "Summary", folder: Path) -> None:
-    """Write summary.json beside a report's index, whole or not at all.
+def summary_text(summary: "Summary", folder: Path) -> str:
+    """Return the contents of summary.json, which lies beside a report's index.
 
     folder : of the report; paths in the file are told from it
     """
-    text = json.dumps(summary_document(summary, most=LISTED, base=folder), indent=2, allow_nan=False)
-    write_aside(folder / SUMMARY, text + "\n")
+    return json.dumps(summary_document(summary, most=LISTED, base=folder), indent=2, allow_nan=False) + "\n"
 
 
 def write_aside(path: Path, text: str) -> None:
     """Put a file (UTF-8) in place of another by one rename, so that nobody ever reads half of it."""
-    aside = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    try:
+    with replacing(path) as aside:
         aside.write_text(text, encoding="utf-8", newline="\n")
-        aside.replace(path)
-    finally:
-        aside.unlink(missing_ok=True)

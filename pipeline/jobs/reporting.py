@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TypedDict
 
-from pipeline.jobs.outcome import SUMMARY, write_aside
+from pipeline.jobs.outcome import SUMMARY
 from pipeline.jobs.standing import renew
 from pipeline.jobs.workspace import UsageError, locked, open_workspace
 from pipeline.records import RunChanges
@@ -32,11 +32,10 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
         before = whole[at + 1 : at + 2]
         changes = compare_runs(engine, before[0], head.run_id) if before else None
         found = ((sheet, load_found(engine, sheet.key)) for sheet in sheets)
-        with Edition(_free(workspace.reports / head.run_id), Pen(head, **manner(settings))) as edition:
-            index = draw_all(edition, head, found, changes)
         told = workspace.reports / head.run_id / SUMMARY
-        if told.is_file():
-            write_aside(index.with_name(SUMMARY), told.read_text(encoding="utf-8"))
+        beside = {SUMMARY: told.read_text(encoding="utf-8")} if told.is_file() else {}
+        with Edition(_free(workspace.reports / head.run_id), Pen(head, **manner(settings))) as edition:
+            index = draw_all(edition, head, found, changes, beside)
         if [head.run_id] == whole[:1]:
             publish(index.parent, workspace.reports)
             renew(settings)

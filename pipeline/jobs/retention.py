@@ -1,6 +1,5 @@
 """Earlier runs and reports are removed when there are enough newer ones; the last good ones never are."""
 
-import os
 import re
 import shutil
 from collections.abc import Iterator, Sequence
@@ -10,6 +9,7 @@ from pathlib import Path
 
 from pipeline.jobs.standing import last_good
 from pipeline.jobs.workspace import Workspace, locked, open_workspace
+from pipeline.resources import aside_of
 from pipeline.settings import Settings
 from pipeline.settings.operations import Retention
 from pipeline.store.pruning import remove_runs
@@ -18,7 +18,6 @@ from pipeline.store.runs import FINISHED, RunSummary, list_runs
 
 _RUN = r"(?P<run>(?P<day>\d{8})T(?P<time>\d{6})\.\d{3}-\d+)"
 _REPORT = re.compile(rf"{_RUN}(-\d+)?")
-_LEFTOVER = re.compile(rf"\.{_RUN}(-\d+)?\.\d+\.partial")
 _OURS = frozenset({".html", ".csv", ".jsonl", ".json", ".parquet", ".xlsx"})
 _ALWAYS = ("index.html", "findings.jsonl", "objects.csv")
 
@@ -28,7 +27,7 @@ class Pruned:
     """What was removed, or would be.
 
     runs    : run ids, the oldest first
-    reports : names of folders, the oldest first, with what was left of reports that were never finished
+    reports : names of folders, the oldest first
     kept    : folders that are old enough, and why they stay all the same
     """
 
@@ -49,24 +48,16 @@ def prune(settings: Settings, *, dry_run: bool = False) -> Pruned:
     limits = settings.retention
     if not (limits.runs or limits.reports or limits.days):
         return Pruned()
-    with locked(settings):
+    with locked(settings, sweeping=not dry_run):
         workspace = open_workspace(settings)
         sacred = _sacred(workspace)
         runs = _old_runs(list_runs(workspace.engine), sacred, limits)
         folders, kept = _old_reports(workspace.reports, sacred, limits)
-        folders += [folder for folder in _inside(workspace.reports) if _LEFTOVER.fullmatch(folder.name)]
         if not dry_run:
             remove_runs(workspace.engine, runs)
             for folder in folders:
                 _remove(folder)
         return Pruned(tuple(runs), tuple(sorted(folder.name for folder in folders)), tuple(kept))
-
-
-def sweep(settings: Settings) -> None:
-    """Remove what is left of reports that were never finished; the caller holds the lock."""
-    for folder in list(_inside(settings.path(settings.report.folder))):
-        if _LEFTOVER.fullmatch(folder.name):
-            _remove(folder)
 
 
 def _sacred(workspace: Workspace) -> frozenset[str]:
@@ -141,8 +132,6 @@ def _strange(folder: Path) -> str:
 
 def _remove(folder: Path) -> None:
     # Out of sight by one rename first, so that nobody opens half a report.
-    aside = folder
-    if not folder.name.startswith("."):
-        aside = folder.with_name(f".{folder.name}.{os.getpid()}.partial")
-        folder.rename(aside)
+    aside = aside_of(folder)
+    folder.rename(aside)
     shutil.rmtree(aside)

@@ -54,6 +54,7 @@ class Status:
     pid       : of the process that said so
     last_good : None before the first good night
     kind, message, exit_code : of the failure; empty and 0 where there was none
+    began     : when the run began that said so, ISO 8601, UTC; empty where no run did
     """
 
     state: str
@@ -63,6 +64,7 @@ class Status:
     kind: str = ""
     message: str = ""
     exit_code: int = 0
+    began: str = ""
 
     @property
     def stale(self) -> bool:
@@ -72,7 +74,8 @@ class Status:
 
 def mark_running(settings: Settings) -> None:
     """Say that a run of the whole collection has begun; should it be killed, this stays."""
-    _write(settings, Status(RUNNING, _now(), os.getpid(), last_good(settings)))
+    now = _now()
+    _write(settings, Status(RUNNING, now, os.getpid(), last_good(settings), began=now))
 
 
 def mark_good(settings: Settings, summary: "Summary") -> None:
@@ -81,7 +84,8 @@ def mark_good(settings: Settings, summary: "Summary") -> None:
         raise ValueError("a run without a report is not the last good one")
     root = _root(settings)
     report = summary.report.resolve().relative_to(root.resolve()).as_posix()
-    _write(settings, Status(GOOD, _now(), os.getpid(), LastGood(summary.run_id, summary.finished, report)))
+    good = LastGood(summary.run_id, summary.finished, report)
+    _write(settings, Status(GOOD, _now(), os.getpid(), good, began=_began(settings)))
 
 
 def mark_failed(settings: Settings, problem: BaseException, message: str) -> None:
@@ -90,7 +94,14 @@ def mark_failed(settings: Settings, problem: BaseException, message: str) -> Non
     message : without secrets, for everybody who may read the reports
     """
     good, kind = last_good(settings), type(problem).__name__
-    _write(settings, Status(FAILED, _now(), os.getpid(), good, kind, message, exit_code_of(problem)))
+    code = exit_code_of(problem)
+    _write(settings, Status(FAILED, _now(), os.getpid(), good, kind, message, code, _began(settings)))
+
+
+def _began(settings: Settings) -> str:
+    # A run that fails before it said that it is running began just now, and brought nothing into the inventory.
+    now = status(settings)
+    return now.began if now is not None and now.state == RUNNING and now.pid == os.getpid() else _now()
 
 
 def renew(settings: Settings) -> None:

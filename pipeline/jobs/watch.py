@@ -5,6 +5,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import asdict
 from datetime import UTC, datetime
+from threading import Lock
 from time import perf_counter
 from typing import Any
 
@@ -16,6 +17,7 @@ from pipeline.jobs.nightly import Summary
 from pipeline.jobs.outcome import exit_code_of, summary_document, words_of
 from pipeline.jobs.retention import prune
 from pipeline.jobs.standing import last_good, mark_failed
+from pipeline.jobs.stopping import stoppable
 from pipeline.jobs.workspace import LockedError
 from pipeline.quantities import counted
 from pipeline.settings import Settings
@@ -34,17 +36,26 @@ def watched(settings: Settings, work: Callable[[], Summary], hide: Callable[[str
     raises : what the work raises; what fails beside it is said and logged, and raises nothing
     """
     began = perf_counter()
-    note("run.started", version=__version__, museum=settings.museum.name, whole=whole)
-    try:
-        summary = work()
-    except LockedError as problem:
-        # The other run says how the report stands.
-        note("run.locked", level=logging.WARNING, message=str(problem), exit_code=problem.exit_code)
-        raise
-    except BaseException as problem:
-        _failed(settings, problem, hide, whole=whole, seconds=perf_counter() - began)
-        raise
-    _finished(settings, summary, hide, whole=whole, seconds=perf_counter() - began)
+    ended = Lock()
+
+    def failed(problem: BaseException) -> None:
+        # Once: where the night is stopped, by the main thread, or else by the one that ends the process.
+        if ended.acquire(blocking=False):
+            _failed(settings, problem, hide, whole=whole, seconds=perf_counter() - began)
+
+    with stoppable(failed):
+        note("run.started", version=__version__, museum=settings.museum.name, whole=whole)
+        try:
+            summary = work()
+            ended.acquire(blocking=False)
+        except LockedError as problem:
+            # The other run says how the report stands.
+            note("run.locked", level=logging.WARNING, message=str(problem), exit_code=problem.exit_code)
+            raise
+        except BaseException as problem:
+            failed(problem)
+            raise
+        _finished(settings, summary, hide, whole=whole, seconds=perf_counter() - began)
     return summary
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pipeline.errors import InputError, KourosError
-from pipeline.resources import resource
+from pipeline.resources import resource, sweep
 
 if TYPE_CHECKING:
     from pipeline.charting import Shelf
@@ -29,6 +29,8 @@ CHARTS = "charts"
 HISTORIES = "histories"
 """Folder in it for the histories of what was worked on together, see `pipeline.charting.histories`."""
 
+IMPORTS = "imports"
+"""Folder beside the settings that holds the log of every import that changed something."""
 
 LISTING = "listing.arrow"
 """File in it for the listing of the inventory's objects, see `pipeline.collection.listing`."""
@@ -128,10 +130,11 @@ def open_workspace(settings: "Settings") -> Workspace:
 
 
 @contextmanager
-def locked(settings: "Settings") -> Iterator[None]:
+def locked(settings: "Settings", *, sweeping: bool = True) -> Iterator[None]:
     """Hold the lock of this workspace: one run at a time.
 
-    raises : LockedError at once where another process holds it
+    sweeping : remove what processes that died left unfinished; not where nothing is to be written
+    raises   : LockedError at once where another process holds it
     """
     from filelock import FileLock, Timeout
 
@@ -144,9 +147,21 @@ def locked(settings: "Settings") -> Iterator[None]:
             f"another run holds {lock.lock_file}; wait for it to end (the lock goes with the process that holds it)"
         ) from problem
     try:
+        if sweeping:
+            _sweep(settings)
         yield
     finally:
         lock.release()
+
+
+def _sweep(settings: "Settings") -> None:
+    kept = settings.path(KEPT)
+    folders = [settings.home, settings.path(IMPORTS), settings.path(settings.report.folder)]
+    folders += [kept, kept / CHARTS, kept / HISTORIES]
+    if settings.site.folder != "demo":
+        folders.append(site_folder(settings.home, settings.site.folder))
+    for folder in dict.fromkeys(folders):
+        sweep(folder)
 
 
 @contextmanager

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-import os
+from contextlib import suppress
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -11,7 +11,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from pipeline.records import Motion
-from pipeline.resources import arrays, digest_of
+from pipeline.resources import arrays, digest_of, replacing
 
 Processed = tuple[Motion, dict[str, float]]
 """A motion and its measures."""
@@ -66,10 +66,8 @@ def keep(folder: Path, key: str, processed: Processed) -> None:
         "hash": motion.hash,
         "measures": measured,
     }
-    aside = folder / f".{os.getpid()}.npz"
-    try:
+    with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
-        np.savez(aside, dt=np.float64(motion.dt), acceleration=motion.acceleration, said=np.array(json.dumps(said)))
-        aside.replace(folder / f"{key}.npz")
-    except OSError:
-        aside.unlink(missing_ok=True)
+        with replacing(folder / f"{key}.npz") as aside, aside.open("wb") as stream:
+            text = np.array(json.dumps(said))
+            np.savez(stream, dt=np.float64(motion.dt), acceleration=motion.acceleration, said=text)

@@ -15,6 +15,7 @@ from pipeline.motions.intensity import measures
 from pipeline.motions.manifest import MANIFEST, SiteTable, load_manifest, manifest_file
 from pipeline.motions.processing import EAST
 from pipeline.records import Motion
+from pipeline.resources import replacing
 
 
 def write_site(folder: Path, motions: Sequence[tuple[str, Motion]], site: SiteTable, *, licence: str, why: str) -> Path:
@@ -104,9 +105,8 @@ def accept(path: Path, name: str, judgements: Mapping[Judgement, str]) -> None:
     for record in _records(document):
         if record.get("name") == name:
             record.setdefault("accept", tomlkit.inline_table()).update(judgements)
-            aside = file.with_name(f".{file.name}.aside")
-            aside.write_text(tomlkit.dumps(document), encoding="utf-8")
-            aside.replace(file)
+            with replacing(file) as aside:
+                aside.write_text(tomlkit.dumps(document), encoding="utf-8")
             return
     raise refusal(file, "record", f"there is no record {name!r}", "name one of the manifest")
 

@@ -2,8 +2,8 @@
 
 from pipeline.report.errors import ReportError
 from pipeline.report.language import Language, language
-from pipeline.report.publish import publish
+from pipeline.report.publish import lasting_name, publish
 from pipeline.report.render import render
 from pipeline.report.units import Units
 
-__all__ = ["Language", "ReportError", "Units", "language", "publish", "render"]
+__all__ = ["Language", "ReportError", "Units", "language", "lasting_name", "publish", "render"]

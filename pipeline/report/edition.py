@@ -31,7 +31,7 @@ from pipeline.report.text import clean, short
 from pipeline.report.text_files import TextFile
 from pipeline.report.traces import trace
 from pipeline.report.views import Entry, Pointer, State
-from pipeline.resources import digest_of, resource
+from pipeline.resources import aside_of, digest_of, naming, resource
 
 SHEETS = ".sheets.json"
 """File of a report that says what of it is which sheet's."""
@@ -110,7 +110,7 @@ class Edition:
             raise ReportError(f"{folder} exists already; a report never overwrites another: name a new folder")
         self.folder, self.pen = folder, pen
         self._earlier = earlier or Shelved(folder)
-        self._partial = folder.with_name(f".{folder.name}.{os.getpid()}.partial")
+        self._partial = aside_of(folder)
         self._placed: list[Placed] = []
         self._repeated = False
         self._stack = ExitStack()
@@ -118,22 +118,25 @@ class Edition:
         self._tables: dict[str, TableFile] = {}
 
     def __enter__(self) -> Self:
-        self._partial.mkdir(parents=True)
-        self._stack.callback(shutil.rmtree, self._partial, ignore_errors=True)
-        earlier = self._earlier.folder
-        for name in TEXT_FILES:
-            self._texts[name] = TextFile(self._partial / name, HEADERS.get(name, b""), earlier / name)
-            self._stack.callback(self._texts[name].close)
-        for name in TABLES:
-            file = f"{name}.parquet"
-            self._tables[name] = TableFile(self._partial / file, schema_of(name), earlier / file)
-            self._stack.callback(self._tables[name].close)
+        with ExitStack() as stack:
+            stack.enter_context(naming(self.folder))
+            self._partial.mkdir(parents=True)
+            stack.callback(shutil.rmtree, self._partial, ignore_errors=True)
+            earlier = self._earlier.folder
+            for name in TEXT_FILES:
+                self._texts[name] = TextFile(self._partial / name, HEADERS.get(name, b""), earlier / name)
+                stack.callback(self._texts[name].close)
+            for name in TABLES:
+                file = f"{name}.parquet"
+                self._tables[name] = TableFile(self._partial / file, schema_of(name), earlier / file)
+                stack.callback(self._tables[name].close)
+            self._stack = stack.pop_all()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._stack.close()
+        self._stack.__exit__(kind, error, trace)
 
     def _close(self) -> None:
         files: list[TextFile | TableFile] = [*self._texts.values(), *self._tables.values()]
@@ -178,20 +181,29 @@ class Edition:
         tables = {name: self._tables[name].add(content) for name, content in made.fragment.tables.items()}
         self._placed.append(Placed(key, made.entry, texts, tables))
 
-    def finish(self, head: RunRecord, tally: Tally, changes: RunChanges | None, links: Mapping[str, Pointer]) -> Path:
+    def finish(
+        self,
+        head: RunRecord,
+        tally: Tally,
+        changes: RunChanges | None,
+        links: Mapping[str, Pointer],
+        beside: Mapping[str, str] | None = None,
+    ) -> Path:
         """Write the index and the pages that all share, and give the report its name.
 
         head    : the run as it ended, without its objects; its decisions are those about objects that it does not have
         tally   : of all sheets together
         changes : since the run before, for the index; None where there was none
         links   : the objects that the index names as changed, by number
+        beside  : further files of the report, by name
         returns : the path of index.html
         raises  : ReportError where two galleries' files would have one name
         """
         fits = all(table.rows <= WORKBOOK_ROWS for table in self._tables.values())
         has_book = (self._partial / WORKBOOK).is_file() if self._repeated else fits
         # The exports are still being written meanwhile.
-        for name, text in self._shared(head, tally, changes, links, has_book=has_book):
+        shared = self._shared(head, tally, changes, links, has_book=has_book)
+        for name, text in [*shared, *(beside or {}).items()]:
             (self._partial / name).write_text(text, encoding="utf-8", newline="\n")
         self._close()
         if fits and not self._repeated:

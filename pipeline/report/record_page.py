@@ -1,6 +1,5 @@
 """The page of a site's records: what the processing did to each, to be looked at before anyone trusts it."""
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -43,6 +42,7 @@ from pipeline.report.record_words import (
 )
 from pipeline.report.text import clean
 from pipeline.report.units import Units
+from pipeline.resources import replacing
 
 PERIODS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0, 10.0)
 """Seconds; the table of the spectra shows the nearest computed periods."""
@@ -101,9 +101,8 @@ def render_record(inspections: Sequence[Inspection], file: Path, units: Units) -
     views = [record_view(one, units, f"r{i}") for i, one in enumerate(inspections)]
     site = clean(inspections[0].site) if inspections else ""
     text = fill(environment(), "record.html", {"site": site, "records": views, "bandwidth": f"{KONNO_OHMACHI:g}"})
-    unfinished = file.with_name(f".{file.name}.{os.getpid()}.partial")
-    unfinished.write_text(text, encoding="utf-8", newline="\n")
-    unfinished.replace(file)
+    with replacing(file) as unfinished:
+        unfinished.write_text(text, encoding="utf-8", newline="\n")
     return file
 
 

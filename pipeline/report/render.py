@@ -1,6 +1,6 @@
 """A whole run that is in memory becomes a report."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -38,11 +38,16 @@ def render(
 
 
 def draw_all(
-    edition: Edition, head: RunRecord, sheets: Iterable[tuple[Sheet, Found]], changes: RunChanges | None
+    edition: Edition,
+    head: RunRecord,
+    sheets: Iterable[tuple[Sheet, Found]],
+    changes: RunChanges | None,
+    beside: Mapping[str, str] | None = None,
 ) -> Path:
     """Draw every sheet of a run that is over into a report, one at a time, and finish it.
 
     head    : the run without its objects, with all decisions as they stood
+    beside  : further files of the report, by name
     returns : the path of index.html
     """
     decisions = by_object(head.decisions)
@@ -56,7 +61,7 @@ def draw_all(
         tallies.append(tally(found))
         links |= {number: link_to(sheet, number, title) for number, title in titles.items() if number in named}
     strangers = tuple(standing for left in decisions.values() for standing in left)
-    return edition.finish(replace(head, decisions=strangers), total(tallies), changes, links)
+    return edition.finish(replace(head, decisions=strangers), total(tallies), changes, links, beside)
 
 
 def sheets_of(record: RunRecord) -> list[tuple[Sheet, Found]]:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 from pipeline.quantities import LENGTHS
 from pipeline.records import Wish
 from pipeline.report.exports import safe_cell
-from pipeline.report.workbook import write_text
+from pipeline.report.workbook import saved, write_text
+from pipeline.resources import replacing
 
 if TYPE_CHECKING:
     from openpyxl.worksheet.worksheet import Worksheet
@@ -63,7 +64,8 @@ def write_survey(
     _ranking(book.create_sheet("what first"), asked, {m.field: m.label for m in fields})
     _how(book.create_sheet("how to measure"), names, length)
     path.parent.mkdir(parents=True, exist_ok=True)
-    book.save(path)
+    with replacing(path) as aside:
+        aside.write_bytes(saved(book))
     return {
         "objects": len({wish.object_number for wish in asked}),
         "quantities": len(asked),

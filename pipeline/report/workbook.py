@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
+from io import BytesIO
 from itertools import islice
 from math import isfinite, isnan
 from pathlib import Path
@@ -47,10 +48,18 @@ def write_workbook(
             batch, number = list(islice(waiting, _ROWS)), number + 1
     book.properties.creator, book.properties.lastModifiedBy = "Kouros", "Kouros"
     book.properties.created = book.properties.modified = made
-    aside = path.with_name(f".{path.name}.partial")
-    book.save(aside)
-    _steady(aside, path, made)
-    aside.unlink()
+    path.write_bytes(_steady(saved(book), made))
+
+
+def saved(book: Any) -> bytes:
+    """Return a workbook as the bytes of its file.
+
+    Not into the file at once: where the disk is full, openpyxl leaves a zip behind that tries again when it is
+    forgotten, and then prints a traceback.
+    """
+    content = BytesIO()
+    book.save(content)
+    return content.getvalue()
 
 
 def _cell(sheet: Any, value: object, font: Any = None) -> Any:
@@ -77,10 +86,11 @@ def write_text(cell: Any, text: str) -> None:
     cell.data_type = "s"
 
 
-def _steady(source: Path, target: Path, made: datetime) -> None:
-    """Copy a workbook with one date in place of the clock's, which a zip and openpyxl's properties would keep."""
+def _steady(content: bytes, made: datetime) -> bytes:
+    """Return a workbook with one date in place of the clock's, which a zip and openpyxl's properties would keep."""
     stamp = made.strftime("%Y-%m-%dT%H:%M:%SZ").encode()
-    with ZipFile(source) as old, ZipFile(target, "w", ZIP_DEFLATED) as new:
+    steady = BytesIO()
+    with ZipFile(BytesIO(content)) as old, ZipFile(steady, "w", ZIP_DEFLATED) as new:
         for info in old.infolist():
             data = old.read(info.filename)
             if info.filename == "docProps/core.xml":
@@ -88,6 +98,7 @@ def _steady(source: Path, target: Path, made: datetime) -> None:
             fixed = ZipInfo(info.filename, _DATE)
             fixed.compress_type = ZIP_DEFLATED
             new.writestr(fixed, data)
+    return steady.getvalue()
 
 
 def _stamped(properties: bytes, stamp: bytes) -> bytes:

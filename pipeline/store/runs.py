@@ -93,13 +93,13 @@ def commit_run(
 
 
 def mark_finished(engine: Engine, run_id: str) -> None:
-    """Say that a run has its report: from now on it is the newest finished one.
+    """Say that a run has its report: from now on it is the newest finished one; where that is known, nothing changes.
 
     raises : StoreError for a database that refuses
     """
     failure = f"run {run_id!a} has its report, but could not be marked as finished"
     with speaking(engine, failure), engine.begin() as connection:
-        connection.execute(update(RUN).where(RUN.c.run_id == run_id).values(status=FINISHED))
+        connection.execute(update(RUN).where(RUN.c.run_id == run_id, RUN.c.status != FINISHED).values(status=FINISHED))
 
 
 def load_head(engine: Engine, run_id: str | None = None) -> tuple[RunRecord, tuple[Sheet, ...]]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import csv
+import json
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Protocol
 
 from lxml import html
 
@@ -57,9 +59,22 @@ def last(database: str) -> RunRecord:
     return replace(record, run_id="", started="", finished="", settings=kept)
 
 
-def whole(folder: Path, nights: Nights) -> bool:
+class Expected(Protocol):
+    """What the objects of a report may be: those of the night before, or tonight's."""
+
+    @property
+    def before(self) -> dict[str, dict[str, str]]: ...
+    @property
+    def after(self) -> dict[str, dict[str, str]]: ...
+
+
+def whole(folder: Path, nights: Expected) -> bool:
     """Check that the published report is whole, and say whether it is tonight's."""
     report = (folder / "reports" / "latest").resolve()
+    told = json.loads((report / "summary.json").read_text(encoding="utf-8"))
+    assert report.name.startswith(told["run_id"])
+    assert (report / told["report"]).is_file()
+    assert (report / told["latest"]).resolve() == report
     found = objects(report)
     assert found in (nights.before, nights.after)
     for page in report.glob("*.html"):
