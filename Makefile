@@ -36,9 +36,10 @@ lint: $(STAMP)
 bench: $(PEERS)  ## costs beside peers and beside C, ns per object and sample of each model, the stages of a night
 	$(BIN)/python -m tests.benchmarks
 
-soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for two minutes each, fifty nights killed
+soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for two minutes each, fifty nights killed, every call disturbed
 	KOUROS_FUZZ_SECONDS=120 $(BIN)/python -m pytest --numprocesses 2 tests/motions/formats/test_fuzz.py -k damage
 	KOUROS_KILLS=50 $(BIN)/python -m pytest --numprocesses 2 tests/operations/test_interruptions.py -k kill
+	KOUROS_CALLS=1 $(BIN)/python -m pytest -s tests/operations/test_every_call.py
 
 # In environments of their own: what audits and what schedules must not decide which versions Kouros is tested with.
 audit:  ## known vulnerabilities of the pinned versions; needs the network, and says so and fails where it has none

@@ -33,6 +33,7 @@ LONGEST = frozenset(
         "test_chart_nights.py",
         "test_jobs.py",
         "test_interruptions.py",
+        "test_every_call.py",
         "test_borders.py",
         "test_extremes.py",
         "test_hostile_collection.py",

@@ -16,7 +16,7 @@ from pipeline.cli.console import Guarded
 from pipeline.cli.options import Options
 from pipeline.execute.crew import RARELY
 from pipeline.jobs.journal import note
-from pipeline.jobs.stopping import stoppable
+from pipeline.jobs.stopping import Stopped, stoppable
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -67,7 +67,9 @@ def main() -> None:
         except click.exceptions.Exit as leaving:
             code = leaving.exit_code
         except click.Abort as leaving:
-            print("kouros: stopped", file=sys.stderr)
+            # Who is stopped by a signal has said so at once.
+            if not isinstance(leaving.__cause__, Stopped):
+                print("kouros: stopped", file=sys.stderr)
             code = getattr(leaving.__cause__, "exit_code", 130)
         except click.ClickException as problem:
             problem.show()

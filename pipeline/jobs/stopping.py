@@ -85,6 +85,8 @@ def _listen(reader: socket.socket, last_words: Callable[[Stopped], None]) -> Non
             if not told:
                 return  # The block is over, and no signal came.
             number = told[0]
+    with suppress(BaseException):
+        print("kouros: stopped", file=sys.stderr, flush=True)
     # The block may be over meanwhile, and the process wait for its threads.
     threading.Event().wait(GRACE)
     with suppress(BaseException):

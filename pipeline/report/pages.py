@@ -4,13 +4,33 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import BytecodeCache, Environment, FileSystemLoader, StrictUndefined
+from jinja2.bccache import Bucket
 from markupsafe import Markup
 
 from pipeline.report.errors import ReportError
 from pipeline.report.language import Language
 from pipeline.report.text import clean, count, plain
 from pipeline.resources import resource
+
+
+class _Compiled(BytecodeCache):
+    """The templates as they were compiled, once a process: a night asks for several environments of the same ones."""
+
+    def __init__(self) -> None:
+        self._code: dict[str, bytes] = {}
+
+    def load_bytecode(self, bucket: Bucket) -> None:
+        """Give a template's code, if it is known; that it is of this very text, jinja2 sees to."""
+        if bucket.key in self._code:
+            bucket.bytecode_from_string(self._code[bucket.key])
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        """Take down a template's code."""
+        self._code[bucket.key] = bucket.bytecode_to_string()
+
+
+_COMPILED = _Compiled()
 
 
 def environment(language: Language | None = None) -> Environment:
@@ -20,6 +40,7 @@ def environment(language: Language | None = None) -> Environment:
         autoescape=True,
         # Templates do not change while a report is written: nobody need look.
         auto_reload=False,
+        bytecode_cache=_COMPILED,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

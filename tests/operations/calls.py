@@ -218,7 +218,7 @@ def _database(file: Path) -> Iterator[str]:
 
 
 def main() -> None:
-    """Carry out a plan: {"folder", "site", "attacks": {verb: {way: [start, stride]}}}."""
+    """Carry out a plan: {"folder", "site", "attacks": {verb: {way: [start, stride]}}}, and at the swap in any case."""
     plan = json.loads(sys.argv[1])
     scratch = Path(plan["folder"]).resolve()
     base = prepared(scratch / "base" / "museum", plan["site"])
@@ -227,7 +227,8 @@ def main() -> None:
         calls = counted(base, scratch, verb)
         print(json.dumps({"verb": verb, "calls": calls}), flush=True)
         for way, (start, stride) in ways.items():
-            for at in range(start, len(calls) + 1, stride):
+            swap = next((at for at, call in enumerate(calls, 1) if call == "rename reports/latest"), 0)
+            for at in sorted({*range(start, len(calls) + 1, stride), *((swap, swap + 1) if swap else ())}):
                 outcome = attacked(base, scratch, verb, way, at, calls[at - 1])
                 print(json.dumps(asdict(outcome)), flush=True)
 
