@@ -88,8 +88,10 @@ def words_of(problem: BaseException) -> str:
         return str(problem)
     hint = "run again with --debug for the traceback"
     if isinstance(problem, OSError) and problem.errno in _FULL:
-        where = "the disk" if problem.filename is None else f"the disk of {problem.filename}"
-        return f"there is no room left on {where}: make room (`kouros prune` removes old reports), then run again"
+        # Of a link and of a renaming the second is what was to be made.
+        file = problem.filename2 or problem.filename
+        where = "the disk" if file is None else f"the disk of {file}"
+        return f"no space is left on {where}: make room (`kouros prune` removes old reports), then run again"
     if isinstance(problem, OSError) and problem.errno is not None:
         return f"{problem} ({type(problem).__name__}; {hint})"
     return f"a fault of Kouros, not of yours: {fault_words(problem)}; {hint}"

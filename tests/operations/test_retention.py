@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import random
+import subprocess
+import time
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -11,7 +14,16 @@ import pytest
 
 from pipeline.jobs.retention import Pruned, prune
 from pipeline.jobs.standing import last_good
-from pipeline.jobs.workspace import LockedError, Workspace, locked, open_workspace
+from pipeline.jobs.workspace import (
+    CHARTS,
+    HISTORIES,
+    IMPORTS,
+    KEPT,
+    LockedError,
+    Workspace,
+    locked,
+    open_workspace,
+)
 from pipeline.report import publish
 from pipeline.settings import Retention, Settings
 from pipeline.store.reuse import SELECTION
@@ -142,15 +154,56 @@ def test_a_folder_that_is_not_wholly_ours_stays(tmp_path: Path) -> None:
     assert newest in folders(workspace)
 
 
-def test_what_is_left_of_reports_that_were_never_finished_goes(tmp_path: Path) -> None:
+def left_by(pid: int, path: Path, age: float = 0.0) -> Path:
+    """What a process of that number was writing some seconds ago; reports are folders."""
+    left = path.with_name(f".{path.name}.{pid}-140167345910336.kouros.partial")
+    left.parent.mkdir(parents=True, exist_ok=True)
+    if path.name.startswith("2031"):
+        left.mkdir()
+        (left / "index.html").write_text("half", encoding="utf-8")
+    else:
+        left.write_text("half", encoding="utf-8")
+    os.utime(left, (time.time() - age, time.time() - age))
+    return left
+
+
+def test_what_the_dead_left_unfinished_goes_and_nothing_else(tmp_path: Path) -> None:
+    """In every folder that Kouros writes in, before anything else is done there; a dry run leaves it."""
     workspace = museum(tmp_path, Retention(reports=5))
-    good = night(workspace, 1)
-    leftover = workspace.reports / ".20310501T030000.000-1.4711.partial"
-    leftover.mkdir()
-    (leftover / "index.html").write_text("half", encoding="utf-8")
-    (workspace.reports / ".something.partial").mkdir()
-    assert prune(workspace.settings).reports == (leftover.name,)
-    assert folders(workspace) == [".something.partial", good]
+    night(workspace, 1)
+    gone = subprocess.Popen(["true"])
+    gone.wait()
+    alive = subprocess.Popen(["sleep", "60"])
+    try:
+        reports, kept = workspace.reports, tmp_path / KEPT
+        places = [
+            reports / "20310501T030000.000-1", reports / "status.json", reports / "latest", kept / "source.jsonl",
+            kept / CHARTS / "chart.npz", kept / HISTORIES / "sheet.npz", tmp_path / IMPORTS / "00001-2031-05-01.csv",
+            tmp_path / "kouros.toml",
+        ]  # fmt: skip
+        dead = [left_by(gone.pid, place) for place in places]
+        # In a container a process has the number of last night's; and numbers go round.
+        dead.append(left_by(os.getpid(), reports / "index.html", age=86_400.0))
+        dead.append(left_by(alive.pid, kept / "listing.arrow", age=7 * 86_400.0))
+        target = reports / "a-folder-of-others"
+        target.mkdir()
+        (link := reports / f".latest.{gone.pid}-1.kouros.partial").symlink_to(target, target_is_directory=True)
+        stay = [
+            left_by(alive.pid, reports / "index.html"), left_by(os.getpid(), kept / "source.jsonl"), target,
+            tmp_path / f".notes.{gone.pid}.partial", tmp_path / "thesis.kouros.partial", tmp_path / ".kouros.partial",
+            target / f".mine.{gone.pid}-1.kouros.partial",
+        ]  # fmt: skip
+        for path in stay:
+            if not path.exists():
+                path.write_text("mine", encoding="utf-8")
+        assert not prune(workspace.settings, dry_run=True).reports
+        assert all(path.exists() for path in [*dead, *stay])
+        prune(workspace.settings)
+        assert not [path for path in [*dead, link] if path.exists() or path.is_symlink()]
+        assert all(path.exists() for path in stay)
+    finally:
+        alive.kill()
+        alive.wait()
 
 
 def test_nothing_is_removed_while_a_run_is_at_work(tmp_path: Path) -> None:
