@@ -54,9 +54,10 @@ def prune(settings: Settings, *, dry_run: bool = False) -> Pruned:
         runs = _old_runs(list_runs(workspace.engine), sacred, limits)
         folders, kept = _old_reports(workspace.reports, sacred, limits)
         if not dry_run:
-            remove_runs(workspace.engine, runs)
+            # The folders first: where the disk is full, the database can only then write what it removes.
             for folder in folders:
                 _remove(folder)
+            remove_runs(workspace.engine, runs)
         return Pruned(tuple(runs), tuple(sorted(folder.name for folder in folders)), tuple(kept))
 
 
