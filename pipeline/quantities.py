@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from math import inf
+from numbers import Real
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,29 @@ LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 
 MASSES = {"kg": 1.0, "g": 0.001, "lb": 0.45359237, "oz": 0.028349523125}
 """Kilograms in one of each unit of mass that a mapping may name."""
+
+
+def real_number(value: object) -> float:
+    """Return a finite real number, Python's own or numpy's, as a float; NaN for whatever else it is."""
+    array = real_array(value)
+    return float(array) if array is not None and array.ndim == 0 and np.isfinite(array) else np.nan
+
+
+def real_array(value: object) -> Array | None:
+    """Return real numbers as an array of floats, None for texts, truth values, complex numbers and the like."""
+    try:
+        array = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        return None
+    if array.dtype.kind == "O" and array.size:
+        if not all(isinstance(v, Real) and not isinstance(v, (bool, np.bool_)) for v in array.flat):
+            return None
+    elif array.dtype.kind not in "iuf":
+        return None
+    try:
+        return array.astype(np.float64)
+    except OverflowError:
+        return None
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,3 +91,45 @@ def counted(number: int, one: str, many: str = "") -> str:
     many : the plural, where it is not the singular with an s
     """
     return f"{number:,} {one if number == 1 else many or f'{one}s'}"
+
+
+SMALLEST_STEP = 0.1
+"""Degrees, the smallest step between directions: 3,600 analyses of each object are enough."""
+
+
+def checked(angle: object, tail: object, azimuth_step: object) -> tuple[float | None, float | None, float]:
+    """Return angle, tail and azimuth step as numbers, None where they may be.
+
+    raises : ValueError naming the one that is not what it must be
+    """
+    # numpy's own numbers are taken for what they are; the angle's size is what it was given as.
+    after, step = real_number(tail), real_number(azimuth_step)
+    if tail is not None and not after >= 0.0:
+        raise InputError(f"tail must be at least 0 s, or None for until rest, not {tail!r}")
+    if not SMALLEST_STEP <= step <= 90.0:
+        raise InputError(
+            f"azimuth_step must be above 0 and at most 90 degrees, {SMALLEST_STEP:g} at least, not {azimuth_step!r}"
+        )
+    return None if angle is None else finite_angle(angle), None if tail is None else after, step
+
+
+def finite_angle(angle: object) -> float:
+    """Return an angle in degrees.
+
+    raises : ValueError for what is no number
+    """
+    degrees = real_number(angle)
+    if np.isnan(degrees):
+        raise InputError(f"angle must be a number of degrees, or None for RotD100, not {angle!r}")
+    return degrees
+
+
+def some_error(error: object) -> float:
+    """Return an error that is granted.
+
+    raises : ValueError for what is no number above 0
+    """
+    some = real_number(error)
+    if not some > 0.0:
+        raise InputError(f"error must be a number above 0, not {error!r}")
+    return some

@@ -22,7 +22,7 @@ from pipeline.charting import (
 from pipeline.errors import InputError
 from pipeline.models import MODELS, model_named
 from pipeline.models.common import BOUND, SENSITIVE, words
-from pipeline.quantities import Array, Quantity
+from pipeline.quantities import Array, Quantity, checked, finite_angle, real_array, real_number, some_error
 from pipeline.records import Columns, Excitation, Model, Motion
 from pipeline.supports import TRANSMITTED, refined, support_named
 
@@ -176,10 +176,9 @@ def prepare(model: Parametric, parameters: Mapping[str, Any]) -> dict[str, Array
                 raise InputError(f"{model.name} needs {name} [{quantity.unit}]: {quantity.meaning}")
             arrays[name] = np.array(np.nan if quantity.default is None else quantity.default)
             continue
-        try:
-            array = np.asarray(value, dtype=np.float64)
-        except (TypeError, ValueError) as problem:
-            raise InputError(f"{name} must be {quantity.allowed()}, not {value!r}") from problem
+        array = real_array(value)
+        if array is None:
+            raise InputError(f"{name} must be {quantity.allowed()}, not {value!r}")
         if array.size == 0:
             raise InputError(f"{name} is empty: give at least one value")
         if array.ndim > 1:
@@ -207,7 +206,7 @@ def run_model(
 
     raises : ValueError for a bad tail or azimuth step, mixed `directions`, or a model without the fidelity asked
     """
-    _check(angle, tail, azimuth_step)
+    angle, tail, azimuth_step = checked(angle, tail, azimuth_step)
     size = next(iter(values.values())).size
     directions = _directions(model, values)
     if fidelity in ("screen", "bound"):
@@ -302,6 +301,11 @@ def response_chart(
     """
     row = model_named(model)
     axis = axis_of(row)
+    if low is not None:
+        begin = real_number(low)
+        if not 0.0 < begin < axis.high:
+            raise InputError(f"low must be a number above 0 and below {axis.high:g}, where the chart ends, not {low!r}")
+        low = begin
     values = prepare(row, {**fixed, axis.name: axis.low})
     run, settings = _charted(row, motion, values, angle, None, azimuth_step, tolerance)
     others = {name: column[0] for name, column in values.items() if name != axis.name}
@@ -318,22 +322,13 @@ def _charted(
     tolerance: float,
 ) -> tuple[Run, Settings]:
     """Return how the nodes of a chart are run, and what the chart depends on besides model and motion."""
-    _check(angle, tail, azimuth_step)
+    angle, tail, azimuth_step = checked(angle, tail, azimuth_step)
     both = _directions(model, values) == 2
 
     def run(some: Mapping[str, Array]) -> Columns:
         return run_model(model, motion, some, "history", angle, tail, azimuth_step)[0]
 
     return run, Settings(None if both else angle, both, tail, azimuth_step, REFINE["history"], tolerance)
-
-
-def _check(angle: object, tail: object, azimuth_step: float) -> None:
-    if tail is not None and not (isinstance(tail, (int, float)) and np.isfinite(tail) and tail >= 0.0):
-        raise InputError(f"tail must be at least 0 s, or None for until rest, not {tail!r}")
-    if angle is not None:
-        _finite_angle(angle)
-    if not 0.0 < azimuth_step <= 90.0:
-        raise InputError(f"azimuth_step must be above 0 and at most 90 degrees, not {azimuth_step!r}")
 
 
 def _directions(model: Model, values: Mapping[str, Array]) -> int:
@@ -363,11 +358,6 @@ def _bounded(model: Model, motion: Excitation, values: Mapping[str, Array]) -> C
         columns[quantity.name] = certain if quantity.unit in ("bool", "count") else most
     error = np.subtract(high, low, out=np.zeros_like(low), where=high > low)
     return columns | {"low": low, "high": high, "error": error, "note": bounds.note + BOUND}
-
-
-def _finite_angle(angle: object) -> None:
-    if not (isinstance(angle, (int, float)) and np.isfinite(angle)):
-        raise InputError(f"angle must be a number of degrees, or None for RotD100, not {angle!r}")
 
 
 def _worst_direction(
@@ -446,7 +436,7 @@ def trace(model: str, motion: Motion, *, angle: float = 0.0, **parameters: Any) 
     row = model_named(model)
     if row.trace is None:
         raise InputError(f"{model} has no time history of its own; ask for the oscillator's")
-    _finite_angle(angle)
+    angle = finite_angle(angle)
     one = _single(row, parameters, "trace follows one object at a time")
     two = row.directions == 2 or (row.directions == 0 and one["directions"] == 2.0)
     columns = row.trace(motion.excitation(None if two else angle, 0.0), one)
@@ -470,9 +460,11 @@ def transmit(
     values = _single(row, parameters, "transmit passes a motion through one support")
     if values.get("directions", 2.0) != 2.0:
         raise InputError("transmit passes both horizontal directions on; leave directions out")
-    _some_error(error)
+    error = some_error(error)
+    if refine is not None and not (real_number(refine) >= 1.0 and real_number(refine).is_integer()):
+        raise InputError(f"refine must be at least 1, not {refine!r}; a whole number, or None for as many as it takes")
     if refine is not None or not row.refines(values):
-        return row.transmit(motion, values, 1 if refine is None else refine)
+        return row.transmit(motion, values, 1 if refine is None else int(refine))
     return refined(lambda samples: row.transmit(motion, values, samples), error)
 
 
@@ -483,15 +475,10 @@ def cascade(chain: Sequence[tuple[str, Mapping[str, Any]]], motion: Motion, *, e
     error  : as in `transmit`, of all of them together
     raises : ValueError as `transmit`
     """
-    _some_error(error)
+    error = some_error(error)
     for support, parameters in chain:
         motion = transmit(support, motion, error=error / len(chain), **parameters)
     return motion
-
-
-def _some_error(error: object) -> None:
-    if not (isinstance(error, (int, float)) and error > 0.0):
-        raise InputError(f"error must be a number above 0, not {error!r}")
 
 
 def _single(model: Parametric, parameters: Mapping[str, Any], why: str) -> dict[str, float]:

@@ -11,7 +11,7 @@ from pipeline.charting.keeping import chart_identity
 from pipeline.charting.response_chart import ResponseChart, Run, axis_of
 from pipeline.charting.shelf import Shelf
 from pipeline.errors import InputError
-from pipeline.quantities import Array
+from pipeline.quantities import Array, real_number
 from pipeline.records import Columns, Model, Motion
 
 MOST_CHARTS = 16
@@ -47,7 +47,7 @@ class Settings:
     first: bool = False
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.tolerance) and 1e-6 <= self.tolerance <= 1.0):
+        if not 1e-6 <= real_number(self.tolerance) <= 1.0:
             raise InputError(f"tolerance must be from 1e-6 to 1 of the value, not {self.tolerance!r}")
 
 

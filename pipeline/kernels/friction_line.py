@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from pipeline.kernels import FIRST, inner, kernel
-from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
+from pipeline.kernels.flags import CONTACT_LOST, CUT, UNRESOLVED
 from pipeline.kernels.line_phase import (
     MU_K,
     MU_S,
@@ -42,6 +42,15 @@ CAP = 200.0
 
 FAINT = 1e-12
 """Share of the largest displacement that is no longer followed."""
+
+MOST_PIECES = 1000
+"""Stretches of a sample interval, each half a radian of the body's own, from which on it is not followed."""
+
+MOST_EVENTS = 100
+"""Stops and starts in a stretch after which the body is not followed further; its motion has a few."""
+
+MOST_AFTER = 5_000_000
+"""Stretches after the record at which a body that still moves is cut off before CAP."""
 
 
 @inner
@@ -75,7 +84,7 @@ def _piece(
     # s: 0 at rest, else the direction of slip.  out: [max |u|, path, max transmitted, flags].
     now = 0.0
     b, mu_s, mu_k = body[B], body[MU_S], body[MU_K]
-    for _ in range(1000):
+    for _ in range(MOST_EVENTS):
         left = span - now
         if left <= 0.0:
             return u, v, s
@@ -120,7 +129,7 @@ def _piece(
         v = 0.0
         q = a + b * u
         s = 0.0 if abs(q) <= mu_s * n else (-1.0 if q > 0.0 else 1.0)
-    out[3] = float(int(out[3]) | EVENT_CAP)
+    out[3] = float(int(out[3]) | UNRESOLVED)
     return u, v, s
 
 
@@ -269,12 +278,16 @@ def _follow(
 ) -> float:
     # The body through the record and until it rests.
     n = x.shape[0]
-    pieces = max(1, math.ceil(w * dt * (1.0 + zeta) / PHASE))
+    needed = w * dt * (1.0 + zeta) / PHASE
+    if not needed <= MOST_PIECES:
+        out[3] = float(UNRESOLVED)
+        return 0.0
+    pieces = max(1, math.ceil(needed))
     body = make_body(w, zeta, mu_s, mu_k, dt / pieces)
     u, v, s = 0.0, 0.0, 0.0
     recording = history.shape[0] > 0
     i = FIRST
-    while i < n - 1:
+    while i < n - 1 and not int(out[3]) & UNRESOLVED:
         if s == 0.0 and w == 0.0 and not recording:
             ahead = next_above(ratio, maxima, i, mu_s)
             if ahead >= n:
@@ -337,19 +350,21 @@ def _coast(u: float, v: float, s: float, body: Body, series: Array, tail: float,
         tail = 2.0 * math.pi / w
     stop = tail if tail > 0.0 else CAP
     t, longest = 0.0, stop if w == 0.0 else PHASE / (w * (1.0 + zeta))
+    cut = tail < 0.0 or stop > MOST_AFTER * longest
+    stop = min(stop, MOST_AFTER * longest)
     body = make_body(w, zeta, mu_s, mu_k, longest)
     while t < stop:
         span = min(stop - t, longest)
         u, v, s = _piece(u, v, s, 0.0, 0.0, G, 0.0, span, body, series, out)
         t += span
-        if s == 0.0:
+        if s == 0.0 or int(out[3]) & UNRESOLVED:
             return u
         if tail < 0.0 and abs(b * abs(u) - mu_k * G) <= 2.0 * c * abs(v) and c * abs(v) <= FAINT * b * out[0]:
             # Overdamped, it creeps towards the end of the friction's reach and never gets there.
             return u
         if tail < 0.0 and mu_k == 0.0 and 0.5 * v * v + 0.5 * w * w * u * u <= 1e-24 * w * w * out[0] * out[0]:
             return u
-    if s != 0.0 and tail < 0.0:
+    if s != 0.0 and cut:
         out[3] = float(int(out[3]) | CUT)
     return u
 

@@ -12,9 +12,9 @@ import math
 import numpy as np
 
 from pipeline.kernels import FIRST, inner, kernel
-from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
-from pipeline.kernels.friction_line import CAP, FAINT
-from pipeline.kernels.plane_peaks import felt, inner_felt, inner_radius, note
+from pipeline.kernels.flags import CONTACT_LOST, CUT, SENSITIVE, UNRESOLVED
+from pipeline.kernels.friction_line import CAP, FAINT, MOST_AFTER
+from pipeline.kernels.plane_peaks import felt, inner_felt, inner_radius, note, stop_radius
 from pipeline.kernels.plane_step import plane_step
 from pipeline.kernels.plane_stop import come_to_rest
 from pipeline.kernels.quiet import largest, next_above
@@ -25,13 +25,18 @@ Control = tuple[float, float, float, float, float]
 may change during a stop, and the shortest and the longest step as shares of a sample interval."""
 
 STEPS = 200000
-"""Steps in a sample interval after which it is given up."""
+"""Steps in a sample interval after which the body is not followed further."""
+MOST_STEPS, MOST_EACH = 5_000_000, 3000
+"""The same in a record: so many, and so many more for each of its samples."""
 TRIALS = 60
 """Shorter and shorter steps that are tried before the body is taken to rest."""
 CRAWL = 1e-9
 """Speed, as a share of the scale of speeds, at which a body that will stop is taken to stop."""
 
 
+NEAR = 0.02
+"""Share of the error that a velocity may have, below which a body that is slower may have come to rest, or one that
+has may not; the error is a bound, and mostly much smaller."""
 SHARE = 1.5
 """Share of its speed that a step may take off or turn away, over the eighth root of the tolerance."""
 SLOW = 1e-2
@@ -75,10 +80,13 @@ def _piece(
     ex, ey, speed = state[5], state[6], state[7]
     rtol, share, change, faint = control[0], control[1], control[2], control[3] * span
     longest = control[4] * span
+    stray, off = state[8], state[9]
+    w = math.sqrt(b)
     most, top, felt_most = out[0] * out[0], out[0] * out[0], out[2]
     t = 0.0
     done = False
-    for _ in range(STEPS):
+    used, unseen, late = 0, out[4], 0.0
+    for used in range(min(STEPS, int(state[10]))):  # noqa: B007
         left = span - t
         if left <= 1e-14 * span:
             done = True
@@ -89,6 +97,11 @@ def _piece(
             qx, qy = ax + b * ux, ay + b * uy
             hold = load[6] + load[7] * t
             if qx * qx + qy * qy <= hold * hold:
+                if late > 0.0:
+                    if ax * ax + ay * ay > felt_most * felt_most:
+                        out[5] = max(out[5], late * (math.hypot(load[1], load[3]) + abs(load[5])))
+                    late = 0.0
+                stray = w * off
                 wait = _onset(qx, qy, load[1], load[3], hold, load[7], left)
                 felt_most = max(felt_most, math.sqrt(ax * ax + ay * ay))
                 if wait < 0.0:
@@ -106,7 +119,7 @@ def _piece(
                 done = True
                 break
         qx, qy = -ax - b * ux - c * vx, -ay - b * uy - c * vy
-        grip = load[4] + load[5] * t
+        grip, hold = load[4] + load[5] * t, load[6] + load[7] * t
         h = left
         if speed > 0.0:
             rx, ry = qx - grip * ex, qy - grip * ey
@@ -114,17 +127,37 @@ def _piece(
             # Without any hold it neither stops nor turns at once.
             if h * turn > share * speed and max(load[6], load[7]) > 0.0:
                 q1x, q1y = -load[1] - 0.5 * b * vx - c * rx, -load[3] - 0.5 * b * vy - c * ry
-                wait, dx, dy, way = come_to_rest(
+                wait, dx, dy, way, astray = come_to_rest(
                     speed, vx, vy, ex, ey, qx, qy, q1x, q1y, load, t, left, change, b + c * c, speed <= CRAWL * scale
                 )
                 if wait >= 0.0:
+                    if ux * vx + uy * vy > 0.0 and (math.sqrt(ux * ux + uy * uy) + way) ** 2 > top:
+                        inner = stop_radius(ux, uy, vx * wait, vy * wait, dx, dy)
+                        top, unseen = max(top, inner), max(unseen, math.sqrt(inner) - math.hypot(ux + dx, uy + dy))
                     ux, uy, path = ux + dx, uy + dy, path + way
-                    felt_most = max(felt_most, felt(ux, uy, 0.0, 0.0, ex, ey, grip + load[5] * wait, b, c))
                     top = max(top, ux * ux + uy * uy)
+                    off += stray * wait + astray
+                    stray += 2.0 * astray / wait
+                    # What is felt at rest begins with the base's acceleration at an instant that is known so well.
+                    late = stray * wait / speed
+                    last = felt(ux, uy, 0.0, 0.0, ex, ey, grip + load[5] * wait, b, c)
+                    if last > felt_most:
+                        # On a spring the friction adds to its pull by a direction that is not known at the end.
+                        out[5] = max(out[5], last - felt_most if b > 0.0 else late * abs(load[5]))
+                        felt_most = last
                     t += wait
+                    # Had it been so much faster, would the push have outgrown the grip before it stopped?
+                    if load[6] > load[4]:
+                        endx, endy = qx + q1x * wait, qy + q1y * wait
+                        spare = load[4] + load[5] * t - math.sqrt(endx * endx + endy * endy)
+                        rise = math.sqrt(q1x * q1x + q1y * q1y) + abs(load[5])
+                        if spare > 0.0 and spare * spare < 2.0 * NEAR * stray * rise:
+                            out[3] = float(int(out[3]) | SENSITIVE)
                     slipping = False
                     continue
                 h = min(h, max(share * speed / turn, faint))
+                if speed <= NEAR * stray and load[6] > load[4] and qx * qx + qy * qy <= hold * hold:
+                    out[3] = float(int(out[3]) | SENSITIVE)
         else:
             # From rest it follows the push; without a hold the push may be zero now: its rate says where to.
             ex, ey = qx, qy
@@ -144,6 +177,7 @@ def _piece(
             h *= 0.5 if least < 0.0 else max(0.2, 0.9 * math.sqrt(math.sqrt(allowed / error)))
         if least < 0.0:
             # Friction holds it however short the step: it rests.
+            off += (stray + speed) * h
             slipping = False
             t += h
             continue
@@ -184,17 +218,23 @@ def _piece(
                 pace,
             )
             felt_most = max(felt_most, inner)
+        stray += error
+        off += stray * h
+        if w * off > stray:
+            off = stray / w
         ux, uy, vx, vy, ex, ey, speed, path = wx, wy, sx, sy, dx, dy, pace, path + way
         t += h
         # The root is worth its time only where the next step may have to be shorter than the interval.
         guess = 4.0 * h if 400.0 * error <= allowed else 0.9 * h * math.sqrt(math.sqrt(allowed / error))
     if not done:
-        out[3] = float(int(out[3]) | EVENT_CAP)
+        out[3] = float(int(out[3]) | UNRESOLVED)
     state[0], state[1], state[2], state[3], state[4] = ux, uy, vx, vy, path
     state[5], state[6], state[7] = ex, ey, speed
+    state[8], state[9] = stray, off
+    state[10] -= used
     if top > most:
         out[0] = math.sqrt(top)
-    out[2] = felt_most
+    out[2], out[4] = felt_most, unseen
     return slipping, guess
 
 
@@ -274,7 +314,8 @@ def _follow(
     slipping, guess = state[7] > 0.0, dt
     recording = history.shape[0] > 0
     i = FIRST
-    while i < n - 1:
+    state[10] = float(MOST_STEPS + MOST_EACH * n)
+    while i < n - 1 and not int(out[3]) & UNRESOLVED:
         if not slipping and w == 0.0 and not recording:
             ahead = next_above(ratio, maxima, i, mu_s)
             if ahead >= n:
@@ -350,13 +391,15 @@ def _coast(
     stop = tail if tail > 0.0 else CAP
     t = 0.0
     span = max(dt, min(0.1, 0.05 * stop)) if w == 0.0 else min(0.25 / (w * (1.0 + zeta)), max(dt, 0.01))
+    cut = tail < 0.0 or stop > MOST_AFTER * span
+    stop = min(stop, MOST_AFTER * span)
     load[:] = 0.0
     _weigh(load, mu_s, mu_k, G, 0.0)
     while t < stop:
         now = min(span, stop - t)
         slipping, guess = _piece(state, load, now, slipping, guess, b, c, scale, control, out)
         t += now
-        if not slipping:
+        if not slipping or int(out[3]) & UNRESOLVED:
             return
         speed = math.hypot(state[2], state[3])
         excess = abs(b * math.hypot(state[0], state[1]) - mu_k * G)
@@ -368,7 +411,7 @@ def _coast(
             energy = state[2] * state[2] + state[3] * state[3] + b * (state[0] * state[0] + state[1] * state[1])
             if energy <= 1e-24 * b * out[0] * out[0]:
                 return
-    if slipping and tail < 0.0:
+    if slipping and cut:
         out[3] = float(int(out[3]) | CUT)
 
 
@@ -393,7 +436,10 @@ def friction_plane_batch(
     results: Array,
     history: Array,
 ) -> None:
-    """Fill results (m, 5): max |u|, residual |u|, path [m], max transmitted acceleration [m/s2], flags.
+    """Fill results (m, 7): max |u|, residual |u|, path [m], max transmitted acceleration [m/s2], flags.
+
+    The last two: what each step may have been off by, summed up, of u [m] and of that acceleration.
+
 
     x, y, z        : (n,) m/s2;  peak: the largest of push = |a_h|;  pushes: block maxima of push
     ratio, maxima  : from kernels.quiet, of this very motion
@@ -404,13 +450,11 @@ def friction_plane_batch(
                      it is; rows after the record follow the body on without excitation
     """
     moving = x.shape[0] > 1 and peak > 0.0
-    state, load, out = np.empty(8), np.empty(8), np.empty(4)
+    state, load, out = np.empty(11), np.empty(8), np.empty(6)
     for k in range(w.shape[0]):
         residual = 0.0
-        for j in range(8):
-            state[j], load[j] = 0.0, 0.0
-        for j in range(4):
-            out[j] = 0.0
+        state[:], load[:] = 0.0, 0.0
+        out[:] = 0.0
         if moving:
             residual = _follow(
                 x,
@@ -442,3 +486,4 @@ def friction_plane_batch(
             out[2],
             out[3],
         )
+        results[k, 5], results[k, 6] = state[9] + out[4], out[5]

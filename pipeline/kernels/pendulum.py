@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from pipeline.kernels import FIRST, bare, fused, inlined, kernel
-from pipeline.kernels.flags import CUT
+from pipeline.kernels.flags import CUT, UNRESOLVED
 from pipeline.kernels.lanes import LANES, lanes, same_steps
 from pipeline.kernels.roots import narrowed, trial
 from pipeline.quantities import Array, G
@@ -26,6 +26,12 @@ FAINT = 1e-9
 
 STEP = 0.1
 """Largest step of the integration, in radians of the fastest pendulum motion."""
+
+MOST_STEPS = 300
+"""Steps in a sample interval, at a refinement of 1, from which on a pendulum is not followed: 30 radians of its own."""
+
+MOST_AFTER = 1_000_000
+"""Steps after the record, at a refinement of 1, at which a pendulum that never turns back is cut off before CAP."""
 
 
 # Rows of a block of pendulums: the state, the constants 1 / L and 2 zeta w, the state before the step, the largest
@@ -171,8 +177,9 @@ def _coast(
     w = math.sqrt(G / length)
     drag = 2.0 * zeta * w
     s, c = math.sin(theta), math.cos(theta)
-    stop = tail if tail >= 0.0 else CAP
     h = 0.8 * STEP / (w * (1.0 + 2.0 * zeta)) / refine
+    stop = min(tail if tail >= 0.0 else CAP, MOST_AFTER * refine * h)
+    cut = tail < 0.0 or stop < tail
     t = 0.0
     while t < stop:
         if tail < 0.0:
@@ -190,14 +197,17 @@ def _coast(
         most = max(most, abs(ahead))
         theta, s, c, rate = ahead, sn, cn, after
         t += now
-    return most, float(CUT) if tail < 0.0 else 0.0
+    return most, float(CUT) if cut else 0.0
 
 
 @bare
 def substeps(length: float, zeta: float, peak: float, dt: float) -> int:
-    """Return how many steps a sample interval takes; peak: the largest acceleration of the pivot [m/s2]."""
-    fastest = math.sqrt((G + peak) / length) * (1.0 + 2.0 * zeta)
-    return max(1, math.ceil(fastest * dt / STEP))
+    """Return how many steps a sample interval takes, 0 for more than are taken.
+
+    peak: the largest acceleration of the pivot [m/s2]
+    """
+    steps = math.sqrt((G + peak) / length) * (1.0 + 2.0 * zeta) * dt / STEP
+    return max(1, math.ceil(steps)) if steps <= MOST_STEPS else 0
 
 
 @kernel
@@ -213,7 +223,7 @@ def pendulum_batch(
     results: Array,
     history: Array,
 ) -> None:
-    """Fill results (m, 2): max |theta| [rad], flags.
+    """Fill results (m, 2): max |theta| [rad], flags; NaN where it is not followed.
 
     x, z    : (n,) m/s2;  peak: the largest acceleration of the pivot
     history : (k, 1) receives theta of a single pendulum at the samples, as long as it is
@@ -238,6 +248,11 @@ def pendulum_batch(
             block[COSINE, k] = 1.0
             block[CURL, k] = 1.0 / length[one]
             block[DRAG, k] = 2.0 * zeta[one] * math.sqrt(G / length[one])
+        if pieces[order[begin]] == 0:
+            for k in range(end - begin):
+                results[order[begin + k], 0], results[order[begin + k], 1] = math.nan, float(UNRESOLVED)
+            begin = end
+            continue
         _shake(x, z, dt, pieces[order[begin]], block, history)
         for k in range(end - begin):
             one = order[begin + k]

@@ -6,6 +6,9 @@ from pipeline.kernels import inner
 from pipeline.kernels.plane_step import plane_step
 from pipeline.quantities import Array
 
+STATIONS = 32
+"""Points of a way to rest at which its largest radius is looked for."""
+
 TRIALS = 12
 """Shorter steps taken to find a stationary point: at one, the value itself is second order in the time's error."""
 
@@ -97,6 +100,22 @@ def inner_radius(
             side = -1
         if value == 0.0 or high - low <= 1e-7 * h:
             break
+    return best
+
+
+@inner
+def stop_radius(ux: float, uy: float, wx: float, wy: float, dx: float, dy: float) -> float:
+    """Return the largest |u|^2 [m2] on the way d to rest from u: at the beginning, inside or at the end.
+
+    w     : the velocity there times the time to rest [m]
+    error : of the cubic that begins at u with w and ends at u + d at rest, a share of what it rises above both ends
+    """
+    best = 0.0
+    for k in range(STATIONS + 1):
+        s = k / STATIONS
+        begins, ends = s * (1.0 - s) * (1.0 - s), s * s * (3.0 - 2.0 * s)
+        x, y = ux + begins * wx + ends * dx, uy + begins * wy + ends * dy
+        best = max(best, x * x + y * y)
     return best
 
 

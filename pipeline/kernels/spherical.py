@@ -9,16 +9,11 @@ import math
 import numpy as np
 
 from pipeline.kernels import FIRST, inlined, inner, kernel
-from pipeline.kernels.flags import CUT
+from pipeline.kernels.flags import CUT, UNRESOLVED
 from pipeline.kernels.lanes import LANES, lanes, same_steps
+from pipeline.kernels.pendulum import CAP, MOST_AFTER, STEP, substeps
 from pipeline.kernels.roots import narrowed, trial
 from pipeline.quantities import Array, G
-
-STEP = 0.1
-"""Largest step of the integration, in radians of the fastest pendulum motion."""
-
-CAP = 200.0
-"""Seconds after the record at which a pendulum that never turns back is cut off."""
 
 State = tuple[float, float, float, float, float, float]
 Load = State
@@ -177,8 +172,9 @@ def _coast(s: State, most: float, length: float, zeta: float, tail: float, refin
     w = math.sqrt(G / length)
     curl, drag = 1.0 / length, 2.0 * zeta * w
     load = (0.0, 0.0, G, 0.0, 0.0, 0.0)
-    stop = tail if tail >= 0.0 else CAP
     h = 0.8 * STEP / (w * (1.0 + 2.0 * zeta)) / refine
+    stop = min(tail if tail >= 0.0 else CAP, MOST_AFTER * refine * h)
+    cut = tail < 0.0 or stop < tail
     t, turns = 0.0, 0
     while t < stop:
         if tail < 0.0:
@@ -196,7 +192,7 @@ def _coast(s: State, most: float, length: float, zeta: float, tail: float, refin
         most = max(most, after[0] * after[0] + after[1] * after[1])
         s = after
         t += now
-    return most, float(CUT) if tail < 0.0 else 0.0
+    return most, float(CUT) if cut else 0.0
 
 
 @inner
@@ -220,7 +216,7 @@ def spherical_batch(
     results: Array,
     history: Array,
 ) -> None:
-    """Fill results (m, 2): max horizontal displacement / L [-], flags.
+    """Fill results (m, 2): max horizontal displacement / L [-], flags; NaN where it is not followed.
 
     x, y, z : (n,) m/s2;  peak: the largest acceleration of the pivot
     history : (k, 2) receives the horizontal displacement / L of a single pendulum at the samples, as long as it is
@@ -233,8 +229,7 @@ def spherical_batch(
         return
     pieces = np.empty(m, dtype=np.int64)
     for k in range(m):
-        fastest = math.sqrt((G + peak) / length[k]) * (1.0 + 2.0 * zeta[k])
-        pieces[k] = max(1, math.ceil(fastest * dt / STEP)) * refine
+        pieces[k] = substeps(length[k], zeta[k], peak, dt) * refine
     order = np.argsort(pieces, kind="mergesort")
     block = lanes(16)
     begin = FIRST
@@ -246,6 +241,11 @@ def spherical_batch(
             block[2, k] = -1.0
             block[CURL, k] = 1.0 / length[one]
             block[DRAG, k] = 2.0 * zeta[one] * math.sqrt(G / length[one])
+        if pieces[order[begin]] == 0:
+            for k in range(end - begin):
+                results[order[begin + k], 0], results[order[begin + k], 1] = math.nan, float(UNRESOLVED)
+            begin = end
+            continue
         _shake(x, y, z, dt, pieces[order[begin]], block, history)
         for k in range(end - begin):
             one = order[begin + k]

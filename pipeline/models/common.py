@@ -1,6 +1,7 @@
 """What several generic models share: flags in words, excitations prepared once, error floors."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -10,7 +11,7 @@ from pipeline.kernels.quiet import block_maxima, demand_ratio
 from pipeline.quantities import Array, G
 from pipeline.records import Excitation, Scene, Support
 
-SENSITIVE = 8
+SENSITIVE = flags.SENSITIVE
 NO_TILT = 16
 NO_HISTORY = 32
 BOUND = 64
@@ -23,6 +24,7 @@ NOTES = {
     NO_TILT: "no tilt reproduces an acceleration of 1 g or more",
     NO_HISTORY: "a closed-form screen, not a response",
     BOUND: "a guaranteed upper bound, not a response",
+    flags.UNRESOLVED: "too fast for the steps that are taken: not followed; an upper bound, or empty where it has none",
 }
 """What each bit of a result's note means."""
 
@@ -35,6 +37,9 @@ ILL = 1e3
 NUDGE = 1e-6
 """Relative change of amplitude by which a condition is measured."""
 
+FAINTEST, FAINT = 1e-150, 1e-100
+"""m/s2, the peak below which an excitation is magnified, and to what: far from g still, and from the end of numbers."""
+
 _KNOWN = 256
 """Excitations whose peaks are remembered: a motion is asked for its own again and again."""
 
@@ -45,6 +50,22 @@ _FEW = 16
 def words(bits: float) -> str:
     """Return the note of a result in words."""
     return "; ".join(text for bit, text in NOTES.items() if int(bits) & bit)
+
+
+def magnified(motion: Excitation) -> tuple[Excitation, float]:
+    """Return the excitation, and by how much it was multiplied to keep it out of the numbers that a processor is slow
+    with (denormals: 100 times): 1 but for one below FAINTEST, to which every response is in proportion.
+
+    What holds a body, which is not multiplied here, must be.
+    """
+    rows = (motion.x, motion.z) if motion.y is None else (motion.x, motion.y, motion.z)
+    peak = max(float(np.abs(row).max()) for row in rows)
+    if not 0.0 < peak < FAINTEST:
+        return motion, 1.0
+    # A power of two multiplies exactly.
+    factor = 2.0 ** np.floor(np.log2(FAINT) - np.log2(peak))
+    y = None if motion.y is None else factor * motion.y
+    return replace(motion, x=factor * motion.x, y=y), float(factor)
 
 
 class Quiet:

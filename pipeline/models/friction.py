@@ -7,10 +7,11 @@ import numpy as np
 
 from pipeline.errors import InputError
 from pipeline.kernels.bounds import slip_bounds_batch
-from pipeline.kernels.friction_line import friction_line_batch
+from pipeline.kernels.flags import UNRESOLVED
+from pipeline.kernels.friction_line import CAP, friction_line_batch
 from pipeline.kernels.friction_plane import friction_plane_batch
-from pipeline.models.common import ROUNDING, SENSITIVE, Quiet, after_record, contact_lost, lift_ratios
-from pipeline.quantities import Array
+from pipeline.models.common import ROUNDING, SENSITIVE, Quiet, after_record, contact_lost, lift_ratios, magnified
+from pipeline.quantities import Array, G
 from pipeline.records import Bounds, Columns, Excitation
 
 FREE, SPRUNG = 1e-3, 3e-10
@@ -21,6 +22,11 @@ remembers, and a stroke is wanted to 1e-8.
 """
 TIGHTEST = 1e-12
 """Tolerance below which rounding would decide."""
+DRIFT = 1e-15
+"""Relative error that a step of a spring's closed form leaves in what swings on: it remembers each of them.
+
+Of 1,900 isolators, written on twice and three times the samples, none was off by more than a fifth of it a step.
+"""
 PROMISED = 5e-6
 """Relative error of the two-directional `reference`, by which a bound is looser: it holds for what is computed too."""
 
@@ -34,27 +40,36 @@ def stick_slip(
     returns : displacement, residual, path [m], acceleration [m/s2], error of the displacement [m] and of the
               acceleration [m/s2], note; (n,) each
     """
-    quiet = Quiet(motion)
-    arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta, mu_s, mu_k)]
-    results = np.empty((arrays[0].size, 5))
+    shaking, times = magnified(motion)
+    quiet = Quiet(shaking)
+    arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta, times * mu_s, times * mu_k)]
+    results = np.empty((arrays[0].size, 7))
     if motion.y is None:
-        _line(quiet, arrays, quiet.tail, results, np.empty((0, 2)))
-        error = ROUNDING * np.maximum(results[:, 0], results[:, 2])
-        felt = ROUNDING * results[:, 3]
+        _line(quiet, arrays, quiet.tail, results[:, :5], np.empty((0, 2)))
+        drift = DRIFT * quiet.x.size * np.where(w > 0.0, 1.0 + w * quiet.dt, 0.0)
+        error = ROUNDING * np.maximum(results[:, 0], results[:, 2]) + drift * results[:, 0]
+        felt = (ROUNDING + drift) * results[:, 3]
     else:
         coarse = np.full_like(results, np.nan)
         tolerance, longest = _steps(w, refine)
         passes = ((10.0 * tolerance, 2.0 * longest, coarse), (tolerance, longest, results))
         for rtol, most, out in passes if estimate else passes[1:]:
             _plane(quiet, arrays, quiet.tail, (rtol, most), out, np.empty((0, 4)))
-        # The difference of two peaks may vanish by chance, that of two ends or paths too: hardly all three at once.
+        # Both passes may err alike, at a stop that both take in one step: what each step may have been off by, summed
+        # up, sees that.
         apart = np.abs(results - coarse)
-        error = 2.0 * apart[:, :3].sum(axis=1) + ROUNDING * results[:, 2]
-        felt = 2.0 * apart[:, 3] + ROUNDING * results[:, 3]
-    note = results[:, 4]
+        error = np.maximum(2.0 * apart[:, :3].sum(axis=1), results[:, 5]) + ROUNDING * results[:, 2]
+        felt = np.maximum(2.0 * apart[:, 3], results[:, 6]) + ROUNDING * results[:, 3]
+    results[:, [0, 1, 2, 3]] /= times
+    error, felt = error / times, felt / times
+    note = results[:, 4].astype(np.int64)
+    lost = (note & UNRESOLVED) > 0
+    if lost.any():
+        results[lost, :4] = _most(motion, w[lost], zeta[lost], mu_s[lost])
+        error, felt = np.where(lost, results[:, 0], error), np.where(lost, results[:, 3], felt)
     if estimate:
         # Whether it moves at all: just above its friction, a thousandth of a displacement is a millionth of the motion.
-        note = np.where(_moves(motion, 0.99, mu_s) != _moves(motion, 1.01, mu_s), note + SENSITIVE, note)
+        note |= np.where(_moves(motion, 0.99, mu_s) != _moves(motion, 1.01, mu_s), SENSITIVE, 0)
     return {
         "displacement": results[:, 0],
         "residual": results[:, 1],
@@ -62,8 +77,20 @@ def stick_slip(
         "acceleration": results[:, 3],
         "error": error,
         "acceleration_error": felt,
-        "note": note,
+        "note": note.astype(np.float64),
     }
+
+
+def _most(motion: Excitation, w: Array, zeta: Array, mu_s: Array) -> Array:
+    # Upper bounds (n, 4) of displacement, residual, path and acceleration, without integration: friction and dashpot
+    # only take energy away, so that neither |u'| nor w |u| exceeds the integral of |a|.
+    push = np.hypot(motion.x, 0.0 if motion.y is None else motion.y)
+    speed = float(push.sum()) * motion.dt
+    path = speed * (push.size * motion.dt + (CAP if motion.tail is None else motion.tail))
+    away = np.minimum(path, np.divide(speed, w, out=np.full_like(w, np.inf), where=w > 0.0))
+    weight = max(G, float(np.max(G + motion.z)))
+    felt = np.maximum(float(push.max()), w * (1.0 + 2.0 * zeta) * speed + mu_s * weight)
+    return np.column_stack([away, away, np.full_like(w, path), felt])
 
 
 def _line(quiet: Quiet, bodies: Sequence[Array], tail: float, results: Array, history: Array) -> None:
@@ -144,7 +171,7 @@ def stick_slip_trace(motion: Excitation, w: float, zeta: float, mu_s: float, mu_
     """Return u_x, u_y [m] and the absolute accelerations a_x, a_y [m/s2] of one body at the samples, (n,) each."""
     quiet = Quiet(motion)
     arrays = [np.array([p]) for p in (w, zeta, mu_s, mu_k)]
-    results, samples = np.empty((1, 5)), quiet.x.size + after_record(motion)
+    results, samples = np.empty((1, 7)), quiet.x.size + after_record(motion)
     if motion.y is None:
         line = np.zeros((samples, 2))
         _line(quiet, arrays, 0.0, results, line)

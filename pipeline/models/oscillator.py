@@ -4,12 +4,16 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from pipeline.errors import InputError
 from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
 from pipeline.models.common import ROUNDING, after_record
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Bounds, Columns, Excitation, Model, Scene
+
+MOST_PHASE = 2e6
+"""Radians of an oscillator's own, its damping counted in, in a sample interval from which on it is refused."""
 
 PROMISED = 1e-9
 """Relative error that the recursion promises; a bound is looser by it."""
@@ -19,7 +23,17 @@ OSCILLATES = "its recursion is exact and fast, its spectrum so jagged that a cha
 
 
 def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[Array, Array]:
-    """Return the largest |u| [m] and |a + share u''| [m/s2] of n oscillators, (n,) each."""
+    """Return the largest |u| [m] and |a + share u''| [m/s2] of n oscillators, (n,) each.
+
+    raises : ValueError for an oscillator that turns more than MOST_PHASE in a sample interval
+    """
+    phase = w * (1.0 + 2.0 * zeta) * motion.dt
+    if phase.max(initial=0.0) > MOST_PHASE:
+        at = int(np.argmax(phase))
+        raise InputError(
+            f"frequency {w[at] / (2.0 * np.pi):g} Hz at a damping of {zeta[at]:g} is too high for a time step of "
+            f"{motion.dt:g} s (entry {at}): what lies between two samples would be searched for ever"
+        )
     max_u, max_y = np.empty(w.size), np.empty(w.size)
     tail = -1.0 if motion.tail is None else float(motion.tail)
     arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta, share)]

@@ -4,11 +4,14 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pipeline.errors import InputError
 from pipeline.kernels import samples
-from pipeline.kernels.pendulum import pendulum_batch
+from pipeline.kernels.flags import UNRESOLVED
+from pipeline.kernels.pendulum import MOST_STEPS, pendulum_batch
 from pipeline.kernels.spherical import spherical_batch
-from pipeline.models.common import NO_HISTORY, ROUNDING, broadcast, needs, shaken
+from pipeline.models.common import NO_HISTORY, ROUNDING, broadcast, magnified, needs, shaken
 from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.quantities import Array, Quantity
 from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Support
@@ -36,25 +39,33 @@ def _least(refine: int) -> float:
     return CHANCE / refine**4 + ROUNDING
 
 
+def _told(length: Array, note: Array, displacement: Array, error: Array) -> Columns:
+    # What was not followed has been no farther out than it is long.
+    lost = np.isnan(displacement)
+    return {
+        "displacement": np.where(lost, length, displacement),
+        "error": np.where(lost, length, error),
+        "note": note,
+    }
+
+
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     length, zeta = broadcast(parameters, "length"), broadcast(parameters, "damping")
+    motion, times = magnified(motion)
     x, z = samples(motion.x), samples(motion.z)
     tail = -1.0 if motion.tail is None else float(motion.tail)
     coarse, fine = np.full((length.size, 2), np.nan), np.empty((length.size, 2))
     runs = ((refine, coarse), (2 * refine, fine)) if estimate else ((refine, fine),)
     for steps, results in runs:
         pendulum_batch(x, z, motion.dt, shaken(motion), length, zeta, tail, steps, results, np.empty((0, 1)))
-    displacement = length * _swept(fine[:, 0])
-    return {
-        "displacement": displacement,
-        "rotation": fine[:, 0],
-        "error": np.abs(displacement - length * _swept(coarse[:, 0])) + _least(refine) * displacement,
-        "note": fine[:, 1],
-    }
+    displacement = length * _swept(fine[:, 0]) / times
+    error = np.abs(displacement - length * _swept(coarse[:, 0]) / times) + _least(refine) * displacement
+    return {**_told(length, fine[:, 1], displacement, error), "rotation": fine[:, 0] / times}
 
 
 def _run_3d(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     length, zeta = broadcast(parameters, "length"), broadcast(parameters, "damping")
+    motion, times = magnified(motion)
     x, z = samples(motion.x), samples(motion.z)
     y = np.zeros_like(x) if motion.y is None else samples(motion.y)
     tail = -1.0 if motion.tail is None else float(motion.tail)
@@ -62,25 +73,26 @@ def _run_3d(motion: Excitation, parameters: Mapping[str, Array], refine: int, es
     runs = ((refine, coarse), (2 * refine, fine)) if estimate else ((refine, fine),)
     for steps, results in runs:
         spherical_batch(x, y, z, motion.dt, shaken(motion), length, zeta, tail, steps, results, np.empty((0, 2)))
-    displacement = length * fine[:, 0]
-    return {
-        "displacement": displacement,
-        "error": length * np.abs(fine[:, 0] - coarse[:, 0]) + _least(refine) * displacement,
-        "note": fine[:, 1],
-    }
+    displacement = length * fine[:, 0] / times
+    error = length * np.abs(fine[:, 0] - coarse[:, 0]) / times + _least(refine) * displacement
+    return _told(length, fine[:, 1], displacement, error)
+
+
+def _lost(columns: Columns) -> NDArray[np.bool_]:
+    return (columns["note"].astype(np.int64) & UNRESOLVED) > 0
 
 
 def _screen_3d(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
     undamped = {"length": parameters["length"], "damping": np.zeros_like(parameters["length"])}
-    swings = [_run(Excitation(motion.dt, motion.x, None, motion.z, motion.tail), undamped, 1, False)["displacement"]]
+    swings = [_run(Excitation(motion.dt, motion.x, None, motion.z, motion.tail), undamped, 1, False)]
     if motion.y is not None:
         other = Excitation(motion.dt, motion.y, None, motion.z, motion.tail)
-        swings.append(_run(other, undamped, 1, False)["displacement"])
+        swings.append(_run(other, undamped, 1, False))
     nothing = np.full_like(parameters["length"], np.nan)
     return {
-        "displacement": CHANDELIER * np.maximum.reduce(swings),
+        "displacement": CHANDELIER * np.maximum.reduce([swing["displacement"] for swing in swings]),
         "error": nothing,
-        "note": np.full_like(nothing, float(NO_HISTORY)),
+        "note": np.where(np.any([_lost(swing) for swing in swings], axis=0), UNRESOLVED, 0.0) + NO_HISTORY,
     }
 
 
@@ -88,11 +100,21 @@ def _say_3d(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
     return f"1.4 times the undamped swing in one plane: {100.0 * row['displacement']:.0f} cm."
 
 
+def _refuse_lost(parameters: Mapping[str, float], results: Array) -> None:
+    if np.isnan(results[0, 0]):
+        raise InputError(
+            f"length {parameters['length']:g} m: such a pendulum is too fast to be followed through this motion "
+            f"({MOST_STEPS} steps in a sample interval at most); give a longer one, or a weaker or finer motion"
+        )
+
+
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     history = np.zeros((motion.x.size, 1))
     length, zeta = np.array([parameters["length"]]), np.array([parameters["damping"]])
     x, z = samples(motion.x), samples(motion.z)
-    pendulum_batch(x, z, motion.dt, shaken(motion), length, zeta, 0.0, 4, np.empty((1, 2)), history)
+    results = np.empty((1, 2))
+    pendulum_batch(x, z, motion.dt, shaken(motion), length, zeta, 0.0, 4, results, history)
+    _refuse_lost(parameters, results)
     return {"rotation": history[:, 0], "u_x": parameters["length"] * np.sin(history[:, 0])}
 
 
@@ -101,7 +123,9 @@ def _trace_3d(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     length, zeta = np.array([parameters["length"]]), np.array([parameters["damping"]])
     x, z = samples(motion.x), samples(motion.z)
     y = np.zeros_like(x) if motion.y is None else samples(motion.y)
-    spherical_batch(x, y, z, motion.dt, shaken(motion), length, zeta, 0.0, 4, np.empty((1, 2)), history)
+    results = np.empty((1, 2))
+    spherical_batch(x, y, z, motion.dt, shaken(motion), length, zeta, 0.0, 4, results, history)
+    _refuse_lost(parameters, results)
     return {"u_x": parameters["length"] * history[:, 0], "u_y": parameters["length"] * history[:, 1]}
 
 

@@ -11,7 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pipeline.errors import InputError
-from pipeline.quantities import Array
+from pipeline.quantities import Array, real_array, real_number
+
+STEPS = (1e-9, 1e6)
+"""s, the shortest and the longest time step of a motion: beyond them its rates leave the range of numbers."""
+
+STRONGEST = 1e50
+"""m/s2, the largest acceleration of a motion, for the same reason."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,22 +53,33 @@ class Motion:
         start: Iterable[float] = (0.0, 0.0, 0.0),
         v_max: float | None = None,
     ) -> None:
-        a = np.array(acceleration, dtype=np.float64, order="C", copy=True)
+        real = real_array(acceleration)
+        if real is None:
+            raise InputError(
+                f"motion {name!r}: acceleration must hold real numbers in m/s2; it holds texts, truth values, complex "
+                f"numbers, or rows of different lengths"
+            )
+        a = np.array(real, order="C", copy=True)
         if a.ndim != 2 or a.shape[0] != 3 or a.shape[1] == 0:
             raise InputError(f"motion {name!r}: acceleration must have the shape (3, n), rows x, y, z; it is {a.shape}")
         bad = ~np.isfinite(a)
         if bad.any():
             row, sample = (int(i[0]) for i in np.nonzero(bad))
             raise InputError(f"motion {name!r}: component {'xyz'[row]} is {a[row, sample]} at sample {sample}")
-        if not (np.isfinite(dt) and dt > 0.0):
-            raise InputError(f"motion {name!r}: dt must be a positive number of seconds, not {dt!r}")
+        if np.abs(a).max() > STRONGEST:
+            raise InputError(f"motion {name!r}: an acceleration of {np.abs(a).max():g} m/s2 is none; check its unit")
+        step = real_number(dt)
+        if not STEPS[0] <= step <= STEPS[1]:
+            raise InputError(
+                f"motion {name!r}: dt must be a positive number of seconds, {STEPS[0]:g} to {STEPS[1]:g}, not {dt!r}"
+            )
         a.setflags(write=False)
-        begin = tuple(float(v) for v in start)
-        if len(begin) != 3 or not np.isfinite(begin).all():
-            raise InputError(f"motion {name!r}: start must be three finite velocities in m/s, not {begin}")
-        if v_max is not None and not (np.isfinite(v_max) and v_max > 0.0):
+        begin = tuple(real_number(v) for v in start)
+        if len(begin) != 3 or np.isnan(begin).any():
+            raise InputError(f"motion {name!r}: start must be three finite velocities in m/s, not {start!r}")
+        if v_max is not None and not real_number(v_max) > 0.0:
             raise InputError(f"motion {name!r}: v_max must be a velocity above 0 m/s, not {v_max!r}")
-        given = {"dt": float(dt), "acceleration": a, "name": name, "source": source, "start": begin, "v_max": v_max}
+        given = {"dt": step, "acceleration": a, "name": name, "source": source, "start": begin, "v_max": v_max}
         for key, value in given.items():
             object.__setattr__(self, key, value)
         object.__setattr__(self, "steps", tuple(steps))
@@ -87,7 +104,10 @@ class Motion:
     def along(self, angle: float) -> Array:
         """Return the horizontal acceleration (n,) m/s2 along ``angle`` degrees from x towards y."""
         # Exact zeros at multiples of 90 degrees: cos(pi/2) is 6e-17, which would wake an object that must stay at rest.
-        turn = angle % 360.0
+        degrees = real_number(angle)
+        if np.isnan(degrees):
+            raise InputError(f"angle must be a number of degrees, not {angle!r}")
+        turn = degrees % 360.0
         exact = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
         c, s = exact.get(turn) or (float(np.cos(np.radians(turn))), float(np.sin(np.radians(turn))))
         x, y = self.acceleration[0], self.acceleration[1]
@@ -105,9 +125,10 @@ class Motion:
         if angle is None:
             return self._both if tail is None else replace(self._both, tail=tail)
         z, (v_x, v_y, _) = self.acceleration[2], self.start
+        along = self.along(angle)
         turn = np.radians(angle)
         begin = float(np.cos(turn) * v_x + np.sin(turn) * v_y)
-        return Excitation(self.dt, self.along(angle), None, z, tail, (begin, 0.0), self.v_max)
+        return Excitation(self.dt, along, None, z, tail, (begin, 0.0), self.v_max)
 
     @cached_property
     def _both(self) -> Excitation:
@@ -132,7 +153,12 @@ class Motion:
         return Motion(self.dt, self.acceleration, name, (*self.steps, *steps), self.source, self.start, self.v_max)
 
     def scaled(self, factor: float, why: str) -> Motion:
-        """Return the motion with all three components multiplied by one factor, and the step recorded."""
+        """Return the motion with all three components multiplied by one factor, and the step recorded.
+
+        raises : ValueError for a factor that is not a finite number
+        """
+        if np.isnan(real_number(factor)):
+            raise InputError(f"the factor of a motion must be a finite number, not {factor!r}")
         return Motion(
             self.dt,
             factor * self.acceleration,

@@ -65,11 +65,13 @@ def test_a_block_on_an_incline_comes_to_rest_where_an_integrator_says(degrees: f
     slow.terminal = True  # type: ignore[attr-defined]
     truth = solve_ivp(rates, (0.0, 9.0), [0.0, 0.0, vx, vy, 0.0], method="DOP853", rtol=1e-12, atol=1e-15, events=slow)
     load = np.array([-push, 0.0, 0.0, 0.0, grip, 0.0, grip, 0.0])
-    wait, dx, dy, path = come_to_rest(
+    wait, dx, dy, path, off = come_to_rest(
         speed, vx, vy, vx / speed, vy / speed, push, 0.0, 0.0, 0.0, load, 0.0, 9.0, 0.1, 0.0, False
     )
     # The body is stopped 1e-7 of its speed early: that much of the time, over what friction has left of it.
     assert wait == pytest.approx(truth.t[-1], rel=1e-5)
+    # Push and grip do not change: the way is exact, and says so.
+    assert off < 1e-9 * path
     assert (dx, dy, path) == pytest.approx(tuple(truth.y[[0, 1, 4], -1]), rel=1e-9, abs=1e-10)
 
 
