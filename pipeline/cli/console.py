@@ -71,7 +71,7 @@ class Console:
 
 def summary_lines(summary: "Summary") -> list[str]:
     """Return a run's result as lines that fit one screen."""
-    width = max(len(f"{summary.objects:,}"), 5)
+    width = max(len(f"{summary.on_display:,}"), 5)
 
     def count(number: int, words: str) -> str:
         return f"  {number:>{width},}  {words}"
@@ -79,11 +79,7 @@ def summary_lines(summary: "Summary") -> list[str]:
     lines = [
         printable(f"{summary.museum or 'Collection'} under {summary.site}"),
         "",
-        count(
-            summary.objects,
-            f"objects: {summary.on_display:,} on display in {summary.galleries} galleries, "
-            f"{summary.objects - summary.on_display:,} not on display",
-        ),
+        count(summary.on_display, f"objects on display, in {summary.galleries:,} galleries"),
         count(summary.assessed, f"assessed ({summary.findings:,} findings), of which"),
         count(summary.act, "  need action: something fails"),
         count(summary.open, "  are open: a measure would settle it"),
@@ -107,6 +103,7 @@ def summary_lines(summary: "Summary") -> list[str]:
     if summary.first:
         lines += ["", "  First:", *(f"    {printable(text)}" for text in summary.first)]
     lines += _decision_lines(summary)
+    lines += _stored_lines(summary)
     if summary.changes is not None:
         changes = summary.changes
         lines += [
@@ -118,6 +115,17 @@ def summary_lines(summary: "Summary") -> list[str]:
     if summary.report is not None:
         lines += ["", f"Report: {summary.report}"]
     return lines
+
+
+def _stored_lines(summary: "Summary") -> list[str]:
+    stored, found = summary.objects - summary.on_display, summary.stores
+    if not stored:
+        return []
+    if found is None:
+        objects = "1 object" if stored == 1 else f"{stored:,} objects"
+        return ["", f"  not on display: {objects}, not assessed (set [display] stores = true)"]
+    told = f"{found.act:,} need action, {found.open:,} open, {found.safe:,} safe, {found.cannot:,} cannot be assessed"
+    return ["", f"  not on display, counted apart: {stored:,} objects: {told}"]
 
 
 def _decision_lines(summary: "Summary") -> list[str]:

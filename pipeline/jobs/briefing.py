@@ -30,7 +30,7 @@ from pipeline.motions.site import Level, Site
 from pipeline.plan import plan
 from pipeline.records import Model, Progress, RunRecord
 from pipeline.rules import Table
-from pipeline.store.reuse import CODE, KERNELS, LEVELS, PICTURES, RULES
+from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, PICTURES, RULES
 
 FRAGILE, SURVEYED = 1e8, 2e8
 """Objects on display times samples of all motions up to which curves, and wishes, are found unasked: some minutes."""
@@ -100,6 +100,7 @@ def brief_for(
         means=workspace.means,
         surveyed=surveyed,
         fragile=fragile,
+        stores=settings.display.stores,
         kept=settings.path(KEPT) / CHARTS,
         threads=settings.analysis.workers or Threads().workers,
         units=written["units"],
@@ -118,13 +119,18 @@ def brief_for(
 
 def admit(brief: Brief, catalogue: Catalogue, chosen: Listing, x_azimuth: float) -> list[ChartErrand]:
     """Decide which response charts are used (see `popular`), and return those to be built before the sheets."""
-    found = popular(catalogue, chosen, brief.rules, brief.means, x_azimuth)
+    found = popular(catalogue, assessed(chosen, brief.stores), brief.rules, brief.means, x_azimuth)
     brief.admitted = frozenset(found)
     return [
         ChartErrand(model.name, motion, angle, alike)
         for _, (model, angle, alike) in sorted(found.items())
         for motion in brief.motions.values()
     ]
+
+
+def assessed(objects: Listing, stores: bool) -> Listing:
+    """Return those of the objects of a sorted listing that are assessed: those on display, or with stores all."""
+    return objects if stores else objects[: objects.shown]
 
 
 Group = tuple[Model, float | None, dict[str, float]]
@@ -184,6 +190,7 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
         "length": settings.report.length,
         "site": settings.site.folder,
         "floors": settings.floors.model_dump(),
+        DISPLAY: settings.display.model_dump(),
         "numerics": None if tested is None else tested.plain(),
     }
 

@@ -4,7 +4,7 @@ A `Brief` holds what all sheets of a run share and goes once to whoever works; a
 back depends on these two alone: the same on this machine and on another, whoever did what before.
 """
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from hashlib import sha256
@@ -65,6 +65,7 @@ class Brief:
     head      : the run without its objects: its motions and its charts, what pages say of it
     storeys   : the floors by name
     surveyed, fragile : whether to find out what is worth measuring, and from what shaking objects fail
+    stores    : whether what is not on display is assessed too
     admitted  : which response charts are built (see `pipeline.charting.Shelf`); None: those that pay for a sheet
     kept      : folder in which charts are kept; None: in memory only
     threads   : of one who works
@@ -77,6 +78,7 @@ class Brief:
     means: Means
     surveyed: bool
     fragile: bool
+    stores: bool = False
     admitted: frozenset[str] | None = None
     kept: Path | None = None
     threads: int = 1
@@ -265,9 +267,15 @@ def work(brief: Brief, batch: Batch) -> tuple[Done, ...]:
 
     What Kouros fails on costs the object its answer, and is told (see `pipeline.jobs.faults`).
     """
-    fresh = [errand for errand in batch.errands if errand.found is None]
     seconds, faults = 0.0, list[Fault]()
     results: dict[str, tuple[Found, Encoded]] = {}
+    fresh = []
+    for errand in batch.errands:
+        if errand.found is None and not (errand.sheet.on_display or brief.stores):
+            left = left_aside(brief, errand, faults)
+            results[errand.sheet.key] = fitting(left, partial(_encoded, brief, errand), faults)
+        elif errand.found is None:
+            fresh.append(errand)
     if fresh:
         items = [read_packed(errand.records) for errand in fresh]
         floor, everything = fresh[0].floor, [item for some in items for item in some]
@@ -281,7 +289,8 @@ def work(brief: Brief, batch: Batch) -> tuple[Done, ...]:
                 twins.learn(unpacked(earlier))
         sheets = ((e.sheet.gallery, e.sheet.on_display, e.sheet.number, e.floor) for e in fresh)
         with brief.shelf.remembering(brief.memory(*sheets)):
-            whole, seconds, faults = find(brief, brief.storeys[floor], everything, decisions, twins)
+            whole, seconds, failed = find(brief, brief.storeys[floor], everything, decisions, twins)
+        faults += failed
         for errand, found in zip(fresh, parted(whole, [len(some) for some in items]), strict=True):
             results[errand.sheet.key] = fitting(found, partial(_encoded, brief, errand), faults)
     done = []
@@ -365,9 +374,7 @@ def find(
     twins     : what is known of objects that these may be like
     returns   : what was found, the seconds that finding out what is worth measuring cost, and what Kouros failed on
     """
-    about: dict[str, list[Decision]] = {}
-    for decision in decisions:
-        about.setdefault(decision.object_number, []).append(decision)
+    about = _by_object(decisions)
     faults: list[Fault] = []
     objects = _placed(brief, storey, items, about)
     sound = [one for one in objects if isinstance(one, Placed)]
@@ -401,6 +408,27 @@ def find(
     )
     needing = {a.scene.item.object_number: counts for a, counts in every if counts}
     return Found(assessments, wished, tuple(spacings), needing), seconds, faults
+
+
+def left_aside(brief: Brief, errand: Errand, faults: list[Fault]) -> Found:
+    """Return objects that are not on display as what they are, with nothing found about them.
+
+    faults : what Kouros fails on is added
+    """
+    items = read_packed(errand.records)
+    objects = _placed(brief, brief.storeys[errand.floor], items, _by_object(errand.decisions))
+    assessments = (
+        Assessment(one.scene, (), ()) if isinstance(one, Placed) else _failed(item, one, faults)[0]
+        for item, one in zip(items, objects, strict=True)
+    )
+    return Found(tuple(replace(a, aside=True) for a in assessments), wishes=() if brief.surveyed else None)
+
+
+def _by_object(decisions: Iterable[Decision]) -> dict[str, list[Decision]]:
+    about: dict[str, list[Decision]] = {}
+    for decision in decisions:
+        about.setdefault(decision.object_number, []).append(decision)
+    return about
 
 
 def _placed(

@@ -20,6 +20,9 @@ from pipeline.records import (
 MORE = 1.1
 """How many times its utilisation at the time of a decision a finding may reach before the decision is in doubt."""
 
+_RESTING = (DecisionKind.ACCEPT, DecisionKind.VERDICT)
+"""Kinds of decisions that rest on findings, and are nothing without them."""
+
 _SEVERITY = {Verdict.PASS: 0, Verdict.UNDETERMINED: 1, Verdict.FAIL: 2}
 
 
@@ -77,6 +80,11 @@ def _doubts(decision: Decision, at: Now) -> Iterable[str]:
     assessment = at.assessments.get(decision.object_number)
     if assessment is None or decision.kind is DecisionKind.CLASS:
         return
+    if assessment.aside:
+        # What it rests on was not computed, so that nothing can be held against it.
+        if decision.kind in _RESTING:
+            yield "the object is not on display, and was not assessed"
+        return
     yield from _shaken(decision, assessment, at.motions)
     yield from _judged(decision, assessment)
 
@@ -91,7 +99,7 @@ def _shaken(decision: Decision, assessment: Assessment, motions: Collection[Moti
 def _judged(decision: Decision, assessment: Assessment) -> Iterable[str]:
     found = {(f.model, f.level, f.title): f for f in assessment.findings}
     looked_at = {(b.model, b.level, b.title): b for b in decision.basis}
-    rests = decision.kind in (DecisionKind.ACCEPT, DecisionKind.VERDICT)
+    rests = decision.kind in _RESTING
     for key, basis in looked_at.items():
         finding = found.get(key)
         where = f"{basis.title}, level {basis.level}"

@@ -11,7 +11,7 @@ from pipeline.climb import AUTO, Climb, examine
 from pipeline.collection.inventory import read_inventory
 from pipeline.execute import Threads
 from pipeline.findings import findings
-from pipeline.jobs.briefing import popular
+from pipeline.jobs.briefing import assessed, popular
 from pipeline.jobs.deciding import Decided, decided
 from pipeline.jobs.desk import place
 from pipeline.jobs.levels import storeys
@@ -82,7 +82,8 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
     for storey in storeys(settings, site, items):
         levels = storey.shaking
         # The charts that a night uses, so that the reasons are those of the night.
-        charted = popular(everything, everything.objects, workspace.rules, workspace.means, storey.x_azimuth)
+        asked = assessed(everything.objects, settings.display.stores)
+        charted = popular(everything, asked, workspace.rules, workspace.means, storey.x_azimuth)
         with charts_of(settings, [m.hash for level in levels for m in level.motions], charted) as shelf:
             for index in storey.members:
                 one = _placed(workspace, items[index], decisions)
@@ -99,7 +100,9 @@ def _placed(workspace: Workspace, item: Item, decisions: Decided) -> Placed:
 
 def _neighbours(item: Item, inventory: Sequence[Item]) -> list[Item]:
     where = (item.gallery, item.case)
-    return [other for other in inventory if item.case and other != item and (other.gallery, other.case) == where]
+    # As on a night, where what is not on display is no company of what is.
+    company = [other for other in inventory if item.case and other.on_display == item.on_display]
+    return [other for other in company if other != item and (other.gallery, other.case) == where]
 
 
 def _explain(

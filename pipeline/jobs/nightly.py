@@ -26,6 +26,7 @@ from pipeline.records import Progress, RunChanges, RunRecord, Sheet, Tally, Urge
 from pipeline.report import lasting_name, publish
 from pipeline.report.decided import by_object
 from pipeline.report.survey_words import SURVEY_SECONDS
+from pipeline.report.views import State
 from pipeline.settings import Settings
 from pipeline.store.reuse import SELECTION, whole_runs
 from pipeline.store.runs import commit_run, compare_runs, mark_finished
@@ -44,11 +45,24 @@ class Selection:
 
 
 @dataclass(frozen=True)
+class Stores:
+    """Objects that are not on display and were assessed all the same: act + open + safe + cannot are all of them."""
+
+    act: int
+    open: int
+    safe: int
+    cannot: int
+    findings: int
+    measures: Mapping[str, int]
+
+
+@dataclass(frozen=True)
 class Summary:
     """What a run did, for one screen and for programs.
 
-    objects       : all that were looked at; act + open + safe + cannot is the same number
-    fresh         : of these, those whose results were found now; the others' rest on nothing that has changed
+    objects       : of the run; those on display are act + open + safe + cannot, and the numbers besides are theirs
+    fresh         : of the assessed, those whose results were found now; the others' rest on nothing that has changed
+    stores        : what is not on display, where it was asked for
     worth         : how many measurements would settle a verdict, None where that was not asked
     survey_seconds: what asking cost
     missing       : why objects could not be assessed, with how many of each
@@ -79,6 +93,7 @@ class Summary:
     first: Sequence[str]
     faults: int = 0
     fresh: int = 0
+    stores: "Stores | None" = None
     worth: int | None = None
     survey_seconds: float = 0.0
     decisions: Mapping[str, int] = field(default_factory=dict)
@@ -267,13 +282,18 @@ def _read_site(workspace: Workspace, progress: Progress) -> Site:
 
 
 def summarise(head: RunRecord, sheets: Sequence[Sheet], found: Tally) -> Summary:
-    """Put what a run found on one screen: every object is in exactly one of act, open, safe and cannot.
+    """Put what a run found on one screen: every object on display is in exactly one of act, open, safe and cannot.
 
     head  : the run without its objects
     found : of all its sheets together
     """
-    states = found.states
-    objects = sum(states.values())
+    states, stored = found.states, found.stored
+    shown = sum(states.values())
+    findings = {there: sum(s.counts["findings"] for s in sheets if s.on_display is there) for there in (True, False)}
+    stores = None
+    if stored and State.ASIDE not in stored:
+        told = {name: stored.get(state, 0) for name, state in _COUNTED.items()}
+        stores = Stores(**told, findings=findings[False], measures=found.stored_measures)
     return Summary(
         run_id=head.run_id,
         started=head.started,
@@ -281,17 +301,18 @@ def summarise(head: RunRecord, sheets: Sequence[Sheet], found: Tally) -> Summary
         version=head.version,
         museum=head.museum,
         site=head.site,
-        objects=objects,
-        on_display=found.shown,
+        objects=shown + sum(stored.values()),
+        on_display=shown,
         galleries=len({sheet.gallery for sheet in sheets if sheet.on_display}),
-        assessed=objects - states["unknown"],
+        assessed=shown - states["unknown"],
         cannot=states["unknown"],
         act=states["act"],
         open=states["open"],
         safe=states["safe"],
-        findings=sum(sheet.counts["findings"] for sheet in sheets),
+        findings=findings[True],
         measures=found.measures,
         missing=found.missing,
+        stores=stores,
         first=[f"{u.object_number}  {u.title[:48]}  ({u.gallery}): {u.outcome}" for u in _unsettled(head, found)],
         faults=found.faults,
         worth=found.worth if found.surveyed else None,
@@ -305,6 +326,9 @@ def summarise(head: RunRecord, sheets: Sequence[Sheet], found: Tally) -> Summary
         ],
         efforts=[{"title": title, **effort} for title, effort in found.efforts.items()],
     )
+
+
+_COUNTED = {"act": State.ACT, "open": State.OPEN, "safe": State.SAFE, "cannot": State.UNKNOWN}
 
 
 def _unsettled(head: RunRecord, found: Tally, most: int = 5) -> list[Urgent]:

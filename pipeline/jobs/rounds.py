@@ -64,12 +64,14 @@ _SECONDS = 5.0
 class _Piece:
     """A sheet and what is known of it so far.
 
+    basis : of its result, see `Keys`
     kept  : its result, where there is one
     there : the decisions about its objects as they stand, once there is a result
     """
 
     part: Part
     floor: str
+    basis: str
     key: str
     decisions: tuple[Decision, ...]
     kept: Kept | None
@@ -79,7 +81,7 @@ class _Piece:
 class Round:
     """The sheets of a run, and the doing of them.
 
-    fresh    : objects whose results must be found
+    fresh    : objects that must be assessed, because nothing is known of them
     sheets   : as they are stored with the run, once all is done; standing: the decisions about their objects
     seconds  : what finding out what is worth measuring cost
     charts   : response charts that are built before the sheets
@@ -96,7 +98,6 @@ class Round:
         self.workspace, self.brief = workspace, brief
         self._catalogue, self._decisions = catalogue, decisions
         settings, keys = workspace.settings, Keys(brief, rules_digest(workspace.settings))
-        self._bases = keys.bases
         self._cut = cut(objects, settings)
         parts, decided = self._cut.parts, self._cut.holding(decisions.keys())
         self._numbers = catalogue.digests(list(decided))
@@ -108,10 +109,10 @@ class Round:
         named = [keys.of(*of) for of in zip(parts, floors, theirs, strict=True)]
         there = known_to(workspace.engine, named)
         self._pieces = [
-            _Piece(part, floor, key, mine, there.get(key))
+            _Piece(part, floor, keys.basis(part, floor), key, mine, there.get(key))
             for part, floor, key, mine in zip(parts, floors, named, theirs, strict=True)
         ]
-        self.fresh = sum(len(piece.part.objects) for piece in self._pieces if piece.kept is None)
+        self.fresh = sum(len(p.part.objects) for p in self._pieces if p.kept is None and self._assessed(p))
         self.seconds = 0.0
         self.charts: Sequence[ChartErrand] = ()
         self.faults: list[Fault] = []
@@ -127,6 +128,9 @@ class Round:
     def standing(self) -> tuple[Standing, ...]:
         """The decisions about the objects of the sheets that are done, as they stand."""
         return tuple(one for piece in self._pieces for one in piece.there)
+
+    def _assessed(self, piece: _Piece) -> bool:
+        return piece.part.on_display or self.brief.stores
 
     def strangers(self, *, whole: bool) -> tuple[Standing, ...]:
         """Return the decisions about objects that the collection does not have any more.
@@ -201,7 +205,7 @@ class Round:
         if self.charts and self.brief.kept is not None and self.fresh > FEW:
             for at, _ in enumerate(hands.each(build, self.brief, self.charts)):
                 progress.step("response charts", at + 1, len(self.charts))
-        fresh = [p for p in todo if p.kept is None and not self._before(p, self._bases[p.floor])]
+        fresh = [p for p in todo if p.kept is None and self._assessed(p) and not self._before(p)]
         # One who works alone remembers what he found.
         parcels = list(self._kinds(hands, fresh, progress)) if hands.workers > 1 else []
         objects = sum(len(piece.part.objects) for piece in todo)
@@ -277,11 +281,12 @@ class Round:
         if piece.kept is not None:
             return replace(told, found=packed(self.workspace.engine, piece.key))
         numbers = [one.object_number for one in piece.part.objects]
-        basis = self._bases[piece.floor]
-        before = tuple(packed(self.workspace.engine, key) for key in self._before(piece, basis))
-        return replace(told, records=self._catalogue.packed(numbers), basis=basis, before=before)
+        told = replace(told, records=self._catalogue.packed(numbers), basis=piece.basis)
+        if not self._assessed(piece):
+            return told
+        return replace(told, before=tuple(packed(self.workspace.engine, key) for key in self._before(piece)))
 
-    def _before(self, piece: _Piece, basis: str) -> list[str]:
+    def _before(self, piece: _Piece) -> list[str]:
         """Return the keys of what the last night found in the place of a sheet, as far as it may be taken over.
 
         A cut more or less shifts the numbers by one.  More are not looked at: of a gallery whose sheets all changed
@@ -290,7 +295,7 @@ class Round:
         part = piece.part
         places = [(part.gallery, part.on_display, part.number + shift) for shift in (-1, 0, 1)]
         gone = [self._gone[place] for place in places if place in self._gone]
-        return on_same_basis(self.workspace.engine, gone, basis) if gone else []
+        return on_same_basis(self.workspace.engine, gone, piece.basis) if gone else []
 
     @cached_property
     def _gone(self) -> dict[tuple[str, bool, int], str]:

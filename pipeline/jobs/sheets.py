@@ -114,34 +114,40 @@ def _code() -> str:
 
 
 class Keys:
-    """The key of a sheet: a digest of everything that what is found about it depends on.
-
-    bases : by floor, the digest of what results depend on besides the objects and the decisions about them
-    """
+    """The key of a sheet: a digest of everything that what is found about it depends on."""
 
     def __init__(self, brief: Brief, rules: str) -> None:
         analysis = brief.analysis.model_dump(exclude={"workers", "fragility"})
         # The order of a set is another in every process.
         measures = [repr(replace(m, classes=frozenset())) + repr(sorted(m.classes)) for m in brief.means.measures]
         means = (measures, repr(brief.means.isolators))
-        asked = (sorted(analysis.items()), rules, means, brief.surveyed, brief.fragile)
+        # Whether stores are asked for says which charts pay, and so which verdicts are read from one.
+        asked = (sorted(analysis.items()), rules, means, brief.surveyed, brief.fragile, brief.stores)
         shared = repr((_code(), KERNEL_VERSION, asked))
-        self.bases = {
-            name: hashlib.sha256(f"{shared}{_shaking(storey)!r}".encode("utf-8", "surrogatepass")).hexdigest()
-            for name, storey in brief.storeys.items()
-        }
+        self._stores = brief.stores
+        self._shaken = {name: _digest(f"{shared}{_shaking(storey)!r}") for name, storey in brief.storeys.items()}
+        # What is left aside is only classed: no motion and no fineness has a say in it.
+        self._aside = {name: _digest(repr((_code(), rules, brief.surveyed, "aside", name))) for name in brief.storeys}
+
+    def basis(self, part: Part, floor: str) -> str:
+        """Return the digest of what is found of a part besides its objects and the decisions about them."""
+        return self._shaken[floor] if part.on_display or self._stores else self._aside[floor]
 
     def of(self, part: Part, floor: str, decisions: Sequence[Decision]) -> str:
         """Return the key of a part; which of its gallery's sheets it is does not matter.
 
         decisions : those in force about its objects
         """
-        digest = hashlib.sha256(self.bases[floor].encode() + part.objects.digest())
+        digest = hashlib.sha256(self.basis(part, floor).encode() + part.objects.digest())
         for decision in decisions:
             # The others never change what is computed.
             if decision.kind in (DecisionKind.CLASS, DecisionKind.INSTALLED):
                 digest.update(repr(decision).encode("utf-8", "surrogatepass"))
         return digest.hexdigest()
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def _shaking(storey: Storey) -> list[object]:

@@ -8,7 +8,7 @@ from pipeline.charting import SHELF, Shelf
 from pipeline.charts import chart_key
 from pipeline.climb import AUTO
 from pipeline.mitigate.bench import Bench, Carriage, Fineness, Trial, checks, passes, why_not
-from pipeline.mitigate.means import LAST, Means, Measure, own_means
+from pipeline.mitigate.means import LAST, STORED, STORED_SENTENCE, STORED_TITLE, Means, Measure, own_means
 from pipeline.mitigate.measures import DISPLACEMENTS, MEASURES, TOGETHER
 from pipeline.mitigate.offers import Need, Offer, Proposal, Way
 from pipeline.mitigate.shared import SHARED, case_of, company
@@ -65,7 +65,7 @@ def advise(
     advised: dict[tuple[int, str], Recommendation] = {}
     for at, some in enumerate(rounds):
         # What holds at all levels stands; the others are looked at level by level.
-        stands = {key for key, found in advised.items() if found.measure != LAST}
+        stands = {key for key, found in advised.items() if found.measure not in (LAST, STORED)}
         bench = Bench(some, have, executor, fineness, carriage)
         search = _Search(bench, _needs(scenes, findings, some, stands), unassessed)
         for done, measure in enumerate(have.measures, start=1):
@@ -80,7 +80,7 @@ def advise(
 
 
 def _alone(found: Recommendation) -> Recommendation:
-    return found if found.measure == LAST else replace(found, sentence=f"{found.sentence} {ONLY_HERE}")
+    return found if found.measure in (LAST, STORED) else replace(found, sentence=f"{found.sentence} {ONLY_HERE}")
 
 
 def _needs(
@@ -214,6 +214,9 @@ class _Search:
                 unknown = self.unassessed.get(case, ()) if case is not None else ()
                 words |= {"what": company(unit, need, unknown), "how": ways[at].said}
             numbers = {**offer.numbers, **offer.finish(ran)}
+            mine = measure
+            if measure.name == LAST and not need.scene.item.on_display:
+                mine = replace(measure, name=STORED, title=STORED_TITLE, sentence=STORED_SENTENCE)
             self.helped.add(need.index)
             for level in need.levels:
                 here = [f for f in ran if f.level == level]
@@ -222,9 +225,9 @@ class _Search:
                     object_number=need.number,
                     gallery=need.scene.item.gallery,
                     level=level,
-                    measure=measure.name,
-                    title=measure.title,
-                    sentence=_sentence(measure.sentence, words),
+                    measure=mine.name,
+                    title=mine.title,
+                    sentence=_sentence(mine.sentence, words),
                     parameters={name: value for name, (value, _) in numbers.items()},
                     units={name: unit_ for name, (_, unit_) in numbers.items()},
                     checks=(*(check for of, check in offer.checks if of in ("", level)), *checks(here, before)),

@@ -51,6 +51,16 @@ TERMS: Mapping[str, Terms] = {
 
 LAST = "remove"
 
+STORED = "store_lower"
+"""What takes the place of LAST for an object that is not on display, and cannot be taken off it."""
+
+STORED_TITLE = "Store it lower, or make it fast"
+
+STORED_SENTENCE = (
+    "Store it lower, or make it fast on its shelf: none of the measures tried is enough, and there is no model of "
+    "shelves here that says more."
+)
+
 
 @dataclass(frozen=True, slots=True)
 class Measure:

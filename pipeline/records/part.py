@@ -54,14 +54,16 @@ class Errors:
 class Tally:
     """What a sheet adds to the totals of a run.
 
-    states   : objects by state: act, open, unknown (cannot be assessed), safe
+    states   : objects on display by state: act, open, unknown (cannot be assessed), safe
     shown    : objects on display
-    measures : recommendations by title
-    missing  : why objects could not be assessed, with how many of each
+    measures : recommendations for them by title
+    missing  : why they could not be assessed, with how many of each
     first    : the worst objects on display, the worst first
     efforts  : by the title of each model, by what its verdicts were decided
     worth, waste, wished : measurements that would settle something, that would not, and the objects of the former
     faults   : objects that Kouros itself failed on
+    stored   : objects that are not on display by state, "aside" for those that were not assessed
+    stored_measures : recommendations for them by title
     """
 
     states: Mapping[str, int]
@@ -77,6 +79,8 @@ class Tally:
     waste: int = 0
     wished: int = 0
     faults: int = 0
+    stored: Mapping[str, int] = field(default_factory=dict)
+    stored_measures: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -114,6 +114,7 @@ class Assessment:
 
     fragilities : one for each way to fail, what fails first to begin with; none where they were not asked for
     fault       : where Kouros itself failed on the object, what went wrong and where; "" where it did not
+    aside       : whether it was left aside, because it is not on display: nothing of it was computed
     """
 
     scene: Scene
@@ -121,6 +122,7 @@ class Assessment:
     recommendations: tuple[Recommendation, ...]
     fragilities: tuple[Fragility, ...] = ()
     fault: str = ""
+    aside: bool = False
 
     @property
     def assessed(self) -> bool:

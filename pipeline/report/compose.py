@@ -20,7 +20,6 @@ from pipeline.report.survey_words import SURVEY_SECONDS, errands, survey_sentenc
 from pipeline.report.text import clean, count, digest, slug, words
 from pipeline.report.units import Units
 from pipeline.report.views import (
-    STATES,
     Counts,
     EffortView,
     Entry,
@@ -42,7 +41,7 @@ STORED = "not-on-display"
 LEADERS = 8
 """Objects that the index names as the most urgent."""
 
-_LAST = (len(STATES), True, True, "", inf, "", "")
+_LAST = (len(State), True, True, "", inf, "", "")
 """Sorts after every object."""
 
 _HELPLESS = "\0"
@@ -105,7 +104,7 @@ def compose(record: RunRecord, sheet: Sheet, units: Units, *, several: bool) -> 
         page=page,
         on_display=sheet.on_display,
         sheet=SheetView(page, sheet.number, sheet.of, *(numbers[:1] + numbers[-1:])),
-        counts=Counts(*(by_state[state] for state in STATES)),
+        counts=Counts(**{state.value: by_state[state] for state in State}),
         tasks=_tasks(pairs, describer, units),
         objects=tuple(views),
         charts=tuple(dict.fromkeys(f.chart for v in views for f in v.figures)),
@@ -179,7 +178,8 @@ def museum_view(
     twins = [entry.name for entry in entries if pages[entry.sheet.page] > 1]
     if twins:
         raise ReportError(f"galleries {twins} would share one file; rename one of them in the collection's records")
-    leaders = sorted((leader for entry in entries for leader in entry.leaders), key=lambda leader: leader[0])
+    shown = [entry for entry in entries if entry.on_display]
+    leaders = sorted((leader for entry in shown for leader in entry.leaders), key=lambda leader: leader[0])
     strangers = decisions_view([((d,), False, None) for d in Decided(head.decisions, units).all()])
     return MuseumView(
         museum=clean(head.museum),
@@ -190,9 +190,10 @@ def museum_view(
         version=clean(head.version),
         credit=clean(str(head.settings.get("credit") or "")),
         demonstration=head.demonstration,
-        counts=_total(entry.counts for entry in entries),
-        rows=_rows(entries),
-        first=tuple(shown for _, shown in leaders[:LEADERS]),
+        counts=_total(entry.counts for entry in shown),
+        rows=_rows(shown),
+        stores=next(iter(_rows([entry for entry in entries if not entry.on_display])), None),
+        first=tuple(leader for _, leader in leaders[:LEADERS]),
         motions=tuple(motion_view(m, head.charts, units) for m in head.motions),
         level_notes=tuple(clean(n) for n in head.level_notes),
         efforts=tuple(_effort(title, efforts) for title, efforts in tally.efforts.items()),
@@ -220,9 +221,7 @@ def _rows(entries: Sequence[Entry]) -> tuple[GalleryRow, ...]:
         rows.append(
             GalleryRow(name, on_display, tuple(e.sheet for e in members), _total(e.counts for e in members), task)
         )
-    return tuple(
-        sorted(rows, key=lambda g: (not g.on_display, -g.counts.act, -g.counts.open, -g.counts.unknown, g.name))
-    )
+    return tuple(sorted(rows, key=lambda g: (-g.counts.act, -g.counts.open, -g.counts.unknown, g.name)))
 
 
 def page_name(gallery: str, number: int = 1, *, on_display: bool = True) -> str:
@@ -250,7 +249,7 @@ def _effort(title: str, effort: Mapping[str, int]) -> EffortView:
 
 def _total(counts: Iterable[Counts]) -> Counts:
     listed = list(counts)
-    return Counts(*(sum(getattr(c, state.value) for c in listed) for state in STATES))
+    return Counts(**{state.value: sum(getattr(c, state.value) for c in listed) for state in State})
 
 
 def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], describer: Describer, units: Units) -> tuple[TaskView, ...]:

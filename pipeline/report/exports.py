@@ -204,6 +204,10 @@ def _recommendation(run: str, r: Recommendation, units: Units) -> dict[str, Any]
     }
 
 
+_NOT_SHOWN = "not on display"
+"""The state of an object that was left aside, in the exports."""
+
+
 def _object(run: str, a: Assessment, page: str) -> dict[str, Any]:
     """Return the plain row of an object, assessed or not, for the export that adds up to all."""
     item = a.scene.item
@@ -213,9 +217,9 @@ def _object(run: str, a: Assessment, page: str) -> dict[str, Any]:
         "title": item.title,
         "gallery": item.gallery,
         "on_display": item.on_display,
-        "state": state_of(a).value,
+        "state": _NOT_SHOWN if a.aside else state_of(a).value,
         "object_class": a.scene.object_class,
-        "missing": "; ".join(a.scene.missing),
+        "missing": "" if a.aside else "; ".join(a.scene.missing),
         **first_failure(a),
         "page": page,
     }

@@ -3,14 +3,17 @@
 from math import inf, isnan
 
 from pipeline.records import Assessment, Finding, Verdict
-from pipeline.report.views import STATES, State
+from pipeline.report.views import State
 
 _GRAVE = ("overturn", "break")
+_ORDER = tuple(State)
 _VERDICTS = {Verdict.FAIL: State.ACT, Verdict.UNDETERMINED: State.OPEN, Verdict.PASS: State.SAFE}
 
 
 def state_of(assessment: Assessment) -> State:
     """Return where an object stands: a failure outranks all else, and no verdict at all is never called safe."""
+    if assessment.aside:
+        return State.ASIDE
     verdicts = {f.verdict for f in assessment.findings}
     if Verdict.FAIL in verdicts:
         return State.ACT
@@ -32,7 +35,7 @@ def grave(finding: Finding) -> bool:
 def finding_order(finding: Finding) -> tuple[int, bool, float, str, str]:
     """Sort key of an object's findings: the most urgent first."""
     return (
-        STATES.index(finding_state(finding)),
+        _ORDER.index(finding_state(finding)),
         not grave(finding),
         -_size(finding.utilisation),
         finding.title,
@@ -48,7 +51,7 @@ def urgency(assessment: Assessment) -> tuple[int, bool, bool, str, float, str, s
     item = assessment.scene.item
     decisive = [f for f in assessment.findings if finding_state(f) is state_of(assessment)]
     return (
-        STATES.index(state_of(assessment)),
+        _ORDER.index(state_of(assessment)),
         not any(grave(f) for f in decisive),
         not item.value_class,
         item.value_class,

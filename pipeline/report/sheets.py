@@ -61,7 +61,7 @@ class Pen:
             context = drawn(gallery.charts, self.drawings) | self._script
             context |= {"museum": page_head(self.head, sheet), "units": self.units, "State": State}
             context |= {"here": "gallery", "gallery": gallery, "notes": page_notes(gallery.objects)}
-            page = fill(self._environment, "gallery.html", context)
+            page = fill(self._environment, "aside.html" if gallery.counts.aside else "gallery.html", context)
             exported = fragment(record, sheet.run, gallery.page, made.anchor, self.units)
         return Drawn(page.encode(), exported, made.entry)
 

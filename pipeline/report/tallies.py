@@ -15,15 +15,17 @@ MOST = 50
 def tally(found: Found) -> Tally:
     """Count what was found about the objects of a sheet."""
     findings = [f for a in found.assessments for f in a.findings]
-    states = Counter(state_of(a) for a in found.assessments)
-    reasons = (reason for a in found.assessments if not a.assessed for reason in a.scene.missing)
+    shown = [a for a in found.assessments if a.scene.item.on_display]
+    stored = [a for a in found.assessments if not a.scene.item.on_display]
+    states = Counter(state_of(a) for a in shown)
+    reasons = (reason for a in shown if not a.assessed for reason in a.scene.missing)
     worth = [w for w in found.wishes or () if not w.waste]
     return Tally(
         states={state.value: states[state] for state in STATES},
-        shown=sum(a.scene.item.on_display for a in found.assessments),
-        measures=dict(Counter(r.title for a in found.assessments for r in a.recommendations)),
+        shown=len(shown),
+        measures=dict(Counter(r.title for a in shown for r in a.recommendations)),
         missing=dict(Counter(reasons)),
-        first=_worst(_urgent(a) for a in found.assessments if state_of(a) is State.ACT and a.scene.item.on_display),
+        first=_worst(_urgent(a) for a in shown if state_of(a) is State.ACT),
         decided=_decided(findings),
         fidelities=dict(Counter(f.fidelity for f in findings)),
         efforts=_efforts(found),
@@ -32,6 +34,8 @@ def tally(found: Found) -> Tally:
         waste=len(found.wishes or ()) - len(worth),
         wished=len({w.object_number for w in worth}),
         faults=sum(bool(a.fault) for a in found.assessments),
+        stored=dict(Counter(state_of(a).value for a in stored)),
+        stored_measures=dict(Counter(r.title for a in stored for r in a.recommendations)),
     )
 
 
@@ -52,6 +56,8 @@ def total(tallies: Iterable[Tally]) -> Tally:
         waste=sum(t.waste for t in listed),
         wished=sum(t.wished for t in listed),
         faults=sum(t.faults for t in listed),
+        stored=_sum(t.stored for t in listed),
+        stored_measures=_sum(t.stored_measures for t in listed),
     )
 
 

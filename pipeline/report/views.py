@@ -14,30 +14,33 @@ if TYPE_CHECKING:
 
 
 class State(StrEnum):
-    """Where an object stands, in the order in which the report lists it."""
+    """Where an object stands, in the order in which the report lists it; aside: not on display, and not assessed."""
 
     ACT = "act"
     OPEN = "open"
     UNKNOWN = "unknown"
     SAFE = "safe"
+    ASIDE = "aside"
 
 
-STATES = tuple(State)
+STATES = (State.ACT, State.OPEN, State.UNKNOWN, State.SAFE)
+"""Those of what is assessed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """How many objects are in each state; the four add up to all."""
+    """How many objects are in each state; the five add up to all."""
 
     act: int = 0
     open: int = 0
     unknown: int = 0
     safe: int = 0
+    aside: int = 0
 
     @property
     def total(self) -> int:
         """All objects counted."""
-        return self.act + self.open + self.unknown + self.safe
+        return self.act + self.open + self.unknown + self.safe + self.aside
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,7 +203,7 @@ class ObjectView:
     @property
     def carded(self) -> bool:
         """Whether the object has an entry of its own below the table: something was found about it."""
-        return self.state is not State.UNKNOWN
+        return self.state not in (State.UNKNOWN, State.ASIDE)
 
     @property
     def failing(self) -> tuple[FindingView, ...]:
@@ -457,9 +460,11 @@ class EffortView:
 
 @dataclass(frozen=True, slots=True)
 class MuseumView:
-    """The index: all galleries, ranked, with totals over all objects; ``credit`` is the source's own line.
+    """The index: all galleries, ranked, with totals over all on display; ``credit`` is the source's own line.
 
+    counts     : of what is on display
     rows       : the galleries, the one with the most to do first
+    stores     : what is not on display, with totals of its own; None where everything is on display
     workbook   : whether the exports include a workbook: it is left out where it would be too long
     decided    : what settled the verdicts, by kind
     fidelities : how many verdicts were asked at which fidelity, in one line
@@ -489,3 +494,4 @@ class MuseumView:
     decisions: DecisionsView = DecisionsView()
     since: SinceView | None = None
     workbook: bool = True
+    stores: GalleryRow | None = None

@@ -104,6 +104,12 @@ class Analysis(_Part):
     workers: int = Field(default=0, ge=0, le=256, description="threads; 0: as many as there are cores")
 
 
+class Display(_Part):
+    """What of the collection is assessed."""
+
+    stores: bool = Field(default=False, description="assess what is not on display too, with totals of its own")
+
+
 class Execution(_Part):
     """Where the work is done."""
 
@@ -149,6 +155,7 @@ class Settings(_Part):
     collection: Collection = Collection()
     site: SiteFolder = SiteFolder()
     floors: Floors = Floors({})
+    display: Display = Display()
     analysis: Analysis = Analysis()
     execution: Execution = Execution()
     mitigation: Mitigation = Mitigation()
@@ -230,6 +237,11 @@ folder = {site}
 [floors]
 # Which galleries stand on which floor of the site's manifest; the others stand on the ground.  "*": all the others.
 # "2" = ["Hall of Sculpture", "Gallery 12"]
+
+[display]
+# What is on display is assessed.  What is not, because the museum's records say so, is counted and named; true assesses
+# it too, with totals of its own.  There is no model of the shelves and cabinets that it stands on.
+stores = false
 
 [analysis]
 # "auto" climbs from bounds over charts to histories only as far as each verdict needs, with the verdicts of "history",

@@ -23,7 +23,7 @@ from pipeline.records import (
 from pipeline.store import codec
 from pipeline.store.causes import Causes, MotionKey
 from pipeline.store.results import load_found, load_outlines
-from pipeline.store.reuse import CODE, KERNELS, LEVELS, RULES
+from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES
 from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_SHEET
 
 
@@ -190,6 +190,7 @@ def _settings(run: Mapping[str, Any]) -> dict[str, Any]:
     kept = run["settings"]
     analysis = kept.get("analysis") or {}
     found = {f"analysis.{name}": value for name, value in analysis.items() if name != "workers"}
+    found |= {f"display.{name}": value for name, value in (kept.get(DISPLAY) or {}).items()}
     found["site.folder"] = kept.get("site")
     found["collection.rules"] = kept.get(RULES)
     found |= {f"levels.{name}": how for name, how in (kept.get(LEVELS) or {}).items()}

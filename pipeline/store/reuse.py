@@ -27,6 +27,10 @@ LEVELS = "levels"
 """Key of a run's settings under which it is kept how each level combines its motions."""
 
 
+DISPLAY = "display"
+"""Key of a run's settings under which it is kept whether what is not on display was assessed."""
+
+
 SELECTION = "selection"
 """Key of a run's settings that is true for a run of a part of the collection."""
 
