@@ -112,8 +112,23 @@ def summary_lines(summary: "Summary") -> list[str]:
             f"{len(changes.moved)} moved, {len(changes.inputs)} changed; {len(changes.worsened)} verdicts worse, "
             f"{len(changes.fixed)} fixed, {len(changes.others)} other; {len(changes.motions)} motions changed",
         ]
+    lines += ["", *_reading_lines(summary)]
     if summary.report is not None:
         lines += ["", f"Report: {summary.report}"]
+    return lines
+
+
+def _reading_lines(summary: "Summary") -> list[str]:
+    from pipeline.jobs.readings import in_line, to_look_at, unsaid
+
+    read = summary.reading
+    look = "" if read is None or not to_look_at(read) else ": look"
+    at = f" at {summary.report.with_name('reading.html')}" if look and summary.report is not None else ""
+    lines = [f"  read: {in_line(read)}{look}{at}"]
+    if read is not None:
+        told = [printable(f"{one['message']}; {one['remedy']}") for one in read["suspicions"]]
+        lines += [f"    the whole file: {text}" for text in told]
+        lines += [f"  {unsaid(read['unsaid'])}"] if read["unsaid"] else []
     return lines
 
 

@@ -188,6 +188,8 @@ def _plain(done: "Imported") -> dict[str, Any]:
         "rows": reading.rows,
         "items": len(reading.items),
         "rejected": [asdict(r) for r in reading.rejected],
+        "doubtful": sum(1 for item in reading.items if item.problems),
+        "display_said": done.display_said,
         "suspicions": [asdict(s) for s in reading.suspicions],
         "problems": [{"object_number": item.object_number, **asdict(p)} for item, p in done.problems],
         "counts": None if done.changes is None else asdict(done.changes.counts),
@@ -197,6 +199,8 @@ def _plain(done: "Imported") -> dict[str, Any]:
 
 
 def _tell(done: "Imported", *, dry_run: bool) -> None:
+    from pipeline.jobs.readings import unsaid
+
     reading = done.reading
     click.echo(
         f"{reading.source}: {reading.rows:,} rows, {len(reading.items):,} objects, {len(reading.rejected):,} rejected"
@@ -211,6 +215,13 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
     listed("gone", list(done.changes.removed))
     _changed(done.changes)
     click.echo(f"inventory: {c.after:,} objects ({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed)")
+    doubtful = sum(1 for item in reading.items if item.problems)
+    click.echo(
+        f"read: {reading.rows:,} rows, {len(reading.rejected):,} refused, {doubtful:,} doubtful; "
+        "the next report names each"
+    )
+    if not done.display_said:
+        click.echo(unsaid(sum(item.on_display for item in reading.items)))
     if dry_run:
         click.echo("dry run: nothing was written")
     elif done.log is not None:

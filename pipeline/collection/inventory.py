@@ -21,13 +21,14 @@ from sqlalchemy import (
     Table,
     Text,
     bindparam,
+    cast,
     func,
     insert,
     select,
     update,
 )
 
-from pipeline.collection import supplement
+from pipeline.collection import noting, supplement
 from pipeline.collection.database import METADATA
 from pipeline.collection.errors import CollectionError, ShrunkError
 from pipeline.collection.record import KINDS, digest_of, kind_of, to_items, to_records
@@ -183,6 +184,7 @@ def replace_inventory(
     with engine.begin() as connection:
         items = laid_over(reading.items, supplement.current(connection))
         found, digests = _difference(connection, items, reading.unread)
+        below = _newest(connection)
         lost = found.before - found.after
         if found.before and lost / found.before > shrink_limit:
             raise ShrunkError(
@@ -192,9 +194,10 @@ def replace_inventory(
                 "if the objects are really gone, import again with a higher shrink limit"
             )
         described = _described(reading)
-        if not found and _says(connection, described):
-            return found
-        _write(connection, items, digests, found, described | _stamp(moment))
+        base, version = None if found else _says(connection, described), below
+        if base is None or version is None:
+            version = _write(connection, items, digests, found, described | _stamp(moment))
+        noting.note_import(connection, version, below, base or version, reading, _doubtful(connection))
     return found
 
 
@@ -225,11 +228,14 @@ def add_sheet(engine: Engine, reading: Reading, *, when: datetime | None = None)
             )
         items = laid_over(now, new)
         found, digests = _difference(connection, items)
+        below = version = _newest(connection) or 0
         if found:
             version = _write(
                 connection, items, digests, found, _described(reading) | _stamp(moment) | {"kind": "sheet"}
             )
             supplement.store(connection, sheets | new, version)
+        filled = {(number, name) for number, (_, record) in new.items() for name in record}
+        noting.note_sheet(connection, version, below, reading, set(unknown), filled, _doubtful(connection))
     return found, unknown
 
 
@@ -258,6 +264,7 @@ def return_to(engine: Engine, version: int, *, when: datetime | None = None) -> 
         back = kept | _stamp(moment) | {"kind": "return", "returned_to": version}
         made = _write(connection, items, digests, found, back)
         supplement.store(connection, supplement.current(connection, version), made)
+        noting.note_return(connection, made, version)
     return found
 
 
@@ -415,11 +422,26 @@ def _write(
     return version
 
 
-def _says(connection: Connection, described: Mapping[str, Any]) -> bool:
-    """Whether the newest version, sheets of our own left out, is an import of the same source, row for row."""
+def _newest(connection: Connection) -> int | None:
+    return connection.execute(select(func.max(IMPORT_BATCH.c.id))).scalar()
+
+
+def doubted(version: int) -> ColumnElement[bool]:
+    """Return which rows of ITEM are objects of a version with problems."""
+    return state_at(version) & (cast(ITEM.c.problems, Text) != "[]")
+
+
+def _doubtful(connection: Connection) -> int:
+    newest = _newest(connection) or 0
+    return connection.execute(select(func.count()).select_from(ITEM).where(doubted(newest))).scalar_one()
+
+
+def _says(connection: Connection, described: Mapping[str, Any]) -> int | None:
+    """Return the newest version, sheets of our own left out, if it is an import of the same source, row for row."""
     newest = select(func.max(IMPORT_BATCH.c.id)).where(IMPORT_BATCH.c.kind != "sheet").scalar_subquery()
     row = connection.execute(select(IMPORT_BATCH).where(IMPORT_BATCH.c.id == newest)).mappings().one_or_none()
-    return row is not None and row["kind"] == "import" and all(row[k] == v for k, v in described.items())
+    same = row is not None and row["kind"] == "import" and all(row[k] == v for k, v in described.items())
+    return int(row["id"]) if same and row is not None else None
 
 
 def _read(rows: Iterable[Any]) -> Iterator[Item]:

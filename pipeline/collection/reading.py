@@ -49,6 +49,7 @@ class Reading:
     suspicions : units that the whole source seems to have wrong
     blocks  : what became of its rows, for the next reading
     unread  : what was only counted, because it is as it was at the last reading; None: everything was read
+    flagged : whether a column says what is on display
     """
 
     items: tuple[Item, ...]
@@ -63,6 +64,7 @@ class Reading:
     suspicions: tuple[Suspicion, ...] = ()
     blocks: tuple[Block, ...] = ()
     unread: Unread | None = None
+    flagged: bool = False
 
     @property
     def objects(self) -> int:
@@ -122,6 +124,7 @@ def read_items(
         suspicions=suspicions(desk.evidence),
         blocks=tuple(desk.blocks),
         unread=None if before is None else desk.unread(before),
+        flagged=desk.flagged,
     )
 
 
@@ -138,6 +141,9 @@ class _Desk:
             places = [names.index(source) for source in column.sources if source in names]
             if places:
                 self._columns.append((field, column, places))
+        self.flagged = "on_display" in mapping.columns and (
+            mapping.columns["on_display"].constant is not None or any(f == "on_display" for f, *_ in self._columns)
+        )
         self._stores = {name.strip().casefold() for name in mapping.display.not_on_display}
         self._seen: dict[str, int] = {}
         texts = mapping.dimensions

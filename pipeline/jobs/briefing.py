@@ -20,6 +20,7 @@ from pipeline.jobs.desk import Brief, ChartErrand, motions_of
 from pipeline.jobs.faults import sound
 from pipeline.jobs.levels import floors_of, notes
 from pipeline.jobs.pictures import Pictures
+from pipeline.jobs.readings import told
 from pipeline.jobs.reporting import manner
 from pipeline.jobs.versions import code_digest, rules_digest
 from pipeline.jobs.workspace import CHARTS, KEPT, Workspace
@@ -29,6 +30,7 @@ from pipeline.mitigate.measures import padded
 from pipeline.motions.site import Level, Site
 from pipeline.plan import plan
 from pipeline.records import Model, Progress, RunRecord
+from pipeline.report.reading import INVENTORY, READING
 from pipeline.rules import Table
 from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, PICTURES, RULES
 
@@ -86,7 +88,8 @@ def brief_for(
         site=site.name,
         museum=settings.museum.name or (info.museum if info else ""),
         level_notes=tuple(said),
-        settings=_stored_settings(workspace, site, info.credit if info else "", tested),
+        settings=_stored_settings(workspace, site, info.credit if info else "", tested)
+        | {INVENTORY: catalogue.version, READING: told(workspace, catalogue)},
         assessments=(),
         charts={},
         motions=tuple(summary for storey in storeys.values() for summary in storey.summaries),

@@ -9,6 +9,7 @@ from pipeline.collection.inventory import galleries, latest_import, read_invento
 from pipeline.collection.sources.opening import is_database
 from pipeline.jobs import checkup
 from pipeline.jobs.lasting import mapping_of
+from pipeline.jobs.readings import in_line, told, unsaid
 from pipeline.jobs.secrets import hider
 from pipeline.jobs.workspace import Workspace, open_workspace
 from pipeline.quantities import counted
@@ -114,9 +115,15 @@ def _inventory(workspace: Workspace) -> tuple[str, str]:
     items = read_inventory(workspace.engine)
     shown = sum(galleries(items).values())
     doubts = strangers(workspace.settings.floors, {item.gallery for item in items})
-    if doubts:
-        return "warning", "; ".join(doubts)
-    return "ok", f"{counted(len(items), 'object')}, {shown} on display, from {info.source} on {info.imported_at}"
+    read = told(workspace, workspace.catalogue())
+    text = f"{counted(len(items), 'object')}, {shown:,} on display, from {info.source} on {info.imported_at}; "
+    text += f"read: {in_line(read)}"
+    if read is None:
+        return "warning", "; ".join([text, *doubts])
+    doubts += [f"{one['message']}; {one['remedy']}" for one in read["suspicions"]]
+    doubts += [unsaid(read["unsaid"])] if read["unsaid"] else []
+    wrong = doubts or read["refused"] or read["sheets"]
+    return "warning" if wrong else "ok", "; ".join([text, *doubts])
 
 
 def _objects(workspace: Workspace) -> tuple[str, str]:

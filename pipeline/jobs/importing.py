@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from pipeline.collection.inventory import Difference, difference, held, latest_import, replace_inventory, return_to
 from pipeline.collection.limits import Limits
 from pipeline.collection.mapping import load_mapping, preset_names
-from pipeline.collection.reading import Reading, read_items
+from pipeline.collection.reading import NOWHERE, Reading, read_items
 from pipeline.collection.sources.opening import is_database
 from pipeline.collection.suspicion import Suspicion
 from pipeline.jobs.lasting import known_blocks, mapping_of
@@ -40,6 +40,12 @@ class Imported:
     changes: Difference | None
     held: int | None = None
     log: Path | None = None
+
+    @property
+    def display_said(self) -> bool:
+        """Whether a column says what is on display, or a location does."""
+        stores = any(not item.on_display and item.gallery != NOWHERE for item in self.reading.items)
+        return self.reading.flagged or stores
 
     @property
     def problems(self) -> list[tuple[Item, Problem]]:

@@ -17,6 +17,7 @@ from pipeline.jobs.importing import import_collection, source_of
 from pipeline.jobs.lasting import remember, unchanged
 from pipeline.jobs.outcome import SUMMARY, summary_text
 from pipeline.jobs.pictures import pictures
+from pipeline.jobs.readings import doubts_of
 from pipeline.jobs.rounds import Round
 from pipeline.jobs.standing import Status, last_good, mark_good, mark_running, status
 from pipeline.jobs.stopping import uninterrupted
@@ -25,6 +26,7 @@ from pipeline.motions.site import Site
 from pipeline.records import Progress, RunChanges, RunRecord, Sheet, Tally, Urgent
 from pipeline.report import lasting_name, publish
 from pipeline.report.decided import by_object
+from pipeline.report.reading import READING
 from pipeline.report.survey_words import SURVEY_SECONDS
 from pipeline.report.views import State
 from pipeline.settings import Settings
@@ -63,6 +65,7 @@ class Summary:
     objects       : of the run; those on display are act + open + safe + cannot, and the numbers besides are theirs
     fresh         : of the assessed, those whose results were found now; the others' rest on nothing that has changed
     stores        : what is not on display, where it was asked for
+    reading       : what was refused and is doubted of the museum's records, see `readings.told`; None: not known
     worth         : how many measurements would settle a verdict, None where that was not asked
     survey_seconds: what asking cost
     missing       : why objects could not be assessed, with how many of each
@@ -94,6 +97,7 @@ class Summary:
     faults: int = 0
     fresh: int = 0
     stores: "Stores | None" = None
+    reading: Mapping[str, Any] | None = None
     worth: int | None = None
     survey_seconds: float = 0.0
     decisions: Mapping[str, int] = field(default_factory=dict)
@@ -169,7 +173,8 @@ def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool)
         index = edition.folder / "index.html"
         summary = replace(summary, fresh=night.fresh, report=index, latest=latest, changes=changes)
         beside = {SUMMARY: summary_text(summary, edition.folder)}
-        edition.finish(replace(head, decisions=strangers), found, changes, night.links(changes), beside)
+        doubts = doubts_of(workspace, head)
+        edition.finish(replace(head, decisions=strangers), found, changes, night.links(changes), beside, doubts)
     with uninterrupted():
         # From here on the report is whole: first it is shown, then said to be good.
         if latest is not None:
@@ -313,6 +318,7 @@ def summarise(head: RunRecord, sheets: Sequence[Sheet], found: Tally) -> Summary
         measures=found.measures,
         missing=found.missing,
         stores=stores,
+        reading=head.settings.get(READING),
         first=[f"{u.object_number}  {u.title[:48]}  ({u.gallery}): {u.outcome}" for u in _unsettled(head, found)],
         faults=found.faults,
         worth=found.worth if found.surveyed else None,

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import TypedDict
 
 from pipeline.jobs.outcome import SUMMARY
+from pipeline.jobs.readings import doubts_of
 from pipeline.jobs.standing import renew
 from pipeline.jobs.workspace import UsageError, locked, open_workspace
 from pipeline.records import RunChanges
@@ -35,7 +36,7 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
         told = workspace.reports / head.run_id / SUMMARY
         beside = {SUMMARY: told.read_text(encoding="utf-8")} if told.is_file() else {}
         with Edition(_free(workspace.reports / head.run_id), Pen(head, **manner(settings))) as edition:
-            index = draw_all(edition, head, found, changes, beside)
+            index = draw_all(edition, head, found, changes, beside, doubts_of(workspace, head))
         if [head.run_id] == whole[:1]:
             publish(index.parent, workspace.reports)
             renew(settings)

@@ -19,6 +19,7 @@ from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.part import Errors, Found, Outline, Sheet, Tally, Urgent
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress, Silent
+from pipeline.records.reading import Account, Doubt
 from pipeline.records.result import Assessment, Check, Finding, Recommendation, Spacing, Verdict
 from pipeline.records.run import RunRecord
 from pipeline.records.scene import (
@@ -37,6 +38,7 @@ from pipeline.records.wish import Wish
 __all__ = [
     "ITEM_FIELDS",
     "SECTION_SHAPES",
+    "Account",
     "Assessment",
     "Axis",
     "Basis",
@@ -51,6 +53,7 @@ __all__ = [
     "Decision",
     "DecisionChange",
     "DecisionKind",
+    "Doubt",
     "Errors",
     "Estimate",
     "Excitation",

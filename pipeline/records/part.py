@@ -55,7 +55,6 @@ class Tally:
     """What a sheet adds to the totals of a run.
 
     states   : objects on display by state: act, open, unknown (cannot be assessed), safe
-    shown    : objects on display
     measures : recommendations for them by title
     missing  : why they could not be assessed, with how many of each
     first    : the worst objects on display, the worst first
@@ -67,7 +66,6 @@ class Tally:
     """
 
     states: Mapping[str, int]
-    shown: int
     measures: Mapping[str, int]
     missing: Mapping[str, int]
     first: tuple[Urgent, ...]

@@ -15,6 +15,7 @@ from pipeline.report.judging import room_views, shaking_view, spacing_views
 from pipeline.report.language import ngettext, said
 from pipeline.report.numerics import decided_views, fidelities
 from pipeline.report.ranking import urgency
+from pipeline.report.reading import reading_view
 from pipeline.report.selftest import self_test_view
 from pipeline.report.survey_words import SURVEY_SECONDS, errands, survey_sentence
 from pipeline.report.text import clean, count, digest, slug, words
@@ -37,6 +38,9 @@ from pipeline.report.views import (
 
 STORED = "not-on-display"
 """Stem of the files of the objects that are not on display; a gallery's ends in a hash, so the two never meet."""
+
+SELECTION = "selection"
+"""Key of a run's settings that is true for a run of a part of the collection."""
 
 LEADERS = 8
 """Objects that the index names as the most urgent."""
@@ -204,6 +208,8 @@ def museum_view(
         decisions=merged([*(entry.decisions for entry in entries), strangers]),
         since=since,
         workbook=workbook,
+        reading=reading_view(head.settings),
+        whole=not head.settings.get(SELECTION),
     )
 
 

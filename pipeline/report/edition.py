@@ -19,11 +19,21 @@ from markupsafe import Markup
 from pydantic import TypeAdapter, ValidationError
 
 from pipeline.records import RunChanges, RunRecord, Sheet, Standing, Tally
-from pipeline.report.compose import anchor_of, museum_view, page_name
+from pipeline.report.compose import anchor_of, museum_view, page_head, page_name
 from pipeline.report.errors import ReportError
 from pipeline.report.exports import HEADERS, TABLES, TEXT_FILES, WORKBOOK, WORKBOOK_ROWS, schema_of, workbook
 from pipeline.report.language import speaking
 from pipeline.report.pages import environment, fill
+from pipeline.report.reading import (
+    FILES,
+    INVENTORY,
+    READING,
+    Doubts,
+    has_reading,
+    reading_view,
+    write_doubts,
+    write_key,
+)
 from pipeline.report.sheets import Drawn, Pen, drawn
 from pipeline.report.since import since_view
 from pipeline.report.table_files import TableFile
@@ -188,6 +198,7 @@ class Edition:
         changes: RunChanges | None,
         links: Mapping[str, Pointer],
         beside: Mapping[str, str] | None = None,
+        doubts: Doubts | None = None,
     ) -> Path:
         """Write the index and the pages that all share, and give the report its name.
 
@@ -196,6 +207,7 @@ class Edition:
         changes : since the run before, for the index; None where there was none
         links   : the objects that the index names as changed, by number
         beside  : further files of the report, by name
+        doubts  : gives what reading refused and doubts, if that is known
         returns : the path of index.html
         raises  : ReportError where two galleries' files would have one name
         """
@@ -205,12 +217,31 @@ class Edition:
         shared = self._shared(head, tally, changes, links, has_book=has_book)
         for name, text in [*shared, *(beside or {}).items()]:
             (self._partial / name).write_text(text, encoding="utf-8", newline="\n")
+        if doubts is not None:
+            self._read(head, doubts)
         self._close()
         if fits and not self._repeated:
             workbook(self._partial, head.started)
         (self._partial / SHEETS).write_bytes(_adapter().dump_json(self._placed))
         self._partial.rename(self.folder)
         return self.folder / "index.html"
+
+    def _read(self, head: RunRecord, doubts: Doubts) -> None:
+        """Write the page and the list of what reading refused and doubts, or take those of the earlier report."""
+        own = (_code(), self.pen.identity, sorted(head.settings[READING].items()), head.settings.get(INVENTORY))
+        key = sha256(repr(own).encode("utf-8", "surrogatepass")).hexdigest()
+        write_key(self._partial, key)
+        if has_reading(self._earlier.folder, key):
+            for name in FILES:
+                _same(self._earlier.folder / name, self._partial / name)
+            return
+        page, table = FILES
+        with speaking(self.pen.language):
+            listed = write_doubts(self._partial / table, doubts())
+            sheet = Sheet("", "", True, 1, 1, head.run_id, head.finished, {})
+            context = {"museum": page_head(head, sheet), "reading": reading_view(head.settings), "listed": listed}
+            text = fill(environment(self.pen.language), page, context | {"here": "reading", "units": self.pen.units})
+        (self._partial / page).write_text(text, encoding="utf-8", newline="\n")
 
     def _shared(
         self,

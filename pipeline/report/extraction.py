@@ -10,7 +10,7 @@ from pipeline.classify import object_classes
 from pipeline.mitigate.advise import ONLY_HERE
 from pipeline.mitigate.holding import WAX_CHECKS
 from pipeline.mitigate.installed import ON_TOP, PARAMETERS
-from pipeline.mitigate.means import TERMS
+from pipeline.mitigate.means import STORED, STORED_SENTENCE, STORED_TITLE, TERMS
 from pipeline.mitigate.shared import FASTENED, FREE, IT
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
@@ -69,7 +69,7 @@ def _of_measures() -> Iterator[str]:
             yield from (sentence.replace("{surface}", surface) for surface in surfaces)
         if "{what}" in sentence:
             yield sentence.replace("{what}", IT).replace(" {how}", "")
-    yield from (FREE, FASTENED, ONLY_HERE, *WAX_CHECKS)
+    yield from (FREE, FASTENED, ONLY_HERE, STORED_TITLE, STORED_SENTENCE, *WAX_CHECKS)
 
 
 def _names() -> Iterator[str]:
@@ -77,5 +77,5 @@ def _names() -> Iterator[str]:
     quantities = [q for model in MODELS for q in (*model.needs, *model.gives)]
     quantities += [q for several in PARAMETERS.values() for q in several]
     names = [field.name for field in fields(Item)] + [q.name for q in quantities] + [m.name for m in MODELS]
-    names += [*TERMS, *(name for terms in TERMS.values() for name in terms.gives), *object_classes()]
+    names += [*TERMS, STORED, *(name for terms in TERMS.values() for name in terms.gives), *object_classes()]
     yield from (bare(name) for name in names)

@@ -1,13 +1,25 @@
 """What settled the verdicts of a run, and how large its numerical errors are."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from pipeline.records import Errors, Tally
 from pipeline.report.describe import decided
 from pipeline.report.language import _
 from pipeline.report.text import clean, count
 from pipeline.report.units import significant
-from pipeline.report.views import DecidedView
+
+
+@dataclass(frozen=True, slots=True)
+class DecidedView:
+    """How many verdicts one kind of calculation settled, their share, and their numerical errors."""
+
+    means: str
+    verdicts: int
+    share: str
+    median: str
+    worst: str
+
 
 _KNOWN = ("certificate", "chart", "history")
 

@@ -8,6 +8,7 @@ from pipeline.records import Assessment, Found, RunChanges, RunRecord, Sheet, Sp
 from pipeline.report.decided import by_object
 from pipeline.report.edition import Edition, link_to, sheet_key
 from pipeline.report.language import Language
+from pipeline.report.reading import Doubts
 from pipeline.report.sheets import Pen
 from pipeline.report.since import mentioned
 from pipeline.report.tallies import tally, total
@@ -22,6 +23,7 @@ def render(
     units: Units | None = None,
     language: Language | None = None,
     changes: RunChanges | None = None,
+    doubts: Doubts | None = None,
 ) -> Path:
     """Write a whole report: pages and exports.  The same record gives the same bytes.
 
@@ -29,12 +31,13 @@ def render(
     units   : the reader's units; centimetres where None
     language: of the pages; English where None.  The exports keep the words of the run, for programs read them.
     changes : since the run before, for the index; None where there was none
+    doubts  : see `Edition.finish`
     returns : the path of index.html
     raises  : ReportError if the folder exists, or if the record cannot be shown (see `compose`)
     """
     head = replace(record, assessments=(), wishes=None, spacings=())
     with Edition(Path(folder), Pen(head, units or Units(), language or Language())) as edition:
-        return draw_all(edition, head, sheets_of(record), changes)
+        return draw_all(edition, head, sheets_of(record), changes, doubts=doubts)
 
 
 def draw_all(
@@ -43,11 +46,13 @@ def draw_all(
     sheets: Iterable[tuple[Sheet, Found]],
     changes: RunChanges | None,
     beside: Mapping[str, str] | None = None,
+    doubts: Doubts | None = None,
 ) -> Path:
     """Draw every sheet of a run that is over into a report, one at a time, and finish it.
 
     head    : the run without its objects, with all decisions as they stood
     beside  : further files of the report, by name
+    doubts  : see `Edition.finish`
     returns : the path of index.html
     """
     decisions = by_object(head.decisions)
@@ -61,7 +66,7 @@ def draw_all(
         tallies.append(tally(found))
         links |= {number: link_to(sheet, number, title) for number, title in titles.items() if number in named}
     strangers = tuple(standing for left in decisions.values() for standing in left)
-    return edition.finish(replace(head, decisions=strangers), total(tallies), changes, links, beside)
+    return edition.finish(replace(head, decisions=strangers), total(tallies), changes, links, beside, doubts)
 
 
 def sheets_of(record: RunRecord) -> list[tuple[Sheet, Found]]:

@@ -22,7 +22,6 @@ def tally(found: Found) -> Tally:
     worth = [w for w in found.wishes or () if not w.waste]
     return Tally(
         states={state.value: states[state] for state in STATES},
-        shown=len(shown),
         measures=dict(Counter(r.title for a in shown for r in a.recommendations)),
         missing=dict(Counter(reasons)),
         first=_worst(_urgent(a) for a in shown if state_of(a) is State.ACT),
@@ -44,7 +43,6 @@ def total(tallies: Iterable[Tally]) -> Tally:
     listed = list(tallies)
     return Tally(
         states=_sum(t.states for t in listed),
-        shown=sum(t.shown for t in listed),
         measures=_sum(t.measures for t in listed),
         missing=_sum(t.missing for t in listed),
         first=_worst(urgent for t in listed for urgent in t.first),

@@ -9,7 +9,9 @@ from pipeline.report.judging import FragilityView, RoomView, ShakingView, Spacin
 from pipeline.report.svg import Spot
 
 if TYPE_CHECKING:
+    from pipeline.report.numerics import DecidedView
     from pipeline.report.plan_views import PlanView
+    from pipeline.report.reading import ReadingView
     from pipeline.report.selftest import SelfTestView
 
 
@@ -436,17 +438,6 @@ class MotionView:
 
 
 @dataclass(frozen=True, slots=True)
-class DecidedView:
-    """How many verdicts one kind of calculation settled, their share, and their numerical errors."""
-
-    means: str
-    verdicts: int
-    share: str
-    median: str
-    worst: str
-
-
-@dataclass(frozen=True, slots=True)
 class EffortView:
     """By what the verdicts of one model were decided; ``any`` is the share of analyses for which a history was run."""
 
@@ -465,6 +456,8 @@ class MuseumView:
     counts     : of what is on display
     rows       : the galleries, the one with the most to do first
     stores     : what is not on display, with totals of its own; None where everything is on display
+    reading    : what was refused and is doubted of the museum's records
+    whole      : whether the run is of the whole collection
     workbook   : whether the exports include a workbook: it is left out where it would be too long
     decided    : what settled the verdicts, by kind
     fidelities : how many verdicts were asked at which fidelity, in one line
@@ -488,10 +481,18 @@ class MuseumView:
     level_notes: tuple[str, ...] = field(default=())
     efforts: tuple[EffortView, ...] = ()
     self_test: "SelfTestView | None" = None
-    decided: tuple[DecidedView, ...] = ()
+    decided: "tuple[DecidedView, ...]" = ()
     fidelities: str = ""
     survey: str = ""
     decisions: DecisionsView = DecisionsView()
     since: SinceView | None = None
     workbook: bool = True
     stores: GalleryRow | None = None
+    reading: "ReadingView | None" = None
+    whole: bool = True
+
+    @property
+    def complete(self) -> bool:
+        """Whether none of the museum's objects is left out of the counts, and this is known."""
+        read = self.reading
+        return self.whole and self.stores is None and read is not None and read.known and not read.refused

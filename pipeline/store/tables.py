@@ -26,6 +26,7 @@ from sqlalchemy.types import TypeDecorator, TypeEngine
 
 from pipeline.collection.database import METADATA
 from pipeline.collection.inventory import IMPORT_BATCH, ITEM
+from pipeline.collection.noting import READING
 from pipeline.collection.supplement import SUPPLEMENT
 from pipeline.records import Chart, Decision, MotionSummary, Standing, Tally
 from pipeline.store import codec
@@ -36,6 +37,7 @@ __all__ = [
     "IMPORT_BATCH",
     "ITEM",
     "METADATA",
+    "READING",
     "RESULT",
     "RUN",
     "RUN_CHART",

@@ -6,6 +6,7 @@ from math import inf
 from pipeline.records import (
     Assessment,
     Check,
+    Doubt,
     Estimate,
     Finding,
     Item,
@@ -20,10 +21,11 @@ from pipeline.records import (
     Verdict,
     Wish,
 )
+from pipeline.records.reading import DOUBTFUL, REFUSED, SHEET, SOURCE
 
 from .pictures import HASH, charts, motion
 
-__all__ = ["HASH", "HOSTILE", "charts", "crowd", "motion", "record"]
+__all__ = ["HASH", "HOSTILE", "charts", "crowd", "doubts", "motion", "record"]
 
 HOSTILE = {
     "H.1": "<script>alert(1)</script>",
@@ -419,13 +421,31 @@ def record(*extra: Assessment) -> RunRecord:
         site="malibu",
         museum="Museum of the Shore",
         level_notes=("The design level returns once in 475 years.",),
-        settings={"fidelity": "auto", "kernels": "0123456789ab", "numerics": self_test()},
+        settings={"fidelity": "auto", "kernels": "0123456789ab", "numerics": self_test(), "reading": reading()},
         assessments=objects,
         charts=charts(),
         motions=(motion(),),
         demonstration=True,
         wishes=wishes(),
     )
+
+
+def reading() -> dict[str, object]:
+    """Return what a run keeps of a reading that refused and doubted something; `doubts` are what."""
+    doubt = {"field": "height_m", "message": HOSTILE["H.2"], "remedy": HOSTILE["H.1"]}
+    counts = {"rows": 24, "refused": 2, "doubtful": 3, "sheets": 1, "unsaid": 20}
+    return {"source": HOSTILE["H.1"], **counts, "suspicions": [doubt]}
+
+
+def doubts() -> list[Doubt]:
+    """Return doubts of every kind, with hostile texts; not in the order of the page."""
+    return [
+        Doubt(DOUBTFUL, None, None, HOSTILE["H.3"], "mass_kg", HOSTILE["H.2"], HOSTILE["H.4"]),
+        Doubt(DOUBTFUL, 7, 9, "79.AA.143", "height_m", HOSTILE["H.1"], HOSTILE["H.6"]),
+        Doubt(REFUSED, 3, 4, "", "object_number", HOSTILE["H.8"], ""),
+        Doubt(SHEET, 2, 3, "82.AB.7", "friction", HOSTILE["H.7"], "-2+3"),
+        Doubt(SOURCE, None, None, "", "height_m", HOSTILE["H.2"], HOSTILE["H.1"]),
+    ]
 
 
 def self_test(kernels: str = "0123456789ab", **wrong: object) -> dict[str, object]:

@@ -21,7 +21,7 @@ CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
 @pytest.fixture(scope="session")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a rendered report of the builder's record."""
-    return render(builder.record(), tmp_path_factory.mktemp("reports") / "one").parent
+    return render(builder.record(), tmp_path_factory.mktemp("reports") / "one", doubts=builder.doubts).parent
 
 
 @pytest.fixture(scope="session")

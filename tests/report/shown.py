@@ -57,4 +57,5 @@ def shown(record: RunRecord, units: Units | None = None) -> Shown:
         tallies.append(tally(found))
     head = replace(record, assessments=(), wishes=None, spacings=(), decisions=tuple(left))
     museum = museum_view(head, entries, total(tallies), chosen, None, workbook=True)
-    return Shown(museum, tuple(pages[row.sheets[0].page] for row in museum.rows))
+    rows = (*museum.rows, *((museum.stores,) if museum.stores else ()))
+    return Shown(museum, tuple(pages[row.sheets[0].page] for row in rows))

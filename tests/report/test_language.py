@@ -25,11 +25,13 @@ from pipeline.mitigate import advise
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
 from pipeline.records import (
+    Assessment,
     Cause,
     CauseKind,
     Decision,
     DecisionChange,
     DecisionKind,
+    Doubt,
     FieldChange,
     InputChange,
     MotionChange,
@@ -148,7 +150,10 @@ def _field(name: str, value: Any) -> Any:
     if name == "settings":
         told = value["numerics"]
         cases = [case | {"what": foreign(case["what"]), "truth": foreign(case["truth"])} for case in told["cases"]]
-        return {**value, "numerics": told | {"cases": cases, "machine": foreign(told["machine"])}}
+        read = value["reading"]
+        doubts = [{"field": d["field"], **{n: foreign(d[n]) for n in ("message", "remedy")}} for d in read["suspicions"]]
+        read = read | {"source": foreign(read["source"]), "suspicions": doubts}
+        return {**value, "numerics": told | {"cases": cases, "machine": foreign(told["machine"])}, "reading": read}
     if name == "item":
         return replace(foreign(value), problems=())
     if name == "mark" and value is not None:
@@ -186,9 +191,18 @@ CHANGED = RunChanges(
 @pytest.fixture(scope="module")
 def pages(compiled: GNUTranslations, tmp_path_factory: pytest.TempPathFactory) -> dict[str, etree._Element]:
     record: RunRecord = foreign(replace(builder.record(), decisions=DECIDED))
-    folder = tmp_path_factory.mktemp("pseudo") / "one"
-    index = render(record, folder, language=Language("it", compiled), changes=CHANGED)
-    return {p.name: etree.parse(str(p)).getroot() for p in sorted(index.parent.glob("*.html"))}
+    folder = tmp_path_factory.mktemp("pseudo")
+    doubts: list[Doubt] = [replace(foreign(one), what=one.what, field=one.field) for one in builder.doubts()]
+    spoken = Language("it", compiled)
+    index = render(record, folder / "one", language=spoken, changes=CHANGED, doubts=lambda: doubts)
+    found = {p.name: etree.parse(str(p)).getroot() for p in sorted(index.parent.glob("*.html"))}
+    # What is not on display is left aside or assessed, and the reading may not be known.
+    stored = [a for a in record.assessments if not a.scene.item.on_display]
+    left = [Assessment(a.scene, (), (), aside=True) if a in stored else a for a in record.assessments]
+    unread = {name: value for name, value in record.settings.items() if name != "reading"}
+    other = render(replace(record, assessments=tuple(left), settings=unread), folder / "two", language=spoken)
+    names = ("index.html", "not-on-display.html")
+    return found | {f"aside-{n}": etree.parse(str(other.with_name(n))).getroot() for n in names}
 
 
 def _texts(page: etree._Element) -> Iterator[str]:

@@ -1,0 +1,45 @@
+"""What became of the rows behind an inventory: how many were refused or are doubted, and which."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+REFUSED, SOURCE, SHEET, DOUBTFUL = "refused", "source", "sheet", "doubtful"
+"""What a doubt is about: a row that became no object; the whole source; a sheet of our own; a value of an object."""
+
+
+@dataclass(frozen=True, slots=True)
+class Doubt:
+    """Something that reading refused or doubts.
+
+    what      : one of the four above
+    row, line : of the source, row 1 the first below the header; None where it is of no row, or not known of which
+    """
+
+    what: str
+    row: int | None
+    line: int | None
+    object_number: str
+    field: str
+    message: str
+    remedy: str
+
+
+@dataclass(frozen=True, slots=True)
+class Account:
+    """What became of the rows behind a version of the inventory.
+
+    refused    : rows that became no object
+    doubtful   : objects of which a value was refused or is doubted
+    sheets     : rows and cells of sheets of our own that were not used
+    suspicions : what the whole source seems to have wrong, with what mends it
+    flagged    : whether a column of the source says what is on display
+    """
+
+    source: str
+    rows: int
+    refused: int
+    doubtful: int
+    sheets: int
+    suspicions: tuple[tuple[str, str, str], ...]
+    flagged: bool
