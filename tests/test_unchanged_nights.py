@@ -72,9 +72,9 @@ def results(settings: Settings) -> int:
 
 
 def found(settings: Settings) -> RunRecord:
-    """Return the last run without what tells one night from another."""
+    """Return the last run without what tells one night from another, and one museum's history from another's."""
     record = load_run(open_database(settings.database))
-    kept = {k: v for k, v in record.settings.items() if k != "survey_seconds"}
+    kept = {k: v for k, v in record.settings.items() if k not in ("survey_seconds", "inventory")}
     return replace(record, run_id="", started="", finished="", settings=kept)
 
 

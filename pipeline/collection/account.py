@@ -47,7 +47,9 @@ def doubts(engine: Engine, version: int) -> Iterator[Doubt]:
             yield Doubt(SOURCE, None, None, "", field, message, remedy)
         rejected = select(IMPORT_BATCH.c.rejected).where(IMPORT_BATCH.c.id == known["base"])
         for row in connection.execute(rejected).scalar_one():
-            yield Doubt(REFUSED, row["row"], row["line"], "", row["field"], row["message"], row["remedy"])
+            # Its place is told besides.
+            message = row["message"].removeprefix(f"{row['file']}, row {row['row']} (line {row['line']}): ")
+            yield Doubt(REFUSED, row["row"], row["line"], "", row["field"], message, row["remedy"])
         for sheet, at, line, number, field, message, remedy in known["sheets"]:
             yield Doubt(SHEET, at, line, number, field, f"{sheet}: {message}", remedy)
         wanted = select(ITEM.c.object_number, ITEM.c.problems).where(doubted(version)).order_by(ITEM.c.object_number)

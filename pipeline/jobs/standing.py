@@ -38,11 +38,13 @@ class LastGood:
 
     finished : ISO 8601, UTC; empty where its run did not say
     report   : its index, from the folder of reports on
+    reading  : what its records' reading came to, as summary.json beside it says; None where that is not known
     """
 
     run_id: str
     finished: str
     report: str
+    reading: Mapping[str, Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,7 @@ def mark_good(settings: Settings, summary: "Summary") -> None:
         raise ValueError("a run without a report is not the last good one")
     root = _root(settings)
     report = summary.report.resolve().relative_to(root.resolve()).as_posix()
-    good = LastGood(summary.run_id, summary.finished, report)
+    good = LastGood(summary.run_id, summary.finished, report, summary.reading)
     _write(settings, Status(GOOD, _now(), os.getpid(), good, began=_began(settings)))
 
 
@@ -131,24 +133,27 @@ def last_good(settings: Settings) -> LastGood | None:
         folder = link.resolve()
         rendered = _RENDERED.fullmatch(folder.name)
         run = rendered[1] if rendered else folder.name
-        finished = _finished(folder) or (said.finished if said is not None and said.run_id == run else "")
-        return LastGood(run, finished, f"{folder.name}/{LANDING}")
+        told = _told(folder)
+        finished = str(told.get("finished") or (said.finished if said is not None and said.run_id == run else ""))
+        return LastGood(run, finished, f"{folder.name}/{LANDING}", told.get("reading"))
     return said if said is not None and (root / said.report).is_file() else None
 
 
 def _said(root: Path) -> LastGood | None:
     try:
-        said: Mapping[str, str] | None = json.loads((root / STATUS).read_text(encoding="utf-8"))["last_good"]
+        said: Mapping[str, Any] | None = json.loads((root / STATUS).read_text(encoding="utf-8"))["last_good"]
         return None if said is None else LastGood(**said)
     except (OSError, ValueError, TypeError, KeyError):
         return None
 
 
-def _finished(folder: Path) -> str:
+def _told(folder: Path) -> Mapping[str, Any]:
+    """Return what a report's summary.json says; nothing where it cannot be read."""
     try:
-        return str(json.loads((folder / SUMMARY).read_text(encoding="utf-8"))["finished"])
-    except (OSError, ValueError, TypeError, KeyError):
-        return ""
+        found: Any = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
 
 
 def _write(settings: Settings, now: Status) -> None:

@@ -88,7 +88,9 @@ def test_a_week_of_nights(museum: Callable[..., Path], server: Web, monkeypatch:
     assert kouros("report").returncode == 0
     # Rendered again: the same run, in another folder, with the time that is known of it.
     again = standing(folder)["last_good"]
-    assert again == {"run_id": printed["run_id"], "finished": printed["finished"], "report": again["report"]}
+    same = {name: printed[name] for name in ("run_id", "finished", "reading")}
+    assert again == same | {"report": again["report"]}
+    assert (again["reading"]["rows"], again["reading"]["refused"]) == (3, 0)
     assert again["report"] == f"{printed['run_id']}-2/index.html"
     assert f'href="{again["report"]}"' in landing(folder)
     assert server.heard == []  # nothing changed: there was nothing before

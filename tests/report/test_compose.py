@@ -18,7 +18,7 @@ from .shown import shown
 def test_the_four_counts_add_up_to_all_objects() -> None:
     record = builder.record()
     museum = shown(record, Units())
-    # 4 + 1 fail among the antiquities, 2 + 5 in the salon; one open; one unknown; 1 + 4 pass.  In store 1 fails, 1 passes.
+    # 4 + 1 fail among the antiquities, 2 + 5 in the salon; one open; one unknown; 1 + 4 pass.  In store: 1 and 1.
     assert museum.counts == Counts(act=12, open=1, unknown=1, safe=5)
     assert museum.museum.stores is not None
     assert museum.museum.stores.counts == Counts(act=1, safe=1)

@@ -151,7 +151,7 @@ def _field(name: str, value: Any) -> Any:
         told = value["numerics"]
         cases = [case | {"what": foreign(case["what"]), "truth": foreign(case["truth"])} for case in told["cases"]]
         read = value["reading"]
-        doubts = [{"field": d["field"], **{n: foreign(d[n]) for n in ("message", "remedy")}} for d in read["suspicions"]]
+        doubts = [d | {name: foreign(d[name]) for name in ("message", "remedy")} for d in read["suspicions"]]
         read = read | {"source": foreign(read["source"]), "suspicions": doubts}
         return {**value, "numerics": told | {"cases": cases, "machine": foreign(told["machine"])}, "reading": read}
     if name == "item":
