@@ -58,10 +58,13 @@ class Pen:
         with speaking(self.language):
             made = compose(record, sheet, self.units, several=len({m.level for m in self.head.motions}) > 1)
             gallery = made.gallery
-            context = drawn(gallery.charts, self.drawings) | self._script
-            context |= {"museum": page_head(self.head, sheet), "units": self.units, "State": State}
-            context |= {"here": "gallery", "gallery": gallery, "notes": page_notes(gallery.objects)}
-            page = fill(self._environment, "aside.html" if gallery.counts.aside else "gallery.html", context)
+            context: dict[str, Any] = {"museum": page_head(self.head, sheet), "units": self.units, "State": State}
+            context |= {"here": "gallery", "gallery": gallery}
+            if gallery.counts.aside:
+                page = fill(self._environment, "aside.html", context)
+            else:
+                context |= drawn(gallery.charts, self.drawings) | self._script
+                page = fill(self._environment, "gallery.html", context | {"notes": page_notes(gallery.objects)})
             exported = fragment(record, sheet.run, gallery.page, made.anchor, self.units)
         return Drawn(page.encode(), exported, made.entry)
 
