@@ -191,7 +191,8 @@ def _stand_by(night: Round, found: Tally) -> None:
 
     raises : RuntimeError with the first failure; the last report stays
     """
-    answered = sum(number for state, number in found.states.items() if state != "unknown")
+    states = (*found.states.items(), *found.stored.items())
+    answered = sum(number for state, number in states if state not in (State.UNKNOWN, State.ASIDE))
     if night.faults and not answered and found.faults > LIKE:
         raise RuntimeError(
             f"nothing could be assessed: Kouros failed on {found.faults:,} objects: {night.faults[0].words}"
