@@ -51,7 +51,7 @@ def doubts(engine: Engine, version: int) -> Iterator[Doubt]:
             message = row["message"].removeprefix(f"{row['file']}, row {row['row']} (line {row['line']}): ")
             yield Doubt(REFUSED, row["row"], row["line"], "", row["field"], message, row["remedy"])
         for sheet, at, line, number, field, message, remedy in known["sheets"]:
-            yield Doubt(SHEET, at, line, number, field, f"{sheet}: {message}", remedy)
+            yield Doubt(SHEET, at or None, line or None, number, field, f"{sheet}: {message}", remedy)
         wanted = select(ITEM.c.object_number, ITEM.c.problems).where(doubted(version)).order_by(ITEM.c.object_number)
         for number, problems in connection.execution_options(yield_per=1_000).execute(wanted):
             place, below = known["places"].get(number, (None, None))

@@ -16,6 +16,7 @@ from pipeline.collection.database import METADATA
 
 if TYPE_CHECKING:
     from pipeline.collection.reading import Reading
+    from pipeline.records import Item
 
 PLACES = 50_000
 """Doubtful objects of which a version keeps row and line: of more their numbers must do."""
@@ -59,8 +60,7 @@ def note_import(
     doubtful : objects of that version with problems
     """
     places = {number: (row, line) for row, line, number, *_ in (() if reading.unread is None else reading.unread.noted)}
-    found = zip(reading.items, reading.places, strict=True)
-    places |= {item.object_number: place for item, place in found if item.problems}
+    places |= {item.object_number: place for item, place in _placed(reading) if item.problems and place[0]}
     kept = sorted(places.items(), key=lambda one: one[1])[:PLACES]
     _write(
         connection,
@@ -105,10 +105,15 @@ def note_return(connection: Connection, version: int, back: int) -> None:
         _write(connection, version, known)
 
 
+def _placed(reading: Reading) -> Iterable[tuple[Item, tuple[int, int]]]:
+    """Return the items with row and line: 0 where the reading does not say where they stood."""
+    return zip(reading.items, reading.places or [(0, 0)] * len(reading.items), strict=True)
+
+
 def _unused(reading: Reading, unknown: Collection[str]) -> Iterable[Cell]:
     for out in reading.rejected:
         yield reading.source, out.row, out.line, "", out.field, out.message, out.remedy
-    for item, (row, line) in zip(reading.items, reading.places, strict=True):
+    for item, (row, line) in _placed(reading):
         number = item.object_number
         if number in unknown:
             remedy = "see whether its number is that of the museum's records"
