@@ -22,7 +22,7 @@ from pipeline.jobs.levels import floors_of, notes
 from pipeline.jobs.pictures import Pictures
 from pipeline.jobs.reporting import manner
 from pipeline.jobs.versions import code_digest, rules_digest
-from pipeline.jobs.workspace import CHARTS, KEPT, Workspace
+from pipeline.jobs.workspace import CHARTS, Workspace
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import Means
 from pipeline.mitigate.measures import padded
@@ -77,7 +77,7 @@ def brief_for(
         said.append(_left_out("From what shaking each object fails", "[analysis] fragility = true"))
     if settings.report.survey and not surveyed:
         said.append(_left_out("Which measurements would settle a verdict", "[report] survey = true"))
-    tested = selftest.kept(settings.path(KEPT))
+    tested = selftest.kept(settings.kept)
     head = RunRecord(
         run_id=f"{started:%Y%m%dT%H%M%S}.{started.microsecond // 1000:03d}-{os.getpid()}",
         started=started.isoformat(timespec="milliseconds"),
@@ -100,7 +100,7 @@ def brief_for(
         means=workspace.means,
         surveyed=surveyed,
         fragile=fragile,
-        kept=settings.path(KEPT) / CHARTS,
+        kept=settings.kept / CHARTS,
         threads=settings.analysis.workers or Threads().workers,
         units=written["units"],
         tongue=settings.report.language,
@@ -108,7 +108,7 @@ def brief_for(
     )
     # The pictures are made before the verdicts, which use their charts; motions that two floors share only once.
     drawn = pictures.of(list(motions.values()), progress)
-    measured = tradeoff.kept(settings.path(KEPT))
+    measured = tradeoff.kept(settings.kept)
     if measured is not None:
         picture = tradeoff.picture(measured)
         drawn[picture.key] = picture

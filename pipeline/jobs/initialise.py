@@ -1,10 +1,12 @@
 """A new workspace: commented settings, an empty site, the database."""
 
+import tomllib
 from pathlib import Path
 
+from pipeline.collection.database import database_url
 from pipeline.jobs.workspace import UsageError, open_workspace
 from pipeline.resources import replacing
-from pipeline.settings import load_settings, template
+from pipeline.settings import Settings, template
 
 MANIFEST = """\
 # The motions of your site.  Put the records beside this file, name them here, then try `kouros motions show` and
@@ -43,25 +45,29 @@ longitude = 0.0
 """
 
 
-def initialise(folder: Path) -> list[Path]:
+def initialise(folder: Path, *, dry_run: bool = False) -> list[Path]:
     """Make kouros.toml, site_motions/site and the database in a folder.
 
-    returns : what was made
+    dry_run : make nothing
+    returns : what was made, or would be
     raises  : UsageError where settings are there already; nothing is overwritten
     """
     file = folder / "kouros.toml"
     if file.exists():
         raise UsageError(f"{file} is there already; remove it, or choose another folder")
     manifest = folder / "site_motions" / "site" / "manifest.toml"
-    manifest.parent.mkdir(parents=True, exist_ok=True)
-    made = [file]
-    if not manifest.exists():
-        with replacing(manifest) as aside:
-            aside.write_text(MANIFEST, encoding="utf-8")
-        made.append(manifest)
-    # Last, for where it is, nothing more is made.
-    with replacing(file) as aside:
-        aside.write_text(template(museum="", source="", mapping="kouros", site="site_motions/site"), encoding="utf-8")
-    workspace = open_workspace(load_settings(file))
-    database = workspace.engine.url.database
-    return [*made, Path(database)] if workspace.engine.dialect.name == "sqlite" and database else made
+    made = [file] if manifest.exists() else [file, manifest]
+    text = template(museum="", source="", mapping="kouros", site="site_motions/site")
+    if not dry_run:
+        manifest.parent.mkdir(parents=True, exist_ok=True)
+        if manifest in made:
+            with replacing(manifest) as aside:
+                aside.write_text(MANIFEST, encoding="utf-8")
+        # Last, for where it is, nothing more is made.
+        with replacing(file) as aside:
+            aside.write_text(text, encoding="utf-8")
+    settings = Settings(**tomllib.loads(text), home=folder)
+    if not dry_run:
+        open_workspace(settings)
+    url = database_url(settings.database)
+    return [*made, Path(url.database)] if url.get_backend_name() == "sqlite" and url.database else made
