@@ -94,8 +94,9 @@ def _presets(wanted_json: bool) -> None:
     for name, (_, file) in found.items():
         click.echo(f"{name:<18} {file}")
     _, example = next(iter(found.values()))
+    copy = "copy" if os.name == "nt" else "cp"
     click.echo(
-        f"\ncopy one ({'copy' if os.name == 'nt' else 'cp'} {shlex.quote(str(example))} ours.toml), change what differs, "
+        f"\ncopy one ({copy} {shlex.quote(str(example))} ours.toml), change what differs, "
         f'and name it: --mapping ours.toml, or mapping = "ours.toml" in kouros.toml'
     )
 

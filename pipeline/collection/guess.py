@@ -81,8 +81,8 @@ def guess(where: str | Path, table: str | None = None) -> Guess:
     """Propose a mapping for a museum's file or database.
 
     where  : path of a file, or the URL of a database, which is only read
-    table  : the sheet of a workbook, or the table, view or SELECT of a database; may be left out where there is one, and
-             of several sheets the one that looks most like an inventory is taken
+    table  : the sheet of a workbook, or the table, view or SELECT of a database; may be left out where there is one,
+             and of several sheets the one that looks most like an inventory is taken
     raises : CollectionError for a source that cannot be read, that shows no column with the objects' numbers, or of
              whose tables one must be named
     """

@@ -247,7 +247,8 @@ def return_to(engine: Engine, version: int, *, when: datetime | None = None, dry
     """Make the inventory what it was after an earlier import, as a new version; nothing that came later is lost.
 
     dry_run : as in `replace_inventory`
-    raises  : CollectionError for a version that does not exist, naming those that do; ValueError for a time without zone
+    raises  : CollectionError for a version that does not exist, naming those that do; ValueError for a time without a
+              zone
     """
     moment = _moment(when)
     with engine.begin() as connection:

@@ -110,8 +110,14 @@ def run(
     resume  : go on where a run was cut off: with the inventory as that run had read it, if it got so far
     raises  : errors with an `exit_code`: settings 2, motions 4, collection 5, lock 6, shrunk 7
     """
-    chosen = selection or Selection()
-    with rehearsed(settings, dry_run) as settings, locked(settings, sweeping=not dry_run):
+    with rehearsed(settings, dry_run) as lent:
+        return _run(lent, progress, selection or Selection(), dry_run=dry_run, resume=resume, strict=strict)
+
+
+def _run(
+    settings: Settings, progress: Progress, chosen: Selection, *, dry_run: bool, resume: bool, strict: bool
+) -> Summary:
+    with locked(settings):
         started = datetime.now(UTC)
         cut_off = status(settings)
         if not (chosen or dry_run):

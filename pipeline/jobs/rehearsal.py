@@ -29,8 +29,8 @@ class DryRunWarning(UserWarning):
 def rehearsed(settings: "Settings", dry_run: bool = True) -> Iterator["Settings"]:
     """Lend the settings of a rehearsal: the database can be read only, what is kept between nights is a copy, no log.
 
-    What a rehearsal keeps goes into a temporary folder, and with it.  The copy is of what a night may use, so that a dry
-    run takes no longer than the night: `[charts] megabytes` bounds it.
+    What a rehearsal keeps goes into a temporary folder, and with it.  The copy is of what a night may use, so that a
+    dry run takes no longer than the night: `[charts] megabytes` bounds it.
     dry_run : False: the settings as they are, for callers that are asked for one or the other
     """
     if not dry_run or settings.rehearsal is not None:
@@ -70,8 +70,8 @@ def read_only(settings: "Settings", folder: Path) -> "Database":
     elif there != migrate.revisions()[-1]:
         migrate.refuse_newer(engine, there, migrate.revisions())
         raise InputError(
-            f"{shown} has tables of an earlier Kouros (revision {there}, this one's is {migrate.revisions()[-1]}), and a "
-            "dry run does not change them: `kouros check` brings them up to date; keep a copy of the database"
+            f"{shown} has tables of an earlier Kouros (revision {there}, this one's is {migrate.revisions()[-1]}), and "
+            "a dry run does not change them: `kouros check` brings them up to date; keep a copy of the database"
         )
     engine = open_database(folder / SCRATCH)
     migrate.upgrade(engine)
