@@ -56,6 +56,22 @@ def list_(options: Options, site: str | None, as_json: bool) -> None:
     click.echo("\n".join(_table(rows)))
 
 
+@motions.command()
+@click.argument("site", required=False)
+@click.pass_obj
+def entries(options: Options, site: str | None) -> None:
+    """Print the manifest's entries of record files that lie in the site's folder and are not named in it.
+
+    Each is TOML to be pasted into manifest.toml, with files, components and sha256; what no file says is asked there.
+
+    Example: kouros motions entries site_motions/site
+    """
+    from pipeline.jobs.records import entries as job
+
+    found = job(_folder(options, site))
+    click.echo("\n\n".join(found) if found else "the manifest names every record file of the folder")
+
+
 def _table(rows: "Sequence[MotionRow]") -> list[str]:
     from pipeline.quantities import G
 

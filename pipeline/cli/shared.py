@@ -23,6 +23,7 @@ _NO_DRY_RUN: Mapping[str, str] = {
     "diff": "it only compares",
     "motions": "it stands after the verb, as in `kouros motions process --dry-run`",
     "list": "it only lists",
+    "entries": "it only prints",
     "show": "it writes one page, which --out names, and nothing else",
     "compare": "it only compares",
     "models": "it only lists",

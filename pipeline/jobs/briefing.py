@@ -26,6 +26,7 @@ from pipeline.jobs.workspace import CHARTS, Workspace
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import Means
 from pipeline.mitigate.measures import padded
+from pipeline.motions.record import NO_VERTICAL
 from pipeline.motions.site import Level, Site
 from pipeline.plan import plan
 from pipeline.records import Model, Progress, RunRecord
@@ -198,4 +199,7 @@ def _level_note(level: Level) -> str:
     number = len(level.motions)
     how = "1 motion" if number == 1 else f"the {level.combine} of {number} motions"
     caution = f"; {level.caution}" if level.caution else ""
+    flat = [one.motion.name for one in level.motions if NO_VERTICAL in one.motion.steps]
+    if flat:
+        caution += f"; no vertical shaking was recorded, and none is assumed: {', '.join(flat)}"
     return f"Level {level.name}{period}: {how}{caution}; {answers}."

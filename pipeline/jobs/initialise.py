@@ -9,8 +9,9 @@ from pipeline.resources import replacing
 from pipeline.settings import Settings, template
 
 MANIFEST = """\
-# The motions of your site.  Put the records beside this file, name them here, then try `kouros motions show` and
-# `kouros check`.  README.md lists what a record may say; an error names the key, and the hash that a file needs.
+# The motions of your site; it names none yet.  Put the files of a record beside this one, and paste in below what
+# `kouros motions entries` prints of them: names, components, sha256.  Answer what it asks, then try
+# `kouros motions show` and `kouros check`.  README.md lists what a record may say; an error names the key.
 
 [site]
 name = "Our site"
@@ -21,22 +22,23 @@ longitude = 0.0
 # name = "design"
 # return_period_years = 475
 # combine = "max"            # with seven records and more: "mean"
-# approved_by = ""           # the engineer who answers for these motions
+# approved_by = "Name"       # the engineer who answers for these motions, and when
+# approved_on = 2031-05-01
 #
-# [[level.record]]
+# [[level.record]]             # as many as the level has
+# name = "Earthquake, station"
 # files = ["record.mseed"]
 # response = "station.xml"   # for raw counts; leave it out for processed records
 # processed = false
 # scale_to_pga_g = 0.5
 # highpass_hz = 0.1          # left out: a corner is chosen, and the steps say why
-# source = ""
-# licence = ""
-# [level.record.components]
+# source = "whose record it is"
+# licence = "under which licence"
+# [level.record.components]    # without HNZ and with vertical = "absent" where no vertical was recorded
 # HNE = { axis = "x", orientation = 90 }
 # HNN = { axis = "y", orientation = 0 }
 # HNZ = { axis = "z", orientation = "up" }
-# [level.record.sha256]
-# "record.mseed" = ""
+# [level.record.sha256]        # of every file named, as `kouros motions entries` prints it
 #
 # [[floor]]                  # kouros.toml says which galleries stand on it
 # name = "2"

@@ -114,6 +114,16 @@ def described(one: "Inspection") -> dict[str, Any]:
     }
 
 
+def entries(folder: Path) -> list[str]:
+    """Return the entries that a site's manifest needs for the record files beside it, see `motions.entries`.
+
+    raises : MotionError
+    """
+    from pipeline.motions.entries import entries as found
+
+    return found(folder)
+
+
 def process(folder: Path, out: Path, name: str, *, dry_run: bool = False) -> Path:
     """Process the records of a site's ground and write them as a site of their own.
 

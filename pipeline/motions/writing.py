@@ -15,6 +15,7 @@ from pipeline.motions.errors import Judgement, refusal
 from pipeline.motions.intensity import measures
 from pipeline.motions.manifest import MANIFEST, SiteTable, load_manifest, manifest_file
 from pipeline.motions.processing import EAST
+from pipeline.motions.record import NO_VERTICAL
 from pipeline.records import Motion
 from pipeline.resources import replacing
 
@@ -77,7 +78,10 @@ def _record(folder: Path, file: str, motion: Motion, azimuth: float, licence: st
         "HN2": {"axis": "y"},
         "HNZ": {"axis": "z"},
     }
-    for row, component in zip(motion.acceleration, components.values(), strict=True):
+    absent = NO_VERTICAL in motion.steps
+    if absent:
+        del components["HNZ"]
+    for row, component in zip(motion.acceleration, components.values(), strict=not absent):
         if not row.any():
             component["silent"] = True
     # What was judged once, or is a test signal, is not judged again.
@@ -87,6 +91,7 @@ def _record(folder: Path, file: str, motion: Motion, azimuth: float, licence: st
         "name": motion.name[:500],
         "files": [file],
         "components": components,
+        **({"vertical": "absent"} if absent else {}),
         "processed": True,
         "accept": {"clipping": f"written by Kouros: {told}", "cut_off": f"written by Kouros: {told}"},
         "source": (source or "Kouros")[:500],
