@@ -106,9 +106,8 @@ def survey(options: Options, galleries: tuple[str, ...], out: Path | None, dry_r
         click.echo(others if found.waste == 1 else many)
         first = [f"{w.object_number} ({w.gallery}): {w.field}: {w.reason}" for w in found.wishes if not w.waste]
         listed("first", first)
-        listed(
-            "Kouros failed on", [f"{one.object_number}: {one.words}; please tell its makers" for one in found.faults]
-        )
+        failed = [f"{one.object_number}: {one.words}; please tell its makers" for one in found.faults]
+        listed("Kouros failed on", failed)
     if dry_run:
         say_dry(as_json)
 
