@@ -23,10 +23,9 @@ with DAG(
         cwd="/srv/kouros",
         append_env=True,
     )
-    # Exit code 3 is a good night: done, some objects could not be assessed.
     run = BashOperator(
         task_id="run",
-        bash_command="/opt/kouros/bin/kouros --quiet --log-json run || [ $? -eq 3 ]",
+        bash_command="/opt/kouros/bin/kouros --quiet --log-json run",
         cwd="/srv/kouros",
         append_env=True,
         retries=1,

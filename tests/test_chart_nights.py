@@ -16,7 +16,7 @@ from pipeline.collection.database import open_database
 from pipeline.execute import Threads
 from pipeline.jobs import sheets
 from pipeline.jobs.nightly import run
-from pipeline.jobs.workspace import CHARTS, KEPT
+from pipeline.jobs.workspace import CHARTS
 from pipeline.motions.synthesis import band_limited_random
 from pipeline.plan import plan
 from pipeline.quantities import G
@@ -38,7 +38,7 @@ ROWS = [
 
 def museum(folder: Path, fidelity: str) -> Settings:
     settings = workspace(folder, ROWS)
-    shutil.rmtree(settings.path(KEPT), ignore_errors=True)
+    shutil.rmtree(settings.kept, ignore_errors=True)
     return at(settings, fidelity)
 
 
@@ -61,7 +61,7 @@ def test_a_night_by_charts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     """Verdicts of histories; rocking, which has no chart, by its certificate; the error covers the difference."""
     settings = museum(tmp_path, "chart")
     looked = findings(settings)
-    charts = settings.path(KEPT) / CHARTS
+    charts = settings.kept / CHARTS
     kept = {file.name: file.read_bytes() for file in charts.iterdir()}
     true = findings(at(settings, "history"))
     assert looked.keys() == true.keys()
@@ -98,7 +98,7 @@ def test_a_night_by_charts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 def test_charts_of_motions_that_nobody_uses_go(tmp_path: Path) -> None:
     """The settings' days and megabytes are kept to at the end of a night; its own motion counts as used."""
     settings = museum(tmp_path, "history")
-    folder = settings.path(KEPT) / CHARTS
+    folder = settings.kept / CHARTS
     other = Motion(0.02, np.ones((3, 20)), "another")
     respond("sliding", other, fidelity="chart", charts=Shelf(folder), tolerance=0.1, friction_static=0.1)
     (stranger,) = folder.iterdir()
@@ -123,10 +123,10 @@ def test_the_command_takes_it(tmp_path: Path) -> None:
 def test_ad_hoc_charts_are_kept_beside_the_settings(tmp_path: Path) -> None:
     """The same answer from the file as when it was built; without settings nothing is written."""
     settings = workspace(tmp_path)
-    shutil.rmtree(settings.path(KEPT))
+    shutil.rmtree(settings.kept)
     words = ("respond", "sliding", "friction_static=0.05,0.3", "--fidelity", "chart", "--json")
     first = kouros(*words, folder=tmp_path)
-    (kept,) = (settings.path(KEPT) / CHARTS).iterdir()
+    (kept,) = (settings.kept / CHARTS).iterdir()
     built = kept.stat()
     again = kouros(*words, folder=tmp_path)
     assert again.stdout == first.stdout

@@ -40,8 +40,8 @@ def test_a_night_from_nothing(tmp_path: Path) -> None:
     empty = kouros("run", "--object", "1", folder=settings.home)
     # The source is read before every run, so that object 1 is there although nothing was imported by hand.
     assert empty.returncode == 0
-    done = kouros("-q", "run", folder=tmp_path)
-    assert done.returncode == 3  # object 3 has no height
+    done = kouros("run", "-q", folder=tmp_path)
+    assert done.returncode == 0  # object 3 has no height, which is no fault of the night
     assert "      1  cannot be assessed" in done.stdout
     assert done.stderr == ""
     report = done.stdout.strip().splitlines()[-1].removeprefix("Report: ")
@@ -52,8 +52,12 @@ def test_a_night_from_nothing(tmp_path: Path) -> None:
     assert set(states.values()) <= {"ok", "warning"}
     assert states["motions"] == "warning"  # nobody has approved the bundled record
     assert kouros("report", folder=tmp_path).stdout.startswith("Report: ")
-    machine = kouros("-q", "run", "--json", folder=tmp_path)
+    once = kouros("diff", folder=tmp_path)
+    assert (once.returncode, "there is 1 finished run of the whole collection" in once.stderr) == (2, True)
+    machine = kouros("run", "--quiet", "--strict", "--json", folder=tmp_path)
+    assert (machine.returncode, machine.stderr) == (3, "")
     assert json.loads(machine.stdout)["objects"] == 3
+    assert json.loads(machine.stdout)["exit_code"] == 3
     assert "nothing changed" in kouros("diff", folder=tmp_path).stdout
 
 
@@ -140,3 +144,26 @@ def test_models_and_respond_for_programs(tmp_path: Path) -> None:
                             folder=tmp_path).stdout)) == 2  # fmt: skip
     bound = kouros("respond", "sliding", "friction_static=0.05,5", "--fidelity", "bound", "--json", folder=tmp_path)
     assert [row["high"] == 0.0 for row in json.loads(bound.stdout)] == [False, True]
+
+
+@pytest.mark.parametrize("place", [0, 1], ids=["before the verb", "after it"])
+def test_how_much_is_said_may_be_told_before_the_verb_or_after_it(place: int, tmp_path: Path) -> None:
+    def said(option: str, *words: str) -> subprocess.CompletedProcess[str]:
+        return kouros(*words[:place], option, *words[place:], folder=tmp_path)
+
+    traced = said("--debug", "report")
+    assert "Traceback" in traced.stderr
+    logged = said("--log-json", "report")
+    assert json.loads(logged.stderr)["event"] == "error"
+    for option in ("-q", "--quiet", "-v", "--verbose"):
+        assert said(option, "models").returncode == 0
+        assert said(option, "motions", "list", "demo").returncode == 0
+    assert kouros("motions", "list", "-q", "demo", folder=tmp_path).returncode == 0
+
+
+def test_the_examples_of_a_verb_stand_on_lines_of_their_own(tmp_path: Path) -> None:
+    for command in ("run", "import", "respond", "decide"):
+        shown = kouros(command, "--help", folder=tmp_path).stdout.splitlines()
+        examples = [line for line in shown if "Example:" in line]
+        assert len(examples) > 1, command
+        assert all(line.count("Example:") == 1 and line.startswith("  Example: kouros ") for line in examples)

@@ -130,7 +130,11 @@ def test_one_thing_at_a_time(run: Run) -> None:
         assert done.returncode == 2
         assert "give a SOURCE, or one of" in done.stderr
     listed = run("import", "--presets").stdout
-    assert [line.split()[0] for line in listed.splitlines()] == preset_names()
+    told, files, copying = listed.split("\n\n")
+    assert [line.split()[0] for line in told.splitlines()] == preset_names()
+    assert [Path(line.split()[1]).stem for line in files.splitlines()[1:]] == preset_names()
+    assert all(Path(line.split()[1]).is_file() for line in files.splitlines()[1:])
+    assert copying.startswith("copy one (")
     absent = run("import", "--return-to", "7")
     assert absent.returncode == 5
     assert "nothing was imported yet" in absent.stderr

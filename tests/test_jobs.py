@@ -15,12 +15,12 @@ from pipeline.collection.database import open_database
 from pipeline.collection.errors import ShrunkError
 from pipeline.jobs.nightly import Selection, run, summarise
 from pipeline.jobs.reporting import compare, render_again
-from pipeline.jobs.workspace import CHARTS, KEPT, LockedError, UsageError, locked
+from pipeline.jobs.workspace import CHARTS, LockedError, UsageError, locked
 from pipeline.motions import read_site
 from pipeline.motions.errors import MotionError
 from pipeline.report.tallies import total
 from pipeline.resources import resource
-from pipeline.settings import Settings, SettingsError, load_settings, template
+from pipeline.settings import KEPT, Settings, SettingsError, load_settings, template
 from pipeline.store.results import known_to
 from pipeline.store.runs import list_runs, load_head, load_run
 from tests.conftest import SHARED

@@ -11,7 +11,7 @@ from pipeline.collection.inventory import read_inventory, return_to
 from pipeline.collection.reading import Reading
 from pipeline.jobs import importing, nightly
 from pipeline.jobs.importing import import_collection
-from pipeline.jobs.workspace import KEPT, open_workspace
+from pipeline.jobs.workspace import open_workspace
 from pipeline.records import Silent
 from pipeline.settings import Settings
 from tests.test_unchanged_nights import museum, rows, write
@@ -97,7 +97,7 @@ def test_a_museums_own_database_is_fetched_and_not_read_again(settings: Settings
     assert 70 < unread(refresh()) < 90
     assert {number for number, height in inventory(settings).items() if height == 0.7} == {"A.040"}
     # Where its address is, nothing else must be told: it may hold a password.
-    assert "museum.sqlite" not in (settings.path(KEPT) / "source.jsonl").read_text(encoding="utf-8")
+    assert "museum.sqlite" not in (settings.kept / "source.jsonl").read_text(encoding="utf-8")
 
 
 def test_what_a_person_imported_since_is_not_what_is_remembered(settings: Settings, refresh: Refresh) -> None:
@@ -133,7 +133,7 @@ def test_a_version_that_a_person_went_back_to_is_not_taken_for_the_sources_state
 @pytest.mark.parametrize("lost", [1, 200, -1], ids=["the last character", "half a line", "a line"])
 def test_a_damaged_memory_is_no_memory(lost: int, settings: Settings, refresh: Refresh) -> None:
     refresh()
-    memory = settings.path(KEPT) / "source.jsonl"
+    memory = settings.kept / "source.jsonl"
     content = memory.read_text(encoding="utf-8")
     memory.write_text(content[: -2 * lost] if lost > 0 else content[: content.rstrip().rindex("\n") + 1])
     write(settings.home, higher(4, "0.9")[:-2])

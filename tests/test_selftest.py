@@ -10,7 +10,6 @@ from pipeline.cli.console import Console
 from pipeline.jobs import numerics, selftest
 from pipeline.jobs.nightly import run
 from pipeline.jobs.reporting import render_again
-from pipeline.jobs.workspace import KEPT
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.settings import load_settings
 from tests.test_jobs import workspace
@@ -22,9 +21,9 @@ def test_it_is_kept_and_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     """The quick cases of the real self-test: kept as they came out, on the next night's page, and rendered again."""
     monkeypatch.setattr(numerics, "CASES", QUICK)
     settings = workspace(tmp_path)
-    assert selftest.kept(settings.path(KEPT)) is None
+    assert selftest.kept(settings.kept) is None
     done = list(selftest.self_test(settings))
-    test = selftest.kept(settings.path(KEPT))
+    test = selftest.kept(settings.kept)
     assert test is not None
     assert list(test.cases) == done
     assert all(outcome.ok for outcome in done)

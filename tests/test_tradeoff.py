@@ -10,7 +10,6 @@ import pytest
 from pipeline.cli.console import Console
 from pipeline.jobs import tradeoff
 from pipeline.jobs.nightly import run
-from pipeline.jobs.workspace import KEPT
 from pipeline.models import MODELS
 from pipeline.motions.synthesis import band_limited_random
 from pipeline.quantities import G
@@ -129,7 +128,7 @@ def test_the_report_shows_what_accuracy_costs(found: tradeoff.Tradeoff, tmp_path
     plain = run(settings, SILENT).report
     assert plain is not None
     assert "What accuracy costs" not in (plain.parent / "method.html").read_text(encoding="utf-8")
-    tradeoff.keep(found, settings.path(KEPT))
+    tradeoff.keep(found, settings.kept)
     report = run(settings, SILENT).report
     assert report is not None
     page = (report.parent / "method.html").read_text(encoding="utf-8")

@@ -17,7 +17,7 @@ from pipeline.jobs.briefing import popular
 from pipeline.jobs.importing import import_collection
 from pipeline.jobs.sheets import Part
 from pipeline.jobs.twins import Twins, as_own, likeness
-from pipeline.jobs.workspace import HISTORIES, KEPT, open_workspace
+from pipeline.jobs.workspace import HISTORIES, open_workspace
 from pipeline.mitigate.installed import Placed
 from pipeline.models import model_named
 from pipeline.records import Item, Problem, Provenance, Support
@@ -180,7 +180,7 @@ def test_where_several_work_what_holds_for_many_is_found_before_the_sheets(tmp_p
     settings = settings.model_copy(update={"execution": execution})
     night(settings)
     assert sorted(assessed) == ["0.0", "0.1", "0.2", "0.3"]
-    kept = settings.path(KEPT) / HISTORIES
+    kept = settings.kept / HISTORIES
     parts = {file.name for file in kept.iterdir()}
     # The next night's parts are the same, whatever else changed.
     write(settings.home, [*set_of_vases(), set_of_vases()[0] | {"object_number": "9.9", "height_m": "0.77"}])

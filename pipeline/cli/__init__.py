@@ -6,6 +6,7 @@ import logging
 import sys
 import warnings
 from contextlib import ExitStack
+from dataclasses import replace
 from typing import TextIO, cast
 
 import click
@@ -14,6 +15,7 @@ from pipeline import __version__
 from pipeline.cli import commands
 from pipeline.cli.console import Guarded
 from pipeline.cli.options import Options
+from pipeline.cli.shared import with_shared
 from pipeline.execute.crew import RARELY
 from pipeline.jobs.journal import note
 from pipeline.jobs.stopping import Stopped, stoppable
@@ -23,27 +25,24 @@ from pipeline.jobs.stopping import Stopped, stoppable
 @click.option(
     "--config", default="kouros.toml", show_default=True, type=click.Path(dir_okay=False), help="Settings file."
 )
-@click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors and results.")
-@click.option("-v", "--verbose", is_flag=True, help="Plain progress lines even on a terminal.")
-@click.option("--log-json", is_flag=True, help="Say what happens as JSON on standard error, one object a line.")
-@click.option("--debug", is_flag=True, help="Show the traceback of an error.")
 @click.version_option(__version__, prog_name="kouros")
 @click.pass_context
-def kouros(context: click.Context, config: str, quiet: bool, verbose: bool, log_json: bool, debug: bool) -> None:
+def kouros(context: click.Context, config: str) -> None:
     """Which objects of a museum an earthquake would rock, slide, swing, break or throw down, and what to do.
 
     \b
-    Exit codes: 0 done; 1 unexpected; 2 usage or settings; 3 done, some objects could not be assessed;
-    4 a motion was refused; 5 collection unreachable; 6 another run holds the lock;
+    Exit codes: 0 done; 1 unexpected; 2 usage or settings; 3 with `run --strict` only: done, some objects
+    could not be assessed; 4 a motion was refused; 5 collection unreachable; 6 another run holds the lock;
     7 input shrank suspiciously, nothing published.
 
     Example: kouros demo
     """
-    context.obj = Options(config=config, quiet=quiet, verbose=verbose, debug=debug, log_json=log_json)
+    context.obj = replace(context.obj or Options(), config=config)
 
 
 for command in commands.ALL:
     kouros.add_command(command)
+with_shared(kouros)
 
 
 def main() -> None:
@@ -63,7 +62,7 @@ def main() -> None:
             warnings.formatwarning = _warned
         try:
             with stoppable(lambda _problem: None):
-                code = kouros.main(standalone_mode=False)
+                code = kouros.main(standalone_mode=False, prog_name="kouros")
         except click.exceptions.Exit as leaving:
             code = leaving.exit_code
         except click.Abort as leaving:

@@ -13,7 +13,8 @@ from pipeline.cli.deciding import decide
 from pipeline.cli.explaining import print_explanation
 from pipeline.cli.importing import import_
 from pipeline.cli.motions import motions
-from pipeline.cli.options import Options, as_json
+from pipeline.cli.options import Options, as_json, dry_run, say_dry
+from pipeline.quantities import counted
 
 if TYPE_CHECKING:
     from pipeline.jobs.nightly import Summary
@@ -34,9 +35,10 @@ def _print_summary(summary: "Summary", wanted: bool) -> None:
 
 @click.command()
 @click.option("--folder", default="kouros-demo", show_default=True, type=click.Path(file_okay=False, path_type=Path))
+@dry_run("Assess what the folder has; say what would be made where it has nothing")
 @as_json
 @click.pass_obj
-def demo(options: Options, folder: Path, as_json: bool) -> None:
+def demo(options: Options, folder: Path, dry_run: bool, as_json: bool) -> None:
     """Run the whole job on the bundled collection and site, and print the report's path.
 
     Example: kouros demo
@@ -46,23 +48,28 @@ def demo(options: Options, folder: Path, as_json: bool) -> None:
     from pipeline.jobs.secrets import hider
     from pipeline.jobs.watch import watched
 
-    settings = demonstration(folder)
+    settings = demonstration(folder, dry_run=dry_run)
     with options.console() as console:
-        summary = watched(settings, lambda: job(settings, console), hider(settings), whole=True)
+        summary = watched(settings, lambda: job(settings, console, dry_run=dry_run), hider(settings), whole=not dry_run)
     _print_summary(summary, as_json)
+    if dry_run:
+        say_dry(as_json)
 
 
 @click.command()
 @click.argument("folder", default=".", type=click.Path(file_okay=False, path_type=Path))
-def init(folder: Path) -> None:
+@dry_run("Say what would be made")
+def init(folder: Path, dry_run: bool) -> None:
     """Make a commented kouros.toml, an empty site folder and the database.
 
     Example: kouros init museum
     """
     from pipeline.jobs.initialise import initialise
 
-    for made in initialise(folder):
-        click.echo(f"made {made}")
+    for made in initialise(folder, dry_run=dry_run):
+        click.echo(f"{'would make' if dry_run else 'made'} {made}")
+    if dry_run:
+        say_dry(wanted_json=False)
 
 
 @click.command()
@@ -70,28 +77,39 @@ def init(folder: Path) -> None:
 @click.option(
     "--out", type=click.Path(dir_okay=False, path_type=Path), help="The workbook; default: survey-<date>.xlsx."
 )
+@dry_run("Say what is worth measuring")
 @as_json
 @click.pass_obj
-def survey(options: Options, galleries: tuple[str, ...], out: Path | None, as_json: bool) -> None:
+def survey(options: Options, galleries: tuple[str, ...], out: Path | None, dry_run: bool, as_json: bool) -> None:
     """Write a workbook of what is worth measuring: which missing numbers would settle a verdict.
 
     Print it, fill it in, and read it back with `kouros import FILE --sheet`.
 
     Example: kouros survey --gallery "Gallery 12"
     """
+    from pipeline.jobs.rehearsal import rehearsed
     from pipeline.jobs.survey import survey as job
     from pipeline.jobs.workspace import locked, open_workspace
 
-    settings = options.settings()
-    with locked(settings), options.console() as console:
+    with rehearsed(options.settings(), dry_run) as settings, locked(settings), options.console() as console:
         found = job(open_workspace(settings), console, galleries=galleries, path=out)
     if as_json:
         click.echo(json.dumps(asdict(found), indent=2, default=str))
-        return
-    click.echo(f"{found.quantities:,} measurements on {found.objects:,} objects are worth making: {found.path}")
-    click.echo(f"{found.waste:,} others would settle nothing wherever in their range they fall, and are left out")
-    listed("first", [f"{w.object_number} ({w.gallery}): {w.field}: {w.reason}" for w in found.wishes if not w.waste])
-    listed("Kouros failed on", [f"{one.object_number}: {one.words}; please tell its makers" for one in found.faults])
+    else:
+        what = counted(found.quantities, "measurement")
+        click.echo(
+            f"{what} on {counted(found.objects, 'object')} {'is' if found.quantities == 1 else 'are'} worth making: "
+            f"{found.path}"
+        )
+        others = "1 other would settle nothing wherever in its range it falls, and is left out"
+        many = f"{found.waste:,} others would settle nothing wherever in their range they fall, and are left out"
+        click.echo(others if found.waste == 1 else many)
+        first = [f"{w.object_number} ({w.gallery}): {w.field}: {w.reason}" for w in found.wishes if not w.waste]
+        listed("first", first)
+        failed = [f"{one.object_number}: {one.words}; please tell its makers" for one in found.faults]
+        listed("Kouros failed on", failed)
+    if dry_run:
+        say_dry(as_json)
 
 
 @click.command()
@@ -136,7 +154,7 @@ def _check_numerics(options: Options, as_json: bool) -> None:
     if as_json:
         click.echo(json.dumps([asdict(o) for o in done], indent=2))
     else:
-        click.echo(f"{len(done)} cases, {wrong} failed, {sum(o.seconds for o in done):.0f} s")
+        click.echo(f"{counted(len(done), 'case')}, {wrong} failed, {sum(o.seconds for o in done):.0f} s")
     if wrong:
         raise click.exceptions.Exit(1)
 
@@ -146,7 +164,8 @@ def _check_numerics(options: Options, as_json: bool) -> None:
 @click.option("--object", "objects", multiple=True, help="Only this object number; may be repeated.")
 @click.option("--site", help="Another site's folder, or 'demo'.")
 @click.option("--fidelity", type=click.Choice(["auto", "chart", "history", "reference"]), help="How finely to look.")
-@click.option("--dry-run", is_flag=True, help="Assess and summarise; store and publish nothing.")
+@dry_run("Assess the inventory as it is, and summarise")
+@click.option("--strict", is_flag=True, help="End with 3 where some objects could not be assessed; else that is 0.")
 @click.option(
     "--resume", is_flag=True, help="Go on where a run was cut off, with the inventory as it is: the source is not read."
 )
@@ -160,6 +179,7 @@ def run(
     site: str | None,
     fidelity: str | None,
     dry_run: bool,
+    strict: bool,
     resume: bool,
     explain: str | None,
     as_json: bool,
@@ -172,6 +192,7 @@ def run(
 
     With --explain nothing is stored: it prints class, numbers, every step of each model and the advice for an object.
 
+    \b
     Example: kouros run --gallery "Hall of Sculpture"
     Example: kouros run --resume
     Example: kouros run --explain 1922.9
@@ -179,6 +200,7 @@ def run(
     from pipeline.jobs.journal import journal
     from pipeline.jobs.nightly import Selection
     from pipeline.jobs.nightly import run as job
+    from pipeline.jobs.rehearsal import rehearsed
     from pipeline.jobs.secrets import hider
     from pipeline.jobs.watch import watched
 
@@ -190,24 +212,29 @@ def run(
     if explain is not None:
         if galleries or objects:
             raise click.UsageError("--explain is about one object: leave out --gallery and --object")
-        print_explanation(settings, explain, options, as_json)
+        with rehearsed(settings, dry_run) as quietly:
+            print_explanation(quietly, explain, options, as_json)
+        if dry_run:
+            say_dry(as_json)
         return
     chosen = Selection(galleries, objects)
     hide = hider(settings)
-    with journal(settings, hide), options.console() as console:
+    with journal(None if dry_run else settings, hide), options.console() as console:
         summary = watched(
             settings,
-            lambda: job(settings, console, chosen, dry_run=dry_run, resume=resume),
+            lambda: job(settings, console, chosen, dry_run=dry_run, resume=resume, strict=strict),
             hide,
             whole=not (chosen or dry_run),
         )
     _print_summary(summary, as_json)
-    if summary.cannot:
-        raise click.exceptions.Exit(3)
+    if dry_run:
+        say_dry(as_json)
+    if summary.exit_code:
+        raise click.exceptions.Exit(summary.exit_code)
 
 
 @click.command()
-@click.option("--dry-run", is_flag=True, help="Say what would be removed; remove nothing.")
+@dry_run("Say what would be removed")
 @as_json
 @click.pass_obj
 def prune(options: Options, dry_run: bool, as_json: bool) -> None:
@@ -222,12 +249,14 @@ def prune(options: Options, dry_run: bool, as_json: bool) -> None:
     done = job(options.settings(), dry_run=dry_run)
     if as_json:
         click.echo(json.dumps(asdict(done), indent=2))
-        return
-    what = "would be removed" if dry_run else "removed"
-    click.echo(f"{len(done.runs):,} runs and {len(done.reports):,} report folders {what}")
-    listed("run", done.runs)
-    listed("report", done.reports)
-    listed("stays", done.kept)
+    else:
+        what = "would be removed" if dry_run else "removed"
+        click.echo(f"{counted(len(done.runs), 'run')} and {counted(len(done.reports), 'report folder')} {what}")
+        listed("run", done.runs)
+        listed("report", done.reports)
+        listed("stays", done.kept)
+    if dry_run:
+        say_dry(as_json)
 
 
 @click.command()

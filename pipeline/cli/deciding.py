@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pipeline.cli.console import printable
-from pipeline.cli.options import Options, as_json
+from pipeline.cli.options import Options, as_json, dry_run, say_dry
 from pipeline.records import DecisionKind, Verdict
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 @click.option("--until", default="", metavar="DATE", help="Of accept: the last day on which the risk is accepted.")
 @click.option("--list", "listing", is_flag=True, help="List the decisions in force, of OBJECT or of all.")
 @click.option("--log", is_flag=True, help="With --list: all that was ever decided, withdrawals included.")
+@dry_run("Say what would be written down, with all that is refused")
 @as_json
 @click.pass_obj
 def decide(
@@ -42,6 +43,7 @@ def decide(
     until: str,
     listing: bool,
     log: bool,
+    dry_run: bool,
     as_json: bool,
 ) -> None:
     """Write down what a person decided about an object: who, when, why.  Nothing ever changes or drops it.
@@ -64,17 +66,24 @@ def decide(
     """
     from pipeline.jobs.deciding import Wish, listed
     from pipeline.jobs.deciding import decide as job
+    from pipeline.jobs.rehearsal import rehearsed
     from pipeline.jobs.workspace import open_workspace
 
     if listing == (kind is not None):
         raise click.UsageError(f"give an OBJECT and one of {', '.join(DecisionKind)}, or --list")
-    workspace = open_workspace(options.settings())
-    if listing:
-        _print_decisions(listed(workspace, object_number, log=log), as_json)
-        return
-    wish = Wish(object_number or "", DecisionKind(str(kind)), words, why, who, on, model, level, until)
-    made = job(workspace, wish)
-    if as_json:
+    with rehearsed(options.settings(), dry_run) as settings:
+        workspace = open_workspace(settings)
+        if listing:
+            _print_decisions(listed(workspace, object_number, log=log), as_json)
+        else:
+            wish = Wish(object_number or "", DecisionKind(str(kind)), words, why, who, on, model, level, until)
+            _print_made(job(workspace, wish, dry_run=dry_run), dry_run, as_json)
+    if dry_run:
+        say_dry(as_json)
+
+
+def _print_made(made: "Decision", dry_run: bool, wanted_json: bool) -> None:
+    if wanted_json:
         click.echo(json.dumps(_plain(made), indent=2, ensure_ascii=False))
         return
     click.echo(_line(made))
@@ -82,7 +91,7 @@ def decide(
         click.echo(
             "note: the last run found nothing to accept there; once it does, the decision must be looked at again"
         )
-    if made.kind in (DecisionKind.INSTALLED, DecisionKind.CLASS, DecisionKind.WITHDRAW):
+    if not dry_run and made.kind in (DecisionKind.INSTALLED, DecisionKind.CLASS, DecisionKind.WITHDRAW):
         click.echo("the next run takes it into account")
 
 
@@ -97,7 +106,7 @@ def _print_decisions(rows: "Sequence[Decision]", wanted_json: bool) -> None:
 
 
 def _line(row: "Decision") -> str:
-    return printable(f"{row.id:>4}  {row.object_number}: {row.matter}, {row.who}, {row.date}: {row.why}")
+    return printable(f"{row.id or '':>4}  {row.object_number}: {row.matter}, {row.who}, {row.date}: {row.why}")
 
 
 def _plain(row: "Decision") -> dict[str, Any]:

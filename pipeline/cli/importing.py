@@ -1,6 +1,8 @@
 """The verb `import`: the museum's records into the inventory, and its earlier versions."""
 
 import json
+import os
+import shlex
 import sys
 from dataclasses import asdict
 from pathlib import Path
@@ -9,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pipeline.cli.console import listed
-from pipeline.cli.options import Options, as_json
+from pipeline.cli.options import Options, as_json, dry_run, say_dry
+from pipeline.quantities import counted
 
 if TYPE_CHECKING:
     from pipeline.collection.inventory import Difference
@@ -21,8 +24,9 @@ if TYPE_CHECKING:
 @click.argument("source", required=False)
 @click.option("--mapping", help="A preset (see --presets) or the file of your mapping; default: the settings'.")
 @click.option("--shrink-limit", type=click.FloatRange(0.0, 1.0), help="Share of objects that may vanish at once.")
-@click.option("--dry-run", is_flag=True, help="Read, and say what would change; write nothing.")
+@dry_run("Read, and say what would change, or be refused")
 @click.option("--guess", is_flag=True, help="Propose a mapping from the columns, and show ten rows as understood.")
+@click.option("--table", metavar="NAME", help="With --guess: the workbook's sheet, or the database's table or SELECT.")
 @click.option("--write", type=click.Path(dir_okay=False, path_type=Path), help="With --guess: write it here, unasked.")
 @click.option("--sheet", is_flag=True, help="SOURCE is a survey's sheet that was filled in: lay it over the inventory.")
 @click.option("--presets", is_flag=True, help="List the mappings that come with Kouros.")
@@ -37,6 +41,7 @@ def import_(
     shrink_limit: float | None,
     dry_run: bool,
     guess: bool,
+    table: str | None,
     write: Path | None,
     sheet: bool,
     presets: bool,
@@ -48,22 +53,31 @@ def import_(
 
     SOURCE is a file (CSV, TSV, XLSX, LIDO) or the URL of a database; ${NAME} in a URL is taken from the environment.
 
+    \b
     Example: kouros import export.csv --mapping carnegie --dry-run
+    Example: kouros import export.xlsx --guess
+    Example: kouros import 'postgresql://reader:${TMS_PASSWORD}@server/tms' --guess --table tms.objects
     """
     if (source is not None) + presets + versions + (return_to is not None) != 1:
         raise click.UsageError("give a SOURCE, or one of --presets, --versions, --return-to VERSION")
+    if table is not None and not guess:
+        raise click.UsageError("--table is for --guess; a mapping says in its [source] which sheet or table is read")
+    if guess and sheet:
+        raise click.UsageError("--sheet reads a survey's sheet by its own mapping, and --guess proposes one: give one")
     if presets:
         _presets(as_json)
     elif versions:
         _versions(options, as_json)
     elif return_to is not None:
-        _return(options, return_to, as_json)
+        _return(options, return_to, dry_run, as_json)
     elif source is not None and guess:
-        _guess(Path(source), write, as_json)
+        _guess(source, table, write, dry_run, as_json)
     elif source is not None and sheet:
-        _sheet(options, source, as_json)
+        _sheet(options, source, dry_run, as_json)
     elif source is not None:
         _import(options, source, mapping, shrink_limit, dry_run, as_json)
+    if dry_run:
+        say_dry(as_json)
 
 
 def _presets(wanted_json: bool) -> None:
@@ -71,10 +85,20 @@ def _presets(wanted_json: bool) -> None:
 
     found = presets()
     if wanted_json:
-        click.echo(json.dumps(found, indent=2))
+        plain = {name: {"for": about, "file": str(file)} for name, (about, file) in found.items()}
+        click.echo(json.dumps(plain, indent=2))
         return
-    for name, about in found.items():
+    for name, (about, _) in found.items():
         click.echo(f"{name:<18} {about}")
+    click.echo("\ntheir files, to begin your own from:")
+    for name, (_, file) in found.items():
+        click.echo(f"{name:<18} {file}")
+    _, example = next(iter(found.values()))
+    copy = "copy" if os.name == "nt" else "cp"
+    click.echo(
+        f"\ncopy one ({copy} {shlex.quote(str(example))} ours.toml), change what differs, "
+        f'and name it: --mapping ours.toml, or mapping = "ours.toml" in kouros.toml'
+    )
 
 
 def _versions(options: Options, wanted_json: bool) -> None:
@@ -90,15 +114,17 @@ def _versions(options: Options, wanted_json: bool) -> None:
     for info in found:
         what = f"as version {info.returned_to}" if info.returned_to is not None else info.source
         click.echo(
-            f"{info.id:>5}  {info.imported_at}  {info.items:>9,} objects  "
+            f"{info.id:>5}  {info.imported_at}  {info.items:>9,} {'object ' if info.items == 1 else 'objects'}  "
             f"({info.added:,} new, {info.removed:,} gone, {info.changed:,} changed)  {what}"
         )
 
 
-def _guess(source: Path, target: Path | None, wanted_json: bool) -> None:
+def _guess(source: str, table: str | None, target: Path | None, dry_run: bool, wanted_json: bool) -> None:
     from pipeline.jobs.importing import proposed
 
-    found = proposed(source)
+    if dry_run and target is not None:
+        raise click.UsageError("--write writes the mapping, and --dry-run writes nothing: leave one of them out")
+    found = proposed(source, table)
     if wanted_json:
         answer = {
             "mapping": found.guess.text,
@@ -109,30 +135,31 @@ def _guess(source: Path, target: Path | None, wanted_json: bool) -> None:
         click.echo(json.dumps(answer, indent=2, ensure_ascii=False))
     else:
         click.echo(found.guess.text)
-        click.echo(f"{found.rows:,} rows, {found.items:,} objects; ten of them as understood:")
+        shown = counted(len(found.examples), "of them", "of them")
+        click.echo(f"{counted(found.rows, 'row')}, {counted(found.items, 'object')}; {shown} as understood:")
         for line in found.examples:
             click.echo(f"  {line}")
         listed("to look at", list(found.guess.doubts))
         listed("suspicion", [f"{s.message}; {s.remedy}" for s in found.suspicions])
-    if target is None and not wanted_json and sys.stdin.isatty():
-        name = source.with_suffix(".toml").name
+    if target is None and not (wanted_json or dry_run) and sys.stdin.isatty():
+        name = f"{found.name}.toml"
         if click.confirm(f"Is that right? Write it to {name}?"):
             target = Path(name)
     if target is not None:
         with target.open("x", encoding="utf-8") as stream:
             stream.write(found.guess.text)
-        click.echo(f"written: {target}; now: kouros import {source.name} --mapping {target} --dry-run", err=wanted_json)
-    elif not wanted_json:
+        click.echo(f"written: {target}; now: kouros import {found.shown} --mapping {target} --dry-run", err=wanted_json)
+    elif not (wanted_json or dry_run):
         click.echo("nothing was written; --write FILE writes it")
 
 
-def _sheet(options: Options, source: str, wanted_json: bool) -> None:
+def _sheet(options: Options, source: str, dry_run: bool, wanted_json: bool) -> None:
+    from pipeline.jobs.rehearsal import rehearsed
     from pipeline.jobs.survey import add_measurements
     from pipeline.jobs.workspace import locked, open_workspace
 
-    settings = options.settings()
-    with locked(settings):
-        reading, changes, unknown = add_measurements(open_workspace(settings), Path(source))
+    with rehearsed(options.settings(), dry_run) as settings, locked(settings):
+        reading, changes, unknown = add_measurements(open_workspace(settings), Path(source), dry_run=dry_run)
     problems = _problems(reading)
     if wanted_json:
         rejected = [asdict(r) for r in reading.rejected]
@@ -143,22 +170,24 @@ def _sheet(options: Options, source: str, wanted_json: bool) -> None:
     listed("problem", problems)
     listed("not in the inventory", unknown)
     _changed(changes)
-    click.echo(f"{reading.source}: {len(changes.changed):,} objects were given measurements")
+    given = counted(len(changes.changed), "object")
+    was = "would be" if dry_run else "was" if len(changes.changed) == 1 else "were"
+    click.echo(f"{reading.source}: {given} {was} given measurements")
 
 
-def _return(options: Options, version: int, wanted_json: bool) -> None:
+def _return(options: Options, version: int, dry_run: bool, wanted_json: bool) -> None:
     from pipeline.jobs.importing import go_back
+    from pipeline.jobs.rehearsal import rehearsed
     from pipeline.jobs.workspace import locked, open_workspace
 
-    settings = options.settings()
-    with locked(settings):
-        changes = go_back(open_workspace(settings), version)
+    with rehearsed(options.settings(), dry_run) as settings, locked(settings):
+        changes = go_back(open_workspace(settings), version, dry_run=dry_run)
     if wanted_json:
         click.echo(json.dumps(asdict(changes), indent=2))
         return
     c = changes.counts
     click.echo(
-        f"inventory: {c.after:,} objects, as after import {version} "
+        f"inventory: {counted(c.after, 'object')}, as after import {version} "
         f"({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed). Nights leave it so until the source changes."
     )
 
@@ -167,12 +196,12 @@ def _import(
     options: Options, source: str, mapping: str | None, shrink_limit: float | None, dry_run: bool, wanted_json: bool
 ) -> None:
     from pipeline.jobs.importing import import_collection
+    from pipeline.jobs.rehearsal import rehearsed
     from pipeline.jobs.workspace import locked, open_workspace
 
-    settings = options.settings()
-    wanted = settings.collection
-    limit = wanted.shrink_limit if shrink_limit is None else shrink_limit
-    with locked(settings):
+    with rehearsed(options.settings(), dry_run) as settings, locked(settings):
+        wanted = settings.collection
+        limit = wanted.shrink_limit if shrink_limit is None else shrink_limit
         workspace = open_workspace(settings)
         done = import_collection(workspace, source, mapping or wanted.mapping, shrink_limit=limit, dry_run=dry_run)
     if wanted_json:
@@ -203,7 +232,8 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
 
     reading = done.reading
     click.echo(
-        f"{reading.source}: {reading.rows:,} rows, {len(reading.items):,} objects, {len(reading.rejected):,} rejected"
+        f"{reading.source}: {counted(reading.rows, 'row')}, {counted(len(reading.items), 'object')}, "
+        f"{len(reading.rejected):,} rejected"
     )
     listed("rejected", [f"{r.message}; {r.remedy}" for r in reading.rejected])
     listed("suspicion", [f"{s.message}; {s.remedy}" for s in reading.suspicions])
@@ -214,17 +244,17 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
     listed("new", list(done.changes.added))
     listed("gone", list(done.changes.removed))
     _changed(done.changes)
-    click.echo(f"inventory: {c.after:,} objects ({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed)")
+    click.echo(f"inventory: {counted(c.after, 'object')} ({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed)")
     doubtful = sum(1 for item in reading.items if item.problems)
     click.echo(
-        f"read: {reading.rows:,} rows, {len(reading.rejected):,} refused, {doubtful:,} doubtful; "
+        f"read: {counted(reading.rows, 'row')}, {len(reading.rejected):,} refused, {doubtful:,} doubtful; "
         "the next report names each"
     )
     if not done.display_said:
         click.echo(unsaid(sum(item.on_display for item in reading.items)))
     if dry_run:
-        click.echo("dry run: nothing was written")
-    elif done.log is not None:
+        return
+    if done.log is not None:
         click.echo(f"log: {done.log}")
     else:
         click.echo("nothing has changed since the last import")

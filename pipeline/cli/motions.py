@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from pipeline.cli.console import aligned
-from pipeline.cli.options import Options, as_json
+from pipeline.cli.options import Options, as_json, dry_run, say_dry
 
 if TYPE_CHECKING:
     from pipeline.jobs.records import MotionRow
@@ -54,6 +54,22 @@ def list_(options: Options, site: str | None, as_json: bool) -> None:
         click.echo(json.dumps([asdict(row) for row in rows], indent=2))
         return
     click.echo("\n".join(_table(rows)))
+
+
+@motions.command()
+@click.argument("site", required=False)
+@click.pass_obj
+def entries(options: Options, site: str | None) -> None:
+    """Print the manifest's entries of record files that lie in the site's folder and are not named in it.
+
+    Each is TOML to be pasted into manifest.toml, with files, components and sha256; what no file says is asked there.
+
+    Example: kouros motions entries site_motions/site
+    """
+    from pipeline.jobs.records import entries as job
+
+    found = job(_folder(options, site))
+    click.echo("\n\n".join(found) if found else "the manifest names every record file of the folder")
 
 
 def _table(rows: "Sequence[MotionRow]") -> list[str]:
@@ -123,10 +139,11 @@ def show(options: Options, site: str | None, record: str, out: Path, as_json: bo
     help="Overrule what was refused as a matter of judgement (clipping, a record cut off, an odd size, an orientation "
     "against the station's) for --record; the manifest keeps the reason.  What is corrupt stays refused.",
 )
+@dry_run("Process, and say what would be written or overruled")
 @as_json
 @click.pass_obj
 def process(
-    options: Options, site: str | None, record: str, out: Path | None, reason: str | None, as_json: bool
+    options: Options, site: str | None, record: str, out: Path | None, reason: str | None, dry_run: bool, as_json: bool
 ) -> None:
     """Process a site's records, and with --out write them as CSV with a manifest of their own.
 
@@ -141,20 +158,25 @@ def process(
     if reason is not None:
         if not record or not reason.strip():
             raise UsageError("--accept needs a reason, and --record with the name of the one record that it is for")
-        overruled = overrule(folder, record, reason.strip())
-    rows = [row for row in listed(folder) if record in {"", row.name}]
-    file = None if out is None else job(folder, out, record)
+        overruled = overrule(folder, record, reason.strip(), dry_run=dry_run)
+    # What a dry run overrules is refused yet.
+    known = [] if dry_run and overruled else listed(folder)
+    rows = [row for row in known if record in {"", row.name}]
+    file = None if out is None or (dry_run and overruled) else job(folder, out, record, dry_run=dry_run)
     if as_json:
         answer = {"overruled": overruled, "manifest": file and str(file), "motions": [asdict(row) for row in rows]}
         click.echo(json.dumps(answer, indent=2))
-        return
-    for text in overruled:
-        click.echo(f"overruled: {text}")
-    if reason is not None and not overruled:
-        click.echo("nothing was refused: the manifest stays as it was")
-    click.echo("\n".join(_table(rows)))
-    if file is not None:
-        click.echo(f"wrote {file}")
+    else:
+        for text in overruled:
+            click.echo(f"{'would be overruled' if dry_run else 'overruled'}: {text}")
+        if reason is not None and not overruled:
+            click.echo("nothing was refused: the manifest stays as it was")
+        if rows:
+            click.echo("\n".join(_table(rows)))
+        if file is not None:
+            click.echo(f"{'would write' if dry_run else 'wrote'} {file}")
+    if dry_run:
+        say_dry(as_json)
 
 
 @motions.command()
@@ -216,7 +238,8 @@ def _measure_lines(pair: "Pair") -> list[str]:
 @click.argument("kind", default="")
 @click.argument("parameters", nargs=-1, metavar="NAME=VALUE...")
 @click.option("--out", type=click.Path(file_okay=False, path_type=Path), help="Folder of the new site.")
-def synthesise(kind: str, parameters: tuple[str, ...], out: Path | None) -> None:
+@dry_run("Make the signal, and say what was done")
+def synthesise(kind: str, parameters: tuple[str, ...], out: Path | None, dry_run: bool) -> None:
     """Make a test signal for the virtual shake table and write it as a site; SI units.
 
     KIND is sine, swept_sine, random, rectangular, half_sine, ricker, mavroeidis_papageorgiou, or spectrum: an
@@ -237,7 +260,11 @@ def synthesise(kind: str, parameters: tuple[str, ...], out: Path | None) -> None
         return
     if out is None:
         raise UsageError("--out FOLDER: say where the new site shall lie")
-    file, motion = job(kind, parameters, out)
+    file, motion = job(kind, parameters, out, dry_run=dry_run)
     for step in motion.steps:
         click.echo(step)
+    if dry_run:
+        click.echo(f"would write {file}")
+        say_dry(wanted_json=False)
+        return
     click.echo(f"wrote {file}; try: kouros respond sliding friction_static=0.1,0.2 --site {out}")

@@ -1,7 +1,8 @@
 """What all commands share: where the settings are, and how much is said."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -10,17 +11,31 @@ from pipeline.cli.console import Console
 if TYPE_CHECKING:
     from pipeline.settings import Settings
 
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
 as_json = click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+
+
+def dry_run(told: str) -> Callable[[_Function], _Function]:
+    """Give a verb the option --dry-run, with what it says instead of doing it."""
+    return click.option("--dry-run", is_flag=True, help=f"{told}; write nothing.")
+
+
+def say_dry(wanted_json: bool) -> None:
+    """End a dry run with the words that nothing was written: beside JSON on standard error."""
+    from pipeline.jobs.rehearsal import NOTHING
+
+    click.echo(NOTHING, err=wanted_json)
 
 
 @dataclass(frozen=True)
 class Options:
     """The options that all commands share."""
 
-    config: str
-    quiet: bool
-    verbose: bool
-    debug: bool
+    config: str = "kouros.toml"
+    quiet: bool = False
+    verbose: bool = False
+    debug: bool = False
     log_json: bool = False
 
     def console(self) -> Console:

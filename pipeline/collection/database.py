@@ -5,6 +5,7 @@ import os
 import sqlite3
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from sqlalchemy import Engine, MetaData, create_engine, event
 from sqlalchemy.engine import URL, ExceptionContext, make_url
@@ -78,6 +79,20 @@ def _say_no_room(context: ExceptionContext) -> None:
     if kind in (sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN) and os.access(file, os.R_OK | os.W_OK):
         remedy = "see that there is room on its disk, and that files can be made in its folder; then run again"
         raise DatabaseFileError(f"the database {file} cannot be written ({problem}): {remedy}") from problem
+
+
+def open_for_reading(url: URL) -> Engine:
+    """Open a database that is there so that nothing can be written to it, whoever tries."""
+    if url.get_backend_name() == "sqlite":
+        where = f"file:{quote(str(Path(str(url.database)).resolve()))}?mode=ro"
+        return create_engine(url, poolclass=NullPool, creator=lambda: sqlite3.connect(where, uri=True, timeout=10.0))
+    engine = create_engine(url, poolclass=NullPool)
+
+    @event.listens_for(engine, "connect")
+    def _shut(connection: Any, _record: Any) -> None:
+        connection.read_only = True
+
+    return engine
 
 
 def _prepare_sqlite(connection: Any, _record: Any) -> None:

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Sequence
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from itertools import islice
 from pathlib import Path
+from typing import cast
 from unicodedata import normalize
 
 import tomlkit
 
 from pipeline.collection.dimensions import parse
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.mapping import DIAMETER, WRITTEN, Mapping
-from pipeline.collection.record import KINDS, units_of
+from pipeline.collection.mapping import MAPPABLE, WRITTEN, Mapping
+from pipeline.collection.record import units_of
+from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.files import unreadable
-from pipeline.collection.sources.opening import open_source
+from pipeline.collection.sources.opening import is_database, open_source
+from pipeline.collection.sources.rows import Row
 from pipeline.tables import table
 
 LOOKED_AT = 2000
@@ -73,23 +77,38 @@ class _Column:
         return sum(any(p.unit for p in parse(text).parts) for text in some) / len(some) if some else 0.0
 
 
-def guess(path: Path) -> Guess:
-    """Propose a mapping for a museum's file.
+def guess(where: str | Path, table: str | None = None) -> Guess:
+    """Propose a mapping for a museum's file or database.
 
-    raises : CollectionError for a file that cannot be read, or that shows no column with the objects' numbers
+    where  : path of a file, or the URL of a database, which is only read
+    table  : the sheet of a workbook, or the table, view or SELECT of a database; may be left out where there is one,
+             and of several sheets the one that looks most like an inventory is taken
+    raises : CollectionError for a source that cannot be read, that shows no column with the objects' numbers, or of
+             whose tables one must be named
     """
-    source = _source(path)
-    columns = _columns(path, source)
+    doubts: list[str] = []
+    if is_database(where):
+        name = expand_secrets(str(where)).shown
+        source, columns = _of_database(str(where), name, table)
+    else:
+        path = Path(where)
+        name = path.name
+        source = _source(path)
+        if source["format"] == "xlsx":
+            source, columns = _of_workbook(path, table, doubts)
+        elif table is not None:
+            raise CollectionError(f"{name}: has neither sheets nor tables; leave --table out")
+        else:
+            columns = _columns(path, source)
     decimal = "," if _commas(columns) and source.get("delimiter") != "," else "."
     if decimal == ",":
         source["decimal"] = decimal
-    doubts: list[str] = []
     found = _fields(columns)
     if "object_number" not in found:
-        found["object_number"] = _unique(path, columns)
+        found["object_number"] = _unique(name, columns)
         doubts.append(f"object numbers are taken from {found['object_number'].name!r}, where each row has another one")
     document = tomlkit.document()
-    document.add(tomlkit.comment(f"Guessed from the columns of {path.name}. Look at every line; units above all."))
+    document.add(tomlkit.comment(f"Guessed from the columns of {_line(name)}. Look at every line; units above all."))
     document["source"] = source
     document["museum"] = {"name": "Our museum"}
     document["columns"] = _mapped(found, doubts)
@@ -99,6 +118,63 @@ def guess(path: Path) -> Guess:
     text = tomlkit.dumps(document)
     mapping = Mapping.model_validate(document.unwrap())
     return Guess(text, mapping, tuple(doubts))
+
+
+def _line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _of_database(url: str, name: str, table: str | None) -> tuple[dict[str, str], list[_Column]]:
+    """Return how a database is read, and its columns."""
+    from pipeline.collection.sources.sql import read_database, tables
+
+    if table is None:
+        there = tables(url)
+        if len(there) != 1:
+            known = ", ".join(map(repr, there[:50])) or "none"
+            raise CollectionError(
+                f"{name}: say by --table which of its tables holds the objects, or give a SELECT there; it has {known}"
+                + (f" and {len(there) - 50} more" if len(there) > 50 else "")
+            )
+        table = there[0]
+    is_query = len(table.split()) > 1 and table.split()[0].lower() in ("select", "with")
+    source = {"format": "sql", "query" if is_query else "table": table}
+    rows = read_database(url, query=table if is_query else None, table=None if is_query else table)
+    with closing(cast(Generator[Row], rows)):
+        return source, _filled(name, rows)
+
+
+def _of_workbook(path: Path, sheet: str | None, doubts: list[str]) -> tuple[dict[str, str], list[_Column]]:
+    """Return how a workbook is read, and the columns of its sheet: the one named, or most like an inventory."""
+    from pipeline.collection.sources.xlsx import visible_sheets
+
+    there = visible_sheets(path)
+    if sheet is None and len(there) == 1:
+        return {"format": "xlsx"}, _columns(path, {"format": "xlsx"})
+    if sheet is not None:
+        source = {"format": "xlsx", "sheet": sheet}
+        return source, _columns(path, source)
+    best: tuple[tuple[bool, int, int], str, list[_Column]] | None = None
+    fault: CollectionError | None = None
+    for title in there:
+        try:
+            columns = _columns(path, {"format": "xlsx", "sheet": title})
+        except CollectionError as problem:
+            fault = fault or problem
+            continue
+        fields = _fields(columns)
+        likeness = "object_number" in fields, len(fields), max((len(c.values) for c in columns), default=0)
+        if best is None or likeness > best[0]:
+            best = likeness, title, columns
+    if best is None:
+        raise fault or CollectionError(
+            f"{path.name}: no sheet of the workbook is visible; show the one with the objects"
+        )
+    others = ", ".join(repr(title) for title in there if title != best[1])
+    doubts.append(
+        f"of {len(there)} sheets {best[1]!r} looks most like the inventory and is read; --table takes another: {others}"
+    )
+    return {"format": "xlsx", "sheet": best[1]}, best[2]
 
 
 def _source(path: Path) -> dict[str, str]:
@@ -148,14 +224,18 @@ def _columns(path: Path, source: dict[str, str]) -> list[_Column]:
         }
     )
     with open_source(path, plain) as opened:
-        header = next(opened.rows, None)
-        if header is None:
-            raise CollectionError(f"{path.name}: empty: there is no header to guess from")
-        columns = [_Column(name.strip()) for name in header.cells]
-        for row in islice(opened.rows, LOOKED_AT):
-            if not row.fault[0]:
-                for column, cell in zip(columns, row.cells, strict=True):
-                    column.values.append(cell)
+        return _filled(path.name, opened.rows)
+
+
+def _filled(name: str, rows: Iterator[Row]) -> list[_Column]:
+    header = next(rows, None)
+    if header is None:
+        raise CollectionError(f"{name}: empty: there is no header to guess from")
+    columns = [_Column(cell.strip()) for cell in header.cells]
+    for row in islice(rows, LOOKED_AT):
+        if not row.fault[0]:
+            for column, cell in zip(columns, row.cells, strict=True):
+                column.values.append(cell)
     return [column for column in columns if column.name]
 
 
@@ -174,7 +254,7 @@ def _fields(columns: Sequence[_Column]) -> dict[str, _Column]:
     found: dict[str, _Column] = {}
     for column in columns:
         bare = _UNIT.sub("", column.name)
-        own = column.name if column.name in KINDS or column.name == DIAMETER else None
+        own = column.name if column.name in MAPPABLE else None
         name = own or _names().get(_plain(column.name)) or _names().get(_plain(bare))
         if name is None or name == "dimensions":
             continue
@@ -183,12 +263,12 @@ def _fields(columns: Sequence[_Column]) -> dict[str, _Column]:
     return found
 
 
-def _unique(path: Path, columns: Sequence[_Column]) -> _Column:
+def _unique(name: str, columns: Sequence[_Column]) -> _Column:
     for column in columns:
         if column.filled and len(set(column.filled)) == len(column.values):
             return column
     raise CollectionError(
-        f"{path.name}: no column looks like object numbers; write a mapping by hand, from a copy of one that "
+        f"{name}: no column looks like object numbers; write a mapping by hand, from a copy of one that "
         "`kouros import --presets` lists"
     )
 
@@ -200,7 +280,7 @@ def _commas(columns: Sequence[_Column]) -> bool:
 
 def _mapped(found: dict[str, _Column], doubts: list[str]) -> tomlkit.items.Table:
     out = tomlkit.table()
-    for name in (*KINDS, DIAMETER):
+    for name in MAPPABLE:
         if name == "gallery" and name not in found:
             out[name] = {"constant": "Location not recorded"}
             doubts.append("no column tells where an object is: all are in one gallery until you name one")

@@ -159,20 +159,20 @@ class Difference:
         return bool(self.added or self.removed or self.changed)
 
 
-def difference(engine: Engine, reading: Reading) -> Difference:
-    """Say what importing this reading would change, and change nothing."""
-    with engine.connect() as connection:
-        return _difference(connection, reading.items, reading.unread)[0]
-
-
 def replace_inventory(
-    engine: Engine, reading: Reading, *, shrink_limit: float = 0.2, when: datetime | None = None
+    engine: Engine,
+    reading: Reading,
+    *,
+    shrink_limit: float = 0.2,
+    when: datetime | None = None,
+    dry_run: bool = False,
 ) -> Difference:
     """Make the inventory what the reading says, in one transaction: all of it or nothing.
 
     What it was before stays as an earlier version.  A reading that says what the last one said makes no new version.
     shrink_limit : the largest share of its objects that the inventory may lose at once, 0 to 1
     when         : the time of the import, with a time zone; None means now
+    dry_run      : say what would change, refuse what would be refused, and write nothing
     raises       : ShrunkError where more would be lost, CollectionError for a reading without any usable object,
                    ValueError for a limit outside 0 to 1 or a time without a zone; nothing is written then
     """
@@ -194,6 +194,8 @@ def replace_inventory(
                 "if the objects are really gone, import again with a higher shrink limit"
             )
         described = _described(reading)
+        if dry_run:
+            return found
         base, version = None if found else _says(connection, described), below
         if base is None or version is None:
             version = _write(connection, items, digests, found, described | _stamp(moment))
@@ -201,10 +203,13 @@ def replace_inventory(
     return found
 
 
-def add_sheet(engine: Engine, reading: Reading, *, when: datetime | None = None) -> tuple[Difference, list[str]]:
+def add_sheet(
+    engine: Engine, reading: Reading, *, when: datetime | None = None, dry_run: bool = False
+) -> tuple[Difference, list[str]]:
     """Lay a sheet of our own measurements over the inventory; it stays there through all later imports.
 
     Cells that are empty change nothing; a later sheet's cell replaces an earlier one's.
+    dry_run : as in `replace_inventory`
     returns : what changed, and the object numbers of the sheet that the inventory does not have (left out)
     raises  : CollectionError for a sheet without any object of the inventory; ValueError for a time without a zone
     """
@@ -228,6 +233,8 @@ def add_sheet(engine: Engine, reading: Reading, *, when: datetime | None = None)
             )
         items = laid_over(now, new)
         found, digests = _difference(connection, items)
+        if dry_run:
+            return found, unknown
         below = version = _newest(connection) or 0
         if found:
             version = _write(
@@ -246,10 +253,12 @@ def versions(engine: Engine) -> list[ImportInfo]:
         return [_info(row) for row in rows]
 
 
-def return_to(engine: Engine, version: int, *, when: datetime | None = None) -> Difference:
+def return_to(engine: Engine, version: int, *, when: datetime | None = None, dry_run: bool = False) -> Difference:
     """Make the inventory what it was after an earlier import, as a new version; nothing that came later is lost.
 
-    raises : CollectionError for a version that does not exist, naming those that do; ValueError for a time without zone
+    dry_run : as in `replace_inventory`
+    raises  : CollectionError for a version that does not exist, naming those that do; ValueError for a time without a
+              zone
     """
     moment = _moment(when)
     with engine.begin() as connection:
@@ -260,6 +269,8 @@ def return_to(engine: Engine, version: int, *, when: datetime | None = None) -> 
             raise CollectionError(f"the inventory has no version {version}: {there}; `kouros import --versions` lists")
         items = tuple(_read(connection.execute(select(ITEM).where(state_at(version))).mappings()))
         found, digests = _difference(connection, items)
+        if dry_run:
+            return found
         kept = {name: row[name] for name in ("source", "sha256", "mapping", "museum", "credit", "rows", "rejected")}
         back = kept | _stamp(moment) | {"kind": "return", "returned_to": version}
         made = _write(connection, items, digests, found, back)

@@ -83,7 +83,9 @@ class Source(_Part):
         description="csv: the one character between two cells: a comma, a semicolon or a tab.",
     )
     decimal: Literal[".", ","] = Field(default=".", description="The decimal mark of numbers that stand in texts.")
-    sheet: Name | None = Field(default=None, description="xlsx: the name of the sheet; the first where none is named.")
+    sheet: Name | None = Field(
+        default=None, description="xlsx: the name of the sheet; needed where more than one is visible."
+    )
     header_row: int | None = Field(default=None, ge=1, le=100, description="xlsx: the row of the column names; 1.")
     language: Name | None = Field(default=None, description='lido: the language to prefer, such as "en" or "de".')
     query: Name | None = Field(default=None, description="sql: one SELECT; or name a table instead.")
@@ -250,6 +252,11 @@ def preset_names() -> list[str]:
     return sorted(path.stem for path in PRESETS.glob("*.toml"))
 
 
+def preset_file(name: str) -> Path:
+    """Return the file of a preset, which a mapping of one's own may begin from."""
+    return PRESETS / f"{name}.toml"
+
+
 def load_mapping(path_or_preset_name: str | Path) -> Mapping:
     """Read a mapping: the path of a TOML file, or the name of a preset such as "carnegie".
 
@@ -257,7 +264,7 @@ def load_mapping(path_or_preset_name: str | Path) -> Mapping:
              and the remedy
     """
     wanted = str(path_or_preset_name)
-    path = PRESETS / f"{wanted}.toml" if wanted in preset_names() else Path(wanted)
+    path = preset_file(wanted) if wanted in preset_names() else Path(wanted)
     name = wanted if path.parent == PRESETS else path.name
     if not path.is_file():
         raise MappingError(

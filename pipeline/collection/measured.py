@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
@@ -22,6 +23,16 @@ FIELDS: Mapping[str, tuple[str, ...]] = {
     "mass": ("mass_kg",),
 }
 """What a text says -> the fields that it fills, in the order in which they are filled."""
+
+_WORD = (
+    "half|one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|fifteen|twenty|thirty|forty|fifty|sixty|"
+    "seventy|eighty|ninety|hundred"
+)
+_SPELLED = re.compile(
+    rf"(?i)\b(?:{_WORD})(?:[\s-]+(?:and|a|an|quarter|{_WORD}))*[\s-]+"
+    r"(?:mm|cm|ft|kg|lbs?|oz|(?:milli|centi)?met(?:er|re)s?|inch(?:es)?|foot|feet|yards?|pounds?|ounces?|(?:kilo)?grams?)\b"
+)
+"""A number in words with a unit behind it: such texts are not read, and must not pass for none."""
 
 _PART = "weight of a part"
 """How the reason of a weight begins that is not the whole object's."""
@@ -79,12 +90,20 @@ def _fill_from(values: dict[str, Any], given: set[str], cells: Cells, read: Dime
             ):
                 values[field] = choice.value
                 cells.provenance.append(_provenance(field, what, choice, read))
+    said = False
     for note in read.notes:
         if note.kind in _WORTH_A_WORD:
+            said = True
             cells.problems.append(Problem("dimensions", note.message, _WORTH_A_WORD[note.kind]))
-    if not found and any(c.isdigit() for c in read.text) and not read.parts and not read.having("left_out"):
-        message = f"no dimension could be read from {read.text[:80]!r}"
-        cells.problems.append(Problem("dimensions", message, "write it as in H 10 x W 5 x D 3 cm"))
+    for spelled in _SPELLED.finditer(read.text):
+        said = True
+        message = f"a number in words is not read: {spelled[0][:80]!r}"
+        cells.problems.append(Problem("dimensions", message, "write it in digits, such as 2 ft"))
+    known = said or any(read.having(kind) for kind in ("left_out", "variable"))
+    if not (found or known) and any(c.isalnum() for c in read.text):
+        what = "says no size of the object itself" if read.parts else "holds no dimension that can be read"
+        message = f"the text {read.text[:80]!r} {what}"
+        cells.problems.append(Problem("dimensions", message, "write it as in H 10 x W 5 x D 3 cm, or leave it empty"))
 
 
 def _compare(field: str, value: float, choice: Choice, cells: Cells) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pipeline.jobs.workspace import KEPT, UsageError, charts_of, site_folder
+from pipeline.jobs.workspace import UsageError, charts_of, site_folder
 from pipeline.records import Motion
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def _motions(site: str, settings: "Settings | None") -> Sequence[Motion]:
     if settings is None:
         return read_motion(folder, kept=user_cache("motions"))
     # Processed once for the nights and for this.
-    kept = read_site(folder, kept=settings.path(KEPT))
+    kept = read_site(folder, kept=settings.kept)
     return [one.motion for level in kept.levels for one in level.motions]
 
 

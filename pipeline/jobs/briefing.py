@@ -23,10 +23,11 @@ from pipeline.jobs.pictures import Pictures
 from pipeline.jobs.readings import told
 from pipeline.jobs.reporting import manner
 from pipeline.jobs.versions import code_digest, rules_digest
-from pipeline.jobs.workspace import CHARTS, KEPT, Workspace
+from pipeline.jobs.workspace import CHARTS, Workspace
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import Means
 from pipeline.mitigate.measures import padded
+from pipeline.motions.record import NO_VERTICAL
 from pipeline.motions.site import Level, Site
 from pipeline.plan import plan
 from pipeline.records import Model, Progress, RunRecord
@@ -79,7 +80,7 @@ def brief_for(
         said.append(_left_out("From what shaking each object fails", "[analysis] fragility = true"))
     if settings.report.survey and not surveyed:
         said.append(_left_out("Which measurements would settle a verdict", "[report] survey = true"))
-    tested = selftest.kept(settings.path(KEPT))
+    tested = selftest.kept(settings.kept)
     head = RunRecord(
         run_id=f"{started:%Y%m%dT%H%M%S}.{started.microsecond // 1000:03d}-{os.getpid()}",
         started=started.isoformat(timespec="milliseconds"),
@@ -104,7 +105,7 @@ def brief_for(
         surveyed=surveyed,
         fragile=fragile,
         stores=settings.display.stores,
-        kept=settings.path(KEPT) / CHARTS,
+        kept=settings.kept / CHARTS,
         threads=settings.analysis.workers or Threads().workers,
         units=written["units"],
         tongue=settings.report.language,
@@ -112,7 +113,7 @@ def brief_for(
     )
     # The pictures are made before the verdicts, which use their charts; motions that two floors share only once.
     drawn = pictures.of(list(motions.values()), progress)
-    measured = tradeoff.kept(settings.path(KEPT))
+    measured = tradeoff.kept(settings.kept)
     if measured is not None:
         picture = tradeoff.picture(measured)
         drawn[picture.key] = picture
@@ -208,4 +209,7 @@ def _level_note(level: Level) -> str:
     number = len(level.motions)
     how = "1 motion" if number == 1 else f"the {level.combine} of {number} motions"
     caution = f"; {level.caution}" if level.caution else ""
+    flat = [one.motion.name for one in level.motions if NO_VERTICAL in one.motion.steps]
+    if flat:
+        caution += f"; no vertical shaking was recorded, and none is assumed: {', '.join(flat)}"
     return f"Level {level.name}{period}: {how}{caution}; {answers}."

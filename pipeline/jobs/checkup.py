@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pipeline.jobs.hooks import look, named
 from pipeline.jobs.standing import FAILED, GOOD, RUNNING, last_good, status
-from pipeline.jobs.workspace import KEPT, LockedError, Workspace, locked
+from pipeline.jobs.workspace import LockedError, Workspace, locked
 from pipeline.quantities import counted
 from pipeline.settings import Settings
 from pipeline.store.runs import list_runs
@@ -64,7 +64,7 @@ def _disk(settings: Settings) -> Found:
 
 
 def _permissions(settings: Settings) -> Found:
-    folders = [settings.home, settings.path(settings.report.folder), settings.path(KEPT)]
+    folders = [settings.home, settings.path(settings.report.folder), settings.kept]
     if settings.logs.file:
         folders.append(settings.path(settings.logs.file).parent)
     if "://" not in settings.database:

@@ -46,16 +46,22 @@ class Wish:
     until: str = ""
 
 
-def decide(workspace: Workspace, wish: Wish) -> Decision:
+def decide(workspace: Workspace, wish: Wish, *, dry_run: bool = False) -> Decision:
     """Write a decision down, with what the last run of the whole collection found.
 
-    raises : UsageError for an object, measure, class, model, level or decision that there is not (naming those there
-             are), for a name or reason that is empty, and for a date or parameter that cannot be
+    dry_run : write nothing; the decision has the id 0
+    raises  : UsageError for an object, measure, class, model, level or decision that there is not (naming those there
+              are), for a name or reason that is empty, and for a date or parameter that cannot be
     """
+    decision = _put(workspace, wish)
+    return decision if dry_run else add_decision(workspace.engine, decision)
+
+
+def _put(workspace: Workspace, wish: Wish) -> Decision:
     engine = workspace.engine
     decision = _stated(wish)
     if wish.kind is DecisionKind.WITHDRAW:
-        return add_decision(engine, replace(decision, withdraws=_withdrawn(workspace, wish)))
+        return replace(decision, withdraws=_withdrawn(workspace, wish))
     item = items_named(engine, [wish.object_number]).get(wish.object_number)
     if item is None:
         raise UsageError(_nowhere(wish.object_number, object_numbers(engine)))
@@ -63,16 +69,15 @@ def decide(workspace: Workspace, wish: Wish) -> Decision:
     basis = looked_at(engine, runs[0], item.object_number, item.gallery) if runs else ()
     decision = replace(decision, run=runs[0] if runs else "", digest=digest_of(item))
     if wish.kind is DecisionKind.CLASS:
-        return add_decision(engine, replace(decision, object_class=_class(wish.words), basis=basis))
+        return replace(decision, object_class=_class(wish.words), basis=basis)
     if wish.kind is DecisionKind.INSTALLED:
-        return add_decision(engine, replace(_installed(workspace, decision, wish.words), basis=basis))
+        return replace(_installed(workspace, decision, wish.words), basis=basis)
     _concerning(workspace, wish, basis)
     if wish.kind is DecisionKind.VERDICT:
         decision = replace(decision, verdict=_verdict(wish, basis))
     elif wish.words:
         raise UsageError(f"an accepted risk takes no more words than --model and --level, not {wish.words[0]!r}")
-    concerned = tuple(b for b in basis if decision.concerns(b.model, b.level))
-    return add_decision(engine, replace(decision, basis=concerned))
+    return replace(decision, basis=tuple(b for b in basis if decision.concerns(b.model, b.level)))
 
 
 def _stated(wish: Wish) -> Decision:

@@ -1,5 +1,6 @@
 """Whether the next night can run, and what to mend if not."""
 
+import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -84,6 +85,7 @@ def _collection(settings: Settings) -> tuple[str, str]:
 def _motions(settings: Settings) -> tuple[str, str]:
     from pipeline.jobs.levels import known
     from pipeline.jobs.workspace import site_folder
+    from pipeline.motions.manifest import unlisted
     from pipeline.motions.site import levels_at, read_site
     from pipeline.quantities import G
 
@@ -96,9 +98,22 @@ def _motions(settings: Settings) -> tuple[str, str]:
         text += f"; floor {floor}"
     doubts = [f"level {level.name}: {level.caution}" for level in site.levels if level.caution]
     nobody = [level.name for level in site.levels if not level.approved_by]
+    flat = [record.name for _, record in site.manifest.records() if record.vertical]
+    if flat:
+        doubts.append(f"no vertical was recorded, and none shakes anything: {', '.join(flat)}")
+    stray = unlisted(site.file, site.manifest)
+    if stray:
+        doubts.append(
+            f"not in the manifest: {_hashed(site.folder, stray)}; `kouros motions entries` prints their entries"
+        )
     if nobody:
         doubts.append(f"nobody has approved: {', '.join(nobody)} (approved_by in the manifest)")
     return ("warning", "; ".join([text, *doubts])) if doubts else ("ok", text)
+
+
+def _hashed(folder: Path, names: Sequence[str], most: int = 5) -> str:
+    told = [f"{name} (sha256 {hashlib.sha256((folder / name).read_bytes()).hexdigest()})" for name in names[:most]]
+    return ", ".join(told) + (f" and {len(names) - most:,} more" if len(names) > most else "")
 
 
 def _means(workspace: Workspace) -> tuple[str, str]:

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from heapq import merge
@@ -9,10 +10,11 @@ from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pipeline.collection.inventory import Difference, difference, held, latest_import, replace_inventory, return_to
+from pipeline.collection.inventory import Difference, held, latest_import, replace_inventory, return_to
 from pipeline.collection.limits import Limits
-from pipeline.collection.mapping import load_mapping, preset_names
+from pipeline.collection.mapping import load_mapping, preset_file, preset_names
 from pipeline.collection.reading import NOWHERE, Reading, read_items
+from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.opening import is_database
 from pipeline.collection.suspicion import Suspicion
 from pipeline.jobs.lasting import known_blocks, mapping_of
@@ -58,15 +60,21 @@ def bundled_collection() -> Path:
     return Path(__file__).resolve().parents[1] / "collection" / "data" / "carnegie_2000.csv"
 
 
-def presets() -> dict[str, str]:
-    """Return the mappings that come with Kouros, by name, with the museum or the system that they are for."""
-    return {name: load_mapping(name).museum.name for name in preset_names()}
+def presets() -> dict[str, tuple[str, Path]]:
+    """Return the mappings that come with Kouros, by name: the museum or the system that they are for, and the file."""
+    return {name: (load_mapping(name).museum.name, preset_file(name)) for name in preset_names()}
 
 
 @dataclass(frozen=True)
 class Proposed:
-    """A guessed mapping, and what it makes of the file: rows, objects, and some of them in words."""
+    """A guessed mapping, and what it makes of the source: rows, objects, and some of them in words.
 
+    name  : for a file with the mapping, without its ending
+    shown : the source in messages, without secrets
+    """
+
+    name: str
+    shown: str
     guess: "Guess"
     rows: int
     items: int
@@ -74,18 +82,24 @@ class Proposed:
     suspicions: tuple[Suspicion, ...]
 
 
-def proposed(source: Path, most: int = 10) -> Proposed:
-    """Guess a mapping for a file and read the file with it; nothing is written.
+def proposed(source: str, table: str | None = None, most: int = 10) -> Proposed:
+    """Guess a mapping for a file or a database and read it with that; nothing is written.
 
-    raises : CollectionError for a file that cannot be read
+    table  : see `guess`
+    raises : CollectionError for a source that cannot be read
     """
     from pipeline.collection.guess import guess
 
-    found = guess(source)
+    found = guess(source, table)
     reading = read_items(source, found.mapping)
     step = max(len(reading.items) // most, 1)
     examples = tuple(_in_words(item) for item in reading.items[::step][:most])
-    return Proposed(found, reading.rows, len(reading.items), examples, reading.suspicions)
+    if is_database(source):
+        shown = expand_secrets(source).shown
+        named = re.sub(r"[^A-Za-z0-9_.-]+", "-", found.mapping.source.table or "query").strip("-.") or "mapping"
+    else:
+        shown, named = Path(source).name, Path(source).stem
+    return Proposed(named, shown, found, reading.rows, len(reading.items), examples, reading.suspicions)
 
 
 def _in_words(item: Item) -> str:
@@ -129,24 +143,22 @@ def import_collection(
         stays = held(workspace.engine, reading.sha256)
         if stays is not None:
             return Imported(reading, None, held=stays)
-    if dry_run:
-        return Imported(reading, difference(workspace.engine, reading))
     last = latest_import(workspace.engine)
-    changes = replace_inventory(workspace.engine, reading, shrink_limit=shrink_limit)
+    changes = replace_inventory(workspace.engine, reading, shrink_limit=shrink_limit, dry_run=dry_run)
     after = latest_import(workspace.engine)
-    if after is None or last == after:
+    if after is None or last == after or workspace.settings.rehearsal is not None:
         return Imported(reading, changes)
     log = workspace.settings.path(IMPORTS) / f"{after.id:05d}-{after.imported_at[:10]}.csv"
     _write_log(log, reading, changes)
     return Imported(reading, changes, log=log)
 
 
-def go_back(workspace: Workspace, version: int) -> Difference:
-    """Make the inventory what it was after an earlier import.
+def go_back(workspace: Workspace, version: int, *, dry_run: bool = False) -> Difference:
+    """Make the inventory what it was after an earlier import; a dry run only says what that would change.
 
     raises : CollectionError for a version that does not exist
     """
-    return return_to(workspace.engine, version)
+    return return_to(workspace.engine, version, dry_run=dry_run)
 
 
 def _write_log(path: Path, reading: Reading, changes: Difference) -> None:

@@ -11,7 +11,7 @@ from pipeline.collection.blocks import Block
 from pipeline.collection.inventory import latest_import
 from pipeline.collection.mapping import Mapping, load_mapping, preset_names
 from pipeline.collection.sources.opening import is_database
-from pipeline.jobs.workspace import KEPT, Workspace
+from pipeline.jobs.workspace import Workspace
 from pipeline.resources import digest_of, replacing
 from pipeline.settings import Settings
 
@@ -75,7 +75,7 @@ def remember(workspace: Workspace, source: str, mapping: str, content: str, bloc
 
 
 def _file(workspace: Workspace) -> Path:
-    return workspace.settings.path(KEPT) / "source.jsonl"
+    return workspace.settings.kept / "source.jsonl"
 
 
 def _content(workspace: Workspace, source: str) -> str:

@@ -1,5 +1,6 @@
 """The night, from the museum's records to the published report."""
 
+import warnings
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,11 +14,12 @@ from pipeline.errors import InputError
 from pipeline.jobs.briefing import admit, brief_for
 from pipeline.jobs.deciding import decided
 from pipeline.jobs.faults import LIKE
-from pipeline.jobs.importing import import_collection, source_of
+from pipeline.jobs.importing import Imported, import_collection, source_of
 from pipeline.jobs.lasting import remember, unchanged
 from pipeline.jobs.outcome import SUMMARY, summary_text
 from pipeline.jobs.pictures import pictures
 from pipeline.jobs.readings import doubts_of
+from pipeline.jobs.rehearsal import DryRunWarning, rehearsed
 from pipeline.jobs.rounds import Round
 from pipeline.jobs.standing import Status, last_good, mark_good, mark_running, status
 from pipeline.jobs.stopping import uninterrupted
@@ -74,6 +76,7 @@ class Summary:
     doubted       : those of them that must be looked at again, with the reasons
     efforts       : what the verdicts of each model took, see `pipeline.climb.Effort`
     report        : the report's index, None for a dry run
+    exit_code     : of the command: 0, or 3 of a strict run where objects could not be assessed
     """
 
     run_id: str
@@ -105,6 +108,7 @@ class Summary:
     efforts: Sequence[Mapping[str, Any]] = ()
     report: Path | None = None
     latest: Path | None = None
+    exit_code: int = 0
     changes: RunChanges | None = field(default=None, repr=False)
 
 
@@ -115,16 +119,24 @@ def run(
     *,
     dry_run: bool = False,
     resume: bool = False,
+    strict: bool = False,
 ) -> Summary:
     """Assess the collection and publish the report; the last report stays until this one is whole.
 
     What has not changed is not found again: results are kept by a digest of everything that they depend on.
-    dry_run : assess and summarise, but store and publish nothing
+    dry_run : assess and summarise; nothing is written, the museum's source not taken in
+    strict  : objects that cannot be assessed are the exit code 3
     resume  : go on where a run was cut off: with the inventory as that run had read it, if it got so far
     raises  : errors with an `exit_code`: settings 2, motions 4, collection 5, lock 6, shrunk 7
     """
-    chosen = selection or Selection()
-    with locked(settings, sweeping=not dry_run):
+    with rehearsed(settings, dry_run) as lent:
+        return _run(lent, progress, selection or Selection(), dry_run=dry_run, resume=resume, strict=strict)
+
+
+def _run(
+    settings: Settings, progress: Progress, chosen: Selection, *, dry_run: bool, resume: bool, strict: bool
+) -> Summary:
+    with locked(settings):
         started = datetime.now(UTC)
         cut_off = status(settings)
         if not (chosen or dry_run):
@@ -145,17 +157,17 @@ def run(
             night = Round(workspace, brief, everything, objects, decided(workspace))
             if night.fresh:
                 night.charts = admit(brief, everything, objects, site.manifest.site.x_azimuth)
-            return _hold(night, progress, chosen, dry_run=dry_run)
+            return _hold(night, progress, chosen, dry_run=dry_run, strict=strict)
         finally:
             tidy(settings, brief.shelf, brief.motions)
 
 
-def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool) -> Summary:
+def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool, strict: bool) -> Summary:
     """Do what there is to do, store it, publish it, say what changed."""
     workspace, engine = night.workspace, night.workspace.engine
     if dry_run:
         found = night.assess(progress)
-        return summarise(_ended(night, chosen), night.sheets, found)
+        return _judged(summarise(_ended(night, chosen), night.sheets, found), strict=strict)
     with night.edition() as edition:
         found = night.publish(edition, progress)
         _stand_by(night, found)
@@ -172,6 +184,7 @@ def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool)
         summary = summarise(whole, night.sheets, found)
         index = edition.folder / "index.html"
         summary = replace(summary, fresh=night.fresh, report=index, latest=latest, changes=changes)
+        summary = _judged(summary, strict=strict)
         beside = {SUMMARY: summary_text(summary, edition.folder)}
         doubts = doubts_of(workspace, head)
         edition.finish(replace(head, decisions=strangers), found, changes, night.links(changes), beside, doubts)
@@ -197,6 +210,10 @@ def _stand_by(night: Round, found: Tally) -> None:
         raise RuntimeError(
             f"nothing could be assessed: Kouros failed on {found.faults:,} objects: {night.faults[0].words}"
         )
+
+
+def _judged(summary: Summary, *, strict: bool) -> Summary:
+    return replace(summary, exit_code=3 if strict and summary.cannot else 0)
 
 
 def _ended(night: Round, chosen: Selection) -> RunRecord:
@@ -227,13 +244,33 @@ def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None
     if not unchanged(workspace, wanted.source, wanted.mapping):
         source = source_of(workspace, wanted.source)
         done = import_collection(
-            workspace, source, wanted.mapping, shrink_limit=wanted.shrink_limit, dry_run=dry_run, nightly=True
+            workspace,
+            source,
+            wanted.mapping,
+            shrink_limit=wanted.shrink_limit,
+            # A database that goes with the dry run takes the records in, so that there is something to assess.
+            dry_run=dry_run and not workspace.scratch,
+            nightly=True,
         )
-        if not dry_run:
+        if dry_run and not workspace.scratch:
+            _told(done)
+        elif not dry_run:
             # What a person went back to is not what the source says.
             blocks = done.reading.blocks if done.held is None else ()
             remember(workspace, source, wanted.mapping, done.reading.sha256, blocks)
     progress.step("collection", 1, 1)
+
+
+def _told(done: Imported) -> None:
+    """Say what a dry run does not take into the inventory, and so does not assess."""
+    if done.changes:
+        c = done.changes.counts
+        warnings.warn(
+            f"the real one takes the source in first: {c.added:,} new, {c.removed:,} gone, {c.changed:,} changed of "
+            f"{c.after:,} objects; a dry run assesses the inventory as it is",
+            DryRunWarning,
+            stacklevel=2,
+        )
 
 
 def _chosen(objects: Listing, chosen: Selection) -> Listing:

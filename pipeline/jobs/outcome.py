@@ -40,7 +40,6 @@ def summary_document(summary: "Summary", *, most: int | None = None, base: Path 
         plain[name] = None if path is None else str(path if base is None else _from(path, base))
     plain["not_on_display"] = summary.objects - summary.on_display
     plain["stores"] = None if summary.stores is None else asdict(summary.stores)
-    plain["exit_code"] = 3 if summary.cannot else 0
     plain["changes"] = None if changes is None else _counted(changes, most)
     document: dict[str, Any] = json_ready(plain)
     return document

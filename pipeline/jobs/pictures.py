@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pipeline.charting import Shelf
 from pipeline.charts import chart_keys, charts, picture_version
 from pipeline.execute import Threads
-from pipeline.jobs.workspace import CHARTS, KEPT, Workspace
+from pipeline.jobs.workspace import CHARTS, Workspace
 from pipeline.motions.site import Site
 from pipeline.records import Chart, Motion, Progress
 from pipeline.store.reuse import stored_charts
@@ -20,7 +20,7 @@ class Pictures:
         settings = workspace.settings
         self._workspace = workspace
         # Not the shelf of the verdicts, which is made once it is decided what it holds.
-        self._shelf, self._executor = Shelf(settings.path(KEPT) / CHARTS), Threads(settings.analysis.workers)
+        self._shelf, self._executor = Shelf(settings.kept / CHARTS), Threads(settings.analysis.workers)
         self._hand = ThreadPoolExecutor(1)
         self._stored: dict[str, Mapping[str, Chart]] = {}
         self._begun: dict[str, Future[dict[str, Chart]]] = {}

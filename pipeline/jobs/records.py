@@ -114,10 +114,21 @@ def described(one: "Inspection") -> dict[str, Any]:
     }
 
 
-def process(folder: Path, out: Path, name: str) -> Path:
+def entries(folder: Path) -> list[str]:
+    """Return the entries that a site's manifest needs for the record files beside it, see `motions.entries`.
+
+    raises : MotionError
+    """
+    from pipeline.motions.entries import entries as found
+
+    return found(folder)
+
+
+def process(folder: Path, out: Path, name: str, *, dry_run: bool = False) -> Path:
     """Process the records of a site's ground and write them as a site of their own.
 
     name    : of one record, or "" for all
+    dry_run : write nothing
     returns : the new manifest
     raises  : MotionError
     """
@@ -127,12 +138,13 @@ def process(folder: Path, out: Path, name: str) -> Path:
         names = ", ".join(repr(one.motion.name) for v in site.levels for one in v.motions)
         raise UsageError(f"there is no record {name!r} on the ground of {site.file}; its records are {names}")
     why = f"Processed by Kouros from {site.name}; the steps stand with each record."
-    return write_site(out, chosen, site.manifest.site, licence="as the original", why=why)
+    return write_site(out, chosen, site.manifest.site, licence="as the original", why=why, dry_run=dry_run)
 
 
-def overrule(folder: Path, name: str, reason: str) -> Sequence[str]:
+def overrule(folder: Path, name: str, reason: str, *, dry_run: bool = False) -> Sequence[str]:
     """Overrule, with a reason, the refusals of one record that are a matter of judgement; the manifest keeps it.
 
+    dry_run : leave the manifest as it is
     returns : what was refused, in words, one for each refusal overruled; none where nothing was refused
     raises  : MotionError for what is corrupt, or for a record that the manifest does not have
     """
@@ -154,7 +166,7 @@ def overrule(folder: Path, name: str, reason: str) -> Sequence[str]:
             overruled[refused.judgement] = str(refused)
         else:
             break
-    if overruled:
+    if overruled and not dry_run:
         accept(file, name, dict.fromkeys(overruled, reason))
     return tuple(overruled.values())
 

@@ -7,6 +7,7 @@ from pipeline.jobs.outcome import SUMMARY
 from pipeline.jobs.readings import doubts_of
 from pipeline.jobs.standing import renew
 from pipeline.jobs.workspace import UsageError, locked, open_workspace
+from pipeline.quantities import counted
 from pipeline.records import RunChanges
 from pipeline.report import Language, Units, language, publish
 from pipeline.report.edition import Edition
@@ -79,10 +80,7 @@ def compare(settings: Settings, old: str | None, new: str | None) -> RunChanges:
     runs = whole_runs(engine)
     if new is None:
         if not runs or (old is None and len(runs) < 2):
-            raise UsageError(
-                f"of finished runs of the whole collection there {'is' if len(runs) == 1 else 'are'} {len(runs)}, "
-                "and two are needed; "
-                "make another with `kouros run`"
-            )
+            there = f"there {'is' if len(runs) == 1 else 'are'} {counted(len(runs), 'finished run')}"
+            raise UsageError(f"{there} of the whole collection and two are needed; make another with `kouros run`")
         new = runs[0]
     return compare_runs(engine, old or runs[1], new)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+from pipeline.jobs.rehearsal import rehearsed
 from pipeline.jobs.standing import last_good
 from pipeline.jobs.workspace import Workspace, locked, open_workspace
 from pipeline.resources import aside_of
@@ -48,8 +49,8 @@ def prune(settings: Settings, *, dry_run: bool = False) -> Pruned:
     limits = settings.retention
     if not (limits.runs or limits.reports or limits.days):
         return Pruned()
-    with locked(settings, sweeping=not dry_run):
-        workspace = open_workspace(settings)
+    with rehearsed(settings, dry_run) as lent, locked(lent):
+        workspace = open_workspace(lent)
         sacred = _sacred(workspace)
         runs = _old_runs(list_runs(workspace.engine), sacred, limits)
         folders, kept = _old_reports(workspace.reports, sacred, limits)

@@ -12,7 +12,6 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from pipeline import __version__
-from pipeline.jobs.workspace import KEPT
 from pipeline.quantities import counted
 from pipeline.resources import replacing
 from pipeline.settings import Settings
@@ -70,7 +69,7 @@ def self_test(settings: Settings | None) -> Iterator[Outcome]:
         yield outcome
     if settings is not None:
         now = datetime.now(UTC).isoformat(timespec="seconds")
-        keep(SelfTest(now, __version__, KERNEL_VERSION, machine(), done), settings.path(KEPT))
+        keep(SelfTest(now, __version__, KERNEL_VERSION, machine(), done), settings.kept)
 
 
 def keep(test: SelfTest, folder: Path) -> Path:

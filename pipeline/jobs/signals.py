@@ -24,10 +24,11 @@ SIGNALS: Mapping[str, Callable[..., Motion]] = {
 """What `kouros motions synthesise` makes; accelerations in m/s2."""
 
 
-def synthesise(kind: str, words: Sequence[str], folder: Path) -> tuple[Path, Motion]:
+def synthesise(kind: str, words: Sequence[str], folder: Path, *, dry_run: bool = False) -> tuple[Path, Motion]:
     """Make a test signal and write it as a site of its own.
 
     words   : "name=value" of the signal's own parameters; lists with commas
+    dry_run : write nothing
     returns : the manifest, and the motion
     raises  : UsageError naming the parameter; ValueError as the signal does; MotionError where there is a site already
     """
@@ -35,7 +36,7 @@ def synthesise(kind: str, words: Sequence[str], folder: Path) -> tuple[Path, Mot
     motion = make(**_arguments(kind, make, words))
     site = SiteTable(name="Virtual shake table", latitude=0.0, longitude=0.0)
     why = f"Written by: kouros motions synthesise {kind} {' '.join(words)}"
-    file = write_site(folder, [("test", motion)], site, licence="none needed", why=why)
+    file = write_site(folder, [("test", motion)], site, licence="none needed", why=why, dry_run=dry_run)
     return file, motion
 
 

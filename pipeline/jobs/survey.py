@@ -81,7 +81,9 @@ def survey(
                 found += came
     found = in_order(found)
     target = path or settings.path(f"survey-{datetime.now():%Y-%m-%d}.xlsx")
-    counts = write_survey(target, found, measurables(), length=settings.report.length)
+    # The counts are those of the workbook; that of a dry run goes with it.
+    written = target if settings.rehearsal is None else settings.rehearsal / target.name
+    counts = write_survey(written, found, measurables(), length=settings.report.length)
     return Surveyed(target, tuple(found), **counts, faults=tuple(faults))
 
 
@@ -114,11 +116,13 @@ def sheet_mapping(length: str) -> Mapping:
     return Mapping.model_validate(whole | {"columns": columns})
 
 
-def add_measurements(workspace: Workspace, path: Path) -> tuple[Reading, Difference, list[str]]:
-    """Lay a filled-in sheet over the inventory.
+def add_measurements(
+    workspace: Workspace, path: Path, *, dry_run: bool = False
+) -> tuple[Reading, Difference, list[str]]:
+    """Lay a filled-in sheet over the inventory; a dry run only says what that would change.
 
     returns : what was read, what changed, and the objects of the sheet that the inventory does not have
     """
     reading = read_sheet(path)
-    changes, unknown = add_sheet(workspace.engine, reading)
+    changes, unknown = add_sheet(workspace.engine, reading, dry_run=dry_run)
     return reading, changes, unknown

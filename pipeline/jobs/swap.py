@@ -12,7 +12,7 @@ from pipeline.jobs.briefing import admit, brief_for
 from pipeline.jobs.deciding import decided
 from pipeline.jobs.pictures import pictures
 from pipeline.jobs.rounds import Round
-from pipeline.jobs.workspace import KEPT, Workspace, open_workspace
+from pipeline.jobs.workspace import Workspace, open_workspace
 from pipeline.motions.site import Level, Site, read_site
 from pipeline.quantities import counted
 from pipeline.records import Progress, VerdictChange
@@ -61,7 +61,7 @@ def compare_sites(old: Path, new: Path, settings: Settings | None, progress: Pro
     settings : of the museum whose last run is looked at; None compares measures only
     raises   : MotionError
     """
-    kept = None if settings is None else settings.path(KEPT)
+    kept = None if settings is None else settings.kept
     before, after = read_site(old, kept=kept), read_site(new, kept=kept)
     after = replace(after, levels=_renamed(before.levels, after.levels))
     pairs = _pairs(before.levels, after.levels)

@@ -17,7 +17,7 @@ from pipeline.classify import classify
 from pipeline.collection.inventory import read_inventory
 from pipeline.jobs.faults import sound
 from pipeline.jobs.records import desk
-from pipeline.jobs.workspace import KEPT, UsageError, charts_of, open_workspace
+from pipeline.jobs.workspace import UsageError, charts_of, open_workspace
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.models import MODELS, model_named
 from pipeline.models.common import SENSITIVE
@@ -390,5 +390,5 @@ def tradeoff_on(settings: Settings | None, site: str | None, progress: Progress,
         found = measure(motions, items, progress, models=names, charts=charts, **wishes)
     # A part would take the place of the whole in the report.
     if settings is not None and site is None and not names:
-        keep(found, settings.path(KEPT))
+        keep(found, settings.kept)
     return found

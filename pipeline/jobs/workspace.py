@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pipeline.errors import InputError, KourosError
+from pipeline.jobs.rehearsal import SCRATCH, read_only
 from pipeline.resources import resource, sweep
 
 if TYPE_CHECKING:
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
     from pipeline.motions.site import Site
     from pipeline.rules import Table
     from pipeline.settings import Settings
-
-KEPT = ".kouros-kept"
-"""Folder beside the settings in which processed motions, charts and measurements are kept between nights."""
 
 CHARTS = "charts"
 """Folder in it for the response charts."""
@@ -82,7 +80,7 @@ class Workspace:
         """Return the objects of the inventory; their listing is kept for another time."""
         from pipeline.collection.catalogue import catalogue
 
-        return catalogue(self.engine, self.settings.path(KEPT) / LISTING)
+        return catalogue(self.engine, self.settings.kept / LISTING)
 
     def site(self) -> "Site":
         """Read the site of the settings; its processed motions are kept for the next time.
@@ -92,7 +90,7 @@ class Workspace:
         from pipeline.motions.site import read_site
 
         settings = self.settings
-        return read_site(site_folder(settings.home, settings.site.folder), kept=settings.path(KEPT))
+        return read_site(site_folder(settings.home, settings.site.folder), kept=settings.kept)
 
     def _own(self, name: str, remedy: str) -> Path | None:
         if not name:
@@ -101,6 +99,12 @@ class Workspace:
         if not path.is_file():
             raise UsageError(f"{path} is not there; {remedy}")
         return path
+
+    @property
+    def scratch(self) -> bool:
+        """Whether the database goes with the dry run that made it: then anything may be written to it."""
+        home = self.settings.rehearsal
+        return home is not None and self.engine.url.database == str(home / SCRATCH)
 
     @property
     def reports(self) -> Path:
@@ -120,10 +124,12 @@ def site_folder(home: Path, name: str) -> Path:
 
 
 def open_workspace(settings: "Settings") -> Workspace:
-    """Open the database, bringing its tables to the newest schema."""
+    """Open the database, bringing its tables to the newest schema; in a dry run it can only be read."""
     from pipeline.collection.database import open_database
     from pipeline.store import migrate
 
+    if settings.rehearsal is not None:
+        return Workspace(settings, read_only(settings, settings.rehearsal))
     engine = open_database(settings.database)
     migrate.upgrade(engine)
     return Workspace(settings, engine)
@@ -131,15 +137,19 @@ def open_workspace(settings: "Settings") -> Workspace:
 
 @contextmanager
 def locked(settings: "Settings", *, sweeping: bool = True) -> Iterator[None]:
-    """Hold the lock of this workspace: one run at a time.
+    """Hold the lock of this workspace: one run at a time.  A dry run where none ever was makes no file for it.
 
     sweeping : remove what processes that died left unfinished; not where nothing is to be written
     raises   : LockedError at once where another process holds it
     """
     from filelock import FileLock, Timeout
 
+    file = settings.home / ".kouros.lock"
+    if settings.rehearsal is not None and not file.is_file():
+        yield
+        return
     settings.home.mkdir(parents=True, exist_ok=True)
-    lock = FileLock(settings.home / ".kouros.lock", timeout=0)
+    lock = FileLock(file, timeout=0)
     try:
         lock.acquire()
     except Timeout as problem:
@@ -147,7 +157,7 @@ def locked(settings: "Settings", *, sweeping: bool = True) -> Iterator[None]:
             f"another run holds {lock.lock_file}; wait for it to end (the lock goes with the process that holds it)"
         ) from problem
     try:
-        if sweeping:
+        if sweeping and settings.rehearsal is None:
             _sweep(settings)
         yield
     finally:
@@ -155,7 +165,7 @@ def locked(settings: "Settings", *, sweeping: bool = True) -> Iterator[None]:
 
 
 def _sweep(settings: "Settings") -> None:
-    kept = settings.path(KEPT)
+    kept = settings.kept
     folders = [settings.home, settings.path(IMPORTS), settings.path(settings.report.folder)]
     folders += [kept, kept / CHARTS, kept / HISTORIES]
     if settings.site.folder != "demo":
@@ -178,7 +188,7 @@ def charts_of(
     if settings is None:
         yield Shelf()
         return
-    shelf = Shelf(settings.path(KEPT) / CHARTS, admitted=None if admitted is None else frozenset(admitted))
+    shelf = Shelf(settings.kept / CHARTS, admitted=None if admitted is None else frozenset(admitted))
     try:
         yield shelf
     finally:
@@ -195,4 +205,4 @@ def tidy(settings: "Settings", shelf: "Shelf", using: Collection[str]) -> None:
     limits = settings.charts
     most = round(1e6 * limits.megabytes)
     shelf.tidy(days=limits.unused_days, most_bytes=most, using=using)
-    prune_histories(settings.path(KEPT) / HISTORIES, days=limits.unused_days, most_bytes=most)
+    prune_histories(settings.kept / HISTORIES, days=limits.unused_days, most_bytes=most)

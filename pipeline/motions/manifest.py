@@ -19,6 +19,12 @@ from pipeline.resources import small_text
 
 MANIFEST = "manifest.toml"
 
+MOST = 1000
+"""Files of a site's folder that are listed at most."""
+
+_WORDS = frozenset({".md", ".toml", ".html", ".pdf", ".jpg", ".png"})
+"""Endings of what lies beside records and is none."""
+
 GROUND_FLOOR = "ground"
 """What the floor is called on which a gallery stands that is assigned to no other."""
 
@@ -172,10 +178,10 @@ class SiteTable(Table):
 
 
 class Manifest(Table):
-    """A site's manifest.toml."""
+    """A site's manifest.toml; one without a level is a beginning, which names no records yet."""
 
     site: SiteTable
-    level: tuple[LevelTable, ...] = Field(min_length=1)
+    level: tuple[LevelTable, ...] = ()
     floor: tuple[FloorTable, ...] = ()
 
     def records(self) -> list[tuple[str, Record]]:
@@ -251,10 +257,11 @@ def manifest_file(path: str | Path) -> Path:
     return file
 
 
-def load_manifest(folder: str | Path) -> Manifest:
+def load_manifest(folder: str | Path, *, begun: bool = False) -> Manifest:
     """Read and check a site's manifest, with the presence and the hash of every file that it names.
 
     folder  : the site's folder, or its manifest.toml
+    begun   : a manifest that names no records yet will do
     raises  : MotionError naming the manifest, the key path and the remedy
     """
     file = manifest_file(folder)
@@ -272,7 +279,25 @@ def load_manifest(folder: str | Path) -> Manifest:
         raise _explained(file, error) from error
     for key, record in manifest.records():
         _check_files(file, key, record)
+    if not (manifest.level or begun):
+        there = unlisted(file, manifest)
+        found = f"; beside it {'lies' if len(there) == 1 else 'lie'} {', '.join(there[:5])}" if there else ""
+        more = f" and {len(there) - 5} more" if len(there) > 5 else ""
+        remedy = "put a record's files beside it, and paste in what `kouros motions entries` prints of them"
+        raise refusal(file, "level", f"it names no records yet{found}{more}", remedy)
     return manifest
+
+
+def unlisted(file: Path, manifest: Manifest) -> list[str]:
+    """Return the files of a site's folder that its manifest does not name, sorted; words about it are none.
+
+    file : the manifest
+    """
+    named = {name for _, record in manifest.records() for name in record.all_files}
+    folder = file.parent
+    there = (path for path in folder.rglob("*") if path.is_file() and not path.is_symlink() and path != file)
+    names = (path.relative_to(folder).as_posix() for path in there if path.suffix.lower() not in _WORDS)
+    return sorted(n for n in names if n not in named and not any(part.startswith(".") for part in n.split("/")))[:MOST]
 
 
 def _as_json(value: Any) -> str:

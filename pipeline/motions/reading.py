@@ -14,7 +14,7 @@ import numpy as np
 
 from pipeline.motions.errors import Judgement, MotionError, judged, refusal
 from pipeline.motions.quality import clipped
-from pipeline.motions.record import Component, Record
+from pipeline.motions.record import NO_VERTICAL, Component, Record
 from pipeline.quantities import Array, G
 
 UNITS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "g": G, "mg": 0.001 * G}
@@ -37,7 +37,7 @@ AZIMUTH_TOLERANCE = 2.0
 class Recording:
     """Three components as recorded, aligned, in m/s2.
 
-    data     : (3, n), rows the channels that the manifest calls x, y, z; z positive up
+    data     : (3, n), rows the channels that the manifest calls x, y, z; z positive up, zero where it is absent
     azimuths : degrees clockwise from north of the first two rows
     channels : what the files call the three rows
     processed: whether the agency has filtered it already, by the manifest, or else by the files
@@ -73,7 +73,7 @@ def read_record(folder: str | Path, record: Record) -> Recording:
     """
     folder = Path(folder)
     steps: list[str] = []
-    traces = [(folder / name, trace) for name in record.files for trace in _open(folder / name, steps)]
+    traces = [(folder / name, trace) for name in record.files for trace in open_traces(folder / name, steps)]
     inventory = None if record.response is None else _inventory(folder / record.response, steps)
     rows: dict[str, tuple[Path, Any, str]] = {}
     azimuths: dict[str, float] = {}
@@ -106,8 +106,12 @@ def read_record(folder: str | Path, record: Record) -> Recording:
     data, dt, first = _aligned(rows, steps)
     velocity = None
     if processed and velocities.keys() == rows.keys():
-        velocity = np.stack([velocities[axis][first[axis] : first[axis] + data.shape[1]] for axis in "xyz"])
-    channels = (rows["x"][2], rows["y"][2], rows["z"][2])
+        velocity = np.zeros_like(data)
+        for axis, values in velocities.items():
+            velocity["xyz".index(axis)] = values[first[axis] : first[axis] + data.shape[1]]
+    channels = (rows["x"][2], rows["y"][2], rows["z"][2] if "z" in rows else "absent")
+    if "z" not in rows:
+        steps.append(NO_VERTICAL)
     return Recording(dt, data, (azimuths["x"], azimuths["y"]), channels, tuple(steps), processed, velocity)
 
 
@@ -120,7 +124,11 @@ def _obspy() -> Any:
     return obspy
 
 
-def _open(file: Path, steps: list[str]) -> list[Any]:
+def open_traces(file: Path, steps: list[str]) -> list[Any]:
+    """Return the traces of a file of any format that is read, and write down what was read.
+
+    raises : MotionError naming the file
+    """
     obspy = _obspy()
 
     size = file.stat().st_size
@@ -322,7 +330,7 @@ def _processed(folder: Path, name: str, manifest: bool | None, traces: list[Any]
 
 def _in_si(file: Path, key: str, record: Record, trace: Any, inventory: Any) -> list[str]:
     stats = trace.stats
-    own, factor = _own_unit(stats)
+    own, factor = own_unit(stats)
     if inventory is not None:
         if own not in {"", "counts"}:
             raise refusal(file, f"component {key!r}", f"is in {own} already", "drop response from the manifest")
@@ -378,7 +386,8 @@ def _by_header(file: Path, key: str, record: Record, trace: Any) -> list[str]:
     return [*steps, f"{key}: {unit} to m/s2, times {factor:.9g}"]
 
 
-def _own_unit(stats: Any) -> tuple[str, float]:
+def own_unit(stats: Any) -> tuple[str, float]:
+    """Return the unit that a trace's file says, "" for none, and how many m/s2 one of it is; 0.0 where that is open."""
     if "kouros" in stats:
         return stats.kouros.units, stats.kouros.si_factor or 0.0
     if stats._format == "KNET":
@@ -422,5 +431,8 @@ def _aligned(rows: dict[str, tuple[Path, Any, str]], steps: list[str]) -> tuple[
     skew = max(abs(late[axis] - first[axis]) for axis in rows) * dt
     if skew > 1e-3 * dt:
         steps.append(f"aligned to the nearest sample; the components' clocks differ by up to {skew:.3g} s")
-    data = np.stack([rows[axis][1].data[first[axis] : first[axis] + n] for axis in "xyz"])
+    # A vertical that was not recorded is none.
+    data = np.zeros((3, n))
+    for axis, (_, trace, _) in rows.items():
+        data["xyz".index(axis)] = trace.data[first[axis] : first[axis] + n]
     return data, float(dt), first

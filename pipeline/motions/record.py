@@ -41,6 +41,9 @@ Digest = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
 Unit = Literal["m/s2", "cm/s2", "mm/s2", "gal", "g", "mg"]
 
 
+NO_VERTICAL = "no vertical component was recorded: the motion has none"
+"""The step of a record with vertical = "absent"."""
+
 _RAW_ONLY = ("response", "baseline", "pre_event_s", "highpass_hz", "lowpass_hz")
 """Keys of what is done to raw records only."""
 
@@ -107,10 +110,11 @@ class BaselineTable(Table):
 
 
 class Record(Table):
-    """One three-component record and what is to be done to it.
+    """One record of three components, or of two and no vertical, and what is to be done to it.
 
     files      : paths inside the site's folder; `response` is their StationXML, where they hold counts
     components : file name, channel code or full channel id -> axis and orientation; x, y and z once each
+    vertical   : "absent" where no vertical was recorded: components are x and y then, and the motion has no vertical
     units      : only where the file itself does not say
     processed  : whether the agency has filtered it already; such a record is never filtered again.  Left out, the
                  files' headers say it
@@ -135,6 +139,11 @@ class Record(Table):
                 {"not": {"required": ["scale_to_pga_g", "scale_to_target"]}},
                 {"not": {"required": ["units", "response"]}},
                 {
+                    "if": {"required": ["vertical"]},
+                    "then": {"properties": {"components": {"maxProperties": 2}}},
+                    "else": {"properties": {"components": {"minProperties": 3}}},
+                },
+                {
                     "if": {"properties": {"processed": {"const": True}}, "required": ["processed"]},
                     "then": {"not": {"anyOf": [{"required": [key]} for key in _RAW_ONLY]}},
                 },
@@ -145,7 +154,8 @@ class Record(Table):
     name: Text
     files: tuple[FileName, ...] = Field(min_length=1)
     response: FileName | None = None
-    components: dict[Text, Component] = Field(min_length=3, max_length=3)
+    components: dict[Text, Component] = Field(min_length=2, max_length=3)
+    vertical: Literal["absent"] | None = None
     units: Unit | None = None
     processed: bool | None = None
     scale: float | None = Field(default=None, gt=0.0)
@@ -183,8 +193,14 @@ class Record(Table):
         if len(set(self.all_files)) < len(self.all_files):
             raise InputError("files: a file is named twice; name each file once")
         axes = sorted(c.axis for c in self.components.values())
-        if axes != ["x", "y", "z"]:
-            raise InputError(f"components: the axes are {', '.join(axes)}; give each of x, y and z exactly once")
+        wanted = ["x", "y"] if self.vertical else ["x", "y", "z"]
+        if axes != wanted:
+            remedy = "give each of x, y and z exactly once"
+            if self.vertical:
+                remedy = 'with vertical = "absent" they are x and y; drop that key, or the vertical component'
+            elif axes == ["x", "y"]:
+                remedy += ', or say vertical = "absent" where no vertical was recorded'
+            raise InputError(f"components: the axes are {', '.join(axes)}; {remedy}")
         given = [key for key in ("scale", "scale_to_pga_g", "scale_to_target") if getattr(self, key) is not None]
         if len(given) > 1:
             raise InputError(f"{' and '.join(given)} exclude each other; keep one")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -14,17 +15,27 @@ from pipeline.motions.errors import Judgement, refusal
 from pipeline.motions.intensity import measures
 from pipeline.motions.manifest import MANIFEST, SiteTable, load_manifest, manifest_file
 from pipeline.motions.processing import EAST
+from pipeline.motions.record import NO_VERTICAL
 from pipeline.records import Motion
 from pipeline.resources import replacing
 
 
-def write_site(folder: Path, motions: Sequence[tuple[str, Motion]], site: SiteTable, *, licence: str, why: str) -> Path:
+def write_site(
+    folder: Path,
+    motions: Sequence[tuple[str, Motion]],
+    site: SiteTable,
+    *,
+    licence: str,
+    why: str,
+    dry_run: bool = False,
+) -> Path:
     """Write motions as CSV files with a manifest beside them, and return the manifest.
 
     motions : each with the name of its level; a level's motions are combined by the largest demand
     site    : where they belong; its x axis is theirs
     licence : where a motion's source does not end in its own ("...; licence: ...")
     why     : a comment at the top of the manifest, such as the command that wrote it
+    dry_run : write the same to a folder that goes at once, and return where the manifest would be
     error   : every sample is written with 17 digits and read back bit for bit; the time step to its last digit.  A
               velocity that a record starts with has no place in the files: its PGV is kept as `v_max_cm_s`
     raises  : MotionError where the folder has a manifest already
@@ -32,6 +43,10 @@ def write_site(folder: Path, motions: Sequence[tuple[str, Motion]], site: SiteTa
     if (folder / MANIFEST).exists():
         remedy = "choose another folder, or remove it"
         raise refusal(folder, MANIFEST, "is there already, and nothing is overwritten", remedy)
+    if dry_run:
+        with TemporaryDirectory(prefix="kouros-dry-run-") as name:
+            write_site(Path(name), motions, site, licence=licence, why=why)
+        return folder / MANIFEST
     folder.mkdir(parents=True, exist_ok=True)
     document = tomlkit.document()
     document.add(tomlkit.comment(why))
@@ -63,7 +78,10 @@ def _record(folder: Path, file: str, motion: Motion, azimuth: float, licence: st
         "HN2": {"axis": "y"},
         "HNZ": {"axis": "z"},
     }
-    for row, component in zip(motion.acceleration, components.values(), strict=True):
+    absent = NO_VERTICAL in motion.steps
+    if absent:
+        del components["HNZ"]
+    for row, component in zip(motion.acceleration, components.values(), strict=not absent):
         if not row.any():
             component["silent"] = True
     # What was judged once, or is a test signal, is not judged again.
@@ -73,6 +91,7 @@ def _record(folder: Path, file: str, motion: Motion, azimuth: float, licence: st
         "name": motion.name[:500],
         "files": [file],
         "components": components,
+        **({"vertical": "absent"} if absent else {}),
         "processed": True,
         "accept": {"clipping": f"written by Kouros: {told}", "cut_off": f"written by Kouros: {told}"},
         "source": (source or "Kouros")[:500],

@@ -4,6 +4,7 @@ import re
 from collections.abc import Mapping
 from math import inf, isfinite
 
+from pipeline.motions.record import NO_VERTICAL
 from pipeline.records import Chart, MotionSummary
 from pipeline.report.describe import approval, motion_anchor
 from pipeline.report.language import _
@@ -24,11 +25,14 @@ def motion_view(motion: MotionSummary, charts: Mapping[str, Chart], units: Units
     """
     table: list[tuple[str, tuple[str, ...]]] = []
     used: set[str] = set()
+    flat = NO_VERTICAL in motion.steps
     for stem, title, unit in _ROWS:
         cells = [(f"{stem}{end}", motion.measures.get(f"{stem}{end}")) for end in _ENDS]
         if any(value is not None for _, value in cells):
             used.update(key for key, _ in cells)
-            texts = tuple("–" if value is None else _write(key, value, unit, units) for key, value in cells)
+            # A vertical that nobody recorded is not a vertical of zero.
+            told = [(key, None if flat and key.endswith("_z") else value) for key, value in cells]
+            texts = tuple("–" if value is None else _write(key, value, unit, units) for key, value in told)
             table.append((title or _("Arias intensity"), texts))
     rest = {key: value for key, value in motion.measures.items() if key not in used}
     mine = [key for key in charts if motion.hash[:16] in key]

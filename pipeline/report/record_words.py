@@ -2,6 +2,7 @@
 
 from pipeline.motions.inspection import Inspection
 from pipeline.motions.pulses import WaveletPulse
+from pipeline.motions.record import NO_VERTICAL
 from pipeline.report.text import clean, count
 from pipeline.report.units import Units, significant
 
@@ -37,17 +38,18 @@ def origin(one: Inspection) -> tuple[str, str]:
 
 def processing(one: Inspection) -> str:
     """Say in one sentence what was done to the record here."""
+    flat = " No vertical component was recorded: the motion has none." if NO_VERTICAL in one.motion.steps else ""
     high, low = one.corners
     if not one.filtered:
         return (
             "Processed by its source and left alone: no baseline correction and no filter was applied here, "
-            "so there is no before to compare with."
+            f"so there is no before to compare with.{flat}"
         )
     above = "" if low is None else f", low-pass at {low:.4g} Hz"
     if high is None:
         kept = "a permanent displacement is kept, and long-period noise with it"
-        return f"Corrected here without a high-pass{above}: {kept}."
-    return f"Filtered here after its baseline was corrected: high-pass at {high:.4g} Hz{above}."
+        return f"Corrected here without a high-pass{above}: {kept}.{flat}"
+    return f"Filtered here after its baseline was corrected: high-pass at {high:.4g} Hz{above}.{flat}"
 
 
 def corner_reason(one: Inspection) -> str:

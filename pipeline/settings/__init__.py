@@ -17,6 +17,9 @@ DATABASE_VARIABLE = "KOUROS_DATABASE"
 """Environment variable that names the database, with its password, in place of the file's."""
 
 
+KEPT = ".kouros-kept"
+"""Folder beside the settings in which processed motions, charts and measurements are kept between nights."""
+
 _SECRETIVE = re.compile(r"hooks(\..*)?|inventory\.database|collection\.source")
 """Keys whose values are not repeated in messages: what stands in the wrong place may be a secret."""
 
@@ -166,11 +169,19 @@ class Settings(_Part):
     retention: Retention = Retention()
     limits: Limits = Limits()
     home: Path = Field(default=Path(), exclude=True)
+    rehearsal: Path | None = Field(
+        default=None, exclude=True, description="folder of a dry run, which writes there only"
+    )
     demonstration: bool = Field(default=False, description="say on every page that this is a demonstration")
 
     def path(self, text: str) -> Path:
         """Return a path of the file, relative to the file's own folder."""
         return self.home / Path(text).expanduser()
+
+    @property
+    def kept(self) -> Path:
+        """The folder in which processed motions, charts and measurements are kept between nights."""
+        return (self.rehearsal or self.home) / KEPT
 
     @property
     def database(self) -> str:
@@ -197,8 +208,9 @@ def load_settings(file: str | Path) -> Settings:
         ) from problem
     except (tomllib.TOMLDecodeError, RecursionError) as problem:
         raise SettingsError(f"{where}: is not valid TOML ({problem}); mend that line") from problem
-    if "home" in data:
-        raise SettingsError(f"{where}: key 'home' is not a setting; remove it")
+    for key in ("home", "rehearsal"):
+        if key in data:
+            raise SettingsError(f"{where}: key {key!r} is not a setting; remove it")
     try:
         return Settings(**data, home=where.resolve().parent)
     except ValidationError as problem:

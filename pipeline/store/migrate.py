@@ -45,7 +45,7 @@ def upgrade(engine: Engine) -> None:
     raises : StoreError where the database was made by a newer Kouros, or a migration fails
     """
     known = revisions()
-    if _refuse_newer(engine, current(engine), known) == known[-1]:
+    if refuse_newer(engine, current(engine), known) == known[-1]:
         return
     # Only here, because alembic is slow to import and the tables are nearly always at head.
     from alembic import command
@@ -57,7 +57,7 @@ def upgrade(engine: Engine) -> None:
     try:
         with engine.begin() as connection:
             _wait_for_others(connection)
-            if _refuse_newer(engine, _current(connection), known) == known[-1]:
+            if refuse_newer(engine, _current(connection), known) == known[-1]:
                 return
             config.attributes["connection"] = connection
             command.upgrade(config, "head")
@@ -66,6 +66,19 @@ def upgrade(engine: Engine) -> None:
             f"{_where(engine)} could not be brought to revision {known[-1]} and stays as it was: {error}; "
             "restore a backup, or name an empty database in kouros.toml"
         ) from error
+
+
+def refuse_newer(engine: Engine, revision: str | None, known: tuple[str, ...]) -> str | None:
+    """Return the revision of the database, if this version knows it, or there is none.
+
+    raises : StoreError where a newer Kouros made it
+    """
+    if revision is not None and revision not in known:
+        raise StoreError(
+            f"{_where(engine)} has the revision {revision!r}, which this version of Kouros does not know "
+            f"(its newest is {known[-1]}): a newer Kouros made it; upgrade kouros on this machine"
+        )
+    return revision
 
 
 def _folder() -> Path:
@@ -81,15 +94,6 @@ def _current(connection: Connection) -> str | None:
         return None
     found: str | None = connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
     return found
-
-
-def _refuse_newer(engine: Engine, revision: str | None, known: tuple[str, ...]) -> str | None:
-    if revision is not None and revision not in known:
-        raise StoreError(
-            f"{_where(engine)} has the revision {revision!r}, which this version of Kouros does not know "
-            f"(its newest is {known[-1]}): a newer Kouros made it; upgrade kouros on this machine"
-        )
-    return revision
 
 
 def _wait_for_others(connection: Connection) -> None:

@@ -349,3 +349,22 @@ def test_the_field_limit_of_other_readers_is_left_alone(read: Read) -> None:
     before = csv.field_size_limit()
     read(HEADER + GOOD)
     assert csv.field_size_limit() == before
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("approx. two feet", "a number in words is not read: 'two feet'"),
+        ("H 10 cm; width one and a half inches", "a number in words is not read: 'one and a half inches'"),
+        ("see file", "the text 'see file' holds no dimension that can be read"),
+        ("No. 12", "the text 'No. 12' holds no dimension that can be read"),
+        ("Dimensions variable", None),
+        ("10 min.", None),
+        ("H 10 cm, four handles", None),
+        ("-", None),
+    ],
+)
+def test_a_text_from_which_nothing_is_read_is_named(text: str, told: str | None, read: Read) -> None:
+    content = f'number,location,title,height,mass,size\n1,Hall,Cup,,,"{text}"\n'
+    (item,) = read(content, MAPPING + '[dimensions]\ncolumns = ["size"]\n').items
+    assert [p.message for p in item.problems if p.field == "dimensions"] == ([] if told is None else [told])

@@ -76,7 +76,6 @@ BAD = [
     (("site", "latitude"), "34"),
     (("site", "name"), ""),
     (("site", "name"), "a\u001b[31mred"),
-    (("level",), []),
     (("level", 0, "record"), []),
     (("level", 0, "combine"), "median"),
     (("level", 0, "return_period_years"), 0),

@@ -110,7 +110,7 @@ def test_what_systemd_would_start(placed: Callable[[str], str], tmp_path: Path) 
         text=True,
         check=False,
     )
-    assert str(done.returncode) == service["SuccessExitStatus"], done.stderr
+    assert done.returncode == 0, done.stderr
     assert all(line.startswith('{"time": ') for line in done.stderr.splitlines())
     assert a_night_was_made(tmp_path)
 

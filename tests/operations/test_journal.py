@@ -119,6 +119,21 @@ def test_a_database_that_is_a_plain_file_is_no_secret() -> None:
     )
 
 
+def test_a_short_password_is_hidden_as_a_word_and_not_inside_words() -> None:
+    hide = hider(None, {"KOUROS_DATABASE": "postgresql://kouros:pi@server/museum"})
+    assert hide("compiled code, the API, spinning, pi3, 4pi") == "compiled code, the API, spinning, pi3, 4pi"
+    # Wherever it may stand for itself: an address, a field, quoted, escaped, a line of its own, beside other letters.
+    for said in (
+        "postgresql://kouros:pi@server", "(pi)", "user=kouros,pwd:pi;", "'pi'", "pi", "a pi.", "kouros_pi", "pi/museum",
+        "kouros%3Api%40server", r"refused\npi", r"\x1bpi", r"\u2028pi", "\npi\n", "\u00abpi\u00bb", "pi\u3002",
+    ):  # fmt: skip
+        assert "pi" not in hide(said), said
+    odd = hider(None, {"KOUROS_TOKEN": "-x@"})
+    assert odd("a-x@b") == "a***b"
+    whole = hider(None, {"KOUROS_TOKEN": "piccolo"})
+    assert whole("xpiccolox") == "x***x"
+
+
 def test_a_log_that_cannot_be_written_is_said_and_the_night_goes_on(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -19,6 +19,13 @@ _SAID = re.compile(r"""(?i)\b(passw(?:or)?d|pwd|secret|token)(\s*[=:]\s*)('[^']*
 _INSIDE = re.compile(r"(://[^:/@\s]*):[^@\s]*@")
 _MESSAGE_LIMIT = 300
 
+SHORT = 6
+"""Letters below which a secret is looked for as a word of its own: "pi" is in "compiled" by chance."""
+
+_BEFORE = r"(?:(?<![^\W_])|(?<=%[0-9A-Fa-f]{2})|(?<=\\[abfnrtv])|(?<=\\x[0-9a-f]{2})|(?<=\\u[0-9a-f]{4}))"
+_AFTER = r"(?![^\W_])"
+"""Where a word begins: behind no letter or digit, but for those of an escaped character (%3A, \\n, \\x1b, \\u2028)."""
+
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Address:
@@ -44,7 +51,12 @@ class Address:
 def hidden(text: str, secrets: Iterable[str] = ()) -> str:
     """Return a text with *** for these secrets, for passwords in addresses, and for what is said to be a password."""
     for secret in secrets:
-        text = text.replace(secret, "***")
+        if len(secret) < SHORT:
+            before = _BEFORE if secret[:1].isalnum() else ""
+            after = _AFTER if secret[-1:].isalnum() else ""
+            text = re.sub(f"{before}{re.escape(secret)}{after}", "***", text)
+        else:
+            text = text.replace(secret, "***")
     return _INSIDE.sub(r"\1:***@", _SAID.sub(r"\1\2***", text))
 
 

@@ -22,6 +22,10 @@ TIMEOUT = 600.0
 """Seconds that a database may take, where the mapping says nothing."""
 
 
+_WORKBOOK = b"PK\x03\x04"
+"""How a workbook begins: it is a ZIP archive."""
+
+
 @dataclass(frozen=True)
 class Opened:
     """A source that is open: its name for messages, its rows (the header first), and how to tell its digest.
@@ -62,6 +66,11 @@ def open_source(where: str | Path, mapping: Mapping, limits: Limits = STANDARD) 
         digest = _digest(binary, path.name)
         source = mapping.source
         if source.format in ("csv", "tsv"):
+            if binary.peek(4)[:4] == _WORKBOOK:
+                raise CollectionError(
+                    f"{path.name}: an Excel workbook, and the mapping {mapping.name} reads {source.format}; say "
+                    'format = "xlsx" in its [source], or let `kouros import FILE --guess` propose a mapping'
+                )
             rows = DelimitedRows(binary, path.name, source.delimiter or "\t", source.encoding or "utf-8")
             yield Opened(path.name, rows, lambda: digest, rows)
         else:

@@ -45,6 +45,9 @@ FETCH = 200
 LOCK_SECONDS = 10.0
 """How long a locked SQLite file is waited for."""
 
+_OWN_SCHEMAS = ("information_schema", "pg_", "mysql", "performance_schema", "sys")
+"""How the schemas begin that a server keeps for itself."""
+
 _STEPS = 10_000
 """Instructions of SQLite between two looks at the clock."""
 
@@ -127,6 +130,27 @@ def read_database(
     except (SQLAlchemyError, OSError, UnicodeError, ImportError, _TimedOutError) as problem:
         # Not chained: what the driver says may hold the secrets.
         raise _explained(problem, address, reached, timeout_seconds) from None
+
+
+def tables(url: str, *, timeout_seconds: float = 60.0, environment: Mapping[str, str] | None = None) -> tuple[str, ...]:
+    """Return the tables and views that a museum's database lists: of the default schema by name, then schema.name.
+
+    raises : as `read_database`
+    """
+    address = expand_secrets(url, environment)
+    try:
+        with ExitStack() as stack, warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # on types that SQLAlchemy does not know, which do not matter here
+            inspector = inspect(_open(address, _Clock(timeout_seconds), stack))
+            found = sorted({*inspector.get_table_names(), *inspector.get_view_names()})
+            if address.url.get_backend_name() != "sqlite":
+                for schema in sorted(inspector.get_schema_names()):
+                    if schema != inspector.default_schema_name and not schema.startswith(_OWN_SCHEMAS):
+                        names = {*inspector.get_table_names(schema), *inspector.get_view_names(schema)}
+                        found += sorted(f"{schema}.{name}" for name in names)
+            return tuple(found)
+    except (SQLAlchemyError, OSError, UnicodeError, ImportError, _TimedOutError) as problem:
+        raise _explained(problem, address, 0, timeout_seconds) from None
 
 
 def _let_go(cursor: Any) -> None:

@@ -80,6 +80,23 @@ def read_sheet(
             yield from _rows(page, file, header_row, found)
 
 
+def visible_sheets(path: Path) -> tuple[str, ...]:
+    """Return the names of a workbook's sheets that are not hidden, in their order.
+
+    raises : as `read_sheet` for the workbook itself
+    """
+    with ExitStack() as stack:
+        try:
+            stream = stream_of(path, path.name, stack)
+            check_kind(stream, path.name)
+            check_archive(stack.enter_context(zipfile.ZipFile(stream)), path.name)
+            return tuple(page.title for page in _load(stream, path.name).worksheets if page.sheet_state == "visible")
+        except CollectionError:
+            raise
+        except _DAMAGE as problem:
+            raise _damaged(path.name, problem) from problem
+
+
 def _load(stream: BinaryIO, file: str) -> Any:
     import openpyxl
 
@@ -98,7 +115,10 @@ def _page(book: Any, file: str, sheet: str | None) -> Any:
         visible = [page for page in book.worksheets if page.sheet_state == "visible"]
         if len(visible) == 1:
             return visible[0]
-        raise CollectionError(f"{file}: {len(visible)} visible sheets; say which one to read. Its sheets are {there}")
+        raise CollectionError(
+            f'{file}: {len(visible)} visible sheets; say which one to read: sheet = "its name" in the mapping\'s '
+            f"[source], which `kouros import FILE --guess` writes. Its sheets are {there}"
+        )
     for page in book.worksheets:
         if page.title == sheet:
             return page

@@ -241,7 +241,7 @@ def several() -> io.BytesIO:
 def test_a_sheet_is_chosen_by_its_name() -> None:
     assert [row.cells for row in read(several(), sheet="Objects")] == [["a"]]
     refused(several(), "has no sheet 'objects'; name one of its sheets: 'Notes', 'Objects', 'Old'", sheet="objects")
-    refused(several(), "2 visible sheets; say which one to read. Its sheets are 'Notes'")
+    refused(several(), "2 visible sheets; say which one to read: sheet = .*Its sheets are .Notes.")
 
 
 def test_a_path_is_opened_and_closed(tmp_path: Path) -> None:

@@ -1,0 +1,78 @@
+"""A dry run: the same job on what is there, in a workspace that nothing can be written to."""
+
+import shutil
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from pipeline.errors import InputError
+
+if TYPE_CHECKING:
+    from pipeline.collection.database import Database
+    from pipeline.settings import Settings
+
+NOTHING = "dry run: nothing was written"
+"""The last line of every dry run."""
+
+SCRATCH = "kouros.sqlite"
+"""The database of a rehearsal where there is none yet."""
+
+
+class DryRunWarning(UserWarning):
+    """What the real one would do besides."""
+
+
+@contextmanager
+def rehearsed(settings: "Settings", dry_run: bool = True) -> Iterator["Settings"]:
+    """Lend the settings of a rehearsal: the database can be read only, what is kept between nights is a copy, no log.
+
+    What a rehearsal keeps goes into a temporary folder, and with it.  The copy is of what a night may use, so that a
+    dry run takes no longer than the night: `[charts] megabytes` bounds it.
+    dry_run : False: the settings as they are, for callers that are asked for one or the other
+    """
+    if not dry_run or settings.rehearsal is not None:
+        yield settings
+        return
+    with TemporaryDirectory(prefix="kouros-dry-run-") as name:
+        folder = Path(name)
+        # Without the copy a dry run only takes longer.
+        with suppress(OSError, shutil.Error):
+            if settings.kept.is_dir():
+                shutil.copytree(settings.kept, folder / settings.kept.name, copy_function=shutil.copyfile)
+        logs = settings.logs.model_copy(update={"file": ""})
+        yield settings.model_copy(update={"rehearsal": folder, "logs": logs})
+
+
+def read_only(settings: "Settings", folder: Path) -> "Database":
+    """Open the database of the settings so that nothing can be written to it; where it is still empty, another one.
+
+    folder : of the rehearsal; where nothing was imported yet the job may work on an empty database there, which goes
+             with it
+    raises : UsageError where the tables are not those of this version: a dry run does not change them
+    """
+    from pipeline.collection.database import database_url, open_database, open_for_reading
+    from pipeline.collection.inventory import latest_import
+    from pipeline.store import migrate
+
+    url = database_url(settings.database)
+    shown = url.render_as_string(hide_password=True) if "://" in settings.database else settings.database
+    there = None
+    if url.get_backend_name() != "sqlite" or (url.database and Path(url.database).is_file()):
+        engine = open_for_reading(url)
+        there = migrate.current(engine)
+        if there == migrate.revisions()[-1] and latest_import(engine) is not None:
+            return engine
+    if there is None:
+        warnings.warn(f"{shown} has no tables of Kouros yet: the real one makes them", DryRunWarning, stacklevel=2)
+    elif there != migrate.revisions()[-1]:
+        migrate.refuse_newer(engine, there, migrate.revisions())
+        raise InputError(
+            f"{shown} has tables of an earlier Kouros (revision {there}, this one's is {migrate.revisions()[-1]}), and "
+            "a dry run does not change them: `kouros check` brings them up to date; keep a copy of the database"
+        )
+    engine = open_database(folder / SCRATCH)
+    migrate.upgrade(engine)
+    return engine
