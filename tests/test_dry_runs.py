@@ -113,8 +113,8 @@ DRY: Sequence[tuple[Sequence[str], int, str]] = (
     (["import", "--presets"], 0, "carnegie"),
     (["import", "export.csv", "--guess"], 0, "4 rows, 4 objects; 4 of them as understood"),
     (["import", "sqlite:///tms.sqlite", "--guess"], 0, "2 rows, 2 objects"),
-    (["run"], 0, "objects: 3 on display"),
-    (["run", "--gallery", "B"], 0, "objects: 2 on display"),
+    (["run"], 0, "3  objects on display"),
+    (["run", "--gallery", "B"], 0, "2  objects on display"),
     (["run", "--object", "99"], 2, "there is no object '99'"),
     (["run", "--resume", "--json"], 0, '"objects": 3'),
     (["run", "--strict"], 3, "cannot be assessed"),
@@ -129,7 +129,7 @@ DRY: Sequence[tuple[Sequence[str], int, str]] = (
     (["decide", "--list"], 0, "1: risk accepted"),
     (["init", "other"], 0, "other"),
     (["init"], 2, "kouros.toml is there already"),
-    (["demo", "--folder", "."], 0, "objects: 3 on display"),
+    (["demo", "--folder", "."], 0, "3  objects on display"),
     (["motions", "synthesise", "sine", "amplitude=2", "frequency=2", "cycles=2", "--out", "new"], 0, "manifest.toml"),
     (["motions", "synthesise", "sine", "amplitude=2", "--out", "new"], 2, "sine needs frequency"),
     (["motions", "process", "shaking", "--out", "new"], 0, "manifest.toml"),
@@ -197,7 +197,7 @@ def test_a_first_dry_run_makes_no_database_and_assesses_the_source(museum: Path,
     shutil.copytree(museum / "shaking", tmp_path / "shaking")
     before = digest(tmp_path)
     code, out, warned = say(tmp_path, "run", "--dry-run")
-    assert (code, "objects: 4 on display" in out, "has no tables of Kouros yet" in warned) == (0, True, True)
+    assert (code, "4  objects on display" in out, "has no tables of Kouros yet" in warned) == (0, True, True)
     code, out, warned = say(tmp_path, "import", "export.csv", "--dry-run")
     assert (code, "4 objects (4 new" in out, "has no tables of Kouros yet" in warned) == (0, True, True)
     assert digest(tmp_path) == before
@@ -249,7 +249,7 @@ def test_a_dry_run_reads_a_server_only(
         (["import", "short.csv", "--shrink-limit", "1"], "3 gone"),
         (["import", "sheet.csv", "--sheet"], "1 object would be given"),
         (["import", "--return-to", "1"], "as after import 1"),
-        (["run"], "objects: 4 on display"),
+        (["run"], "4  objects on display"),
         (["decide", "2", "accept", "--why", "w", "--who", "A"], "risk accepted"),
     ):
         before = digest(folder)

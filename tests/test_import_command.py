@@ -64,7 +64,7 @@ def test_a_guess_is_shown_and_written_where_told(run: Run, tmp_path: Path) -> No
     copy(DATA / "tms_rows_cut_off.csv", tmp_path / "tms.csv")
     shown = run("import", "tms.csv", "--guess")
     assert shown.returncode == 0
-    assert "26 rows, 25 objects; ten of them as understood:" in shown.stdout
+    assert "26 rows, 25 objects; 10 of them as understood:" in shown.stdout
     assert "76.37.5.K | Location not recorded | bracelet 'Single-coil Bracelet' bronze" in shown.stdout
     # Sheet, from its own columns of the file: 19 7/8 x 13 11/16 in.
     assert "81.12.1.E | Location not recorded | print" in shown.stdout
@@ -81,7 +81,7 @@ def test_a_guess_is_shown_and_written_where_told(run: Run, tmp_path: Path) -> No
 def test_lido_and_a_database_by_their_mappings(run: Run, tmp_path: Path) -> None:
     sizes = measurements(measured("Höhe", "32,5"), measured("Breite", "12"))
     (tmp_path / "museum.xml").write_bytes(wrap(record(number="L 1", sizes=sizes, language="de")))
-    assert "1 rows, 1 objects" in run("import", "museum.xml", "--mapping", "lido").stdout
+    assert "1 row, 1 object" in run("import", "museum.xml", "--mapping", "lido").stdout
     engine = create_engine(f"sqlite:///{tmp_path / 'museum.sqlite'}")
     with engine.begin() as connection:
         connection.execute(text('CREATE TABLE "o; DROP" (nr TEXT, room TEXT, size TEXT)'))
