@@ -14,7 +14,7 @@ from pipeline.classify import classify, object_classes
 from pipeline.cli.console import Console, summary_lines
 from pipeline.collection.database import open_database
 from pipeline.collection.record import plausible
-from pipeline.jobs import desk
+from pipeline.jobs import assessing, desk
 from pipeline.jobs.doctor import diagnose
 from pipeline.jobs.faults import LIKE, apart
 from pipeline.jobs.journal import journal
@@ -246,7 +246,7 @@ def test_a_fault_of_ours_costs_one_object_its_answer_for_one_night(
     settings = museum(tmp_path, few()).model_copy(update={"logs": Logs(file="log.jsonl")})
     with monkeypatch.context() as broken, journal(settings, str):
         for name in STAGES:
-            where = Pen if name == "draw" else desk
+            where = {"draw": Pen, "encode": desk}.get(name, assessing)
             broken.setattr(where, name, failing(name, getattr(where, name)))
         summary = night(settings)
     assert summary.faults == len(STAGES)
@@ -265,7 +265,7 @@ def test_a_fault_of_ours_costs_one_object_its_answer_for_one_night(
         # What came of it before it failed is kept.
         assert failed[number].assessed is (name in ("wishes", "neighbours"))
     with monkeypatch.context() as broken:
-        broken.setattr(desk, "classify", failing("classify", desk.classify))
+        broken.setattr(assessing, "classify", failing("classify", assessing.classify))
         looked = {one.what: one for one in diagnose(tmp_path / "kouros.toml")}["objects"]
     assert looked.state == "warning"
     assert "fails on 1 of 12 objects, such as 0: ValueError" in looked.message
@@ -288,7 +288,7 @@ def test_a_night_in_which_every_object_fails_publishes_nothing(tmp_path: Path, m
         raise ZeroDivisionError("division by zero")
 
     with monkeypatch.context() as broken:
-        broken.setattr(desk, "assess", every)
+        broken.setattr(assessing, "assess", every)
         with pytest.raises(RuntimeError, match=r"failed on 36 objects: ZeroDivisionError"):
             night(settings)
     assert not (tmp_path / "reports" / "latest").exists()

@@ -12,7 +12,7 @@ from pipeline.collection.catalogue import catalogue
 from pipeline.collection.listing import Listed, Listing
 from pipeline.collection.record import kind_of
 from pipeline.execute.crew import Alone
-from pipeline.jobs import desk, rounds
+from pipeline.jobs import assessing, rounds
 from pipeline.jobs.briefing import popular
 from pipeline.jobs.importing import import_collection
 from pipeline.jobs.sheets import Part
@@ -20,7 +20,7 @@ from pipeline.jobs.twins import Twins, as_own, likeness
 from pipeline.jobs.workspace import HISTORIES, open_workspace
 from pipeline.mitigate.installed import Placed
 from pipeline.models import model_named
-from pipeline.records import Item, Problem, Provenance, Support
+from pipeline.records import Assessment, Item, Problem, Provenance, Support
 from pipeline.records.scene import Origin
 from pipeline.settings import load_settings
 from tests.test_unchanged_nights import found, museum, night, rows, write
@@ -79,7 +79,7 @@ def test_of_too_many_kinds_the_first_are_forgotten() -> None:
     twins = Twins(most=2)
     scene = classify(CUP)
     for kind in "abc":
-        twins.note(kind, desk.Assessment(scene, (), ()), {})
+        twins.note(kind, Assessment(scene, (), ()), {})
     assert twins.get("a") is None
     assert twins.get("c") is not None
 
@@ -88,13 +88,13 @@ def test_of_too_many_kinds_the_first_are_forgotten() -> None:
 def assessed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The numbers of the objects that anything was run for."""
     numbers: list[str] = []
-    true = desk._assessed
+    true = assessing._assessed
 
-    def noted(brief: desk.Brief, storey: desk.Storey, objects: list[Placed]) -> list[desk.Known]:
+    def noted(brief: assessing.Brief, storey: assessing.Storey, objects: list[Placed]) -> list[assessing.Known]:
         numbers.extend(one.scene.item.object_number for one in objects)
         return true(brief, storey, objects)
 
-    monkeypatch.setattr(desk, "_assessed", noted)
+    monkeypatch.setattr(assessing, "_assessed", noted)
     return numbers
 
 
@@ -156,7 +156,7 @@ def test_under_other_shaking_or_other_settings_nothing_is_taken_over(tmp_path: P
 def test_why_models_were_left_out_is_taken_over_too() -> None:
     scene = replace(classify(CUP), skipped={"Stress": "it is whole"})
     twin = classify(replace(CUP, object_number="2", gallery="Room 2"))
-    assert as_own(twin, desk.Assessment(scene, (), ())).scene == replace(twin, skipped={"Stress": "it is whole"})
+    assert as_own(twin, Assessment(scene, (), ())).scene == replace(twin, skipped={"Stress": "it is whole"})
 
 
 class Pair(Alone):

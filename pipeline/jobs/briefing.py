@@ -16,7 +16,8 @@ from pipeline.collection.inventory import latest_import
 from pipeline.collection.listing import Listing
 from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
-from pipeline.jobs.desk import Brief, ChartErrand, motions_of
+from pipeline.jobs.brief import Brief, motions_of
+from pipeline.jobs.desk import ChartErrand
 from pipeline.jobs.faults import sound
 from pipeline.jobs.levels import floors_of, notes
 from pipeline.jobs.pictures import Pictures

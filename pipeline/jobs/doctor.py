@@ -143,8 +143,8 @@ def _inventory(workspace: Workspace) -> tuple[str, str]:
 
 def _objects(workspace: Workspace) -> tuple[str, str]:
     """Try on every object what comes before the models: its class, its numbers, its measures, what is to be run."""
+    from pipeline.jobs.assessing import place
     from pipeline.jobs.deciding import decided
-    from pipeline.jobs.desk import place
     from pipeline.jobs.faults import apart, fault
     from pipeline.plan import plan
 

@@ -11,9 +11,9 @@ from pipeline.climb import AUTO, Climb, examine
 from pipeline.collection.inventory import read_inventory
 from pipeline.execute import Threads
 from pipeline.findings import findings
+from pipeline.jobs.assessing import place
 from pipeline.jobs.briefing import assessed, popular
 from pipeline.jobs.deciding import Decided, decided
-from pipeline.jobs.desk import place
 from pipeline.jobs.levels import storeys
 from pipeline.jobs.nightly import named
 from pipeline.jobs.workspace import Workspace, charts_of

@@ -15,7 +15,8 @@ from pipeline.collection.listing import Listing
 from pipeline.collection.record import family_of
 from pipeline.execute.crew import Crew, cores, crew
 from pipeline.execute.memory import give_back
-from pipeline.jobs.desk import Batch, Brief, ChartErrand, Done, Errand, KindErrand, build, find_kinds, stand, work
+from pipeline.jobs.brief import Brief
+from pipeline.jobs.desk import Batch, ChartErrand, Done, Errand, KindErrand, build, find_kinds, stand, work
 from pipeline.jobs.doubts import now, standing
 from pipeline.jobs.faults import Fault
 from pipeline.jobs.journal import note

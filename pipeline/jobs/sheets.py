@@ -12,7 +12,7 @@ from functools import cache
 from itertools import accumulate
 
 from pipeline.collection.listing import Listed, Listing, Run
-from pipeline.jobs.desk import Brief
+from pipeline.jobs.brief import Brief
 from pipeline.jobs.levels import Storey, floor_name
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.records import Decision, DecisionKind

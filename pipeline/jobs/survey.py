@@ -12,8 +12,8 @@ from pipeline.collection.inventory import Difference, add_sheet, read_inventory
 from pipeline.collection.mapping import Mapping, load_mapping
 from pipeline.collection.reading import Reading, read_items
 from pipeline.execute import Threads
+from pipeline.jobs.assessing import place
 from pipeline.jobs.deciding import decided
-from pipeline.jobs.desk import place
 from pipeline.jobs.faults import Fault, apart, fault
 from pipeline.jobs.levels import storeys
 from pipeline.jobs.workspace import Workspace
