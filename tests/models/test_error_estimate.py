@@ -11,8 +11,12 @@ from scipy.integrate import solve_ivp
 from shaking import along_x, random_motion, resampled
 
 from pipeline import Motion, respond
-from pipeline.models import MODELS
+from pipeline.models import MODELS, model_named
+from pipeline.models.flips import RATIO, integrate
+from pipeline.models.rocking import bodies
+from pipeline.motions.synthesis import sine
 from pipeline.quantities import Array, G
+from pipeline.response import prepare
 
 ROWS, MOTIONS = 40, 6
 
@@ -246,3 +250,47 @@ def test_what_hardly_slides_says_so(directions: int) -> None:
     mu = 3.0 / G / np.array([0.98, 0.999, 1.001, 1.02])
     told = respond("sliding", motion, friction_static=mu, directions=directions)["note"].str.contains("sensitive")
     assert told.tolist() == [False, True, True, False]
+
+
+def pushed(beyond: float) -> tuple[Motion, float, float]:
+    """Return samples 0.01 s apart of which one lifts a small block, by this share, and its half width and height."""
+    half_width, height = 0.0025, 0.08
+    shape = np.array([0.0, 0.1, 0.3, 0.5, 1.0 + beyond, 0.85, 0.36, 0.0, -0.2, -0.1, 0.0])
+    return along_x(shape * G * half_width / height, 0.01), half_width, height
+
+
+@pytest.mark.parametrize("fidelity", ["history", "reference"])
+@pytest.mark.parametrize("beyond", [0.01, 0.014, 0.02, 0.03, 0.05])
+def test_a_hop_within_one_step_is_covered(beyond: float, fidelity: str) -> None:
+    """Both steps of an estimate can take it alike: it covers what the same polygon shows with steps 64 times finer."""
+    motion, half_width, height = pushed(beyond)
+    body = {"half_width": half_width, "cg_height": height, "tail": 0.0}
+    row = respond("rocking", motion, fidelity=fidelity, **body).iloc[0]
+    want = respond("rocking", resampled(motion, 64), fidelity="reference", **body).iloc[0]["rotation_ratio"]
+    assert want > 0.0
+    assert abs(row["rotation_ratio"] - want) <= row["error"] + 1e-13 * want
+    assert row["error"] <= 1e-3 * want
+
+
+@pytest.mark.parametrize("beyond", [0.02, 0.05])
+def test_a_hop_by_an_independent_integrator(beyond: float) -> None:
+    motion, half_width, height = pushed(beyond)
+    row = respond("rocking", motion, fidelity="reference", half_width=half_width, cg_height=height, tail=0.0).iloc[0]
+    assert row["rotation_ratio"] == pytest.approx(rocked(motion, half_width, height), rel=1e-8)
+
+
+@pytest.mark.parametrize("fidelity", ["history", "reference"])
+def test_what_hangs_on_the_rate_at_which_a_body_rests_is_told(fidelity: str) -> None:
+    """Very slender blocks that a sine lifts by parts in ten thousand go on landing for longer than half its period:
+    put to rest at a hundredth of the usual rate they tip by up to 10,000 times as much.  None of those is silent."""
+    motion = sine(0.1, 2.0, 6.0, dt=0.01)
+    beyond = np.tile(np.geomspace(1e-4, 2e-3, 6), 2)
+    height = np.repeat([0.2, 0.5], 6)
+    half_width = height * np.abs(motion.acceleration[0]).max() / G / (1.0 + beyond)
+    found = respond("rocking", motion, fidelity=fidelity, half_width=half_width, cg_height=height)
+    body = bodies(prepare(model_named("rocking"), {"half_width": half_width, "cg_height": height}))
+    restless = integrate(motion.excitation(0.0), body, np.zeros(12), 8, rest=1e-6)[:, RATIO]
+    ratio, told = found["rotation_ratio"].to_numpy(), found["note"].str.contains("sensitive").to_numpy()
+    hangs = np.abs(restless - ratio) > found["error"].to_numpy()
+    assert (restless > 1000.0 * ratio).sum() >= 4
+    assert told[hangs].all()
