@@ -175,8 +175,8 @@ def _stretch(
             sn, cs = (math.sin(body[0]), math.cos(body[0])) if s > 0.0 else (math.sin(body[1]), math.cos(body[1]))
             if out[3] < 0.0:
                 out[3] = clock + t
-            elif clock + t < state[5] and out[7] < 0.0:
-                out[7] = out[0]
+            elif clock + t < state[5]:
+                out[7] = 1.0
             if t >= span:
                 break
             longest = (span - t) / parts
@@ -392,9 +392,8 @@ def rocking_batch(
     until          : (m,) s, after which a body that has calmed down is no longer followed; infinite: it always is
     rest           : REST, or less for a body whose rests matter
     results        : max ratio, overturned (0, 1), time of overturning, time of uplift [s] (-1: never), impacts, flags,
-                     the last time above NEAR [s] (to a sample or a step), the max ratio by when an edge first lifted
-                     again before the impacts that a rest cut off would have ended (-1: none did)
-    history        : (k, 1) receives theta of a single body at the samples, as long as it is
+                     the last time above NEAR [s] (to a sample or a step), whether (0, 1) an edge lifted
+                     again before the impacts that a rest cut off would have ended
     """
     state = np.empty(6)
     for k in range(bodies.shape[0]):
@@ -402,5 +401,5 @@ def rocking_batch(
         for j in range(6):
             state[j] = 0.0
         for j in range(8):
-            out[j] = -1.0 if j in (2, 3, 7) else 0.0
+            out[j] = -1.0 if j in (2, 3) else 0.0
         _follow(x, z, ratio, maxima, dt, peak, body, initial[k], tail, until[k], refine, rest, state, out, history)

@@ -52,9 +52,9 @@ HOP = 0.1
 """The same whatever the condition, as a share of (fastest rate x step)^2: a step leaves out the fifth derivative, p^2
 times the third, a twentieth of the cube that the hop is, twice over as its top is a difference of such terms."""
 
-RISE = 0.25
-"""The most of it as a ratio, as a share of (fastest rate x step)^5: 1/120 of a push that changes by 30 times what lifts
-an edge in a time of 1 / p."""
+RISE = 1.0
+"""The most of it as a ratio, as a share of (fastest rate x step)^5: a sixtieth of a push that changes by 60 times what
+lifts an edge in a time of 1 / p."""
 
 
 def bodies(parameters: Mapping[str, Array]) -> Array:
@@ -130,8 +130,8 @@ def _doubt(
     ratio, fallen = fine[:, RATIO], fine[:, FELL] > 0.0
     error = np.abs(ratio - coarse[:, RATIO])
     # Both steps put a body to rest at the same rate.  What lifts again before it would have rested, as under a push
-    # that hardly changes, owes some of its ratio to that rate.
-    rested = (fine[:, RESTED] >= 0.0) & (fine[:, RESTED] < ratio)
+    # that hardly changes, owes some of its ratio to that rate, or would have tipped by more.
+    rested = fine[:, RESTED] > 0.0
     if rested.any():
         longer = integrate(motion, body[rested], initial[rested], refine, rest=RESTLESS * REST)
         error[rested] += np.abs(longer[:, RATIO] - coarse[rested, RATIO])
