@@ -52,8 +52,8 @@ HOP = 0.1
 """The same whatever the condition, as a share of (fastest rate x step)^2: a step leaves out the fifth derivative, p^2
 times the third, a twentieth of the cube that the hop is, twice over as its top is a difference of such terms."""
 
-RISE = 1.0
-"""The most of it as a ratio, as a share of (fastest rate x step)^5: a sixtieth of a push that changes by 60 times what
+RISE = 2.0
+"""The most of it as a ratio, as a share of (fastest rate x step)^5: a sixtieth of a push that changes by 120 times what
 lifts an edge in a time of 1 / p."""
 
 

@@ -267,7 +267,7 @@ def pushed(beyond: float, before: float = 0.5, after: float = 0.6) -> Motion:
 def test_hops_within_one_step_are_covered(fidelity: str) -> None:
     """Both steps of an estimate can take a hop alike: it covers what steps 16 times finer than `reference` show.
 
-    Estimates were up to 24 times too small at ratios of 1e-8; a hundredth of any of these is more than enough.
+    Estimates were up to 24 times too small at ratios of 1e-8; one of more than a hundredth is told.
     """
     body = prepare(model_named("rocking"), SMALL)
     for beyond, before, after in product(
@@ -277,7 +277,8 @@ def test_hops_within_one_step_are_covered(fidelity: str) -> None:
         row = respond("rocking", motion, fidelity=fidelity, tail=0.0, **SMALL).iloc[0]
         excitation = motion.excitation(0.0, 0.0)
         want = integrate(excitation, bodies(body), body["initial_rotation"], 256)[0, RATIO]
-        assert abs(row["rotation_ratio"] - want) <= row["error"] <= 1e-2 * want, (beyond, before, after)
+        assert abs(row["rotation_ratio"] - want) <= row["error"], (beyond, before, after)
+        assert row["error"] <= 1e-2 * want or "sensitive" in row["note"], (beyond, before, after)
 
 
 @pytest.mark.parametrize("beyond", [0.02, 0.05])
