@@ -48,9 +48,9 @@ RESTLESS = 1e-2
 LOCAL = 0.03
 """Relative error of a hop within one step, as a share of (fastest rate x step)^4, at a condition of 1."""
 
-HOP = 0.1
+HOP = 0.2
 """The same whatever the condition, as a share of (fastest rate x step)^2: a step leaves out the fifth derivative, p^2
-times the third, a twentieth of the cube that the hop is, twice over as its top is a difference of such terms."""
+times the third, a twentieth of the cube that the hop is; four times over, as its top is a difference of such terms."""
 
 RISE = 2.0
 """The most of it as a ratio, as a share of (fastest rate x step)^5: a sixtieth of a push that changes by 120 times what
