@@ -21,7 +21,8 @@ from pipeline.charting import (
 )
 from pipeline.errors import InputError
 from pipeline.models import MODELS, model_named
-from pipeline.models.common import BOUND, SENSITIVE, words
+from pipeline.models.common import BOUND, words
+from pipeline.models.directions import worst_direction
 from pipeline.quantities import Array, Quantity, checked, finite_angle, real_array, real_number, some_error
 from pipeline.records import Columns, Excitation, Model, Motion
 from pipeline.supports import TRANSMITTED, refined, support_named
@@ -43,9 +44,6 @@ Of real objects with measured parameters less than 1 % do, sliding or swinging i
 
 REFINE = {"history": 2, "reference": 16}
 """How much finer than the coarsest step, which only ever looks for the worst direction, each fidelity integrates."""
-
-SCAN_LIMIT = 16
-"""Refinement up to which a worst direction that a finer step does not confirm is looked for again."""
 
 AZIMUTH_STEP = 10.0
 """Degrees between the directions of which the worst counts when the orientation is unknown (RotD100)."""
@@ -218,7 +216,7 @@ def run_model(
         return model.run(motion.excitation(None, tail), values, refine, True), np.full(size, np.nan)
     if angle is not None:
         return model.run(motion.excitation(angle, tail), values, refine, True), np.full(size, angle)
-    return _worst_direction(model, motion, values, refine, tail, azimuth_step)
+    return worst_direction(model, motion, values, refine, tail, azimuth_step)
 
 
 def run_chart(
@@ -358,72 +356,6 @@ def _bounded(model: Model, motion: Excitation, values: Mapping[str, Array]) -> C
         columns[quantity.name] = certain if quantity.unit in ("bool", "count") else most
     error = np.subtract(high, low, out=np.zeros_like(low), where=high > low)
     return columns | {"low": low, "high": high, "error": error, "note": bounds.note + BOUND}
-
-
-def _worst_direction(
-    model: Model, motion: Motion, values: Mapping[str, Array], refine: int, tail: float | None, azimuth_step: float
-) -> tuple[Columns, Array]:
-    # RotD100: find the worst direction of each row without error estimates, then integrate that one with them.
-    size = next(iter(values.values())).size
-    turn = 180.0 if model.symmetric(values) else 360.0
-    scan = max(1, refine // 2)
-    first, demand = model.gives[0].name, model.demand
-    where = np.zeros(size)
-    most, push = np.full(size, -np.inf), np.full(size, -np.inf)
-    scans: dict[float, Columns] = {}
-    for direction in np.arange(0.0, turn - 1e-9, azimuth_step):
-        columns = model.run(motion.excitation(float(direction), tail), values, scan, False)
-        scans[float(direction)] = columns
-        # Where the first output ties (nothing moved in either direction), the demand decides.
-        larger = (columns[first] > most) | ((columns[first] == most) & (columns[demand] > push))
-        most[larger], push[larger] = columns[first][larger], columns[demand][larger]
-        where[larger] = direction
-    best: Columns = {}
-    for direction in np.unique(where):
-        rows = where == direction
-        one = {name: v[rows] for name, v in values.items()}
-        columns = model.run(motion.excitation(float(direction), tail), one, refine, True)
-        for name, column in columns.items():
-            best.setdefault(name, np.empty(size))[rows] = column
-    # A worst direction that the finer integration does not confirm (a block that fell, and then did not) says nothing:
-    # look again with half the step, so that no direction in which it does fall is missed.
-    unsure = (best[first] < 0.999 * most) & (refine < SCAN_LIMIT)
-    _doubt_directions(model, motion, values, tail, scans, where, best, ~unsure)
-    if unsure.any():
-        again = {name: v[unsure] for name, v in values.items()}
-        columns, directions = _worst_direction(model, motion, again, 2 * refine, tail, azimuth_step)
-        where[unsure] = directions
-        for name, column in columns.items():
-            best[name][unsure] = column
-    return best, where
-
-
-def _doubt_directions(
-    model: Model,
-    motion: Motion,
-    values: Mapping[str, Array],
-    tail: float | None,
-    scans: Mapping[float, Columns],
-    where: Array,
-    best: Columns,
-    rows: NDArray[np.bool_],
-) -> None:
-    # Whether 1 % of the amplitude changes the outcome of the worst of all directions: a yes in one that stays a yes
-    # settles it, whatever the others do; a no can become a yes in any.  `best` is the row of the direction `where`.
-    if model.flips is None:
-        return
-    outcome = next(q.name for q in model.gives if q.unit == "bool")
-    note = best["note"].astype(np.int64)
-    told = (note & SENSITIVE) > 0
-    for direction, columns in scans.items():
-        yes = best[outcome] > 0.0
-        asked = rows & (where != direction) & ((columns[outcome] > 0.0) == yes) & (told == yes)
-        if not asked.any():
-            continue
-        some = {name: value[asked] for name, value in values.items()}
-        found = {name: column[asked] for name, column in columns.items()}
-        told[asked] = model.flips(motion.excitation(direction, tail), some, found)
-    best["note"] = np.where(told, note | SENSITIVE, note & ~SENSITIVE).astype(np.float64)
 
 
 def trace(model: str, motion: Motion, *, angle: float = 0.0, **parameters: Any) -> "pd.DataFrame":

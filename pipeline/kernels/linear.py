@@ -116,6 +116,25 @@ def _stationary(
     return abs(top)
 
 
+@inner
+def _turn(u: float, v: float, f0: float, f1: float, w: float, zeta: float, cu: float, cv: float, sign: float) -> float:
+    # The first time at which the rate of cu u + cv u', heading for zero from this sign, turns back; -1 if it does not.
+    # What vanishes there, q = cu f + cv f' with f = u'', obeys the free oscillator's equation like f: a closed form.
+    b, c = w * w, 2.0 * zeta * w
+    pull = f0 - c * v - b * u
+    jerk = f1 - c * pull - b * v
+    q, rate = cu * pull + cv * jerk, cu * jerk - cv * (c * jerk + b * pull)
+    if not q * sign < 0.0:
+        return -1.0
+    size, back = abs(q), (rate if sign > 0.0 else -rate) - zeta * w * abs(q)
+    root = w * math.sqrt(abs(1.0 - zeta) * (1.0 + zeta))
+    if zeta < 1.0 and root > 0.0:
+        return math.atan2(size * root, back) / root
+    if back <= size * root:
+        return -1.0
+    return size / back if root == 0.0 else math.atanh(size * root / back) / root
+
+
 @bare
 def peak_inside(
     u: float,
@@ -132,7 +151,7 @@ def peak_inside(
 ) -> float:
     """Return the largest |y| strictly inside (0, span) at a stationary point of y = c0 + c1 t + cu u + cv u', or 0.
 
-    span must be short against the period (w span < 1), so that y has at most two stationary points inside.
+    span must be short against the period (w span < pi), so that y has at most two stationary points inside.
     """
     low = 0.0
     begin = slope(u, v, f0, f1, w, zeta, 0.0, c1, cu, cv)
@@ -145,12 +164,14 @@ def peak_inside(
         return 0.0
     if begin * end < 0.0:
         return _stationary(u, v, f0, f1, w, zeta, c0, c1, cu, cv, low, span, begin, end)
-    best = 0.0
-    middle = 0.5 * span
-    inside = slope(u, v, f0, f1, w, zeta, middle, c1, cu, cv)
-    if begin * inside < 0.0:
-        best = max(
-            _stationary(u, v, f0, f1, w, zeta, c0, c1, cu, cv, low, middle, begin, inside),
-            _stationary(u, v, f0, f1, w, zeta, c0, c1, cu, cv, middle, span, inside, end),
-        )
-    return best
+    # Of one sign at both ends it has changed sign twice or never, and twice only around its own turning point.
+    turn = _turn(u, v, f0, f1, w, zeta, cu, cv, begin)
+    if not low < turn < span:
+        return 0.0
+    inside = slope(u, v, f0, f1, w, zeta, turn, c1, cu, cv)
+    if begin * inside >= 0.0:
+        return 0.0
+    return max(
+        _stationary(u, v, f0, f1, w, zeta, c0, c1, cu, cv, low, turn, begin, inside),
+        _stationary(u, v, f0, f1, w, zeta, c0, c1, cu, cv, turn, span, inside, end),
+    )

@@ -25,6 +25,9 @@ OVERTURNED = 0.5 * math.pi
 REST = 1e-4
 """Rate, as a share of the smaller p alpha, below which a landing body rests: impacts are infinite in number."""
 
+SETTLING = 10.0
+"""How much longer than under a constant push impacts that a rest cuts off may go on: near a lift-off they linger."""
+
 COUNTED = 1e-3
 """Rate, as a share of the smaller p alpha, from which an impact is counted."""
 
@@ -151,12 +154,14 @@ def _stretch(
     span: float,
     clock: float,
     parts: int,
+    rest: float,
     body: Array,
     out: Array,
 ) -> None:
     # One stretch on which the excitation and the normal force are linear, in one step; what is left of it after a
     # lift-off or a landing in so many parts, as a hop within one step would be the same at every refinement.
-    # state: s, phi, rate, and sine and cosine of alpha - phi.  body: alpha1, alpha2, c1, c2, e12, e21.
+    # state: s, phi, rate, sine and cosine of alpha - phi, and until when the impacts that a rest cut off would go on.
+    # body: alpha1, alpha2, c1, c2, e12, e21.
     s, phi, rate, sn, cs = state[0], state[1], state[2], state[3], state[4]
     t, longest = 0.0, span
     landings = 0
@@ -170,6 +175,8 @@ def _stretch(
             sn, cs = (math.sin(body[0]), math.cos(body[0])) if s > 0.0 else (math.sin(body[1]), math.cos(body[1]))
             if out[3] < 0.0:
                 out[3] = clock + t
+            elif clock + t < state[5]:
+                out[7] = 1.0
             if t >= span:
                 break
             longest = (span - t) / parts
@@ -227,7 +234,11 @@ def _stretch(
         landings += 1
         if landings > IMPACTS_CAP:
             out[5] = float(int(out[5]) | EVENT_CAP)
-        if landings > IMPACTS_CAP or rate < REST * slow:
+        if landings > IMPACTS_CAP or rate < rest * slow:
+            # A hop takes twice its rate over what pulls the body down, and each is shorter by the same share.
+            down = (body[2] if s > 0.0 else body[3]) * ((n0 + n1 * t) * sn + s * (a0 + a1 * t) * cs)
+            ends = down * (1.0 - body[4] * body[5])
+            state[5] = clock + t + SETTLING * 4.0 * rate / ends if ends > 0.0 else math.inf
             s, rate = 0.0, 0.0
     state[0], state[1], state[2], state[3], state[4] = s, phi, rate, sn, cs
 
@@ -275,6 +286,7 @@ def _follow(
     tail: float,
     until: float,
     refine: int,
+    rest: float,
     state: Array,
     out: Array,
     history: Array,
@@ -318,12 +330,14 @@ def _follow(
             clock = i * dt + t0
             if t0 < cut < t1:
                 held, after = (n1, 0.0) if n0 > 0.0 else (0.0, n1)
-                _stretch(state, x[i] + a1 * t0, a1, max(0.0, n0 + n1 * t0), held, cut - t0, clock, parts, body, out)
+                _stretch(
+                    state, x[i] + a1 * t0, a1, max(0.0, n0 + n1 * t0), held, cut - t0, clock, parts, rest, body, out
+                )
                 if out[1] == 0.0:
-                    _stretch(state, x[i] + a1 * cut, a1, 0.0, after, t1 - cut, i * dt + cut, parts, body, out)
+                    _stretch(state, x[i] + a1 * cut, a1, 0.0, after, t1 - cut, i * dt + cut, parts, rest, body, out)
             else:
                 held = n1 if max(n0 + n1 * t0, n0 + n1 * t1) > 0.0 else 0.0
-                _stretch(state, x[i] + a1 * t0, a1, max(0.0, n0 + n1 * t0), held, step, clock, parts, body, out)
+                _stretch(state, x[i] + a1 * t0, a1, max(0.0, n0 + n1 * t0), held, step, clock, parts, rest, body, out)
             if out[1] > 0.0:
                 if i + 1 < history.shape[0]:
                     history[i + 1 :, 0] = state[0] * OVERTURNED
@@ -342,7 +356,7 @@ def _follow(
         if clock >= until and _calm(state, body):
             return
         now = min(h, stop - t)
-        _stretch(state, 0.0, 0.0, G, 0.0, now, clock, parts, body, out)
+        _stretch(state, 0.0, 0.0, G, 0.0, now, clock, parts, rest, body, out)
         if out[1] > 0.0:
             return
         t += now
@@ -365,25 +379,27 @@ def rocking_batch(
     tail: float,
     until: Array,
     refine: int,
+    rest: float,
     results: Array,
     history: Array,
 ) -> None:
-    """Fill results (m, 7) of m bodies.
+    """Fill results (m, 8) of m bodies.
 
     x, z           : (n,) m/s2;  peak: the largest |x|
     ratio, maxima  : from kernels.quiet, of this very motion
     bodies         : (m, 6): alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]; 1 is the edge towards +axis
     initial        : (m,) rad, released from rest
     until          : (m,) s, after which a body that has calmed down is no longer followed; infinite: it always is
+    rest           : REST, or less for a body whose rests matter
     results        : max ratio, overturned (0, 1), time of overturning, time of uplift [s] (-1: never), impacts, flags,
-                     the last time above NEAR [s] (to a sample or a step)
-    history        : (k, 1) receives theta of a single body at the samples, as long as it is
+                     the last time above NEAR [s] (to a sample or a step), whether (0, 1) an edge lifted
+                     again before the impacts that a rest cut off would have ended
     """
-    state = np.empty(5)
+    state = np.empty(6)
     for k in range(bodies.shape[0]):
         body, out = bodies[k], results[k]
-        for j in range(5):
+        for j in range(6):
             state[j] = 0.0
-        for j in range(7):
+        for j in range(8):
             out[j] = -1.0 if j in (2, 3) else 0.0
-        _follow(x, z, ratio, maxima, dt, peak, body, initial[k], tail, until[k], refine, state, out, history)
+        _follow(x, z, ratio, maxima, dt, peak, body, initial[k], tail, until[k], refine, rest, state, out, history)

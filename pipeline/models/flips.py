@@ -12,12 +12,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.kernels.rocking import NEAR, rocking_batch
+from pipeline.kernels.rocking import NEAR, REST, rocking_batch
 from pipeline.models.common import Quiet
 from pipeline.quantities import Array, G
 from pipeline.records import Excitation
 
-RATIO, FELL, FELL_AT, LIFTED_AT, IMPACTS, FLAGS, LAST_NEAR = range(7)
+RATIO, FELL, FELL_AT, LIFTED_AT, IMPACTS, FLAGS, LAST_NEAR, RESTED = range(8)
 """Columns of `integrate`."""
 
 FAR, HALFWAY = 0.01, 0.005
@@ -45,15 +45,17 @@ def integrate(
     refine: int,
     until: Array | None = None,
     history: Array | None = None,
+    rest: float = REST,
 ) -> Array:
-    """Return what `kernels.rocking.rocking_batch` finds, (n, 7).
+    """Return what `kernels.rocking.rocking_batch` finds, (n, 8).
 
     body  : (n, 6), initial : (n,) rad, refine : as in that kernel
     until : (n,) s, after which a body that has calmed down is not followed; None: every body is, to the end
     history : (k, 1), receives the angle of a single body at the samples; None: nobody asks
+    rest  : as in that kernel
     """
     quiet = Quiet(motion)
-    results = np.empty((body.shape[0], 7))
+    results = np.empty((body.shape[0], 8))
     ends = np.full(body.shape[0], np.inf) if until is None else until
     rocking_batch(
         quiet.x,
@@ -67,6 +69,7 @@ def integrate(
         quiet.tail,
         ends,
         refine,
+        rest,
         results,
         np.empty((0, 1)) if history is None else history,
     )
@@ -76,7 +79,7 @@ def integrate(
 def flips(motion: Excitation, body: Array, initial: Array, uplift: Array, found: Array) -> NDArray[np.bool_]:
     """Return which bodies may stand instead of fall, or fall instead of stand, within 1 % of the motion's amplitude.
 
-    body, initial : as in `integrate`;  uplift : (n,) largest uplift ratio;  found : (n, 7) their own response
+    body, initial : as in `integrate`;  uplift : (n,) largest uplift ratio;  found : (n, 8) their own response
     error         : of 1,506 flips that 81 amplitudes show it finds 97 of 100, and it says so of 19 of 100 of the other
                     bodies that lift an edge, at 44 % of the cost of two integrations (22,400 bodies, seven records,
                     scaled to 0.2 to 0.7 g).  Of 120 of those others, in random motions, 16 flip at one of 1,601:

@@ -72,6 +72,24 @@ def test_peak_inside_a_step_that_begins_at_rest() -> None:
     assert max(found, abs(points[-1])) == pytest.approx(np.abs(points).max(), rel=1e-7)
 
 
+@pytest.mark.parametrize("zeta", [0.0, 0.3, 1.0, 2.0])
+@pytest.mark.parametrize("turns", [(0.02, 0.03), (0.1, 0.4), (0.3, 0.7), (0.6, 0.9), (0.8, 0.95)])
+def test_two_turns_inside_a_step(turns: tuple[float, float], zeta: float) -> None:
+    """u' of a slow oscillator vanishes near both shares of a step, in one half of it or not: the larger |u| of both.
+
+    Ten thousand points, and the curvature between them: 1e-7.
+    """
+    span, w = 0.06, 0.05
+    first, second = turns[0] * span, turns[1] * span
+    u, v, f0, f1 = 0.0, first * second, -first - second + 2.0 * zeta * w * first * second, 2.0
+    points = np.array([advance(u, v, f0, f1, w, zeta, t)[0] for t in np.linspace(0.0, span, 10001)])
+    rates = np.diff(points)
+    stationary = np.abs(points[1:-1][rates[:-1] * rates[1:] < 0.0])
+    assert stationary.size == 2
+    found = peak_inside(u, v, f0, f1, w, zeta, span, 0.0, 0.0, 1.0, 0.0)
+    assert found == pytest.approx(stationary.max(), rel=1e-7)
+
+
 @pytest.mark.parametrize("n", [1, 2, BLOCK - 1, BLOCK, BLOCK + 1, 5 * BLOCK + 3])
 def test_rest_is_skipped_exactly(n: int) -> None:
     """The blocks' maxima find the same sample as a scan, from any start and for any limit; so does the largest |x|."""

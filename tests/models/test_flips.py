@@ -94,3 +94,16 @@ def test_what_falls_at_once_is_not_told(angle: float | None) -> None:
     slender = respond("rocking", motion, half_width=[0.3 * slope], cg_height=0.3, angle=angle)
     assert slender["overturned"].all()
     assert slender["note"][0] == ""
+
+
+def test_a_worst_direction_that_a_finer_step_does_not_confirm() -> None:
+    """A slender body that falls over its nearer edge in some directions and over the other in most: the coarse step
+    found it over the nearer one in 330 degrees, the finer one did not, and the next direction was not looked at, so
+    that `reference` said 26.5 and `history` 33.9, each with an estimate of rounding.  The ratio is 90 degrees of the
+    edge's own."""
+    motion = random_motion(5, n=2000, pga=1.0)
+    body = {"half_width": 0.0311, "cg_height": 0.67, "half_width_other": 0.0398}
+    for fidelity in ("history", "reference"):
+        row = respond("rocking", motion, fidelity=fidelity, angle=None, azimuth_step=30.0, **body).iloc[0]
+        assert row["overturned"]
+        assert row["rotation_ratio"] == pytest.approx(0.5 * np.pi / np.arctan2(0.0311, 0.67), rel=1e-12)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mpmath
 import numpy as np
 import pytest
 from shaking import along_x, random_motion, resampled
@@ -148,3 +149,75 @@ def test_no_peak_between_the_samples_is_missed(n: int) -> None:
         for peak, column in ((row["displacement"], "u_x"), (row["absolute_acceleration"], "a_x")):
             samples = np.abs(history[column].to_numpy()[: fine.samples]).max()
             assert samples * (1.0 - 1e-9) <= peak <= samples * (1.0 + granted)
+
+
+def peaks_by_fifty_digits(base: np.ndarray, dt: float, w: float, zeta: float) -> tuple[float, float]:
+    """Return the largest |u| and |a + u''| of a record, every stationary point between the samples included.
+
+    In each interval u = p0 + p1 t + exp(-zeta w t)(A cosh k t + B sinh k t / k), k^2 = w^2 (zeta^2 - 1); the rates'
+    changes of sign among 200 points lead to their roots.
+    """
+    k = mpmath.sqrt(mpmath.mpf(zeta) ** 2 - 1) * w
+    u, v = mpmath.mpf(0), mpmath.mpf(0)
+    most = [mpmath.mpf(0), mpmath.mpf(0)]
+    grid = [mpmath.mpf(dt) * i / 200 for i in range(201)]
+    for a0, a1 in zip(map(mpmath.mpf, base[:-1]), map(mpmath.mpf, base[1:]), strict=True):
+        f0, f1 = -a0, (a0 - a1) / dt
+        p1 = f1 / w**2
+        p0 = (f0 - 2 * zeta * w * p1) / w**2
+        first = u - p0
+        second = v - p1 + zeta * w * first
+
+        def state(t, first=first, second=second, p0=p0, p1=p1, f0=f0, f1=f1):
+            grow, sway = mpmath.cosh(k * t), mpmath.sinh(k * t) / k
+            decay = mpmath.exp(-zeta * w * t)
+            x = mpmath.re(decay * (first * grow + second * sway))
+            rate = mpmath.re(decay * (second * grow + first * k * k * sway)) - zeta * w * x
+            x, rate = p0 + p1 * t + x, p1 + rate
+            pull = -2 * zeta * w * rate - w * w * x
+            bent = f0 + f1 * t + pull
+            return (x, pull), (rate, -2 * zeta * w * bent - w * w * rate)
+
+        found = [state(t) for t in grid]
+        for which in range(2):
+            most[which] = max(most[which], *(abs(values[which]) for values, _ in found))
+            slopes = [rates[which] for _, rates in found]
+            for i in range(200):
+                if slopes[i] * slopes[i + 1] < 0:
+                    t = mpmath.findroot(lambda t, n=which: state(t)[1][n], (grid[i], grid[i + 1]), solver="anderson")
+                    most[which] = max(most[which], abs(state(t)[0][which]))
+        u, v = found[-1][0][0], found[-1][1][0]
+    return float(most[0]), float(most[1])
+
+
+@pytest.mark.parametrize(
+    ("seed", "n", "samples_a_period", "zeta"),
+    [(470, 5, 6.676751975388473, 0.02), (251, 5, 19.3, 0.02), (2444, 5, 26.9, 1.5), (70, 9, 12.96, 0.02)],
+)
+def test_two_extremes_inside_one_interval(seed: int, n: int, samples_a_period: float, zeta: float) -> None:
+    """White noise turns an oscillator back twice between two samples, and the peak of the record lies there: to 1e-13
+    of 50 digits.  Both turns in one half of the interval were overlooked: up to 3 % of the peak in these."""
+    base, dt = np.random.default_rng(seed).normal(size=n), 0.01
+    w = 2.0 * np.pi / (samples_a_period * dt)
+    row = respond("oscillator", along_x(base, dt), frequency=w / (2.0 * np.pi), damping=zeta, tail=0.0).iloc[0]
+    with mpmath.workdps(50):
+        u, a = peaks_by_fifty_digits(base, dt, w, zeta)
+    assert row["displacement"] == pytest.approx(u, rel=1e-13)
+    assert row["absolute_acceleration"] == pytest.approx(a, rel=1e-13)
+
+
+def test_no_peak_of_white_noise_is_missed() -> None:
+    """19,200 oscillators of 0.7 to 60 samples a period in short white noise, against the same polygon written 16 times
+    finer, whose intervals are too short to hold two extremes: 1e-11, the rounding of the finer steps."""
+    rng = np.random.default_rng(1)
+    for _ in range(300):
+        n, m = int(rng.integers(2, 20)), 64
+        motion = along_x(rng.normal(size=n), 0.01)
+        frequency = 1.0 / (0.01 * np.exp(rng.uniform(np.log(0.7), np.log(60.0), m)))
+        damping = rng.choice([0.0, 0.02, 0.3, 0.7, 1.0, 1.5], m)
+        once, finer = (
+            respond("oscillator", each, frequency=frequency, damping=damping, tail=0.0)
+            for each in (motion, resampled(motion, 16))
+        )
+        for column in ("displacement", "absolute_acceleration"):
+            np.testing.assert_allclose(once[column], finer[column], rtol=1e-11)

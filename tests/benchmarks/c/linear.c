@@ -81,10 +81,20 @@ static double stationary(double u, double v, double f0, double f1, double w, dou
     return fabs(y[0]);
 }
 
+/* The first time at which the rate of cu u + cv u', heading for zero from this sign, turns back; -1: never; zeta < 1 */
+static double turn(double u, double v, double f0, double f1, double w, double zeta, double cu, double cv, double sign)
+{
+    double b = w * w, c = 2.0 * zeta * w, pull = f0 - c * v - b * u, jerk = f1 - c * pull - b * v;
+    double q = cu * pull + cv * jerk, rate = cu * jerk - cv * (c * jerk + b * pull);
+    if (!(q * sign < 0.0)) return -1.0;
+    double root = w * sqrt((1.0 - zeta) * (1.0 + zeta));
+    return atan2(fabs(q) * root, (sign > 0.0 ? rate : -rate) - zeta * w * fabs(q)) / root;
+}
+
 double peak_inside(double u, double v, double f0, double f1, double w, double zeta, double span, double c0, double c1,
                    double cu, double cv)
 {
-    double low = 0.0, middle = 0.5 * span, begin[3], end[3], inside[3];
+    double low = 0.0, begin[3], end[3], inside[3];
     follow(u, v, f0, f1, w, zeta, 0.0, c0, c1, cu, cv, begin);
     if (begin[1] == 0.0) {
         low = 1e-6 * span;
@@ -94,8 +104,10 @@ double peak_inside(double u, double v, double f0, double f1, double w, double ze
     if (begin[1] == 0.0 && end[1] == 0.0) return 0.0;
     if (begin[1] * end[1] < 0.0)
         return stationary(u, v, f0, f1, w, zeta, c0, c1, cu, cv, low, span, begin[1], end[1]);
-    follow(u, v, f0, f1, w, zeta, middle, c0, c1, cu, cv, inside);
+    double back = turn(u, v, f0, f1, w, zeta, cu, cv, begin[1]);
+    if (!(low < back && back < span)) return 0.0;
+    follow(u, v, f0, f1, w, zeta, back, c0, c1, cu, cv, inside);
     if (begin[1] * inside[1] >= 0.0) return 0.0;
-    return larger(stationary(u, v, f0, f1, w, zeta, c0, c1, cu, cv, low, middle, begin[1], inside[1]),
-                  stationary(u, v, f0, f1, w, zeta, c0, c1, cu, cv, middle, span, inside[1], end[1]));
+    return larger(stationary(u, v, f0, f1, w, zeta, c0, c1, cu, cv, low, back, begin[1], inside[1]),
+                  stationary(u, v, f0, f1, w, zeta, c0, c1, cu, cv, back, span, inside[1], end[1]));
 }

@@ -1,0 +1,92 @@
+"""The worst of all directions (RotD100) of models that are shaken along one: found coarsely, then integrated."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from pipeline.models.common import SENSITIVE
+from pipeline.quantities import Array
+from pipeline.records import Columns, Model, Motion
+
+CLOSE = 1e-3
+"""How close to the worst direction, relatively, another one found by a coarse step may come without a finer one."""
+
+
+def worst_direction(
+    model: Model, motion: Motion, values: Mapping[str, Array], refine: int, tail: float | None, azimuth_step: float
+) -> tuple[Columns, Array]:
+    """Return the columns of each row's worst direction, as `run` gives them with an estimate, and that direction (n,).
+
+    azimuth_step : degrees between the directions that are looked at, each first with half the refinement
+    error        : a direction counts as the worst once no other one, as the coarse step found it, is within CLOSE below
+                   it or above.  Where an outcome of one direction hangs on the amplitude and another direction settles
+                   it, the error covers the first output of that one too
+    """
+    size = next(iter(values.values())).size
+    turn = 180.0 if model.symmetric(values) else 360.0
+    scan = max(1, refine // 2)
+    first, demand = model.gives[0].name, model.demand
+    outcome = next((q.name for q in model.gives if q.unit == "bool"), None)
+    ways = np.arange(0.0, turn - 1e-9, azimuth_step)
+    scans = [model.run(motion.excitation(float(way), tail), values, scan, False) for way in ways]
+    outputs, pushes = (
+        np.nan_to_num([columns[name] for columns in scans], nan=-np.inf, posinf=np.inf) for name in (first, demand)
+    )
+    where = np.full(size, np.nan)
+    best: Columns = {first: np.full(size, -np.inf)}
+    left = np.arange(size)
+    # A worst direction that the finer integration does not confirm (a block that fell, and then did not), or that
+    # others come close to, says nothing: each of those is looked at, unless an outcome is settled.
+    while left.size:
+        most = outputs[:, left].max(axis=0)
+        # Where the first output ties (nothing moved in either direction), the demand decides.
+        worst = np.where(outputs[:, left] == most, pushes[:, left], -np.inf).argmax(axis=0)
+        for way in np.unique(worst):
+            rows = left[worst == way]
+            one = {name: v[rows] for name, v in values.items()}
+            columns = model.run(motion.excitation(float(ways[way]), tail), one, refine, True)
+            larger = ~(columns[first] <= best[first][rows])
+            where[rows[larger]] = ways[way]
+            for name, column in columns.items():
+                best.setdefault(name, np.empty(size))[rows[larger]] = column[larger]
+        outputs[worst, left] = -np.inf
+        settled = np.zeros(left.size, dtype=bool) if outcome is None else best[outcome][left] > 0.0
+        near = best[first][left] * np.where(settled, 1.0 + CLOSE, 1.0 - CLOSE)
+        left = left[outputs[:, left].max(axis=0) > near]
+    if outcome is not None:
+        _doubt_directions(model, motion, values, tail, dict(zip(ways, scans, strict=True)), where, best, outcome)
+    return best, where
+
+
+def _doubt_directions(
+    model: Model,
+    motion: Motion,
+    values: Mapping[str, Array],
+    tail: float | None,
+    scans: Mapping[float, Columns],
+    where: Array,
+    best: Columns,
+    outcome: str,
+) -> None:
+    # Whether 1 % of the amplitude changes the outcome of the worst of all directions: a yes in one that stays a yes
+    # settles it, whatever the others do; a no can become a yes in any.  `best` is the row of the direction `where`.
+    if model.flips is None:
+        return
+    first = model.gives[0].name
+    note = best["note"].astype(np.int64)
+    yes = best[outcome] > 0.0
+    told = (note & SENSITIVE) > 0
+    for direction, columns in scans.items():
+        # What a coarse step found, and a finer one did not.
+        told |= (columns[outcome] > 0.0) & ~yes
+        asked = (where != direction) & ((columns[outcome] > 0.0) == yes) & (told == yes)
+        if not asked.any():
+            continue
+        some = {name: value[asked] for name, value in values.items()}
+        found = {name: column[asked] for name, column in columns.items()}
+        told[asked] = model.flips(motion.excitation(direction, tail), some, found)
+        # The outcome is settled, by another direction: the output may be that one's.
+        cleared = asked & yes & ~told
+        apart = np.abs(best[first] - columns[first])
+        best["error"][cleared] = np.maximum(best["error"], apart)[cleared]
+    best["note"] = np.where(told, note | SENSITIVE, note & ~SENSITIVE).astype(np.float64)
