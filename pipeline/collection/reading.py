@@ -13,13 +13,14 @@ from pipeline.collection.cells import Cells
 from pipeline.collection.contradictions import contradictions
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.limits import STANDARD, Limits, Meter
-from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, check_header
+from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, Texts, check_header
 from pipeline.collection.measured import fill, is_dimension
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
 from pipeline.collection.sources.delimited import RECORD_LIMIT
 from pipeline.collection.sources.opening import open_source
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.suspicion import Evidence, Suspicion, suspicions
+from pipeline.errors import KourosError, fault_words
 from pipeline.records import Item, Origin, Problem, Provenance
 
 NOWHERE = "Location not recorded"
@@ -178,7 +179,12 @@ class _Desk:
         first, refused = len(self.items), len(self.rejected)
         at = {}
         for place, row in enumerate(piece.rows):
-            self._take(row)
+            try:
+                self._take(row)
+            except KourosError:
+                raise
+            except Exception as problem:  # noqa: BLE001 - whatever it is, it is this row's, and told
+                self._reject(row, "", f"{FAILED}: {fault_words(problem)}", TELL)
             at[row.number] = place
         items = self.items[first:]
         numbers = tuple(item.object_number for item in items)
@@ -225,13 +231,12 @@ class _Desk:
         if row.faults:
             self._refuse_cells(row, cells)
         values: dict[str, Any] = self._constants | {
-            field: _READ[KINDS.get(field, "number")](cells, field, column, [row.cells[i] for i in places])
+            field: _read(cells, field, column, [row.cells[i] for i in places])
             for field, column, places in self._columns
         }
         self._spread_diameter(values, cells)
         if self._texts and self._mapping.dimensions is not None:
-            found = [row.cells[i] for i in self._texts]
-            fill(values, cells, self._mapping.dimensions, found, self._decimal)
+            self._fill(values, cells, self._mapping.dimensions, [row.cells[i] for i in self._texts])
         for field, problem in contradictions(values):
             cells.problems.append(problem)
             if field:
@@ -255,6 +260,19 @@ class _Desk:
             self._seen[number] = row.number
             self.items.append(self._item(values, cells))
             self.places.append((row.number, row.line))
+
+    def _fill(self, values: dict[str, Any], cells: Cells, texts: Texts, found: list[str]) -> None:
+        before, provenance = dict(values), list(cells.provenance)
+        try:
+            fill(values, cells, texts, found, self._decimal)
+        except KourosError:
+            raise
+        except Exception as problem:  # noqa: BLE001 - whatever it is, it is this text's, and told
+            # A half of it is no reading.
+            values.clear()
+            values.update(before)
+            cells.provenance = provenance
+            cells.problems.append(Problem("dimensions", f"{FAILED}: {fault_words(problem)}", TELL))
 
     def _refuse_cells(self, row: Row, cells: Cells) -> None:
         for field, column, places in self._columns:
@@ -287,6 +305,22 @@ class _Desk:
     def _reject(self, row: Row, field: str, message: str, remedy: str) -> None:
         where = f"{self._file}, row {row.number} (line {row.line}): {message}"
         self.rejected.append(Rejected(self._file, row.number, row.line, field, where, remedy))
+
+
+FAILED = "Kouros failed to read it, which is not your fault"
+TELL = "please tell its makers, with the characters of this row"
+
+
+def _read(cells: Cells, field: str, column: ColumnMap, texts: Sequence[str]) -> Any:
+    """Return what a row's cells say for a field; what Kouros itself fails on is a problem, and no value."""
+    kind = KINDS.get(field, "number")
+    try:
+        return _READ[kind](cells, field, column, texts)
+    except KourosError:
+        raise
+    except Exception as problem:  # noqa: BLE001 - whatever it is, it is this cell's, and told
+        cells.problems.append(Problem(field, f"{FAILED}: {fault_words(problem)}", TELL))
+        return "" if kind == "text" else None
 
 
 def _text(cells: Cells, field: str, column: ColumnMap, texts: Sequence[str]) -> str:

@@ -8,11 +8,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from pipeline.collection import reading
+from pipeline.collection.cells import Cells
 from pipeline.collection.errors import CollectionError, MappingError
 from pipeline.collection.inventory import galleries
 from pipeline.collection.limits import STANDARD, Limits
@@ -238,6 +241,52 @@ def test_a_broken_row_is_named_and_the_rest_goes_on(bad: str | bytes, field: str
     assert rejected.message.startswith("museum.csv, row 2 (line 3): ")
     assert message in rejected.message
     assert rejected.remedy
+
+
+@pytest.mark.parametrize(
+    ("where", "name", "field"),
+    [
+        (Cells, "number", "height_m"),
+        (Cells, "text", "title"),
+        (reading, "fill", "dimensions"),
+        (reading, "contradictions", ""),
+    ],
+)
+def test_what_kouros_fails_on_in_one_row_stops_no_reading(
+    where: Any, name: str, field: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before, an error inside of a reader lost the whole import; now a cell is a problem, and a row at most refused."""
+    true = getattr(where, name)
+
+    def failing(*given: Any, **more: Any) -> Any:
+        if "bad" in repr(given):
+            raise IndexError("list index out of range")
+        return true(*given, **more)
+
+    file = tmp_path / "rows.csv"
+    rows = ["1,R,good,0.3,,", "2,R,bad,bad 0.3,bad 10 cm high,bad", "3,R,good,0.4,,"]
+    file.write_text("\n".join(["object_number,gallery,title,height_m,text,note", *rows]), encoding="utf-8")
+    columns: dict[str, Any] = {n: {"column": n} for n in ("object_number", "gallery", "title")}
+    columns |= {"height_m": {"column": "height_m", "unit": "m"}, "medium": {"column": "note"}}
+    source = {"format": "csv", "encoding": "utf-8", "delimiter": ","}
+    whole = {"source": source, "museum": {"name": "M"}, "columns": columns, "dimensions": {"columns": ["text"]}}
+    mapping = Mapping.model_validate(whole)
+    monkeypatch.setattr(where, name, failing)
+    for kind, reader in list(reading._READ.items()):
+        if reader is true:
+            monkeypatch.setitem(reading._READ, kind, failing)
+    found = read_items(file, mapping)
+    assert found.rows == 3
+    if not field:
+        assert [item.object_number for item in found.items] == ["1", "3"]
+        (refused,) = found.rejected
+        assert "row 2 (line 3): Kouros failed to read it, which is not your fault: IndexError" in refused.message
+        return
+    assert [item.object_number for item in found.items] == ["1", "2", "3"]
+    told = [p for p in found.items[1].problems if "Kouros failed to read it" in p.message]
+    assert field in {p.field for p in told}
+    assert all("list index out of range" in p.message for p in told)
+    assert not any("Kouros failed" in p.message for item in found.items[::2] for p in item.problems)
 
 
 def test_a_file_that_is_cut_off_in_a_quoted_cell(read: Read) -> None:
