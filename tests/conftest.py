@@ -39,6 +39,14 @@ LONGEST = frozenset(
         "test_hostile_collection.py",
         "test_tradeoff.py",
         "test_pictures.py",
+        "test_faults.py",
+        "test_dry_runs.py",
+        "test_display.py",
+        "test_readings.py",
+        "test_stopping.py",
+        "test_corners.py",
+        "test_bounded_work.py",
+        "test_bounds.py",
     }
 )
 """Files of tests that take long: they come first, so that at the end no core waits for another."""
