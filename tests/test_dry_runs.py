@@ -16,7 +16,7 @@ from sqlalchemy import create_engine, inspect, text
 
 from pipeline.cli import kouros
 from pipeline.cli.commands import ALL
-from pipeline.collection.database import open_database
+from pipeline.collection.database import database_url, open_database
 from pipeline.collection.inventory import versions
 from pipeline.errors import KourosError
 from pipeline.jobs.rehearsal import NOTHING
@@ -238,8 +238,11 @@ def test_a_dry_run_reads_a_server_only(
     museum: Path, tmp_path: Path, postgresql_url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder = Path(shutil.copytree(museum, tmp_path / "server", symlinks=True))
-    monkeypatch.setenv("KOUROS_DATABASE", postgresql_url)
-    engine = open_database(postgresql_url)
+    with open_database(postgresql_url).connect().execution_options(isolation_level="AUTOCOMMIT") as server:
+        server.execute(text("CREATE DATABASE rehearsed"))
+    url = database_url(postgresql_url).set(database="rehearsed").render_as_string(hide_password=False)
+    monkeypatch.setenv("KOUROS_DATABASE", url)
+    engine = open_database(url)
     dry = say(folder, "import", "export.csv", "--dry-run")
     assert (dry[0], "(4 new" in dry[1]) == (0, True)
     assert not inspect(engine).get_table_names(), "not even the tables are made"

@@ -194,7 +194,7 @@ def listed(number: str, kind: int | None, case: str = "") -> Listed:
 
 
 def piece(*objects: Listed, floor: str = "") -> rounds._Piece:
-    return rounds._Piece(Part("Room", True, 1, 1, Listing.of(objects)), floor, "key", (), None)
+    return rounds._Piece(Part("Room", True, 1, 1, Listing.of(objects)), floor, "basis", "key", (), None)
 
 
 def test_which_kinds_are_found_beforehand(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -240,7 +240,8 @@ def test_pads_have_a_chart_where_many_works_hang_on_walls(tmp_path: Path) -> Non
         return {alike["damping"] for model, _, alike in found.values() if model.name == "swing"}
 
     assert names(500) == set()
-    assert names(1_400) == {0.02}
+    # At the ends of both, length and damping: each end of the damping has a chart.
+    assert names(1_400) == {0.02, 0.13}
     assert names(5_000) == {0.02, 0.06, 0.13}
 
 

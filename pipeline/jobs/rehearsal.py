@@ -56,6 +56,7 @@ def read_only(settings: "Settings", folder: Path) -> "Database":
     from pipeline.collection.database import database_url, open_database, open_for_reading
     from pipeline.collection.inventory import latest_import
     from pipeline.store import migrate
+    from pipeline.store.runs import list_runs
 
     url = database_url(settings.database)
     shown = url.render_as_string(hide_password=True) if "://" in settings.database else settings.database
@@ -63,7 +64,7 @@ def read_only(settings: "Settings", folder: Path) -> "Database":
     if url.get_backend_name() != "sqlite" or (url.database and Path(url.database).is_file()):
         engine = open_for_reading(url)
         there = migrate.current(engine)
-        if there == migrate.revisions()[-1] and latest_import(engine) is not None:
+        if there == migrate.revisions()[-1] and (latest_import(engine) is not None or list_runs(engine)):
             return engine
     if there is None:
         warnings.warn(f"{shown} has no tables of Kouros yet: the real one makes them", DryRunWarning, stacklevel=2)

@@ -18,14 +18,13 @@ from pipeline.jobs.workspace import (
     CHARTS,
     HISTORIES,
     IMPORTS,
-    KEPT,
     LockedError,
     Workspace,
     locked,
     open_workspace,
 )
 from pipeline.report import publish
-from pipeline.settings import Retention, Settings
+from pipeline.settings import KEPT, Retention, Settings
 from pipeline.store.reuse import SELECTION
 from pipeline.store.runs import commit_run, list_runs
 from tests.report import builder
