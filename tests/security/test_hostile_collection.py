@@ -36,7 +36,15 @@ STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u20
 PAGE = re.compile(r"(index|motion|method)\.html|[a-z0-9-]{1,60}-[0-9a-f]{8}\.html")
 EXPORTS = {
     *("findings.csv", "findings.jsonl", "findings.parquet", "findings.xlsx", "objects.csv", "objects.parquet"),
-    *("recommendations.csv", "recommendations.parquet", ".sheets.json", "summary.json", ".reading.json", "reading.csv"),
+    *(
+        "recommendations.csv",
+        "recommendations.parquet",
+        ".sheets.json",
+        "summary.json",
+        ".reading.json",
+        "reading.csv",
+        "reading.html",
+    ),
 }
 OUTSIDE = "owned-by-a-title"
 
