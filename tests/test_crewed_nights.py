@@ -67,12 +67,18 @@ def cluster() -> Iterator[LocalCluster]:
         yield made
 
 
-@pytest.mark.usefixtures("shared")
-def test_a_cluster_given_by_its_address(alone: Settings, cluster: LocalCluster, tmp_path: Path) -> None:
-    settings = museum(tmp_path / "cluster", OBJECTS)
+def of_a_cluster(folder: Path, cluster: LocalCluster) -> Settings:
+    """The museum after a night whose work a cluster did."""
+    settings = museum(folder, OBJECTS)
     execution = settings.execution.model_copy(update={"cluster": cluster.scheduler_address})
     settings = settings.model_copy(update={"execution": execution})
     assert night(settings).fresh == len(OBJECTS)
+    return settings
+
+
+@pytest.mark.usefixtures("shared")
+def test_a_cluster_given_by_its_address(alone: Settings, cluster: LocalCluster, tmp_path: Path) -> None:
+    settings = of_a_cluster(tmp_path / "cluster", cluster)
     assert found(settings).assessments == found(alone).assessments
     assert files(settings) == files(alone)
 
@@ -81,10 +87,7 @@ def test_a_cluster_given_by_its_address(alone: Settings, cluster: LocalCluster, 
 def test_a_worker_with_several_threads(alone: Settings, tmp_path: Path) -> None:
     """As `dask worker` has by default: batches that are worked on at once know nothing of each other."""
     with LocalCluster(n_workers=1, threads_per_worker=4, processes=False, dashboard_address=":0") as made:
-        settings = museum(tmp_path / "threads", OBJECTS)
-        execution = settings.execution.model_copy(update={"cluster": made.scheduler_address})
-        settings = settings.model_copy(update={"execution": execution})
-        assert night(settings).fresh == len(OBJECTS)
+        settings = of_a_cluster(tmp_path / "threads", made)
     assert found(settings).assessments == found(alone).assessments
     assert files(settings) == files(alone)
 

@@ -8,6 +8,7 @@ from pipeline.collection.account import account, doubts
 from pipeline.collection.catalogue import Catalogue
 from pipeline.collection.reading import NOWHERE
 from pipeline.jobs.workspace import Workspace
+from pipeline.quantities import counted
 from pipeline.records import Doubt, RunRecord
 from pipeline.report.reading import INVENTORY, READING
 
@@ -45,11 +46,11 @@ def in_line(reading: Mapping[str, Any] | None) -> str:
     """Return how many rows were read, refused and are doubtful, in a line."""
     if reading is None:
         return UNKNOWN
-    parts = [_count(reading["rows"], "row"), f"{reading['refused']:,} refused", f"{reading['doubtful']:,} doubtful"]
+    parts = [counted(reading["rows"], "row"), f"{reading['refused']:,} refused", f"{reading['doubtful']:,} doubtful"]
     if reading["sheets"]:
         parts.append(f"{reading['sheets']:,} not used of sheets")
     if reading["suspicions"]:
-        parts.append(f"{_count(len(reading['suspicions']), 'doubt')} about the whole file")
+        parts.append(f"{counted(len(reading['suspicions']), 'doubt')} about the whole file")
     return ", ".join(parts)
 
 
@@ -60,8 +61,4 @@ def to_look_at(reading: Mapping[str, Any] | None) -> bool:
 
 def unsaid(shown: int) -> str:
     """Return that no column says what is on display."""
-    return f"no column says what is on display: all {_count(shown, 'object')} are taken to be"
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number:,} {what}{'' if number == 1 else 's'}"
+    return f"no column says what is on display: all {counted(shown, 'object')} are taken to be"
