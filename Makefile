@@ -41,6 +41,7 @@ soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for
 	KOUROS_KILLS=50 $(BIN)/python -m pytest --numprocesses 2 tests/operations/test_interruptions.py -k kill
 	KOUROS_CALLS=1 $(BIN)/python -m pytest -s tests/operations/test_every_call.py
 	KOUROS_OBJECTS=8 $(BIN)/python -m pytest tests/test_faults.py
+	KOUROS_GRID=1 $(BIN)/python -m pytest tests/models/test_bounded_work.py
 
 # In environments of their own: what audits and what schedules must not decide which versions Kouros is tested with.
 audit:  ## known vulnerabilities of the pinned versions; needs the network, and says so and fails where it has none

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import multiprocessing as mp
+import os
 import queue
 from multiprocessing.queues import Queue
+from random import Random
 from typing import Any
 
 import numpy as np
@@ -70,9 +72,16 @@ def calls() -> list[tuple[str, Any]]:
     return listed
 
 
+WHOLE = bool(os.environ.get("KOUROS_GRID"))
+"""Whether every call is made; else half of them, always the same half."""
+
+
 def work(answers: Queue[Any]) -> None:
     """Make every call and put (what, complaint or "") into the queue."""
+    chance = Random(20261122)
     for what, (name, motion, fidelity, given) in calls():
+        if not WHOLE and chance.random() < 0.5:
+            continue
         answers.put((what, None))
         try:
             table = respond(name, motion, fidelity=fidelity, **given)
