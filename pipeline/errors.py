@@ -10,6 +10,9 @@ from typing import ClassVar
 
 _PACKAGE = Path(__file__).parent
 
+_LONGEST = 300
+"""Characters of an unexpected error that are told: some quote whole arrays."""
+
 
 class KourosError(Exception):
     """Something that a person can mend: the message names file, row or field, what is wrong and the remedy.
@@ -29,5 +32,5 @@ def fault_words(problem: BaseException) -> str:
     """Return an unexpected error in words, with the place in Kouros that it came from."""
     own = [step for step in traceback.extract_tb(problem.__traceback__) if _PACKAGE in Path(step.filename).parents]
     at = "".join(f" ({Path(s.filename).relative_to(_PACKAGE).as_posix()}, line {s.lineno}, {s.name})" for s in own[-1:])
-    said = str(problem)
+    said = str(problem) if len(str(problem)) <= _LONGEST else f"{str(problem)[:_LONGEST]}..."
     return f"{type(problem).__name__}{': ' if said else ''}{said}{at}"

@@ -40,8 +40,10 @@ class Fault:
 
 def fault(item: Item, problem: Exception) -> Fault:
     """Return what is told of an object that an error came of."""
-    told = "".join(traceback.format_exception(problem))
-    return Fault(item.object_number, fault_words(problem), told[-_LONGEST:])
+    # An error may quote the record: what is no letter could not be stored.
+    words = fault_words(problem).encode("utf-8", "replace").decode()
+    steps = "".join(traceback.format_tb(problem.__traceback__))
+    return Fault(item.object_number, words, f"{steps[-_LONGEST:]}{words}")
 
 
 def apart(
