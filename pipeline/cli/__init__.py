@@ -33,7 +33,7 @@ def kouros(context: click.Context, config: str) -> None:
     \b
     Exit codes: 0 done; 1 unexpected; 2 usage or settings; 3 with `run --strict` only: done, some objects
     could not be assessed; 4 a motion was refused; 5 collection unreachable; 6 another run holds the lock;
-    7 input shrank suspiciously, nothing published.
+    7 input shrank suspiciously, nothing published; 130 and 143 stopped by Ctrl-C and SIGTERM.
 
     Example: kouros demo
     """
