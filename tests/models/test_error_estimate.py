@@ -310,7 +310,7 @@ def test_what_hangs_on_the_rate_at_which_a_body_rests_is_told(fidelity: str) -> 
 @pytest.mark.parametrize(
     ("name", "start", "samples", "factor", "given"),
     [
-        # Before, off by 1.9, 1.4, 1.2 and 1.1 times of what both estimates granted together.
+        # Before, the last three were off by up to 1.4 times of what both estimates granted together.
         ("swing", 5981, 3176, 1.9767224251616669, {"length": 0.1628865904354977, "damping": 0.022674610290003405}),
         ("swing_3d", 4221, 2635, 0.5939090070784281, {"length": 0.02046693625732521, "damping": 0.017259991341145548}),
         ("friction_isolator", 2711, 2750, 0.9307171496811589, {"friction_static": 0.12729131311593544}),
