@@ -8,6 +8,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, TextIO
 
 from pipeline.jobs.journal import note
+from pipeline.quantities import counted
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
@@ -137,8 +138,7 @@ def _stored_lines(summary: "Summary") -> list[str]:
     if not stored:
         return []
     if found is None:
-        objects = "1 object" if stored == 1 else f"{stored:,} objects"
-        return ["", f"  not on display: {objects}, not assessed (set [display] stores = true)"]
+        return ["", f"  not on display: {counted(stored, 'object')}, not assessed (set [display] stores = true)"]
     told = f"{found.act:,} need action, {found.open:,} open, {found.safe:,} safe, {found.cannot:,} cannot be assessed"
     return ["", f"  not on display, counted apart: {stored:,} objects: {told}"]
 

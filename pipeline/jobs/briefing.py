@@ -1,6 +1,7 @@
 """What all sheets of a run share, made ready: motions and their pictures, rules, measures, and what is asked for."""
 
 import os
+from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
 from typing import Any, Literal
@@ -18,7 +19,7 @@ from pipeline.execute import Threads
 from pipeline.jobs import selftest, tradeoff
 from pipeline.jobs.brief import Brief, motions_of
 from pipeline.jobs.desk import ChartErrand
-from pipeline.jobs.faults import sound
+from pipeline.jobs.faults import sound, without_failing
 from pipeline.jobs.levels import floors_of, notes
 from pipeline.jobs.pictures import Pictures
 from pipeline.jobs.readings import told
@@ -30,8 +31,8 @@ from pipeline.mitigate import Means
 from pipeline.mitigate.measures import padded
 from pipeline.motions.record import NO_VERTICAL
 from pipeline.motions.site import Level, Site
-from pipeline.plan import plan
-from pipeline.records import Model, Progress, RunRecord
+from pipeline.plan import Work, plan
+from pipeline.records import Model, Progress, RunRecord, Scene
 from pipeline.report.reading import INVENTORY, READING
 from pipeline.rules import Table
 from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, PICTURES, RULES
@@ -154,18 +155,24 @@ def popular(
     sample = catalogue.items([one.object_number for one in chosen[::every]])
     # What cannot even be planned for is told by the sheet that it is on.
     scenes = sound(lambda some: [classify(item, rules) for item in some], list(sample.values()))
-    scenes = sound(lambda some: (plan(some, x_azimuth), plan(padded(some, means), x_azimuth)) and some, scenes)
+
+    def planned(some: Sequence[Scene]) -> list[tuple[Work, float]]:
+        return [
+            (work, share)
+            for those, share in ((some, 1.0), (padded(some, means), PADDED))
+            for work in plan(those, x_azimuth).work
+        ]
+
     asking: dict[str, float] = {}
     found: dict[str, Group] = {}
-    for some, share in ((scenes, 1.0), (padded(scenes, means), PADDED)):
-        for work in plan(some, x_azimuth).work:
-            if work.model.chart is None:
-                continue
-            for angle, rows in work.by_angle(np.arange(work.size)):
-                for alike, those in groups(work.model, work.some(rows)):
-                    name = group_name(work.model, angle, alike)
-                    asking[name] = asking.get(name, 0.0) + share * those.size
-                    found[name] = (work.model, angle, alike)
+    for work, share in without_failing(planned, scenes):
+        if work.model.chart is None:
+            continue
+        for angle, rows in work.by_angle(np.arange(work.size)):
+            for alike, those in groups(work.model, work.some(rows)):
+                name = group_name(work.model, angle, alike)
+                asking[name] = asking.get(name, 0.0) + share * those.size
+                found[name] = (work.model, angle, alike)
     return {
         name: group
         for name, group in found.items()

@@ -3,6 +3,7 @@
 import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache, partial
 from pathlib import Path
 from time import monotonic
 
@@ -52,10 +53,11 @@ def _each(settings: Settings, workspace: Workspace | None) -> list[Diagnosis]:
         ("motions", lambda: _motions(settings)),
     ]
     if workspace is not None:
+        items = cache(partial(read_inventory, workspace.engine))
         looks += [
             ("measures", lambda: _means(workspace)),
-            ("inventory", lambda: _inventory(workspace)),
-            ("objects", lambda: _objects(workspace)),
+            ("inventory", lambda: _inventory(workspace, items())),
+            ("objects", lambda: _objects(workspace, items())),
         ]
     looks += checkup.looks(settings, workspace)
     hide = hider(settings)
@@ -121,13 +123,12 @@ def _means(workspace: Workspace) -> tuple[str, str]:
     return "ok", f"{counted(len(have.measures), 'measure')}, {counted(len(have.isolators), 'isolator')}"
 
 
-def _inventory(workspace: Workspace) -> tuple[str, str]:
+def _inventory(workspace: Workspace, items: Sequence[Item]) -> tuple[str, str]:
     from pipeline.jobs.levels import strangers
 
     info = latest_import(workspace.engine)
     if info is None:
         return "warning", "nothing imported yet; `kouros import FILE` does that, `kouros run` too where a source is set"
-    items = read_inventory(workspace.engine)
     shown = sum(galleries(items).values())
     doubts = strangers(workspace.settings.floors, {item.gallery for item in items})
     read = told(workspace, workspace.catalogue())
@@ -141,14 +142,14 @@ def _inventory(workspace: Workspace) -> tuple[str, str]:
     return "warning" if wrong else "ok", "; ".join([text, *doubts])
 
 
-def _objects(workspace: Workspace) -> tuple[str, str]:
+def _objects(workspace: Workspace, inventory: Sequence[Item]) -> tuple[str, str]:
     """Try on every object what comes before the models: its class, its numbers, its measures, what is to be run."""
     from pipeline.jobs.assessing import place
     from pipeline.jobs.deciding import decided
     from pipeline.jobs.faults import apart, fault
     from pipeline.plan import plan
 
-    items, decisions = [item for item in read_inventory(workspace.engine) if item.on_display], decided(workspace)
+    items, decisions = [item for item in inventory if item.on_display], decided(workspace)
 
     def tried(some: Sequence[Item]) -> Sequence[Item]:
         plan([place(item, workspace.rules, decisions.get(item.object_number, ())).scene for item in some])

@@ -99,6 +99,19 @@ def sound(work: Callable[[Sequence[Some]], Sequence[Made]], objects: Sequence[So
     return [one for one in apart(work, objects, lambda _: None) if not isinstance(one, Exception)]
 
 
+def without_failing(work: Callable[[Sequence[Some]], Made], objects: Sequence[Some]) -> Made:
+    """Return what comes of work on many objects together, or, where that fails, on those that it does not fail with.
+
+    raises : as `apart`, and what the work raises even on those
+    """
+    try:
+        return work(objects)
+    except (MemoryError, OSError):
+        raise
+    except Exception:  # noqa: BLE001 - whatever it is, it is some objects', each of which is told where it is assessed
+        return work(sound(lambda some: (work(some), some)[1], objects))
+
+
 def unassessed(scene: Scene | Item, told: Fault) -> Assessment:
     """Return what is said of an object that Kouros failed on: nothing but that."""
     known = scene if isinstance(scene, Scene) else unclassified(scene)
