@@ -9,9 +9,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from pipeline.analysis.response import respond, trace, transmit
     from pipeline.motions import read_motion
     from pipeline.records import Motion
-    from pipeline.response import respond, trace, transmit
 
 __version__ = "0.1.0"
 __all__ = ["Motion", "read_motion", "respond", "trace", "transmit"]
@@ -19,9 +19,9 @@ __all__ = ["Motion", "read_motion", "respond", "trace", "transmit"]
 _HOMES = {
     "Motion": "pipeline.records",
     "read_motion": "pipeline.motions",
-    "respond": "pipeline.response",
-    "trace": "pipeline.response",
-    "transmit": "pipeline.response",
+    "respond": "pipeline.analysis.response",
+    "trace": "pipeline.analysis.response",
+    "transmit": "pipeline.analysis.response",
 }
 
 

@@ -97,7 +97,7 @@ def postgresql_url() -> Iterator[str]:
 def demo_folder() -> Path:
     """The folder of a demonstration that was run once: settings, database, reports; it is only looked at."""
     from pipeline.cli.console import Console
-    from pipeline.jobs.demo import demo
+    from pipeline.tools.demo import demo
 
     folder = Path(os.environ[SHARED]) / "demo"
     with FileLock(folder.with_suffix(".lock")):

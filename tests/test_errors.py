@@ -13,18 +13,28 @@ import pytest
 import pipeline
 from pipeline.collection.database import database_url
 from pipeline.errors import InputError, KourosError, fault_words
-from tests.test_jobs import workspace
+from tests.night.test_jobs import workspace
 
 INSIDE = {
     # Caught where it is raised, or can only be reached by a mistake in Kouros.
-    "charting/histories.py", "charting/keeping.py", "collection/blocks.py", "collection/dimensions/pairing.py",
-    "collection/dimensions/quantities.py", "collection/inventory.py", "collection/sources/rows.py", "jobs/standing.py",
-    "jobs/tradeoff.py", "motions/formats/toolbox.py", "motions/site.py", "supports/__init__.py", "supports/polygon.py",
-}  # fmt: skip
+    "analysis/response_charts/chart_cache.py",
+    "analysis/response_charts/histories.py",
+    "collection/blocks.py",
+    "collection/dimensions/pairing.py",
+    "collection/dimensions/quantities.py",
+    "collection/inventory.py",
+    "collection/sources/rows.py",
+    "motions/formats/toolbox.py",
+    "motions/site.py",
+    "operations/report_status.py",
+    "supports/__init__.py",
+    "supports/polygon.py",
+    "verification/tradeoff.py",
+}
 
 PROGRAM = """
 import numpy as np
-from pipeline.jobs import nightly
+from pipeline.night import run as nightly
 from pipeline.cli import main
 def broken(*_given):
     return np.ones(2) + np.ones(3)
@@ -46,7 +56,7 @@ def test_a_fault_of_ours_is_not_called_the_users(tmp_path: Path, more: tuple[str
     if not shown:
         said = done.stderr.strip().splitlines()[-1]
         assert said.startswith("kouros: a fault of Kouros, not of yours: ValueError: ")
-        assert "jobs/nightly.py, line " in said
+        assert "night/run.py, line " in said
         assert said.endswith("--debug for the traceback")
     assert '"exit_code": 1' in (tmp_path / "reports" / "status.json").read_text(encoding="utf-8")
 
@@ -90,4 +100,4 @@ def test_the_place_of_a_fault_is_the_innermost_of_ours() -> None:
     with pytest.raises(AttributeError) as met:
         pipeline.respond("sliding", object(), friction_static=0.2)  # type: ignore[arg-type]
     assert fault_words(met.value).startswith("AttributeError: 'object' object has no attribute")
-    assert "(response.py, line " in fault_words(met.value)
+    assert "(analysis/response.py, line " in fault_words(met.value)

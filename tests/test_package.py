@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 
 import pipeline
-from pipeline.classify import MODELS_OF, NO_MODEL, WHEN_HELD
-from pipeline.jobs.tradeoff import PLAUSIBLE
+from pipeline.analysis.classify import MODELS_OF, NO_MODEL, WHEN_HELD
 from pipeline.kernels import cache_folder
 from pipeline.mitigate.changes import CHANGES
 from pipeline.mitigate.installed import PARAMETERS
@@ -23,6 +22,7 @@ from pipeline.mitigate.shared import SHARED
 from pipeline.models import MODELS
 from pipeline.resources import resource
 from pipeline.tables import table
+from pipeline.verification.tradeoff import PLAUSIBLE
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -77,7 +77,7 @@ def test_importing_the_package_is_free_and_the_names_survive_any_order() -> None
     heavy = "numpy", "pandas", "numba", "obspy", "sqlalchemy", "scipy"
     loaded = python(f"import sys, pipeline; print([m for m in {heavy} if m in sys.modules])", ROOT)
     assert loaded == "[]"
-    assert python("import pipeline.response, pipeline; print(pipeline.respond.__name__)", ROOT) == "respond"
+    assert python("import pipeline.analysis.response, pipeline; print(pipeline.respond.__name__)", ROOT) == "respond"
 
 
 def test_help_does_not_wait_for_compilers() -> None:

@@ -17,8 +17,8 @@ from pipeline.cli.console import Guarded
 from pipeline.cli.options import Options
 from pipeline.cli.shared import with_shared
 from pipeline.execute.crew import RARELY
-from pipeline.jobs.journal import note
-from pipeline.jobs.stopping import Stopped, stoppable
+from pipeline.operations.event_log import note
+from pipeline.operations.stopping import Stopped, stoppable
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -82,8 +82,8 @@ def main() -> None:
 
 def _log(stack: ExitStack) -> None:
     """Write JSON lines to standard error from now on, warnings included."""
-    from pipeline.jobs.journal import journal
-    from pipeline.jobs.secrets import hider
+    from pipeline.operations.event_log import journal
+    from pipeline.operations.secrets import hider
 
     stack.enter_context(journal(None, hider(None), to_stderr=True))
     warnings.showwarning = lambda message, category, *_where: note(
@@ -93,8 +93,8 @@ def _log(stack: ExitStack) -> None:
 
 def _tell(problem: Exception, *, as_json: bool) -> int:
     """Tell an error without its secrets, as a sentence or as a line of the log, and return the exit code."""
-    from pipeline.jobs.outcome import exit_code_of, words_of
-    from pipeline.jobs.secrets import hider
+    from pipeline.operations.run_summary import exit_code_of, words_of
+    from pipeline.operations.secrets import hider
 
     code, said = exit_code_of(problem), hider(None)(words_of(problem))
     if as_json:

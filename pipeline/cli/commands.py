@@ -17,7 +17,7 @@ from pipeline.cli.options import Options, as_json, dry_run, say_dry
 from pipeline.quantities import counted
 
 if TYPE_CHECKING:
-    from pipeline.jobs.nightly import Summary
+    from pipeline.operations.run_summary import Summary
 
 
 FIDELITIES = ("screen", "bound", "chart", "history", "reference")
@@ -25,7 +25,7 @@ FIDELITIES = ("screen", "bound", "chart", "history", "reference")
 
 
 def _print_summary(summary: "Summary", wanted: bool) -> None:
-    from pipeline.jobs.outcome import summary_document
+    from pipeline.operations.run_summary import summary_document
 
     if wanted:
         click.echo(json.dumps(summary_document(summary), indent=2, allow_nan=False))
@@ -43,10 +43,10 @@ def demo(options: Options, folder: Path, dry_run: bool, as_json: bool) -> None:
 
     Example: kouros demo
     """
-    from pipeline.jobs.demo import demonstration
-    from pipeline.jobs.nightly import run as job
-    from pipeline.jobs.secrets import hider
-    from pipeline.jobs.watch import watched
+    from pipeline.night.run import run as job
+    from pipeline.operations.job_monitor import watched
+    from pipeline.operations.secrets import hider
+    from pipeline.tools.demo import demonstration
 
     settings = demonstration(folder, dry_run=dry_run)
     with options.console() as console:
@@ -64,7 +64,7 @@ def init(folder: Path, dry_run: bool) -> None:
 
     Example: kouros init museum
     """
-    from pipeline.jobs.initialise import initialise
+    from pipeline.tools.initialise import initialise
 
     for made in initialise(folder, dry_run=dry_run):
         click.echo(f"{'would make' if dry_run else 'made'} {made}")
@@ -87,9 +87,9 @@ def survey(options: Options, galleries: tuple[str, ...], out: Path | None, dry_r
 
     Example: kouros survey --gallery "Gallery 12"
     """
-    from pipeline.jobs.rehearsal import rehearsed
-    from pipeline.jobs.survey import survey as job
-    from pipeline.jobs.workspace import locked, open_workspace
+    from pipeline.operations.dry_run import rehearsed
+    from pipeline.operations.workspace import locked, open_workspace
+    from pipeline.tools.survey import survey as job
 
     with rehearsed(options.settings(), dry_run) as settings, locked(settings), options.console() as console:
         found = job(open_workspace(settings), console, galleries=galleries, path=out)
@@ -127,7 +127,7 @@ def check(options: Options, numerics: bool, as_json: bool) -> None:
     if numerics:
         _check_numerics(options, as_json)
         return
-    from pipeline.jobs.doctor import diagnose
+    from pipeline.tools.doctor import diagnose
 
     found = diagnose(Path(options.config))
     if as_json:
@@ -140,7 +140,7 @@ def check(options: Options, numerics: bool, as_json: bool) -> None:
 
 
 def _check_numerics(options: Options, as_json: bool) -> None:
-    from pipeline.jobs.selftest import self_test
+    from pipeline.verification.selftest import self_test
 
     settings = options.settings() if Path(options.config).exists() else None
     done = []
@@ -197,12 +197,12 @@ def run(
     Example: kouros run --resume
     Example: kouros run --explain 1922.9
     """
-    from pipeline.jobs.journal import journal
-    from pipeline.jobs.nightly import Selection
-    from pipeline.jobs.nightly import run as job
-    from pipeline.jobs.rehearsal import rehearsed
-    from pipeline.jobs.secrets import hider
-    from pipeline.jobs.watch import watched
+    from pipeline.night.run import Selection
+    from pipeline.night.run import run as job
+    from pipeline.operations.dry_run import rehearsed
+    from pipeline.operations.event_log import journal
+    from pipeline.operations.job_monitor import watched
+    from pipeline.operations.secrets import hider
 
     settings = options.settings()
     if site is not None:
@@ -244,7 +244,7 @@ def prune(options: Options, dry_run: bool, as_json: bool) -> None:
 
     Example: kouros prune --dry-run
     """
-    from pipeline.jobs.retention import prune as job
+    from pipeline.operations.retention import prune as job
 
     done = job(options.settings(), dry_run=dry_run)
     if as_json:
@@ -267,7 +267,7 @@ def report(options: Options, run_id: str | None) -> None:
 
     Example: kouros report
     """
-    from pipeline.jobs.reporting import render_again
+    from pipeline.tools.rerender import render_again
 
     click.echo(f"Report: {render_again(options.settings(), run_id)}")
 
@@ -283,7 +283,7 @@ def diff(options: Options, old: str | None, new: str | None, as_json: bool) -> N
     Example: kouros diff
     """
     from pipeline.cli.differing import print_changes
-    from pipeline.jobs.reporting import compare
+    from pipeline.tools.rerender import compare
 
     print_changes(compare(options.settings(), old, new), as_json)
 
@@ -359,7 +359,7 @@ def respond(
     Example: kouros respond sliding friction_static=0.05,0.1,0.2
     Example: kouros respond rocking half_width=0.1 cg_height=0.5 --through plinth:frequency=8,damping=0.05
     """
-    from pipeline.jobs.adhoc import respond_on_site
+    from pipeline.tools.adhoc import respond_on_site
 
     # Only charts are kept anywhere.
     settings = options.settings() if fidelity == "chart" and Path(options.config).exists() else None
@@ -390,7 +390,7 @@ def tradeoff(
 
     Example: kouros tradeoff --site demo --model sliding --error 1e-4
     """
-    from pipeline.jobs.tradeoff import tradeoff_on
+    from pipeline.verification.tradeoff import tradeoff_on
 
     settings = options.settings() if Path(options.config).exists() else None
     with options.console() as console:

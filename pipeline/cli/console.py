@@ -7,14 +7,14 @@ from math import isnan
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, TextIO
 
-from pipeline.jobs.journal import note
+from pipeline.operations.event_log import note
 from pipeline.quantities import counted
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
 
-    from pipeline.jobs.nightly import Summary
-    from pipeline.jobs.tradeoff import Tradeoff
+    from pipeline.operations.run_summary import Summary
+    from pipeline.verification.tradeoff import Tradeoff
 
 
 _STEERING = re.compile(
@@ -120,7 +120,7 @@ def summary_lines(summary: "Summary") -> list[str]:
 
 
 def _reading_lines(summary: "Summary") -> list[str]:
-    from pipeline.jobs.readings import in_line, to_look_at, unsaid
+    from pipeline.night.reading_summary import in_line, to_look_at, unsaid
 
     read = summary.reading
     look = "" if read is None or not to_look_at(read) else ": look"

@@ -64,10 +64,10 @@ def decide(
     Example: kouros decide 1922.9 accept --model sliding --until 2032-01-01 --why "case is rebuilt next year"
     Example: kouros decide --list
     """
-    from pipeline.jobs.deciding import Wish, listed
-    from pipeline.jobs.deciding import decide as job
-    from pipeline.jobs.rehearsal import rehearsed
-    from pipeline.jobs.workspace import open_workspace
+    from pipeline.operations.dry_run import rehearsed
+    from pipeline.operations.workspace import open_workspace
+    from pipeline.tools.decisions import Wish, listed
+    from pipeline.tools.decisions import decide as job
 
     if listing == (kind is not None):
         raise click.UsageError(f"give an OBJECT and one of {', '.join(DecisionKind)}, or --list")

@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from pipeline.cli.console import listed
-from pipeline.jobs.outcome import json_ready, plain_changes
+from pipeline.operations.run_summary import json_ready, plain_changes
 from pipeline.records import FieldChange, RunChanges, VerdictChange
 
 

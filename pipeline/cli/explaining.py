@@ -11,16 +11,16 @@ from pipeline.cli.console import printable
 from pipeline.cli.options import Options
 
 if TYPE_CHECKING:
-    from pipeline.jobs.explaining import Explanation, Reasoning, Taken
     from pipeline.records import Estimate, Recommendation
     from pipeline.settings import Settings
+    from pipeline.tools.explain import Explanation, Reasoning, Taken
 
 
 def print_explanation(settings: "Settings", number: str, options: Options, as_json: bool) -> None:
     """Explain one object and print it; nothing is stored."""
-    from pipeline.jobs.explaining import explain
-    from pipeline.jobs.outcome import json_ready
-    from pipeline.jobs.workspace import open_workspace
+    from pipeline.operations.run_summary import json_ready
+    from pipeline.operations.workspace import open_workspace
+    from pipeline.tools.explain import explain
 
     with options.console() as console:
         explained = explain(open_workspace(settings), number, console)

@@ -17,7 +17,7 @@ from pipeline.quantities import counted
 if TYPE_CHECKING:
     from pipeline.collection.inventory import Difference
     from pipeline.collection.reading import Reading
-    from pipeline.jobs.importing import Imported
+    from pipeline.night.importing import Imported
 
 
 @click.command("import")
@@ -81,7 +81,7 @@ def import_(
 
 
 def _presets(wanted_json: bool) -> None:
-    from pipeline.jobs.importing import presets
+    from pipeline.night.importing import presets
 
     found = presets()
     if wanted_json:
@@ -103,7 +103,7 @@ def _presets(wanted_json: bool) -> None:
 
 def _versions(options: Options, wanted_json: bool) -> None:
     from pipeline.collection.inventory import versions
-    from pipeline.jobs.workspace import open_workspace
+    from pipeline.operations.workspace import open_workspace
 
     found = versions(open_workspace(options.settings()).engine)
     if wanted_json:
@@ -120,7 +120,7 @@ def _versions(options: Options, wanted_json: bool) -> None:
 
 
 def _guess(source: str, table: str | None, target: Path | None, dry_run: bool, wanted_json: bool) -> None:
-    from pipeline.jobs.importing import proposed
+    from pipeline.night.importing import proposed
 
     if dry_run and target is not None:
         raise click.UsageError("--write writes the mapping, and --dry-run writes nothing: leave one of them out")
@@ -154,9 +154,9 @@ def _guess(source: str, table: str | None, target: Path | None, dry_run: bool, w
 
 
 def _sheet(options: Options, source: str, dry_run: bool, wanted_json: bool) -> None:
-    from pipeline.jobs.rehearsal import rehearsed
-    from pipeline.jobs.survey import add_measurements
-    from pipeline.jobs.workspace import locked, open_workspace
+    from pipeline.operations.dry_run import rehearsed
+    from pipeline.operations.workspace import locked, open_workspace
+    from pipeline.tools.survey import add_measurements
 
     with rehearsed(options.settings(), dry_run) as settings, locked(settings):
         reading, changes, unknown = add_measurements(open_workspace(settings), Path(source), dry_run=dry_run)
@@ -176,9 +176,9 @@ def _sheet(options: Options, source: str, dry_run: bool, wanted_json: bool) -> N
 
 
 def _return(options: Options, version: int, dry_run: bool, wanted_json: bool) -> None:
-    from pipeline.jobs.importing import go_back
-    from pipeline.jobs.rehearsal import rehearsed
-    from pipeline.jobs.workspace import locked, open_workspace
+    from pipeline.night.importing import go_back
+    from pipeline.operations.dry_run import rehearsed
+    from pipeline.operations.workspace import locked, open_workspace
 
     with rehearsed(options.settings(), dry_run) as settings, locked(settings):
         changes = go_back(open_workspace(settings), version, dry_run=dry_run)
@@ -195,9 +195,9 @@ def _return(options: Options, version: int, dry_run: bool, wanted_json: bool) ->
 def _import(
     options: Options, source: str, mapping: str | None, shrink_limit: float | None, dry_run: bool, wanted_json: bool
 ) -> None:
-    from pipeline.jobs.importing import import_collection
-    from pipeline.jobs.rehearsal import rehearsed
-    from pipeline.jobs.workspace import locked, open_workspace
+    from pipeline.night.importing import import_collection
+    from pipeline.operations.dry_run import rehearsed
+    from pipeline.operations.workspace import locked, open_workspace
 
     with rehearsed(options.settings(), dry_run) as settings, locked(settings):
         wanted = settings.collection
@@ -228,7 +228,7 @@ def _plain(done: "Imported") -> dict[str, Any]:
 
 
 def _tell(done: "Imported", *, dry_run: bool) -> None:
-    from pipeline.jobs.readings import unsaid
+    from pipeline.night.reading_summary import unsaid
 
     reading = done.reading
     click.echo(

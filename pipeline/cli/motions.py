@@ -12,9 +12,9 @@ from pipeline.cli.console import aligned
 from pipeline.cli.options import Options, as_json, dry_run, say_dry
 
 if TYPE_CHECKING:
-    from pipeline.jobs.records import MotionRow
-    from pipeline.jobs.swap import Pair, Swap
     from pipeline.settings import Settings
+    from pipeline.tools.compare_motions import Pair, Swap
+    from pipeline.tools.strong_motion import MotionRow
 
 
 @click.group()
@@ -33,9 +33,9 @@ def _settings(options: Options) -> "Settings | None":
 
 
 def _folder(options: Options, site: str | None) -> Path:
-    from pipeline.jobs.records import desk
+    from pipeline.operations.workspace import folder_of_site
 
-    return desk(_settings(options), site)
+    return folder_of_site(_settings(options), site)
 
 
 @motions.command("list")
@@ -47,7 +47,7 @@ def list_(options: Options, site: str | None, as_json: bool) -> None:
 
     Example: kouros motions list demo
     """
-    from pipeline.jobs.records import listed
+    from pipeline.tools.strong_motion import listed
 
     rows = listed(_folder(options, site))
     if as_json:
@@ -66,7 +66,7 @@ def entries(options: Options, site: str | None) -> None:
 
     Example: kouros motions entries site_motions/site
     """
-    from pipeline.jobs.records import entries as job
+    from pipeline.tools.strong_motion import entries as job
 
     found = job(_folder(options, site))
     click.echo("\n\n".join(found) if found else "the manifest names every record file of the folder")
@@ -112,9 +112,9 @@ def show(options: Options, site: str | None, record: str, out: Path, as_json: bo
 
     Example: kouros motions show demo --out motions.html
     """
-    from pipeline.jobs.records import described, show
     from pipeline.report import Units
-    from pipeline.report.record_words import summary_lines
+    from pipeline.report.pages.record_words import summary_lines
+    from pipeline.tools.strong_motion import described, show
 
     settings = _settings(options)
     units = Units(length=settings.report.length) if settings else Units()
@@ -149,9 +149,9 @@ def process(
 
     Example: kouros motions process demo --out processed
     """
-    from pipeline.jobs.records import listed, overrule
-    from pipeline.jobs.records import process as job
-    from pipeline.jobs.workspace import UsageError
+    from pipeline.operations.workspace import UsageError
+    from pipeline.tools.strong_motion import listed, overrule
+    from pipeline.tools.strong_motion import process as job
 
     folder = _folder(options, site)
     overruled: Sequence[str] = ()
@@ -189,7 +189,7 @@ def compare(options: Options, old: str, new: str, as_json: bool) -> None:
 
     Example: kouros motions compare site_motions/site site_motions/proposed
     """
-    from pipeline.jobs.swap import compare_sites
+    from pipeline.tools.compare_motions import compare_sites
 
     settings = _settings(options)
     with options.console() as console:
@@ -248,9 +248,9 @@ def synthesise(kind: str, parameters: tuple[str, ...], out: Path | None, dry_run
 
     Example: kouros motions synthesise sine amplitude=2 frequency=1.5 cycles=10 --out shake
     """
-    from pipeline.jobs.signals import SIGNALS, describe
-    from pipeline.jobs.signals import synthesise as job
-    from pipeline.jobs.workspace import UsageError
+    from pipeline.operations.workspace import UsageError
+    from pipeline.tools.synthetic import SIGNALS, describe
+    from pipeline.tools.synthetic import synthesise as job
 
     if kind and kind not in SIGNALS:
         raise UsageError(f"there is no signal {kind!r}; the signals are {', '.join(SIGNALS)}")

@@ -23,7 +23,7 @@ def dry_run(told: str) -> Callable[[_Function], _Function]:
 
 def say_dry(wanted_json: bool) -> None:
     """End a dry run with the words that nothing was written: beside JSON on standard error."""
-    from pipeline.jobs.rehearsal import NOTHING
+    from pipeline.operations.dry_run import NOTHING
 
     click.echo(NOTHING, err=wanted_json)
 

@@ -9,6 +9,7 @@ from decimal import Context
 from math import isinf
 
 from pipeline.collection.mapping import WRITTEN, ColumnMap
+from pipeline.collection.measured_cell import of_cell
 from pipeline.collection.record import plausible, units_of
 from pipeline.collection.sources.rows import as_text
 from pipeline.records import Origin, Problem, Provenance, Support
@@ -129,8 +130,6 @@ class Cells:
         self._note(name, column, message, remedy)
 
     def _written(self, name: str, column: ColumnMap, text: str) -> float | None:
-        from pipeline.collection.measured import of_cell
-
         found = of_cell(text, plausible()[name].unit, self.decimal)
         if found is None:
             self._note(name, column, f"{_show(text)} is no number with its unit", "write it as in 23 cm or 8 1/2 in")

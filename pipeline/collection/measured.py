@@ -8,8 +8,9 @@ from functools import cache
 from typing import Any
 
 from pipeline.collection.cells import Cells
-from pipeline.collection.dimensions import Choice, Dimensions, Part, agree, choose, parse
+from pipeline.collection.dimensions import Choice, Dimensions, agree, choose, parse
 from pipeline.collection.mapping import ColumnMap, Texts
+from pipeline.collection.measured_cell import written
 from pipeline.collection.record import TEXT_LIMIT
 from pipeline.records import Origin, Problem, Provenance
 
@@ -124,26 +125,6 @@ def _provenance(field: str, what: str, choice: Choice, read: Dimensions) -> Prov
     return Provenance(field, origin, written(part, read), f"{why}; characters {choice.start + 1} to {choice.end}")
 
 
-def written(part: Part, read: Dimensions) -> str:
-    """Return the number of a part as it was written, with the unit that it is in."""
-    characters = read.written(part)
-    named = part.unit_text and part.unit_text.casefold() in characters.casefold()
-    return characters if named else f"{characters} {part.unit}".strip()
-
-
 def is_dimension(text: str) -> bool:
     """Whether a text that should name an object is a dimension: a line of another cell that became a row."""
     return any(part.unit_text for part in parse(text).parts)
-
-
-def of_cell(text: str, kind: str, decimal: str) -> tuple[float, str] | None:
-    """Return the value (SI) and the characters of a cell that holds one number with its unit; None where it does not.
-
-    kind : "m" for a length, "kg" for a mass
-    """
-    read = parse(text, decimal=decimal)
-    parts = [part for part in read.parts if part.value is not None]
-    if len(parts) != 1 or (parts[0].dimension == "weight") != (kind == "kg") or read.having("remainder"):
-        return None
-    value = parts[0].value
-    return None if value is None else (value, written(parts[0], read))

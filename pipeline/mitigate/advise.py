@@ -4,9 +4,10 @@ import re
 from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from pipeline.charting import SHELF, Shelf
-from pipeline.charts import chart_key
-from pipeline.climb import AUTO
+from pipeline.analysis.figures import chart_key
+from pipeline.analysis.refinement import AUTO
+from pipeline.analysis.response_charts import SHELF, Shelf
+from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.bench import Bench, Carriage, Fineness, Trial, checks, passes, why_not
 from pipeline.mitigate.means import LAST, STORED, STORED_SENTENCE, STORED_TITLE, Means, Measure, own_means
 from pipeline.mitigate.measures import DISPLACEMENTS, MEASURES, TOGETHER
@@ -14,7 +15,6 @@ from pipeline.mitigate.offers import Need, Offer, Proposal, Way
 from pipeline.mitigate.shared import SHARED, case_of, company
 from pipeline.records import Check, Executor, Finding, Mark, Progress, Recommendation, Scene, Verdict
 from pipeline.tables import TableError
-from pipeline.verdicts import LevelMotions
 
 ROOM = ("clearance", "rubber_pads", "restrain")
 """Measures worth advising where only the assumed room leaves the verdict open."""
@@ -46,7 +46,7 @@ def advise(
     fails while its rocking is open is not told to keep clear: what is advised also keeps it from rocking.  And what is
     advised for a weak level is built for the strong one too: one measure for all of them.  Only where there is none is
     one sought for each level alone, and its sentence says so.  Where nothing fails and something else than room is
-    open, nothing is advised: a measurement may settle that (`pipeline.survey`).
+    open, nothing is advised: a measurement may settle that (`pipeline.analysis.survey`).
 
     levels   : of shaking, with the motions that the findings were made under
     means    : the measures and isolators that there are; None: Kouros's own tables

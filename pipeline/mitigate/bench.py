@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.assess import assess
-from pipeline.charting import SHELF, Shelf
+from pipeline.analysis.assess import assess
+from pipeline.analysis.response import answer, prepare, transmit
+from pipeline.analysis.response_charts import SHELF, Shelf
+from pipeline.analysis.verdicts import LevelMotions, capacity_of
 from pipeline.mitigate.means import Isolator, Means
 from pipeline.models import model_named
 from pipeline.models.common import largest_push, lift_ratios
 from pipeline.quantities import Array, G
 from pipeline.records import Check, Executor, Finding, Motion, Scene, Silent, Verdict
-from pipeline.response import answer, prepare, transmit
-from pipeline.verdicts import LevelMotions, capacity_of
 
 PASSED = 0.03
 """Error that the sampling of what an isolator passes on may bring to an oscillator of 20 Hz on it.

@@ -6,7 +6,7 @@ The parameters are those of a recommendation, by name [SI]; what they are is wha
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from pipeline.classify import MODELS_OF
+from pipeline.analysis.classify import MODELS_OF
 from pipeline.records import Estimate, Origin, Scene, Support
 
 Change = Callable[[Scene, Mapping[str, float]], Scene]

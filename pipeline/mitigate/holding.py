@@ -7,12 +7,12 @@ from math import pi
 
 import numpy as np
 
+from pipeline.analysis.response import respond
+from pipeline.analysis.verdicts import judge
 from pipeline.mitigate.bench import Bench
 from pipeline.models.stress import FLEXIBLE_STRESS
 from pipeline.records import Check, Estimate, Finding, Motion, Origin, Scene, Verdict
-from pipeline.response import respond
 from pipeline.tables import Range, spread, table
-from pipeline.verdicts import judge
 
 WAX = "museum wax"
 WAX_CHECKS = ("Wax, sideways", "Wax, uplift", "Shaking that wax holds")

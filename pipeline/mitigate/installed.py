@@ -8,12 +8,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from pipeline.assess import LevelMotions, assess
+from pipeline.analysis.assess import LevelMotions, assess
+from pipeline.analysis.response import transmit
 from pipeline.mitigate.changes import CHANGES, changed, held
 from pipeline.models import model_named
 from pipeline.quantities import Quantity
 from pipeline.records import Executor, Finding, Progress, Scene
-from pipeline.response import transmit
 from pipeline.tables import table
 
 _FRICTION = Quantity("friction", "-", "friction of the surface", 0.0, 2.0, exclusive=True)

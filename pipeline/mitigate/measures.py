@@ -6,7 +6,8 @@ from functools import partial
 from itertools import product
 from math import ceil, inf, isfinite
 
-from pipeline.classify import material_of
+from pipeline.analysis.classify import material_of
+from pipeline.analysis.verdicts import judge
 from pipeline.mitigate.bench import Bench, Bodies, Trial
 from pipeline.mitigate.changes import changed, held, knows_section
 from pipeline.mitigate.holding import footing, force_and_moment, strengths, wax_area, wax_checks
@@ -16,7 +17,6 @@ from pipeline.models.stress import STRESS
 from pipeline.quantities import G
 from pipeline.records import Check, Finding, Scene, Support, Verdict
 from pipeline.tables import number, table
-from pipeline.verdicts import judge
 
 Propose = Callable[[Need, Bench, Measure], Proposal]
 

@@ -1,8 +1,8 @@
 """A run's record becomes a report: pages for people, files for programs, and one lasting name for the newest."""
 
 from pipeline.report.errors import ReportError
+from pipeline.report.files.publish import lasting_name, publish
 from pipeline.report.language import Language, language
-from pipeline.report.publish import lasting_name, publish
 from pipeline.report.render import render
 from pipeline.report.units import Units
 

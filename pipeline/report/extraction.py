@@ -6,7 +6,7 @@ from dataclasses import fields
 from io import TextIOWrapper
 from typing import IO
 
-from pipeline.classify import object_classes
+from pipeline.analysis.classify import object_classes
 from pipeline.mitigate.advise import ONLY_HERE
 from pipeline.mitigate.holding import WAX_CHECKS
 from pipeline.mitigate.installed import ON_TOP, PARAMETERS

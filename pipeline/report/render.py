@@ -5,15 +5,15 @@ from dataclasses import replace
 from pathlib import Path
 
 from pipeline.records import Assessment, Found, RunChanges, RunRecord, Sheet, Spacing
-from pipeline.report.decided import by_object
-from pipeline.report.edition import Edition, link_to, sheet_key
+from pipeline.report.files.page_renderer import Pen
+from pipeline.report.files.report_writer import Edition, link_to, sheet_key
 from pipeline.report.language import Language
-from pipeline.report.reading import Doubts
-from pipeline.report.sheets import Pen
-from pipeline.report.since import mentioned
-from pipeline.report.tallies import tally, total
+from pipeline.report.pages.decided import by_object
+from pipeline.report.pages.reading import Doubts
+from pipeline.report.pages.since import mentioned
+from pipeline.report.pages.tallies import tally, total
+from pipeline.report.pages.views import Pointer
 from pipeline.report.units import Units
-from pipeline.report.views import Pointer
 
 
 def render(

@@ -63,3 +63,26 @@ def slug(name: str) -> str:
     ascii_name = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode("ascii").lower()
     stem = re.sub(r"[^a-z0-9]+", "-", ascii_name).strip("-")[:60].strip("-")
     return f"{stem or 'gallery'}-{digest(name)}"
+
+
+_BEGINS = frozenset("=+-@\t\r\n\uff1d\uff0b\uff0d\uff20")
+_INSIDE = re.compile("([;\t\r\n])(?=[=+\\-@\uff1d\uff0b\uff0d\uff20])")
+"""Where a formula begins for programs that cut the line of a CSV file at other separators than the comma, whatever its
+quotation marks say: spreadsheets of countries that write decimal commas cut at semicolons."""
+
+
+def safe_cell(text: str) -> str:
+    """Return a text that no spreadsheet takes for a formula: an apostrophe goes before = + - @ tab and return.
+
+    The same goes for signs of full width, and after a semicolon, a tab or a line end within the text.
+    """
+    fit = encodable(text)
+    if _INSIDE.search(fit):
+        fit = _INSIDE.sub(r"\1'", fit)
+    return "'" + fit if fit[:1] in _BEGINS else fit
+
+
+def encodable(text: str) -> str:
+    """Return a text that UTF-8 can hold."""
+    # A lone surrogate, as a badly decoded file leaves behind, cannot be written as UTF-8 at all.
+    return text if text.isascii() else text.encode("utf-8", "replace").decode("utf-8")

@@ -1,11 +1,12 @@
 """The log of what people decided: rows are added, never changed and never removed."""
 
+from collections.abc import Mapping
 from dataclasses import fields, replace
 
 from sqlalchemy import Engine, insert, select
 from sqlalchemy.exc import IntegrityError
 
-from pipeline.records import Basis, Decision
+from pipeline.records import Basis, Decision, in_force
 from pipeline.store.codec import StoreError
 from pipeline.store.results import load_found, load_outlines
 from pipeline.store.tables import DECISION, RUN_SHEET
@@ -39,6 +40,18 @@ def read_decisions(engine: Engine, object_number: str | None = None) -> tuple[De
         wanted = wanted.where(DECISION.c.object_number == object_number)
     with engine.connect() as connection:
         return tuple(Decision(*row) for row in connection.execute(wanted))
+
+
+InForce = Mapping[str, tuple[Decision, ...]]
+"""Decisions by object number."""
+
+
+def decisions_in_force(engine: Engine) -> InForce:
+    """Return the decisions in force, by object number."""
+    found: dict[str, tuple[Decision, ...]] = {}
+    for decision in in_force(read_decisions(engine)):
+        found[decision.object_number] = (*found.get(decision.object_number, ()), decision)
+    return found
 
 
 def looked_at(engine: Engine, run_id: str, object_number: str, gallery: str = "") -> tuple[Basis, ...]:

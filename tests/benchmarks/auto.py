@@ -16,18 +16,18 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.charting import Shelf
-from pipeline.classify import classify
-from pipeline.climb import Effort, examine
+from pipeline.analysis.classify import classify
+from pipeline.analysis.plan import Work, plan
+from pipeline.analysis.refinement import Effort, examine
+from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.execute import Threads
-from pipeline.jobs.importing import bundled_collection
 from pipeline.motions import read_motion
-from pipeline.plan import Work, plan
+from pipeline.night.importing import bundled_collection
 from pipeline.records import Item, Scene
 from pipeline.resources import resource
-from pipeline.verdicts import LevelMotions
 from tests.benchmarks.common import SEED
 
 COLLECTION = "KOUROS_BENCH_COLLECTION"

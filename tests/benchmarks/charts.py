@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from pipeline.charting import Shelf
+from pipeline.analysis.response import prepare, run_chart, run_model
+from pipeline.analysis.response_charts import Shelf
 from pipeline.models import MODELS
 from pipeline.motions import read_motion
 from pipeline.quantities import Array
 from pipeline.records import Model, Motion
 from pipeline.resources import resource
-from pipeline.response import prepare, run_chart, run_model
 from tests.benchmarks.common import SEED, clocked, fastest, least
 
 LOOKUPS = 100_000

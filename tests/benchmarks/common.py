@@ -9,12 +9,12 @@ from typing import TypeVar
 
 import numpy as np
 
+from pipeline.analysis.response import REFINE, prepare
 from pipeline.models import model_named
 from pipeline.motions import read_motion
 from pipeline.quantities import Array
 from pipeline.records import Columns, Excitation, Motion
 from pipeline.resources import resource
-from pipeline.response import REFINE, prepare
 
 Result = TypeVar("Result")
 

@@ -12,11 +12,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from pipeline.analysis.response import REFINE, prepare
 from pipeline.execute import Threads
 from pipeline.models import model_named
 from pipeline.quantities import Array, G
 from pipeline.records import Columns, Excitation, Model
-from pipeline.response import REFINE, prepare
 from tests.benchmarks.common import OBJECTS, SEED, fastest, shaking, strongest
 
 ROUNDS, ALONE = 5, 3

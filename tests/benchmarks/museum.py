@@ -17,10 +17,10 @@ import numpy as np
 
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
-from pipeline.jobs.importing import bundled_collection
 from pipeline.motions import read_motion
 from pipeline.motions.manifest import SiteTable
 from pipeline.motions.writing import write_site
+from pipeline.night.importing import bundled_collection
 from pipeline.quantities import Array, G
 from pipeline.records import Item, Motion
 from pipeline.resources import resource

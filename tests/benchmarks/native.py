@@ -10,13 +10,13 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from pipeline.analysis.response import prepare
 from pipeline.kernels.pendulum import substeps
 from pipeline.models import model_named
 from pipeline.models.common import Quiet, shaken
 from pipeline.models.rocking import bodies
 from pipeline.quantities import Array
 from pipeline.records import Excitation
-from pipeline.response import prepare
 from tests.benchmarks.common import OBJECTS, SEED, fastest, level, shaking, strongest
 
 SLOWER = 1.6

@@ -8,7 +8,7 @@ from pathlib import Path
 def night() -> None:
     """Print what the first and the second night of the demonstration cost."""
     from pipeline.cli.console import Console
-    from pipeline.jobs.demo import demo
+    from pipeline.tools.demo import demo
 
     with tempfile.TemporaryDirectory() as folder:
         for which in ("first", "second"):

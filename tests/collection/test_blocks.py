@@ -19,7 +19,7 @@ from pipeline.collection.reading import Reading, read_items
 from pipeline.collection.sources.opening import Opened
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.suspicion import Evidence, suspicions
-from pipeline.jobs.importing import bundled_collection, log_rows
+from pipeline.night.importing import bundled_collection, log_rows
 
 CARNEGIE = load_mapping("carnegie")
 Table = list[list[str]]

@@ -13,7 +13,7 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.guess import guess
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
-from pipeline.jobs.importing import presets, proposed
+from pipeline.night.importing import presets, proposed
 
 COLUMNS = '"ObjectNumber" TEXT, "Location" TEXT, "Title" TEXT, "Height (cm)" DOUBLE PRECISION, "Provenance" TEXT'
 ROWS = "('19.1', 'Hall 1', 'Vase', 20.5, 'bought'), ('19.2', 'Hall 2', 'Bowl', 8, 'given')"

@@ -9,7 +9,7 @@ import pytest
 
 from pipeline.collection.guess import guess
 from pipeline.collection.mapping import DIAMETER, load_mapping
-from pipeline.collection.measured import of_cell
+from pipeline.collection.measured_cell import of_cell
 from pipeline.collection.reading import NOWHERE, Reading, read_items
 from pipeline.collection.record import item_schema, to_records
 from pipeline.records import Item, Origin

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.assess import assess
-from pipeline.classify import classify
+from pipeline.analysis.assess import assess
+from pipeline.analysis.classify import classify
+from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import Means, advise
 from pipeline.motions import read_motion
 from pipeline.records import Item, Motion, Recommendation, Support
 from pipeline.resources import resource
-from pipeline.verdicts import LevelMotions
 
 
 class Silent:

@@ -7,8 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pipeline.assess import assess
-from pipeline.classify import classify
+from pipeline.analysis.assess import assess
+from pipeline.analysis.classify import classify
+from pipeline.analysis.response import respond
+from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import changed
 from pipeline.mitigate.holding import strengths
@@ -16,9 +18,7 @@ from pipeline.mitigate.means import Means, own_means
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import G
 from pipeline.records import Motion, Support, Verdict
-from pipeline.response import respond
 from pipeline.tables import table
-from pipeline.verdicts import LevelMotions
 
 from .scenes import BLOCK, PICTURE, STUMP, TOWER, Silent, demo_motion, rejected, solve, solve_all
 

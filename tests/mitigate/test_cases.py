@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from pipeline.analysis.response import respond, transmit
 from pipeline.mitigate.shared import listed
 from pipeline.quantities import G
 from pipeline.records import Motion
 from pipeline.report.units import Units
-from pipeline.response import respond, transmit
 
 from .scenes import BLOCK, TOWER, demo_motion, solve_all
 

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pipeline.analysis.response import respond, transmit
 from pipeline.collection.database import open_database
 from pipeline.mitigate.holding import WAX, strengths
 from pipeline.motions import read_motion
 from pipeline.quantities import G
 from pipeline.records import Assessment, Finding, Motion, Recommendation, RunRecord, Support, Verdict
 from pipeline.resources import resource
-from pipeline.response import respond, transmit
 from pipeline.store.runs import load_run
 
 

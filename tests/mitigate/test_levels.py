@@ -8,8 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pipeline.assess import assess
-from pipeline.classify import classify
+from pipeline.analysis.assess import assess
+from pipeline.analysis.classify import classify
+from pipeline.analysis.response import respond
+from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import Means, advise, changed
 from pipeline.mitigate.advise import ONLY_HERE
@@ -17,8 +19,6 @@ from pipeline.mitigate.means import own_means
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import G
 from pipeline.records import Item, Motion, Recommendation, Verdict
-from pipeline.response import respond
-from pipeline.verdicts import LevelMotions
 
 from .scenes import BLOCK, PICTURE, TOWER, Silent, demo_motion
 

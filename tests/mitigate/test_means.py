@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.jobs.workspace import UsageError, Workspace
 from pipeline.mitigate import means
 from pipeline.mitigate.means import own_means
+from pipeline.operations.workspace import UsageError, Workspace
 from pipeline.records import Motion
 from pipeline.settings import Mitigation, Settings, load_settings, template
 from pipeline.tables import TableError

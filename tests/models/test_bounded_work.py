@@ -14,13 +14,13 @@ import pytest
 from shaking import random_motion, times
 
 from pipeline import Motion, respond, trace, transmit
+from pipeline.analysis.response import response_chart
 from pipeline.errors import InputError
-from pipeline.jobs.extremes import complaint
 from pipeline.kernels.friction_line import MOST_PIECES
 from pipeline.kernels.pendulum import MOST_STEPS, substeps
 from pipeline.models import MODELS
 from pipeline.quantities import G
-from pipeline.response import response_chart
+from pipeline.verification.extremes import complaint
 
 LIMIT = 60.0
 """Seconds in which a call must end on a machine that is busy with other things; each takes well below two."""

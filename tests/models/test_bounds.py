@@ -12,11 +12,11 @@ from shaking import along_x, random_motion, times, turned
 from test_response import VALID
 
 from pipeline import Motion, read_motion, respond
+from pipeline.analysis.response import FIDELITIES, prepare
 from pipeline.cli.commands import FIDELITIES as OFFERED
 from pipeline.models import MODELS, model_named
 from pipeline.quantities import G
 from pipeline.resources import resource
-from pipeline.response import FIDELITIES, prepare
 
 BOUNDED = [m.name for m in MODELS if m.bound is not None]
 ROUNDING = 1e-12

@@ -10,8 +10,8 @@ import pytest
 from shaking import along_x, random_motion, turned
 
 from pipeline import Motion, respond, transmit
+from pipeline.analysis.response import cascade
 from pipeline.quantities import G
-from pipeline.response import cascade
 from pipeline.supports.refining import difference
 
 Chain = list[tuple[str, dict[str, Any]]]

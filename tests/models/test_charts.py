@@ -6,19 +6,19 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
+from pipeline.analysis.response_charts.refine import MOST_NODES, UNITS, refine
+from pipeline.analysis.response_charts.response_chart import axis_of
 from shaking import along_x, random_motion
 
 from pipeline import respond
-from pipeline.charting import ResponseChart, Shelf
-from pipeline.charting.refine import MOST_NODES, UNITS, refine
-from pipeline.charting.response_chart import axis_of
+from pipeline.analysis.response import DECIDES, look_up, prepare, run_chart, run_model
+from pipeline.analysis.response_charts import ResponseChart, Shelf
 from pipeline.models import MODELS, model_named
 from pipeline.models.common import lift_ratios
 from pipeline.motions import read_motion
 from pipeline.quantities import Array
 from pipeline.records import Columns, Motion
 from pipeline.resources import resource
-from pipeline.response import DECIDES, look_up, prepare, run_chart, run_model
 
 CASES = {
     "sliding": ({}, 0.0),
@@ -204,7 +204,7 @@ def test_what_is_on_no_chart_is_integrated_and_says_so() -> None:
 
 
 def test_each_combination_of_fixed_parameters_has_its_chart_up_to_a_number(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pipeline.charting.grouping.MOST_CHARTS", 2)
+    monkeypatch.setattr("pipeline.analysis.response_charts.grouping.MOST_CHARTS", 2)
     dampings = np.array([0.1, 0.3, 0.2, 0.1, 0.2, 0.1])
     charts = Shelf()
     table = respond(

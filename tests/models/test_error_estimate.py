@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 from shaking import along_x, random_motion, resampled
 
 from pipeline import Motion, respond
+from pipeline.analysis.response import prepare
 from pipeline.models import MODELS, model_named
 from pipeline.models.flips import RATIO, integrate
 from pipeline.models.rocking import bodies
@@ -19,7 +20,6 @@ from pipeline.motions import read_motion
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import Array, G
 from pipeline.resources import resource
-from pipeline.response import prepare
 
 ROWS, MOTIONS = 40, 6
 

@@ -19,10 +19,10 @@ from shaking import along_x
 
 from pipeline import Motion, respond
 from pipeline.cli import kouros
-from pipeline.jobs import numerics
-from pipeline.jobs.extremes import MODELS, PROMISED, complaint, motions, objects
 from pipeline.models import MODELS as REGISTRY
 from pipeline.quantities import G
+from pipeline.verification import self_measurement as numerics
+from pipeline.verification.extremes import MODELS, PROMISED, complaint, motions, objects
 
 LIMIT = 60.0
 """Seconds after which a case hangs, compilation excepted; on an idle machine all take well below ten."""

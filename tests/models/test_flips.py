@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from shaking import random_motion, times
 
 from pipeline import Motion, respond
+from pipeline.analysis.response import prepare, run_model
 from pipeline.models import model_named
 from pipeline.models.common import SENSITIVE
 from pipeline.quantities import Array, G
-from pipeline.response import prepare, run_model
 
 AMPLITUDES = np.linspace(-0.01, 0.01, 41)
 """Relative changes of the dense scan."""

@@ -14,10 +14,11 @@ import pytest
 from shaking import along_x, random_motion
 
 from pipeline import respond
-from pipeline.charting import ChartWarning, ResponseChart, Shelf, keeping
+from pipeline.analysis.response import response_chart
+from pipeline.analysis.response_charts import ChartWarning, ResponseChart, Shelf
+from pipeline.analysis.response_charts import chart_cache as keeping
 from pipeline.records import Motion
 from pipeline.resources import arrays
-from pipeline.response import response_chart
 
 DAY = 86_400.0
 

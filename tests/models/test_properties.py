@@ -13,9 +13,9 @@ from shaking import along_x, random_motion, resampled, times, turned
 from test_response import VALID
 
 from pipeline import Motion, respond, trace
+from pipeline.analysis.response import prepare
 from pipeline.models import MODELS, model_named
 from pipeline.quantities import Array, G
-from pipeline.response import prepare
 
 few = settings(
     max_examples=15, deadline=None, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow]

@@ -10,9 +10,9 @@ import pytest
 from shaking import along_x, random_motion
 
 from pipeline import respond, trace
+from pipeline.analysis.response import prepare
 from pipeline.models import MODELS, model_named
 from pipeline.quantities import G
-from pipeline.response import prepare
 
 MOTION = random_motion(31)
 BLOCK = {"half_width": 0.1, "cg_height": 0.5}

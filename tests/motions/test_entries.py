@@ -9,20 +9,20 @@ import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
 
-from pipeline.jobs.briefing import _level_note
-from pipeline.jobs.doctor import diagnose
-from pipeline.jobs.initialise import initialise
-from pipeline.jobs.records import process
 from pipeline.motions import MotionError, load_manifest, manifest_schema, read_motion, read_site
 from pipeline.motions.entries import entries
 from pipeline.motions.inspection import inspect
 from pipeline.motions.manifest import manifest_file
 from pipeline.motions.record import NO_VERTICAL
 from pipeline.motions.site import summaries
-from pipeline.report.ground import motion_view
-from pipeline.report.record_words import processing
+from pipeline.night.prepare import _level_note
+from pipeline.report.pages.ground import motion_view
+from pipeline.report.pages.record_words import processing
 from pipeline.report.units import Units
 from pipeline.resources import resource
+from pipeline.tools.doctor import diagnose
+from pipeline.tools.initialise import initialise
+from pipeline.tools.strong_motion import process
 
 DEMO = resource("site_motions", "demo")
 HORIZONTAL = """

@@ -121,7 +121,7 @@ def test_another_time_step(three, write_manifest):
 
 
 def test_the_manifest_may_say_v_max(three, write_manifest):
-    from pipeline.response import respond
+    from pipeline.analysis.response import respond
 
     three()
     (plain,) = read_motion(write_manifest())

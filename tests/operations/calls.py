@@ -21,9 +21,9 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from pipeline.jobs.standing import FAILED, GOOD, RUNNING, status
+from pipeline.operations.report_status import FAILED, GOOD, RUNNING, status
 from pipeline.settings import load_settings
-from tests.test_jobs import COLUMNS, workspace
+from tests.night.test_jobs import COLUMNS, workspace
 
 from .conftest import within
 from .disturbed import last, objects, whole

@@ -19,9 +19,9 @@ import pytest
 from jsonschema import Draft202012Validator
 from referencing import Registry, Resource
 
-from pipeline.jobs.signals import synthesise
 from pipeline.resources import resource
-from tests.test_jobs import COLUMNS, workspace
+from pipeline.tools.synthetic import synthesise
+from tests.night.test_jobs import COLUMNS, workspace
 
 from .disturbed import Nights, last, objects, rows
 

@@ -13,7 +13,7 @@ from lxml import html
 from pipeline.collection.database import open_database
 from pipeline.records import RunRecord
 from pipeline.store.runs import load_run
-from tests.test_jobs import COLUMNS
+from tests.night.test_jobs import COLUMNS
 
 ROOMS, EACH = 6, 5
 

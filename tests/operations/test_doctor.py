@@ -9,14 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.jobs.checkup import OVERDUE_H
-from pipeline.jobs.doctor import Diagnosis, diagnose
-from pipeline.jobs.outcome import SUMMARY
-from pipeline.jobs.standing import mark_failed, mark_running
-from pipeline.jobs.workspace import locked
 from pipeline.kernels import user_cache
+from pipeline.operations.report_status import mark_failed, mark_running
+from pipeline.operations.run_summary import SUMMARY
+from pipeline.operations.workspace import locked
 from pipeline.report import publish
 from pipeline.settings import Settings, load_settings
+from pipeline.tools.doctor import Diagnosis, diagnose
+from pipeline.tools.doctor_checks import OVERDUE_H
 
 Museum = Callable[..., Path]
 

@@ -14,9 +14,9 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from pipeline.jobs import hooks as module
-from pipeline.jobs.hooks import look, named, tell
-from pipeline.jobs.secrets import hider
+from pipeline.operations import hooks as module
+from pipeline.operations.hooks import look, named, tell
+from pipeline.operations.secrets import hider
 from pipeline.settings import Settings, SettingsError, load_settings
 from pipeline.settings.operations import CommandHook, EmailHook, Hooks, WebhookHook
 

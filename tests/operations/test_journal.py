@@ -14,8 +14,8 @@ from hypothesis import given
 from hypothesis import settings as trying
 from hypothesis import strategies as st
 
-from pipeline.jobs.journal import journal, note
-from pipeline.jobs.secrets import hider
+from pipeline.operations.event_log import journal, note
+from pipeline.operations.secrets import hider
 from pipeline.settings import Logs, Settings
 
 HOSTILE = '\x1b[2J\u202e"\n{"event": "forged"}\r\u2028\ud800'
@@ -54,7 +54,7 @@ def test_a_line_says_when_what_and_how_grave(tmp_path: Path) -> None:
 @trying(deadline=None, max_examples=100)
 @given(st.dictionaries(st.text(), st.text() | st.floats() | st.integers() | st.lists(st.text()), max_size=4))
 def test_whatever_is_noted_is_one_line_that_reads_back(fields: dict[str, Any]) -> None:
-    from pipeline.jobs.journal import _FIELDS, _Lines
+    from pipeline.operations.event_log import _FIELDS, _Lines
 
     record = logging.LogRecord("kouros", logging.INFO, "", 0, "event", None, None)
     setattr(record, _FIELDS, fields)

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.jobs.retention import Pruned, prune
-from pipeline.jobs.standing import last_good
-from pipeline.jobs.workspace import (
+from pipeline.operations.report_status import last_good
+from pipeline.operations.retention import Pruned, prune
+from pipeline.operations.workspace import (
     CHARTS,
     HISTORIES,
     IMPORTS,

@@ -13,12 +13,12 @@ from typing import Any
 
 import pytest
 
-from pipeline.jobs.demo import demonstration
-from pipeline.jobs.outcome import exit_code_of, words_of
-from pipeline.jobs.standing import Status, status
-from pipeline.jobs.stopping import Stopped, uninterrupted
+from pipeline.operations.report_status import Status, status
+from pipeline.operations.run_summary import exit_code_of, words_of
+from pipeline.operations.stopping import Stopped, uninterrupted
 from pipeline.settings import load_settings
-from tests.test_jobs import workspace
+from pipeline.tools.demo import demonstration
+from tests.night.test_jobs import workspace
 
 from .conftest import command, environment, validate, within
 from .disturbed import Nights, last, rows, whole

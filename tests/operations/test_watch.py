@@ -13,10 +13,10 @@ from typing import Any
 
 import pytest
 
-from pipeline.jobs.standing import mark_failed, status
-from pipeline.jobs.workspace import locked
+from pipeline.operations.report_status import mark_failed, status
+from pipeline.operations.workspace import locked
 from pipeline.settings import load_settings
-from tests.test_jobs import ROWS
+from tests.night.test_jobs import ROWS
 
 from .conftest import Kouros, command, environment, validate, within
 from .servers import Web, web

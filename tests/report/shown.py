@@ -3,11 +3,12 @@
 from dataclasses import dataclass, replace
 
 from pipeline.records import RunRecord
-from pipeline.report.compose import compose, museum_view
+from pipeline.report.pages.compose import compose, museum_view
+from pipeline.report.pages.museum_views import GalleryView, MuseumView
+from pipeline.report.pages.tallies import tally, total
+from pipeline.report.pages.views import Counts, DecisionsView, MotionView, Pointer
 from pipeline.report.render import sheets_of
-from pipeline.report.tallies import tally, total
 from pipeline.report.units import Units
-from pipeline.report.views import Counts, DecisionsView, GalleryView, MotionView, MuseumView, Pointer
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ import pytest
 
 from pipeline.records import Assessment, Item, Mark, Move, ObjectPlace, RunChanges
 from pipeline.report import ReportError, Units
-from pipeline.report.ranking import urgency
-from pipeline.report.since import since_view
+from pipeline.report.pages.ranking import urgency
+from pipeline.report.pages.since import since_view
+from pipeline.report.pages.views import Counts, State
 from pipeline.report.text import count, short, slug, words
-from pipeline.report.views import Counts, State
 
 from . import builder
 from .shown import shown

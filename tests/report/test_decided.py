@@ -23,7 +23,7 @@ from pipeline.records import (
     VerdictChange,
 )
 from pipeline.report import Units, render
-from pipeline.report.since import MOST
+from pipeline.report.pages.since import MOST
 
 from . import builder
 from .shown import shown

@@ -6,11 +6,11 @@ from pathlib import Path
 
 from lxml import html
 
-from pipeline.climb import Effort
+from pipeline.analysis.refinement import Effort
 from pipeline.report import Language, Units
-from pipeline.report.edition import Edition
-from pipeline.report.sheets import Pen
-from pipeline.report.tallies import total
+from pipeline.report.files.page_renderer import Pen
+from pipeline.report.files.report_writer import Edition
+from pipeline.report.pages.tallies import total
 
 from . import builder
 

@@ -10,8 +10,8 @@ import openpyxl
 import pyarrow.parquet as pq
 import pytest
 
-from pipeline.report.exports import safe_cell
 from pipeline.report.render import sheets_of
+from pipeline.report.text import safe_cell
 
 from . import builder
 

@@ -10,7 +10,7 @@ from lxml import etree
 
 from pipeline.quantities import G
 from pipeline.report import Units, render
-from pipeline.report.ground import motion_view
+from pipeline.report.pages.ground import motion_view
 
 from . import builder
 

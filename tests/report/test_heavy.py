@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 from lxml import etree
 
-from pipeline.jobs.workspace import open_workspace
+from pipeline.operations.workspace import open_workspace
 from pipeline.records import RunRecord
 from pipeline.report import render
 from pipeline.settings import load_settings

@@ -8,7 +8,7 @@ from lxml import etree
 
 from pipeline.quantities import G
 from pipeline.records import Fragility, Item, Spacing, Verdict
-from pipeline.report.judging import fragility_views, shaking_view, spacing_views, years
+from pipeline.report.pages.judging import fragility_views, shaking_view, spacing_views, years
 from pipeline.report.units import Units
 
 from . import builder

@@ -18,8 +18,9 @@ from babel.messages.frontend import parse_mapping_cfg
 from babel.messages.mofile import write_mo
 from lxml import etree
 
-from pipeline.assess import assess
-from pipeline.classify import classify
+from pipeline.analysis.assess import assess
+from pipeline.analysis.classify import classify
+from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import advise
 from pipeline.models import MODELS
@@ -46,7 +47,6 @@ from pipeline.records import (
 from pipeline.report import Language, ReportError, language, render
 from pipeline.report.language import said, speaking
 from pipeline.tables import table
-from pipeline.verdicts import LevelMotions
 from tests.mitigate import scenes
 
 from . import builder

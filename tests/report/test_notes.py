@@ -11,8 +11,9 @@ from markupsafe import Markup
 
 from pipeline.records import Item, Mark, Verdict
 from pipeline.report import Units
-from pipeline.report.notes import Notes, PageNotes
-from pipeline.report.views import GalleryView, NumberView
+from pipeline.report.pages.museum_views import GalleryView
+from pipeline.report.pages.notes import Notes, PageNotes
+from pipeline.report.pages.views import NumberView
 
 from . import builder
 from .shown import shown

@@ -21,9 +21,9 @@ from pipeline.motions.synthesis import band_limited_random, ricker
 from pipeline.quantities import G
 from pipeline.records import Motion
 from pipeline.report import Units
-from pipeline.report.record_charts import envelope, konno_ohmachi
-from pipeline.report.record_page import render_record
-from pipeline.report.record_words import summary_lines
+from pipeline.report.pages.record_charts import envelope, konno_ohmachi
+from pipeline.report.pages.record_page import render_record
+from pipeline.report.pages.record_words import summary_lines
 from pipeline.resources import resource
 
 if TYPE_CHECKING:

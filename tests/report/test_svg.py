@@ -9,9 +9,9 @@ from lxml import etree
 
 from pipeline.records import Axis, Chart, Curve, Zone
 from pipeline.report import ReportError, Units
-from pipeline.report.scales import Scale, _all_inside, inside, linear_ticks, log_between, log_ticks, roomy, thin
-from pipeline.report.svg import Drawing, Spot
-from pipeline.report.traces import trace
+from pipeline.report.plots.scales import Scale, _all_inside, inside, linear_ticks, log_between, log_ticks, roomy, thin
+from pipeline.report.plots.svg import Drawing, Spot
+from pipeline.report.plots.traces import trace
 
 from . import builder
 

@@ -6,9 +6,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from pipeline.report import table_files
 from pipeline.report.errors import ReportError
-from pipeline.report.table_files import TableFile
+from pipeline.report.files import table_files
+from pipeline.report.files.table_files import TableFile
 
 SCHEMA = pa.schema([("n", pa.float64()), ("words", pa.list_(pa.string())), ("text", pa.string())])
 

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.report import text_files
 from pipeline.report.errors import ReportError
-from pipeline.report.text_files import TextFile
+from pipeline.report.files import text_files
+from pipeline.report.files.text_files import TextFile
 
 OLD = np.random.default_rng(1).bytes(5_000)
 

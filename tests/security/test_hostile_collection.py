@@ -18,12 +18,12 @@ import pytest
 
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
-from pipeline.jobs.signals import synthesise
 from pipeline.settings import template
+from pipeline.tools.synthetic import synthesise
+from tests.night.test_jobs import in_common
 from tests.operations.conftest import within
 from tests.operations.servers import Web, web
 from tests.report.conftest import browser as browser  # noqa: PLC0414 - a fixture
-from tests.test_jobs import in_common
 
 from . import payloads
 

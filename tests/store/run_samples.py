@@ -30,7 +30,7 @@ from pipeline.records import (
     Support,
     Verdict,
 )
-from pipeline.report.tallies import tally
+from pipeline.report.pages.tallies import tally
 from pipeline.store.results import encode
 from pipeline.store.runs import commit_run
 

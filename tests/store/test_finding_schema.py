@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from run_samples import finding, values_of
 
 from pipeline.records import ITEM_FIELDS, Decision, Finding
-from pipeline.report.exports import FINDING_COLUMNS
+from pipeline.report.files.exports import FINDING_COLUMNS
 from pipeline.resources import resource
 from pipeline.store import codec
 from pipeline.store.schema import decision_schema, finding_schema

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from pipeline.classify import classify
+from pipeline.analysis.classify import classify
 from pipeline.records import Assessment, Item
 from pipeline.store import codec
 from pipeline.store.codec import StoreError

@@ -14,7 +14,7 @@ from sqlalchemy import Engine, delete, func, select
 
 from pipeline.collection.database import open_database
 from pipeline.records import Chart, Estimate, Found, Origin, RunRecord, Verdict
-from pipeline.report.tallies import tally
+from pipeline.report.pages.tallies import tally
 from pipeline.store.codec import StoreError
 from pipeline.store.migrate import upgrade
 from pipeline.store.pruning import remove_runs

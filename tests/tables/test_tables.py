@@ -7,7 +7,7 @@ from math import exp
 
 import pytest
 
-from pipeline.classify import NO_MODEL, WHEN_HELD
+from pipeline.analysis.classify import NO_MODEL, WHEN_HELD
 from pipeline.models import MODELS, model_named
 from pipeline.quantities import G, Quantity
 from pipeline.records import ITEM_FIELDS, Support

@@ -1,0 +1,1 @@
+"""From an object and the motions under it to its findings."""

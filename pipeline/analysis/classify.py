@@ -1,0 +1,425 @@
+"""Item -> Scene: which generic class an object belongs to, and every number its models need, with its origin.
+
+The class is what the table of rules says (`pipeline.analysis.rules`).  Numbers that the museum did not record come from
+the row of the class (tables/classes.csv) and the material (tables/materials.csv) as value, low and high, and are named
+as assumed.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from functools import cache, lru_cache
+from math import pi
+
+from pipeline.analysis.rules import Table, rule_for
+from pipeline.errors import InputError
+from pipeline.records import SECTION_SHAPES, Estimate, Item, Origin, Scene, Support
+from pipeline.tables import Range, Row, damping_of, friction_of, material_in, spread, table
+
+NO_MODEL, WHEN_HELD = "none", "held"
+"""In the column models of classes.csv: no generic model applies; none does until it is recorded how it is held."""
+
+SLENDEREST = 9.0
+"""Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
+
+
+@cache
+def _classes() -> Mapping[str, Row]:
+    return {row["class"]: row for row in table("classes")}
+
+
+def material_of(item: Item) -> Row:
+    """Return the row of materials.csv for what an object is made of: the word that stands first in its record."""
+    found = material_in(item.material or item.medium)
+    return found or next(row for row in table("materials") if row["material"] == "unknown")
+
+
+def _assumed(value: float, low: float, high: float, unit: str, note: str, source: str) -> Estimate:
+    return Estimate(value, unit, Origin.ASSUMED, low, high, note, source)
+
+
+def _measured(value: float | None, unit: str) -> Estimate | None:
+    return None if value is None else Estimate.measured(value, unit)
+
+
+def _half(side: Estimate) -> Estimate:
+    return replace(side, value=0.5 * side.value, low=0.5 * side.low, high=0.5 * side.high)
+
+
+def _times(row: Row, kind: str, base: float, unit: str, what: str, of: str) -> Estimate:
+    """Return a share of a recorded dimension, as the row of the class assumes it."""
+    share = _range(row["class"], kind)
+    note = f"{what}: {share.value:g} ({share.low:g} to {share.high:g}) of its {of}, assumed for: {row['title'].lower()}"
+    return _assumed(share.value * base, share.low * base, share.high * base, unit, note, share.source)
+
+
+# What depends on a table and a few words only is worked out once, not for every object of a collection.
+
+
+@cache
+def _range(object_class: str, kind: str) -> Range:
+    """Return the range of a class's share (cg, base, section) or quantity (fill, clearance), with its source."""
+    row = _classes()[object_class]
+    where = f"classes.csv, {object_class}"
+    value = f"{kind}_ratio" if f"{kind}_ratio" in row else kind
+    span = spread(row, value, f"{kind}_low", f"{kind}_high", where)
+    return replace(span, source=f"{where} ({row['source']})")
+
+
+@cache
+def _clearance_of(object_class: str) -> Estimate:
+    span = _range(object_class, "clearance")
+    low, value, high = (100.0 * v for v in (span.low, span.value, span.high))
+    note = f"clearance: {value:g} cm ({low:g} to {high:g}) to neighbour, wall or edge"
+    note += f", assumed for: {_classes()[object_class]['title'].lower()}"
+    return _assumed(span.value, span.low, span.high, "m", note, span.source)
+
+
+@lru_cache(maxsize=4096)
+def _friction_of(material: str, surface: str) -> Estimate:
+    span = friction_of(material, surface)
+    pair = f"{material or 'any material'} on {surface or 'any floor'}"
+    note = f"friction: {span.value:g} ({span.low:g} to {span.high:g}), Table 3 for {pair}; not measured"
+    return _assumed(span.value, span.low, span.high, "-", note, span.source)
+
+
+@lru_cache(maxsize=4096)
+def _wall_damping_of(wall: str, back: str) -> Estimate:
+    span = damping_of(wall, back)
+    note = "damping against the wall: wood on paint, the least of Table 4; wall and back surfaces not recorded"
+    if wall or back:
+        note = f"damping of {back or 'its back'} on {wall or 'the wall'} (Table 4)"
+    return _assumed(span.value, span.low, span.high, "-", note, span.source)
+
+
+class _Builder:
+    """Collects the parameters of one scene, and what is missing for them."""
+
+    def __init__(self, item: Item, row: Row, support: Support) -> None:
+        self.item, self.row, self.support = item, row, support
+        self.material = material_of(item)
+        self.found: dict[str, Estimate] = {}
+        self.missing: list[str] = []
+        self.doubts: list[str] = []
+
+    def build(self) -> None:
+        if self.support in (Support.HUNG, Support.SUSPENDED):
+            self._hanging()
+        else:
+            self._standing()
+        self._clearance()
+
+    def _keep(self, name: str, estimate: Estimate | None) -> None:
+        if estimate is not None:
+            self.found[name] = estimate
+
+    def _hanging(self) -> None:
+        item = self.item
+        length = _measured(item.suspension_length_m, "m")
+        if length is None and item.height_m is None:
+            self.missing.append("height or suspension length")
+        elif length is None and item.height_m is not None:
+            half = 0.5 * item.height_m
+            note = "length from hook to centre of gravity: half its height, assumed for: hung from its upper edge; "
+            note += "a hook further down gives half of that, a cord from a rail up to 1 m more"
+            length = _assumed(half, 0.5 * half, half + 1.0, "m", note, "judgement")
+        self._keep("length", length)
+        damping = _measured(item.damping, "-")
+        if damping is None and self.support is Support.HUNG:
+            damping = _wall_damping_of(item.wall_surface, item.back_surface)
+        elif damping is None:
+            note = "damping: none, as the paper takes it for chandeliers"
+            damping = _assumed(0.0, 0.0, 0.0, "-", note, "Agbabian et al. 1991, sec. 2.4")
+        self._keep("damping", damping)
+        self._mass()
+
+    def _standing(self) -> None:
+        item = self.item
+        width, depth, lost = self._plan()
+        if width is not None and depth is not None:
+            narrow = min(width, depth, key=lambda e: e.value)
+            low, high = min(width.low, depth.low), min(width.high, depth.high)
+            assumed = any(side.origin is Origin.ASSUMED for side in (width, depth))
+            origin = Origin.ASSUMED if assumed else Origin.MEASURED
+            note = "; ".join(dict.fromkeys(side.note for side in (width, depth) if side.note))
+            source = narrow.source or width.source or depth.source
+            half = Estimate(0.5 * narrow.value, "m", origin, 0.5 * low, 0.5 * high, note, source)
+            self._keep("half_width", half)
+            if item.orientation_deg is not None:
+                # Along its own axes each half counts in its direction; where nothing is known of them, the narrow one.
+                self._keep("half_base_width", _half(width))
+                self._keep("half_base_depth", _half(depth))
+        cg = _measured(item.cg_height_m, "m")
+        if cg is None and item.height_m is not None and self.row["cg_ratio"]:
+            cg = _times(self.row, "cg", item.height_m, "m", "height of the centre of gravity", "height")
+        if cg is None:
+            self.missing.append("height" if self.row["cg_ratio"] else "height of the centre of gravity")
+        self._keep("cg_height", cg)
+        self._friction()
+        self._mass()
+        if not self._section(width, depth) and self.support is Support.FASTENED:
+            # What is made fast is judged by its weakest section alone.
+            self.missing.extend(lost if self.row["section"] else ["width of its weakest section"])
+            if "mass" not in self.found:
+                self.missing.append("mass")
+        elif self.support is not Support.FASTENED:
+            self.missing.extend(lost)
+        if item.frequency_hz is not None:
+            self._keep("frequency", _measured(item.frequency_hz, "Hz"))
+            note = "damping of the object itself: 2 % (1 to 5 %), assumed"
+            self._keep("damping", _measured(item.damping, "-") or _assumed(0.02, 0.01, 0.05, "-", note, "judgement"))
+
+    def _plan(self) -> tuple[Estimate | None, Estimate | None, list[str]]:
+        """Return the sides of its base, None where they are not known, and what must be recorded to know them."""
+        item, row = self.item, self.row
+        assumes = bool(row["base_ratio"])
+        sides: list[Estimate | None] = []
+        pairs = ((item.base_width_m, item.width_m, "width"), (item.base_depth_m, item.depth_m, "depth"))
+        for measured, largest, name in pairs:
+            side = _measured(measured, "m")
+            if side is None and largest is not None and assumes:
+                side = _times(row, "base", largest, "m", f"base {name}", name)
+            sides.append(side)
+        width, depth = sides
+        if width is None and depth is None:
+            return None, None, ["width (or diameter)"] if assumes else ["base width", "base depth"]
+        if width is None or depth is None:
+            known, lost = (width, "depth") if depth is None else (depth, "width")
+            if row["round"] != "yes" or known is None:
+                return None, None, [lost if assumes else f"base {lost}"]
+            note = f"{lost} not recorded: taken as round"
+            other = _assumed(
+                known.value, known.low, known.high, "m", note, known.source or f"classes.csv, {row['class']}"
+            )
+            return (known, other, []) if depth is None else (other, known, [])
+        return width, depth, []
+
+    def _friction(self) -> None:
+        item = self.item
+        friction = _measured(item.friction, "-")
+        if friction is None:
+            friction = _friction_of(item.base_material or self.material["friction_as"], item.surface_material)
+        self._keep("friction_static", friction)
+
+    def _clearance(self) -> None:
+        clearance = _measured(self.item.clearance_m, "m")
+        if clearance is None and self.row["clearance"]:
+            clearance = _clearance_of(self.row["class"])
+        self._keep("clearance", clearance)
+
+    def _mass(self) -> None:
+        item, row = self.item, self.row
+        mass = _measured(item.mass_kg, "kg")
+        if mass is None and self.support in (Support.HUNG, Support.SUSPENDED) and item.height_m and item.width_m:
+            area = item.height_m * item.width_m
+            note = "mass: 15 kg (5 to 40 kg) for each square metre of a framed work, assumed"
+            mass = _assumed(15.0 * area, 5.0 * area, 40.0 * area, "kg", note, "judgement")
+        across = item.width_m or item.depth_m
+        along = item.depth_m or item.width_m
+        if mass is None and row["fill"] and item.height_m and across and along:
+            box = item.height_m * across * along * (0.25 * pi if row["round"] == "yes" else 1.0)
+            fill = _range(row["class"], "fill")
+            where = f"materials.csv, {self.material['material']}"
+            density = spread(self.material, "density", "density_low", "density_high", where)
+            of = f"{self.material['material']} of {density.value:g} kg/m3"
+            note = f"mass: {of} filling {fill.value:g} of its outline, assumed"
+            mass = _assumed(
+                box * fill.value * density.value,
+                box * fill.low * density.low,
+                box * fill.high * density.high,
+                "kg",
+                note,
+                where,
+            )
+        self._keep("mass", mass)
+
+    def _section(self, width: Estimate | None, depth: Estimate | None) -> bool:
+        """Keep what the stress in the weakest section hangs on; say whether all of it is known."""
+        item = self.item
+        where = f"materials.csv, {self.material['material']}"
+        condition = 1.0 if item.condition is None else item.condition
+        allowable = _measured(item.allowable_stress_pa, "Pa")
+        if allowable is None:
+            span = spread(self.material, "tensile", "tensile_low", "tensile_high", where)
+            low, value, high = (v / 1e6 for v in (span.low, span.value, span.high))
+            note = f"allowable stress: {self.material['material']}, {value:g} ({low:g} to {high:g}) MPa"
+            note += (
+                ", condition factor 1 (not recorded)" if item.condition is None else f", condition factor {condition:g}"
+            )
+            allowable = _assumed(
+                span.value * condition, span.low * condition, span.high * condition, "Pa", note, span.source or where
+            )
+        mass, cg = self.found.get("mass"), self.found.get("cg_height")
+        section = self._section_size(width, depth)
+        if mass is None or cg is None or section is None:
+            return False
+        shape, size, deep, count, wall, base = section
+        self._keep("allowable_stress", allowable)
+        height = item.section_height_m or 0.0
+        lever = max(cg.value - height, 0.0)
+        note = (
+            "lever: from the base to the centre of gravity"
+            if not height
+            else "lever: from the section to the centre of gravity"
+        )
+        self._keep(
+            "lever", Estimate(lever, "m", Origin.DERIVED, max(cg.low - height, 0.0), max(cg.high - height, 0.0), note)
+        )
+        area, modulus = section_properties(shape, size.value, deep.value, count, wall)
+        # Area and modulus vary together: the range of the section is carried by the modulus, which bending feels.
+        _, modulus_low = section_properties(shape, size.low, deep.low, count, wall)
+        _, modulus_high = section_properties(shape, size.high, deep.high, count, wall)
+        self._keep("area", Estimate(area, "m2", size.origin, area, area, base, size.source))
+        self._keep(
+            "section_modulus", Estimate(modulus, "m3", size.origin, modulus_low, modulus_high, base, size.source)
+        )
+        if item.orientation_deg is not None and shape == "rectangle" and size.value != deep.value:
+            # Both sides of the section were measured: it bends the less, the longer the side along the push.
+            sides = (("section_modulus_width", size, deep), ("section_modulus_depth", deep, size))
+            for name, along, across in sides:
+                value = count * rectangle_modulus(along.value, across.value, wall)
+                self._keep(name, Estimate(value, "m3", size.origin, value, value, base, size.source))
+        return True
+
+    def _section_size(
+        self, width: Estimate | None, depth: Estimate | None
+    ) -> tuple[str, Estimate, Estimate, int, float, str] | None:
+        item, row = self.item, self.row
+        if item.section_width_m is not None:
+            size = Estimate.measured(item.section_width_m, "m")
+            deep = Estimate.measured(item.section_depth_m or item.section_width_m, "m")
+            shape = SECTION_SHAPES.get(item.section_shape.strip().casefold() or "rectangle", "")
+            if shape == "hollow round" and item.section_wall_m is None:
+                self.missing.append("wall of its weakest section")
+            elif shape:
+                recorded = item.section_shape or shape
+                wall = item.section_wall_m or 0.0
+                return shape, size, deep, item.section_count or 1, wall, f"section: {recorded}, as recorded"
+            else:
+                self.doubts.append(f"section: the recorded shape {item.section_shape!r} is not known, and not used")
+        if not row["section"] or width is None or depth is None:
+            return None
+        narrow = min(width, depth, key=lambda e: e.value)
+        kind = row["section"]
+        across = min(item.width_m or item.depth_m or narrow.value, item.depth_m or item.width_m or narrow.value)
+        base = narrow.value if kind in ("foot", "legs", "ring") else across
+        of = "narrower base side" if kind in ("foot", "legs", "ring") else "narrower side"
+        size = _times(
+            row, "section", base, "m", {"ring": "wall of its foot"}.get(kind, f"critical section ({kind})"), of
+        )
+        shapes = {"stem": ("round", 1), "ankles": ("round", 2), "foot": ("rectangle", 1), "legs": ("rectangle", 4)}
+        if kind == "ring":
+            # The size is the wall; the ring's outside is the base.
+            return "ring", size, narrow, 1, narrow.value, size.note
+        shape, count = shapes[kind]
+        return shape, size, size, count, 0.0, size.note
+
+
+def section_properties(shape: str, width: float, depth: float, count: int, wall: float) -> tuple[float, float]:
+    """Return area [m2] and weaker section modulus [m3] of ``count`` equal sections side by side.
+
+    round: solid of diameter width, or hollow where wall > 0; rectangle: width x depth, hollow where wall > 0;
+    ring: width is the wall and wall the outer diameter (a vessel's foot)
+    raises : ValueError for another shape
+    """
+    if shape == "ring":
+        width, wall = wall, min(width, 0.5 * wall)
+        shape = "round"
+    if shape in ("round", "hollow round"):
+        inner = max(width - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
+        area = 0.25 * pi * (width**2 - inner**2)
+        modulus = pi * (width**4 - inner**4) / (32.0 * width)
+    elif shape == "rectangle":
+        narrow, wide = min(width, depth), max(width, depth)
+        inner = max(narrow - 2.0 * wall, 0.0) * max(wide - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
+        area = narrow * wide - inner
+        modulus = rectangle_modulus(narrow, wide, wall)
+    else:
+        raise InputError(f"section_shape {shape!r} is not known; use round, hollow round, rectangle or ring")
+    return count * area, count * modulus
+
+
+def rectangle_modulus(along: float, across: float, wall: float) -> float:
+    """Return the section modulus [m3] of a rectangle, hollow where wall > 0, for a push along one side [m]."""
+    inner_along = max(along - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
+    inner_across = max(across - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
+    return (across * along**3 - inner_across * inner_along**3) / (6.0 * along)
+
+
+def object_classes() -> Mapping[str, str]:
+    """Return the classes that an object may be of, each with its title."""
+    return {name: row["title"] for name, row in _classes().items()}
+
+
+def classify(item: Item, rules: Table | None = None, decided: tuple[str, str] | None = None) -> Scene:
+    """Return the scene of one object: class, support, models to try, estimates, and the fields that are missing.
+
+    rules   : the table that decides the class; None for Kouros's own
+    decided : the class that a person gave it, and their words, in place of the rules
+    raises  : KeyError for a decided class that is no row of classes.csv
+    """
+    if decided is None:
+        decision = rule_for(item, rules)
+        object_class, words = decision.rule.object_class, decision.words
+    else:
+        object_class, words = decided
+    row = _classes()[object_class]
+    support = item.support or Support(row["support"])
+    own = Support(row["support"])
+    models = () if row["models"] in (NO_MODEL, WHEN_HELD) else tuple(row["models"].split("|"))
+    if not models and (item.support is None or (row["models"] == NO_MODEL and item.support is own)):
+        why = f"no generic model applies: it {row['why']}"
+        return Scene(item, row["class"], words, support, (), {}, (), (why,))
+    if item.support is not None and (item.support is not own or not models):
+        models = MODELS_OF[item.support]
+    elif item.frequency_hz is not None and "stress" in models:
+        models = (*models, "flexible_stress")
+    builder = _Builder(item, row, support)
+    builder.build()
+    builder.missing.extend(_unheld(item, support))
+    assumptions = [e.note for e in builder.found.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
+    if item.support is None:
+        assumptions.insert(0, f"support: {support.value}, assumed for: {row['title'].lower()}; not recorded")
+    missing = builder.missing if needs_size(models) else []
+    return Scene(
+        item,
+        row["class"],
+        words,
+        support,
+        models,
+        builder.found,
+        tuple(dict.fromkeys(assumptions)),
+        tuple(missing),
+    )
+
+
+def unclassified(item: Item) -> Scene:
+    """Return the scene of an object that nothing can be said of."""
+    return Scene(item, "object", "", item.support or Support.FREESTANDING, (), {})
+
+
+def _unheld(item: Item, support: Support) -> list[str]:
+    """Say that the support is missing where a thing is too thin to stand and nothing tells how it is held."""
+    plan = [d for d in (item.base_width_m or item.width_m, item.base_depth_m or item.depth_m) if d is not None]
+    if item.support is not None or support is not Support.FREESTANDING or not plan or item.height_m is None:
+        return []
+    times = item.height_m / min(plan)
+    if times <= SLENDEREST:
+        return []
+    return [
+        f"support (it is {times:.0f} times as high as it is deep: it cannot stand by itself, or a measure is wrong)"
+    ]
+
+
+MODELS_OF: Mapping[Support, tuple[str, ...]] = {
+    Support.FREESTANDING: ("rocking", "sliding"),
+    Support.FASTENED: ("stress", "flexible_stress"),
+    Support.HUNG: ("swing",),
+    Support.SUSPENDED: ("swing_3d",),
+    Support.ISOLATED: ("friction_isolator", "horizontal_isolator", "rotational_isolator", "stress", "flexible_stress"),
+}
+"""The models to try when the museum says how an object is held and its class would say otherwise."""
+
+
+def needs_size(models: Iterable[str]) -> bool:
+    """Say whether any of the models needs the object's dimensions."""
+    return bool(set(models) - {"sliding", "friction_isolator"})

@@ -1,0 +1,204 @@
+"""Verdicts in the words and numbers of findings."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline import __version__
+from pipeline.analysis.demands import Step
+from pipeline.analysis.plan import Indices, Work
+from pipeline.analysis.refinement import Case, Climb, Known
+from pipeline.analysis.response import run_model
+from pipeline.analysis.verdicts import LevelMotions, Mask, utilisation
+from pipeline.models.common import words
+from pipeline.quantities import Array
+from pipeline.records import Columns, Estimate, Finding, Mark, Model, Origin, Scene, Verdict
+from pipeline.records.result import BOUNDS, DEMANDS
+
+_DECIDED = {Step.BOUND: "certificate", Step.CHART: "chart", Step.HISTORY: "history"}
+
+
+@dataclass(frozen=True)
+class _Numbers:
+    """What the findings of a case say in numbers, (m,) each.
+
+    motion, row : under which motion the best estimates demand most, and their row of the work's values
+    at_most     : whether the demand is a bound, and by how much it may be less
+    enclosed    : whether an end of the range is a bound: the range lies between low and high, and may be narrower
+    """
+
+    demand: Array
+    low: Array
+    high: Array
+    used: Array
+    motion: Indices
+    row: Indices
+    at_most: Mask
+    slack: Array
+    enclosed: Mask
+
+
+def _numbers(climb: Climb, case: Case) -> _Numbers:
+    level, spans = climb.level, case.spans
+    points = [found.points(case.output) for found in climb.found]
+    demand = level.over([spans.best(high) for _, high in points])
+    slack = _gap(level.over([spans.best(low) for low, _ in points]), demand)
+    motion, row = climb.governing(case)
+    if level.combine == "max":
+        # Under the other motions it may be less by more.
+        slack = np.array([_gap(low[row], high[row]) for low, high in points])[motion, np.arange(row.size)]
+    lows = [level.over([spans.lowest(side) for side in sides]) for sides in zip(*points, strict=True)]
+    highs = [level.over([spans.highest(side) for side in sides]) for sides in zip(*points, strict=True)]
+    return _Numbers(
+        demand,
+        lows[0],
+        highs[1],
+        utilisation(demand, case.capacity[1]),
+        motion,
+        row,
+        np.asarray(slack > 0.0),
+        slack,
+        np.asarray((_gap(*lows) > 0.0) | (_gap(*highs) > 0.0)),
+    )
+
+
+def _gap(low: Array, high: Array) -> Array:
+    # Infinite demands, as where contact is lost, are known exactly.
+    return np.subtract(high, low, out=np.zeros_like(high), where=high > low)
+
+
+def findings(climb: Climb, case: Case, known: Known, scenes: Sequence[Scene]) -> list[Finding]:
+    """Return the findings of a case, in the order of its analyses."""
+    work, level = climb.work, climb.level
+    model = work.model
+    unit = model.output(case.output).unit
+    numbers = _numbers(climb, case)
+    rows = _Rows(climb, case, numbers)
+    out = []
+    columns = (numbers.demand, numbers.low, numbers.high, numbers.used, numbers.motion, numbers.row, numbers.at_most)
+    lists = [column.tolist() for column in (*columns, numbers.slack, numbers.enclosed, work.scenes[case.analyses])]
+    steps = climb.decided[case.analyses].tolist()
+    verdicts = _verdicts(known)
+    for demand, low, high, used, at, row, at_most, slack, enclosed, index, step, verdict, capacity in zip(
+        *lists, steps, verdicts, case.estimates, strict=True
+    ):
+        scene, motion, said = scenes[index], level.motions[at], rows.said(row, at)
+        other = model.otherwise(scene)
+        bound = model.at_most if at_most or enclosed else ""
+        sentence = other[2] if other else bound or model.sentence
+        marked = model.mark(said.parameters, demand)
+        out.append(
+            Finding(
+                object_number=scene.item.object_number,
+                gallery=scene.item.gallery,
+                level=level.name,
+                model=model.name,
+                title=model.title,
+                demand_name=case.output,
+                demand=demand,
+                unit=unit,
+                low=low,
+                high=high,
+                range_is=BOUNDS if enclosed else DEMANDS,
+                capacity=capacity.value,
+                capacity_origin=capacity.origin,
+                utilisation=used,
+                verdict=verdict,
+                fidelity="bound" if at_most else said.fidelity,
+                error=slack if at_most else said.error,
+                decided_by=_DECIDED[step],
+                motion=motion.name,
+                motion_hash=motion.hash,
+                sentence=f"{sentence} {said.sentence}" if said.sentence else sentence,
+                screen=said.screen,
+                # What it does by the best estimates, as the demand and the utilisation are.
+                outcome=(said.outcome or model.fails) if used > 1.0 else "",
+                note=said.note,
+                assumptions=_assumptions(scene, model, capacity),
+                mark=None if marked is None else Mark(f"{marked[0]}:{motion.hash[:16]}", marked[1], marked[2]),
+                version=__version__,
+            )
+        )
+    return out
+
+
+def _verdicts(known: Known) -> list[Verdict]:
+    return [
+        Verdict.PASS if passes else Verdict.FAIL if fails else Verdict.UNDETERMINED
+        for passes, fails in zip(known.passes.tolist(), known.fails.tolist(), strict=True)
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class _Said:
+    """What is said of one parameter set under one motion, whichever object asks."""
+
+    parameters: Mapping[str, float]
+    outcome: str
+    sentence: str
+    screen: str
+    note: str
+    fidelity: str
+    error: float
+
+
+class _Rows:
+    """Says of each parameter set under each motion what objects have in common, once."""
+
+    def __init__(self, climb: Climb, case: Case, numbers: _Numbers) -> None:
+        self._climb, self._output = climb, case.output
+        self._known: dict[tuple[int, int], _Said] = {}
+        self._screens = [
+            _screens(climb.work, climb.level, at, np.unique(numbers.row[numbers.motion == at]))
+            for at in range(len(climb.found))
+        ]
+
+    def said(self, row: int, at: int) -> _Said:
+        """Return what is said of a row of the work's values under a motion of the level."""
+        if (row, at) not in self._known:
+            self._known[row, at] = self._say(row, at)
+        return self._known[row, at]
+
+    def _say(self, row: int, at: int) -> _Said:
+        found, model = self._climb.found[at], self._climb.work.model
+        parameters = {name: float(column[row]) for name, column in self._climb.work.values.items()}
+        told = found.told(row)
+        outcome, sentence = model.outcome(told, parameters)
+        step = Step(found.step[row])
+        certain = step is Step.BOUND or (model.exact and self._output == model.demand)
+        # A yes or no is off by nothing, or sensitive, which its note says.
+        exactly = certain or model.output(self._output).unit == "bool"
+        fidelity = self._climb.integrated if step is Step.HISTORY else step.name.lower()
+        rows, columns = self._screens[at]
+        place = int(np.searchsorted(rows, row))
+        screened = {name: float(column[place]) for name, column in columns.items()}
+        return _Said(
+            parameters,
+            outcome,
+            sentence,
+            model.say_screen(screened, parameters) if columns else "",
+            words(told["note"]),
+            "bound" if certain else fidelity,
+            0.0 if exactly else told[model.error_of(self._output)],
+        )
+
+
+def _screens(work: Work, level: LevelMotions, at: int, rows: Indices) -> tuple[Indices, Columns]:
+    """Return the paper's criterion for some rows, ascending, under a motion; nothing where the model has none."""
+    model = work.model
+    if model.screen is None or rows.size == 0:
+        return rows, {}
+    out: Columns = {}
+    for angle, some in work.by_angle(rows):
+        columns = run_model(model, level.motions[at], work.some(some), "screen", angle, None)[0]
+        for name, column in columns.items():
+            out.setdefault(name, np.empty(rows.size))[np.searchsorted(rows, some)] = column
+    return rows, out
+
+
+def _assumptions(scene: Scene, model: Model, capacity: Estimate) -> tuple[str, ...]:
+    known = scene.parameters
+    used = [known[name] for name in model.inputs if name in known]
+    notes = [e.note for e in (*used, capacity) if e.origin is Origin.ASSUMED and e.note]
+    return tuple(dict.fromkeys(notes))

@@ -1,0 +1,194 @@
+"""From what shaking on each object fails: fragility curves, and how often that happens."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import exp, hypot
+
+import numpy as np
+
+from pipeline.analysis.fragility.curve import ENOUGH, NINETY, fit, from_span, stated
+from pipeline.analysis.fragility.hazard import Hazard, NoHazardError
+from pipeline.analysis.fragility.published import published
+from pipeline.analysis.fragility.scaling import FACTORS, Questions, first_failures
+from pipeline.analysis.plan import Indices, Work
+from pipeline.analysis.verdicts import capacity_of
+from pipeline.quantities import Array
+from pipeline.records import Executor, Fragility, Motion, Progress, Scene
+from pipeline.records.fragility import ABOVE
+
+DIRECTIONS = 30.0
+"""Degrees between the directions tried at least: a worst one missed by half of that is 3 % of the demand."""
+
+
+@dataclass(frozen=True)
+class Stripe:
+    """A level of shaking as fragilities see it: its motions, the intensity of each, and how rarely it comes.
+
+    intensities : (n,) m/s2, peak horizontal acceleration of the floor that objects stand on
+    """
+
+    motions: tuple[Motion, ...]
+    intensities: tuple[float, ...]
+    return_period_years: float | None = None
+
+
+def hazard_of(stripes: Sequence[Stripe]) -> Hazard:
+    """Return the hazard curve through the levels that have a return period, at the geometric mean of their intensities.
+
+    raises : NoHazardError (see `Hazard.of`)
+    """
+    told = [s for s in stripes if s.return_period_years is not None and s.motions]
+    with np.errstate(divide="ignore"):
+        means = [float(np.exp(np.mean(np.log(s.intensities)))) for s in told]
+    return Hazard.of(means, [s.return_period_years or 0.0 for s in told])
+
+
+def fragilities(
+    scenes: Sequence[Scene],
+    work: Sequence[Work],
+    stripes: Sequence[Stripe],
+    executor: Executor,
+    progress: Progress,
+    *,
+    azimuth_step: float = DIRECTIONS,
+    chosen: Sequence[bool] | None = None,
+) -> list[tuple[Fragility, ...]]:
+    """Scale every motion of every level until each object fails, in each of its ways, and fit fragility curves.
+
+    How a level combines its motions plays no part: a curve is about single earthquakes.
+    work     : of the plan of these scenes
+    chosen   : which scenes are asked for; None: all
+    returns  : of each scene one curve for each model, the way that fails first to begin with
+    """
+    motions, intensities = _scaled(stripes)
+    out: list[list[Fragility]] = [[] for _ in scenes]
+    if not motions:
+        return [() for _ in scenes]
+    try:
+        hazard, why = hazard_of(stripes), ""
+    except NoHazardError as problem:
+        hazard, why = None, str(problem)
+    for done, one in enumerate(work):
+        progress.step("fragilities", done, len(work))
+        for output, members in _by_output(one, scenes, chosen).items():
+            for index, found in _curves(one, output, members, scenes, motions, intensities, executor, azimuth_step):
+                out[index].append(_with_rate(found, hazard, why))
+    progress.step("fragilities", len(work), len(work))
+    return [tuple(sorted(found, key=lambda f: (f.bound == ABOVE, f.median))) for found in out]
+
+
+def _scaled(stripes: Sequence[Stripe]) -> tuple[list[Motion], Array]:
+    """Return the motions of all levels with their intensities, each once; what does not shake cannot be scaled."""
+    each = {m.hash: (m, pga) for s in stripes for m, pga in zip(s.motions, s.intensities, strict=True) if pga > 0.0}
+    return [motion for motion, _ in each.values()], np.array([pga for _, pga in each.values()])
+
+
+def _by_output(work: Work, scenes: Sequence[Scene], chosen: Sequence[bool] | None) -> Mapping[str, Indices]:
+    places: dict[str, list[int]] = {}
+    for at, index in enumerate(work.scenes.tolist()):
+        if chosen is None or chosen[index]:
+            places.setdefault(capacity_of(work.model, scenes[index])[0], []).append(at)
+    return {output: np.array(members, dtype=np.intp) for output, members in places.items()}
+
+
+def _curves(
+    work: Work,
+    output: str,
+    members: Indices,
+    scenes: Sequence[Scene],
+    motions: Sequence[Motion],
+    intensities: Array,
+    executor: Executor,
+    azimuth_step: float,
+) -> list[tuple[int, Fragility]]:
+    """Return the fragility of some analyses of a work, with the scene of each."""
+    which = work.scenes[members].tolist()
+    questions = Questions.of(work, output, members, [capacity_of(work.model, scenes[i])[1] for i in which])
+    found = [first_failures(questions, motion, executor, max(azimuth_step, DIRECTIONS)) for motion in motions]
+    factors = np.column_stack([one.factor for one in found])
+    returns = np.any([one.returns for one in found], axis=0).tolist()
+    spans = work.spans.take(members)
+    best = factors[spans.starts]
+    fitted = fit(best * intensities, FACTORS[0] * intensities, FACTORS[-1] * intensities)
+    inputs = _inputs(factors, spans.starts, spans.lengths)
+    out = []
+    for at, index in enumerate(which):
+        median, measured = float(fitted.median[at]), float(fitted.dispersion[at])
+        record, told = _record(measured, len(motions))
+        modelling = stated("modelling").value
+        # A bound has no range.
+        unsure = 0.0 if fitted.bound[at] else hypot(float(inputs[at]), modelling, record / len(motions) ** 0.5)
+        beside = published(scenes[index])
+        out.append(
+            (
+                index,
+                Fragility(
+                    object_number=scenes[index].item.object_number,
+                    model=work.model.name,
+                    title=work.model.title,
+                    median=median,
+                    low=median * exp(-NINETY * unsure),
+                    high=median * exp(NINETY * unsure),
+                    bound=fitted.bound[at],
+                    dispersion=hypot(record, float(inputs[at]), modelling),
+                    record=record,
+                    stated=not told,
+                    inputs=float(inputs[at]),
+                    modelling=modelling,
+                    motions=len(motions),
+                    returns=returns[spans.starts[at]],
+                    published="" if beside is None else beside.what,
+                    published_median=None if beside is None else beside.median,
+                ),
+            )
+        )
+    return out
+
+
+def _record(measured: float, motions: int) -> tuple[float, bool]:
+    """Return the dispersion from record to record, and whether it is that of the motions."""
+    least = stated("record").value
+    if motions >= ENOUGH and np.isfinite(measured):
+        return measured, True
+    return (measured, True) if measured > least else (least, False)
+
+
+def _inputs(factors: Array, starts: Indices, lengths: Indices) -> Array:
+    """Return the dispersion (m,) that the uncertain inputs and the uncertain capacity make, squares summed.
+
+    Over all corners of the inputs the variance is the sum of the squares of what each of them does, halved, on its own
+    and of what several do together beyond that (a two-level factorial design: Box, Hunter and Hunter 2005); with one
+    input it is the square of half its span.
+    factors : (v + 2m, n) as `Questions.of` orders them.  What never fails, or fails at once, is taken at the end of
+              the scaling, so that the dispersion is not too large
+    """
+    count = starts.size
+    logs: Array = np.log(np.clip(factors, FACTORS[0], FACTORS[-1]))
+    sets = logs.shape[0] - 2 * count
+    square = np.zeros(count)
+    varied = np.flatnonzero(lengths > 1)
+    if varied.size:
+        ends = np.ones(sets, dtype=bool)
+        ends[starts] = False
+        each, lasting = logs[:sets][ends], lengths[varied] - 1
+        first = np.concatenate([[0], np.cumsum(lasting)[:-1]])
+        mean = np.add.reduceat(each, first) / lasting[:, None]
+        apart = np.add.reduceat((each - np.repeat(mean, lasting, axis=0)) ** 2, first) / lasting[:, None]
+        # Under the several motions an input does different things; their mean square counts.
+        square[varied] = apart.mean(axis=1) / NINETY**2
+    square += (from_span(logs[sets : sets + count], logs[sets + count :]) ** 2).mean(axis=1)
+    return np.asarray(np.sqrt(square))
+
+
+def _with_rate(found: Fragility, hazard: Hazard | None, why: str) -> Fragility:
+    """Return the fragility with the annual rate of failure, or with the reason why there is none."""
+    if hazard is None:
+        return replace(found, note=why)
+    if found.bound:
+        return replace(found, note="how often it happens cannot be told without the shaking at which it fails")
+    least, most = hazard.ends
+    if not least <= found.median <= most:
+        return replace(found, note="it fails at shaking too far from the site's levels to tell how often it comes")
+    rate = hazard.failures(found.median, found.dispersion)
+    rare, often = (hazard.failures(median, found.record) for median in (found.high, found.low))
+    return replace(found, annual_rate=rate, rate_low=min(rare, rate), rate_high=max(often, rate))

@@ -1,0 +1,335 @@
+"""From bounds over charts to histories, as far up as the verdicts of a level need: the fidelity `auto`.
+
+Each analysis asks whether its highest demand, over its parameter sets, is within the capacity (it passes) and whether
+its lowest is above it (it fails).  Every parameter set has an interval in which its history lies for certain, or
+within the error that a chart states; both questions are answered as soon as the intervals answer them, and only the
+sets of analyses that are still open, and of those only the ones that the answer hangs on, climb to the next step.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.analysis.demands import Demands, Step, bounded, chart, integrate
+from pipeline.analysis.plan import Indices, Spans, Work
+from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.verdicts import LevelMotions, Mask, capacity_of, exceeds
+from pipeline.models.common import largest_push
+from pipeline.quantities import Array
+from pipeline.records import Estimate, Executor, Scene
+
+AUTO, CHART = "auto", "chart"
+
+
+@dataclass(frozen=True)
+class Case:
+    """The analyses of a work that one of the model's outputs counts for.
+
+    analyses : (m,) places in the work's list
+    spans    : their parameter sets
+    capacity : low, best, high, (m,) each
+    estimates: (m) of them, with where they come from
+    """
+
+    output: str
+    analyses: Indices
+    spans: Spans
+    capacity: tuple[Array, Array, Array]
+    estimates: Sequence[Estimate]
+
+    @classmethod
+    def of(cls, work: Work, output: str, analyses: Indices, capacities: Sequence[Estimate]) -> "Case":
+        """Return the case of some analyses with their capacities."""
+        spans = work.spans if analyses.size == work.scenes.size else work.spans.take(analyses)
+        ends = tuple(np.array([getattr(c, end) for c in capacities]) for end in ("low", "value", "high"))
+        return cls(output, analyses, spans, (ends[0], ends[1], ends[2]), capacities)
+
+    def take(self, chosen: Indices) -> "Case":
+        """Return a part of the analyses."""
+        low, best, high = self.capacity
+        capacity = (low[chosen], best[chosen], high[chosen])
+        estimates = [self.estimates[at] for at in chosen]
+        return Case(self.output, self.analyses[chosen], self.spans.take(chosen), capacity, estimates)
+
+
+@dataclass(frozen=True)
+class Known:
+    """What the intervals answer of each analysis, (m,) each."""
+
+    passes: Mask
+    may_pass: Mask
+    fails: Mask
+    may_fail: Mask
+
+    @property
+    def open(self) -> Mask:
+        """Whose verdict could still be another; undetermined is a verdict too."""
+        return np.asarray(~self.passes & ~self.fails & (self.may_pass | self.may_fail))
+
+
+@dataclass
+class Effort:
+    """What the verdicts of one model took.
+
+    analyses : objects times levels
+    decided  : of which by a certificate (a bound), a chart, histories
+    sets     : parameter sets times motions, each once however many objects share it
+    verdicts : how many of these were integrated because a verdict hung on them
+    numbers  : and because an advice or a report needs the number, or what the object does, although the verdict stood
+    needing  : analyses for which any history was run
+    """
+
+    analyses: int = 0
+    decided: list[int] = field(default_factory=lambda: [0, 0, 0])
+    sets: int = 0
+    verdicts: int = 0
+    numbers: int = 0
+    needing: int = 0
+
+    def plain(self) -> dict[str, int]:
+        """Return the counts by name."""
+        names = ("certificate", "chart", "history")
+        return {
+            "analyses": self.analyses,
+            **dict(zip(names, self.decided, strict=True)),
+            "needing_history": self.needing,
+            "sets": self.sets,
+            "histories_for_verdicts": self.verdicts,
+            "histories_for_numbers": self.numbers,
+        }
+
+    def add(self, other: "Effort") -> None:
+        """Add what another level or floor took."""
+        self.analyses += other.analyses
+        self.decided = [a + b for a, b in zip(self.decided, other.decided, strict=True)]
+        self.sets += other.sets
+        self.verdicts += other.verdicts
+        self.numbers += other.numbers
+        self.needing += other.needing
+
+
+@dataclass
+class Climb:
+    """One work under the motions of one level.
+
+    found   : what is known under each motion
+    decided : of each analysis of the work, the step at which its verdict stood
+    """
+
+    work: Work
+    level: LevelMotions
+    executor: Executor
+    fidelity: str
+    azimuth_step: float
+    charts: Shelf
+    found: list[Demands]
+    decided: NDArray[np.int8]
+    effort: Effort
+
+    @classmethod
+    def begin(
+        cls,
+        work: Work,
+        level: LevelMotions,
+        outputs: Sequence[str],
+        executor: Executor,
+        fidelity: str,
+        azimuth_step: float,
+        charts: Shelf,
+    ) -> "Climb":
+        """Bound everything."""
+        auto = fidelity == AUTO
+        found = [bounded(work, motion, outputs, executor, whole=auto) for motion in level.motions]
+        effort = Effort(analyses=work.scenes.size, sets=work.size * len(found))
+        decided = np.zeros(work.scenes.size, dtype=np.int8)
+        return cls(work, level, executor, fidelity, azimuth_step, charts, found, decided, effort)
+
+    @property
+    def integrated(self) -> str:
+        """The fidelity at which histories are run."""
+        return self.fidelity if self.fidelity == "reference" else "history"
+
+    def decide(self, case: Case) -> Known:
+        """Climb until the verdict of every analysis of the case stands."""
+        if self.fidelity == CHART:
+            self._up(Step.CHART, [self._unknown(case, found) for found in self.found])
+        if self.fidelity != AUTO:
+            rows = [self._unknown(case, found) for found in self.found]
+            self.effort.verdicts += self._up(Step.HISTORY, [r[f.step[r] == Step.BOUND] for r, f in self._with(rows)])
+            # Without `auto` nothing is decided before the last step.
+            steps = [case.spans.furthest(found.step) for found in self.found]
+            self.decided[case.analyses] = np.max(steps, axis=0)
+        else:
+            self._look_up(case)
+        self._integrate(case)
+        return self._known(case)
+
+    def tell(self, case: Case, known: Known) -> None:
+        """Find the numbers of what does not pass: the highest demand, that of the best estimates, what the object does.
+
+        Nobody needs more of what passes than that it stays below its capacity.
+        """
+        chosen = np.flatnonzero(~known.passes)
+        if chosen.size == 0:
+            return
+        part = case.take(chosen)
+        if self.fidelity == AUTO:
+            self._up(Step.CHART, self._numbers(part))
+            self.effort.numbers += self._up(Step.HISTORY, self._numbers(part))
+        model = self.work.model
+        if model.exact and model.rests is not None and case.output == model.demand:
+            governing, rows = self.governing(part)
+            moving = [
+                np.unique(rows[governing == at][found.high[part.output][rows[governing == at]] > model.rests])
+                for at, found in enumerate(self.found)
+            ]
+            self.effort.numbers += self._up(Step.HISTORY, moving)
+
+    def governing(self, case: Case) -> tuple[Indices, Indices]:
+        """Return under which motion the best estimates of each analysis demand most, and their row, (m,) each."""
+        bests = case.spans.rows[case.spans.starts]
+        most = np.full(bests.shape[0], -np.inf)
+        motion, row = np.zeros(bests.shape[0], dtype=np.intp), bests[:, 0].copy()
+        for at, found in enumerate(self.found):
+            high = found.points(case.output)[1]
+            for side in bests.T:
+                larger = high[side] > most
+                most[larger], motion[larger], row[larger] = high[side][larger], at, side[larger]
+        return motion, row
+
+    def count(self, case: Case) -> None:
+        """Add up by what the analyses of a case were decided, and how many needed any history."""
+        for step in Step:
+            self.effort.decided[step] += int(np.count_nonzero(self.decided[case.analyses] == step))
+        self.effort.needing += int(np.count_nonzero(self.needed(case)))
+
+    def needed(self, case: Case) -> Mask:
+        """Return for which analyses of a case any history was run."""
+        steps = [case.spans.furthest(found.step) for found in self.found]
+        return np.asarray(np.max(steps, axis=0) == Step.HISTORY)
+
+    def _with(self, rows: Sequence[Indices]) -> list[tuple[Indices, Demands]]:
+        return list(zip(rows, self.found, strict=True))
+
+    def _known(self, case: Case) -> Known:
+        low, _, high = case.capacity
+        least = [found.low[case.output] for found in self.found]
+        most = [found.high[case.output] for found in self.found]
+        spans, over = case.spans, self.level.over
+        return Known(
+            passes=~exceeds(over([spans.highest(column) for column in most]), low),
+            may_pass=~exceeds(over([spans.highest(column) for column in least]), low),
+            fails=exceeds(over([spans.lowest(column) for column in least]), high),
+            may_fail=exceeds(over([spans.lowest(column) for column in most]), high),
+        )
+
+    def _look_up(self, case: Case) -> None:
+        """Look up in charts what the open verdicts hang on."""
+        known = self._known(case)
+        still = np.flatnonzero(known.open)
+        if still.size:
+            part = case.take(still)
+            self._up(Step.CHART, [self._hanging(part, known, still, found) for found in self.found])
+            self.decided[part.analyses] = Step.CHART
+
+    def _integrate(self, case: Case) -> None:
+        """Integrate what the open verdicts hang on, the strongest motions first: the others may not be needed."""
+        pushes = [largest_push(motion.excitation(None)) for motion in self.level.motions]
+        for at in np.argsort(np.negative(pushes), kind="stable"):
+            known = self._known(case)
+            still = np.flatnonzero(known.open)
+            if still.size == 0:
+                return
+            case = case.take(still)
+            rows = self._hanging(case, known, still, self.found[at])
+            self.effort.verdicts += self._up(Step.HISTORY, [rows if at == i else rows[:0] for i in range(len(pushes))])
+            self.decided[case.analyses] = Step.HISTORY
+
+    def _hanging(self, part: Case, known: Known, chosen: Indices, found: Demands) -> Indices:
+        """Return the rows of open analyses that their verdicts hang on under a motion."""
+        rows, spread = part.spans.rows, part.spans.spread
+        low, high = found.low[part.output], found.high[part.output]
+        if self.level.combine == "mean":
+            needed = low[rows] < high[rows]
+        else:
+            # Of a maximum only this counts: on which side of the capacity's ends each demand lies.
+            needed = np.zeros(rows.shape, dtype=bool)
+            for asked, capacity in ((known.may_pass, part.capacity[0]), (known.may_fail, part.capacity[2])):
+                limit = spread(capacity)[:, None]
+                straddles = (low[rows] <= limit) & (high[rows] > limit)
+                needed |= straddles & np.repeat(asked[chosen], part.spans.lengths)[:, None]
+        return np.unique(rows[needed])
+
+    def _unknown(self, case: Case, found: Demands) -> Indices:
+        rows = np.unique(case.spans.rows)
+        return rows[found.low[case.output][rows] < found.high[case.output][rows]]
+
+    def _numbers(self, part: Case) -> list[Indices]:
+        """Return the rows that may have a say in the range of the demand, and are no better known than by a bound."""
+        output, spans = part.output, part.spans
+        mean = self.level.combine == "mean"
+        # Of a maximum, what lies below the lowest that it can be under any one motion is never heard of.
+        lowest = np.max([spans.lowest(found.low[output]) for found in self.found], axis=0)
+        out = []
+        for found in self.found:
+            low, high = found.low[output], found.high[output]
+            heard = mean | (high[spans.rows] > spans.spread(lowest)[:, None])
+            rows = np.unique(spans.rows[heard])
+            out.append(rows[(found.step[rows] == Step.BOUND) & (low[rows] < high[rows])])
+        return out
+
+    def _up(self, step: Step, rows: Sequence[Indices]) -> int:
+        """Take rows under each motion to a step; return how many were integrated."""
+        fresh = [(r[f.step[r] < step], f) for r, f in self._with(rows)]
+        if step is Step.CHART:
+            thrifty = self.fidelity == AUTO
+            self.executor.map(lambda one: chart(one[1], one[0], self.charts, self.azimuth_step, thrifty=thrifty), fresh)
+            return 0
+        how = self.integrated
+        before = self.charts.histories
+        return sum(integrate(found, some, self.executor, how, self.azimuth_step, before) for some, found in fresh)
+
+
+@dataclass(frozen=True)
+class Examined:
+    """A work under a level with its verdicts."""
+
+    climb: Climb
+    cases: tuple[tuple[Case, Known], ...]
+
+
+def examine(
+    work: Work,
+    scenes: Sequence[Scene],
+    level: LevelMotions,
+    executor: Executor,
+    *,
+    fidelity: str,
+    azimuth_step: float,
+    charts: Shelf,
+    outcomes: bool = True,
+    watch: Callable[[Climb], None] = lambda _: None,
+) -> Examined:
+    """Find the verdicts of all analyses of a work under the motions of a level, and the numbers that go with them.
+
+    outcomes : whether to find the numbers of what does not pass, too
+    watch    : called when everything is bounded, before anything climbs
+    """
+    capacities = [capacity_of(work.model, scenes[index]) for index in work.scenes]
+    outputs: dict[str, list[int]] = {}
+    for at, (output, _) in enumerate(capacities):
+        outputs.setdefault(output, []).append(at)
+    climb = Climb.begin(work, level, tuple(outputs), executor, fidelity, azimuth_step, charts)
+    watch(climb)
+    cases = []
+    for output, members in outputs.items():
+        case = Case.of(work, output, np.array(members, dtype=np.intp), [capacities[at][1] for at in members])
+        known = climb.decide(case)
+        if outcomes:
+            climb.tell(case, known)
+        cases.append((case, known))
+    for case, _ in cases:
+        climb.count(case)
+    return Examined(climb, tuple(cases))

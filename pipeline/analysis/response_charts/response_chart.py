@@ -1,0 +1,141 @@
+"""A response chart: built from a model's analyses, asked by the hundred thousand."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.analysis.response_charts.refine import MOST_NODES, SMALL, UNITS, Cells, Integers, refine
+from pipeline.errors import InputError
+from pipeline.kernels.lookup import POINTS, lookup_batch
+from pipeline.quantities import Array
+from pipeline.records import ChartAxis, Columns, Excitation, Model
+
+Run = Callable[[Mapping[str, Array]], Columns]
+"""Parameters of a model, (n,) each -> its columns, with "error" and "note", under the motion of the chart."""
+
+
+@dataclass(frozen=True)
+class Looked:
+    """What a chart says, row for row of what it was asked.
+
+    columns  : the outputs, (n,) each
+    bounds   : by how much interpolation may be wrong in each of them
+    own      : (n,), the error of the analyses that the chart is made of, of the first output
+    note     : (n,) bits; what was said of any analysis nearby is said
+    resolved : (n,), whether the bounds are within the chart's tolerance
+    """
+
+    columns: Columns
+    bounds: Columns
+    own: Array
+    note: Integers
+    resolved: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class ResponseChart:
+    """The response of one model under one motion, along one parameter, all others fixed.
+
+    outputs   : names of what is tabulated
+    low, high : the stretch of the axis that the cells cover
+    settled   : value from which on the response is that at the end of the chart; inf: nowhere
+    tolerance : wanted of every output, relative to max(value, 1 % of its largest)
+    """
+
+    axis: ChartAxis
+    outputs: tuple[str, ...]
+    low: float
+    high: float
+    settled: float
+    tolerance: float
+    cells: Cells
+
+    @classmethod
+    def build(
+        cls,
+        model: Model,
+        axis: ChartAxis,
+        excitation: Excitation,
+        fixed: Mapping[str, float],
+        run: Run,
+        tolerance: float,
+        most_nodes: int = MOST_NODES,
+        *,
+        first: bool = False,
+    ) -> "ResponseChart":
+        """Run the model where it is needed.
+
+        axis       : the model's, or a stretch of it
+        excitation : the strongest that the run may shake with: in both directions for a worst direction
+        fixed      : the model's parameters besides that of the axis (NaN: left out)
+        first      : whether the tolerance is that of the first output alone, whatever becomes of the others
+        """
+        settled = np.inf if axis.settled is None else axis.settled(excitation)
+        high = axis.high if settled > axis.high else max(settled, 2.0 * axis.low)
+        outputs = tuple(q.name for q in model.gives)
+        begin, length = np.log(axis.low), np.log(high / axis.low)
+
+        def analyse(places: Integers) -> Array:
+            along = np.clip(np.exp(begin + length * places / UNITS), axis.low, high)
+            # A kink stands at the end, so that the end must be met exactly.
+            along = np.where(places == UNITS, high, along)
+            columns = run({q.name: along if q.name == axis.name else _all(fixed[q.name], along) for q in model.needs})
+            return np.column_stack([columns[name] for name in (*outputs, "error", "note")])
+
+        cells = refine(analyse, tolerance, most_nodes, 1 if first else None)
+        return cls(axis, outputs, axis.low, high, settled if settled <= high else np.inf, tolerance, cells)
+
+    def covers(self, along: Array) -> NDArray[np.bool_]:
+        """Return which values (n,) of the axis' parameter the chart speaks of."""
+        return ((along >= self.low) & (along <= self.high)) | (along >= self.settled)
+
+    def look(self, along: Array) -> Looked:
+        """Return the response at values (n,) of the axis' parameter, which the chart covers; about 50 ns each."""
+        at = np.log(np.clip(along, self.low, self.high) / self.low) * (UNITS / np.log(self.high / self.low))
+        at = np.where(along >= self.settled, UNITS, np.clip(at, 0.0, UNITS))
+        cells = self.cells
+        columns = np.empty((len(self.outputs), along.size))
+        cell = np.empty(along.size, dtype=np.int64)
+        lookup_batch(at, cells.edges, cells.values, columns, cell)
+        bounds = cells.bounds.T[:, cell]
+        # The end is a node: from there on nothing is interpolated.
+        bounds[:, at == UNITS] = 0.0
+        return Looked(
+            dict(zip(self.outputs, columns, strict=True)),
+            dict(zip(self.outputs, bounds, strict=True)),
+            cells.own[cell],
+            cells.note[cell],
+            cells.resolved[cell],
+        )
+
+    @property
+    def nodes(self) -> Array:
+        """The values of the axis' parameter, rising, at which the model was run for the cells as they are."""
+        edges = self.cells.edges
+        within = np.arange(POINTS - 1) / (POINTS - 1)
+        places = np.append(np.ravel(edges[:-1, None] + np.diff(edges)[:, None] * within), UNITS)
+        along = self.low * (self.high / self.low) ** (places / UNITS)
+        return np.append(np.clip(along[:-1], self.low, self.high), self.high)
+
+    def worst(self, output: str) -> float:
+        """Return the largest bound of an output anywhere, relative to max(value, 1 % of its largest value)."""
+        at = self.outputs.index(output)
+        values, bounds = self.cells.values[..., at], self.cells.bounds[:, at]
+        size = np.maximum(values.min(axis=1), SMALL * values.max())
+        return float(np.divide(bounds, size, out=np.zeros_like(size), where=size > 0.0).max())
+
+
+def _all(value: float, like: Array) -> Array:
+    return np.full_like(like, value)
+
+
+def axis_of(model: Model) -> ChartAxis:
+    """Return the axis along which a model is tabulated.
+
+    raises : ValueError with the reason for a model that is not
+    """
+    if model.chart is None:
+        raise InputError(f"{model.name} has no chart: {model.uncharted}; ask for history")
+    return model.chart

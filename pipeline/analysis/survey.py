@@ -1,0 +1,204 @@
+"""Which missing measurement would settle a verdict: the models are run at the ends of what is assumed.
+
+A verdict is open because inputs are uncertain.  For each of them in turn, the object is assessed as if that one had
+been measured, as low, best and high; the others stay as uncertain as they are.  If the verdict stays open at all three,
+measuring that alone is taken for a waste.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+
+from pipeline.analysis.assess import assess
+from pipeline.analysis.verdicts import LevelMotions
+from pipeline.models import model_named
+from pipeline.records import Estimate, Executor, Finding, Origin, Progress, Scene, Silent, Verdict, Wish
+from pipeline.tables import number, table
+
+BATCH = 1000
+"""Objects looked at together: bounds the memory."""
+
+ENDS = ("low", "value", "high")
+
+
+@dataclass(frozen=True, slots=True)
+class Measurable:
+    """A field of the record that a person can fill in (a row of tables/survey.csv).
+
+    parameters : of the scene, that hang on it; none for a field that is only ever missing
+    factor     : the field's number for a number 1 of the first parameter; None where it cannot be said in one number
+    how        : how it is measured, for the sheet
+    """
+
+    field: str
+    label: str
+    unit: str
+    parameters: tuple[str, ...]
+    factor: float | None
+    how: str
+
+
+@cache
+def measurables() -> tuple[Measurable, ...]:
+    """Return what a survey may ask for, in the order of the table.
+
+    raises : TableError for a factor that is no number
+    """
+    out = []
+    for line, row in enumerate(table("survey"), start=2):
+        factor = number(row, "factor", f"survey.csv, line {line}") if row["factor"] else None
+        names = tuple(name for name in row["parameters"].split("|") if name)
+        out.append(Measurable(row["field"], row["label"], row["unit"], names, factor, row["how"]))
+    return tuple(out)
+
+
+_MISSING = {
+    "height": "height_m",
+    "width": "width_m",
+    "depth": "depth_m",
+    "height or suspension length": "suspension_length_m",
+    "height of the centre of gravity": "cg_height_m",
+    "base width": "base_width_m",
+    "base depth": "base_depth_m",
+    "mass": "mass_kg",
+    "width of its weakest section": "section_width_m",
+    "wall of its weakest section": "section_wall_m",
+    "support": "support",
+}
+"""How a scene's words for what is missing begin, and the field that would mend it."""
+
+
+def wishes(
+    scenes: Sequence[Scene],
+    findings: Sequence[Sequence[Finding]],
+    levels: Sequence[LevelMotions],
+    executor: Executor,
+    progress: Progress,
+    *,
+    fidelity: str = "history",
+    azimuth_step: float = 10.0,
+) -> list[Wish]:
+    """Return what is worth measuring on the objects on display, what settles most first.
+
+    findings : of each scene, as `assess` returned them under the same levels
+    """
+    out: list[Wish] = []
+    shown = [at for at, scene in enumerate(scenes) if scene.item.on_display]
+    for start in range(0, len(shown), BATCH):
+        progress.step("survey", start, len(shown))
+        chosen = shown[start : start + BATCH]
+        trials = [trial for at in chosen for trial in (_missing(scenes[at]) or _trials(scenes[at], findings[at]))]
+        tried = [(trial, end) for trial in trials for end in (ENDS if trial.models else ())]
+        _, answers = assess(
+            [_measured(trial, end) for trial, end in tried],
+            levels,
+            executor,
+            Silent(),
+            fidelity=fidelity,
+            azimuth_step=azimuth_step,
+            outcomes=False,
+        )
+        settled: dict[int, int] = {}
+        for (trial, _), answer in zip(tried, answers, strict=True):
+            decided = sum((f.model, f.level) in trial.open and f.verdict is not Verdict.UNDETERMINED for f in answer)
+            settled[id(trial)] = settled.get(id(trial), 0) + decided
+        out += [_wish(trial, settled.get(id(trial), 0) / len(ENDS)) for trial in trials]
+    progress.step("survey", len(shown), len(shown))
+    return in_order(out)
+
+
+def in_order(found: Sequence[Wish]) -> list[Wish]:
+    """Return the wishes, what settles most first; ties by gallery, object and field."""
+    return sorted(found, key=lambda w: (-w.gain, -w.unlocks, w.gallery, w.object_number, w.field))
+
+
+def by_gallery(found: Sequence[Wish]) -> Mapping[str, Sequence[Wish]]:
+    """Return the wishes of each gallery, galleries by name, each in the order in which they stand."""
+    out: dict[str, list[Wish]] = {gallery: [] for gallery in sorted({w.gallery for w in found})}
+    for wish in found:
+        out[wish.gallery].append(wish)
+    return out
+
+
+@dataclass(frozen=True, slots=True)
+class _Trial:
+    """One field of one object, and the open verdicts (model, level) that it takes part in; no models: it is missing."""
+
+    scene: Scene
+    measurable: Measurable
+    open: frozenset[tuple[str, str]]
+    models: tuple[str, ...]
+    reason: str
+    unlocks: int = 0
+
+
+def _trials(scene: Scene, findings: Sequence[Finding]) -> list[_Trial]:
+    # What stands on an isolator is judged on what that passes on, and is not tried here.
+    still = {(f.model, f.level) for f in findings if f.verdict is Verdict.UNDETERMINED and f.model in scene.models}
+    if not still:
+        return []
+    out = []
+    for measurable in measurables():
+        uncertain = [
+            scene.parameters[name]
+            for name in measurable.parameters
+            if name in scene.parameters and scene.parameters[name].low < scene.parameters[name].high
+        ]
+        mine = frozenset((m, level) for m, level in still if _inputs(m) & set(measurable.parameters))
+        if uncertain and mine:
+            models = tuple(dict.fromkeys(model for model, _ in sorted(mine)))
+            out.append(_Trial(scene, measurable, mine, models, uncertain[0].note or "derived"))
+    return out
+
+
+@cache
+def _inputs(name: str) -> frozenset[str]:
+    model = model_named(name)
+    return frozenset(model.inputs) | ({model.capacity} if isinstance(model.capacity, str) else frozenset())
+
+
+def measurable_of(words: str) -> str | None:
+    """Return the field that would mend what a scene says is missing; None where no measurement would."""
+    return next((f for start, f in _MISSING.items() if words == start or words.startswith(f"{start} (")), None)
+
+
+def _missing(scene: Scene) -> list[_Trial]:
+    out = []
+    for words in scene.missing:
+        field = measurable_of(words)
+        if field is not None:
+            measurable = next(m for m in measurables() if m.field == field)
+            out.append(_Trial(scene, measurable, frozenset(), (), f"not recorded: {words}", len(scene.models)))
+    return out
+
+
+def _measured(trial: _Trial, end: str) -> Scene:
+    pinned = dict(trial.scene.parameters)
+    for name in trial.measurable.parameters:
+        if name in pinned:
+            old = pinned[name]
+            value = float(getattr(old, end))
+            pinned[name] = Estimate(value, old.unit, Origin.MEASURED, value, value)
+    return replace(trial.scene, parameters=pinned, models=trial.models)
+
+
+def _wish(trial: _Trial, settles: float) -> Wish:
+    item, measurable = trial.scene.item, trial.measurable
+    first = next((trial.scene.parameters[n] for n in measurable.parameters if n in trial.scene.parameters), None)
+    low = best = high = None
+    if first is not None and measurable.factor is not None:
+        low, best, high = (measurable.factor * end for end in (first.low, first.value, first.high))
+    return Wish(
+        item.object_number,
+        item.gallery,
+        item.title,
+        measurable.field,
+        measurable.unit,
+        low,
+        best,
+        high,
+        trial.reason,
+        len(trial.open),
+        settles,
+        trial.unlocks,
+    )

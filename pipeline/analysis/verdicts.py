@@ -1,0 +1,89 @@
+"""A demand against a capacity, both with their ranges: pass, fail or undetermined."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.quantities import Array
+from pipeline.records import Estimate, Model, Motion, Origin, Scene, Verdict
+
+EAST = 90.0
+"""Azimuth of the x axis where a site does not turn it [degrees clockwise from north]."""
+
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class LevelMotions:
+    """The motions of one level of the site, and how their demands are combined ("max" or "mean").
+
+    x_azimuth : degrees clockwise from north of their x axis
+    """
+
+    name: str
+    combine: str
+    motions: tuple[Motion, ...]
+    x_azimuth: float = EAST
+
+    def combined(self, each: Sequence[float] | Array) -> float:
+        """Return the demand of the level from that under each of its motions."""
+        return float(np.mean(each) if self.combine == "mean" else np.max(each))
+
+    def over(self, each: Sequence[Array]) -> Array:
+        """Return the demands (m,) of the level from those under each of its motions."""
+        total = each[0].copy()
+        for other in each[1:]:
+            total = total + other if self.combine == "mean" else np.maximum(total, other)
+        return total / len(each) if self.combine == "mean" else total
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A demand against a capacity, both with their ranges."""
+
+    demand: float
+    low: float
+    high: float
+    capacity: float
+    utilisation: float
+    verdict: Verdict
+
+
+def judge(demand: float, low: float, high: float, capacity: Estimate) -> Judgement:
+    """Compare: pass or fail only where both ends of the demand and of the capacity say so, else undetermined.
+
+    low, high : of the demand, over all that was looked at of what is uncertain (see `pipeline.analysis.plan.corners`)
+    A demand of exactly the capacity passes.
+    """
+    used = utilisation(np.array([demand, high, low]), np.array([capacity.value, capacity.low, capacity.high]))
+    if used[1] <= 1.0:
+        verdict = Verdict.PASS
+    elif used[2] > 1.0:
+        verdict = Verdict.FAIL
+    else:
+        verdict = Verdict.UNDETERMINED
+    return Judgement(demand, low, high, capacity.value, float(used[0]), verdict)
+
+
+def utilisation(demand: Array, capacity: Array) -> Array:
+    """Return demand / capacity, (m,) each: 0 where nothing is demanded, infinite where there is no capacity for it."""
+    ratio = np.divide(demand, capacity, out=np.full(demand.shape, np.inf), where=capacity > 0.0)
+    return np.where(demand <= 0.0, 0.0, ratio)
+
+
+def exceeds(demand: Array, capacity: Array) -> Mask:
+    """Say whether a demand is above a capacity, (m,) each, as `judge` sees it."""
+    return np.asarray(utilisation(demand, capacity) > 1.0)
+
+
+def capacity_of(model: Model, scene: Scene) -> tuple[str, Estimate]:
+    """Return which output of the model counts for this scene, and the capacity it is held against."""
+    other = model.otherwise(scene)
+    if other is not None:
+        return other[0], Estimate(other[1], "-", Origin.DERIVED, other[1], other[1], "half of the motions")
+    if isinstance(model.capacity, float):
+        fixed = model.capacity
+        return model.demand, Estimate(fixed, "-", Origin.DERIVED, fixed, fixed, "the onset itself")
+    return model.demand, scene.parameters[model.capacity]

@@ -1,1 +1,0 @@
-"""The jobs: each reads as a story, one call a line."""

@@ -1,0 +1,1 @@
+"""The night: from the museum's records to a published report."""

@@ -1,0 +1,145 @@
+"""The levels of shaking that each gallery feels: those of the floor that it stands on."""
+
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+
+from pipeline.analysis.fragility.objects import Stripe
+from pipeline.analysis.verdicts import EAST, LevelMotions
+from pipeline.motions.manifest import GROUND_FLOOR, FloorTable
+from pipeline.motions.site import Level, Site, levels_at, summaries
+from pipeline.records import Item, MotionSummary
+from pipeline.settings import Floors, Settings, SettingsError
+
+
+@dataclass(frozen=True)
+class Storey:
+    """A floor that objects stand on, with its levels of shaking and the places of its objects in the list of all.
+
+    name      : "" for the ground
+    x_azimuth : degrees clockwise from north of the x axis of the motions
+    """
+
+    name: str
+    levels: tuple[Level, ...]
+    members: tuple[int, ...]
+    x_azimuth: float = EAST
+
+    @property
+    def shaking(self) -> list[LevelMotions]:
+        """The levels as objects are run under them."""
+        return [
+            LevelMotions(v.name, v.combine, tuple(m.motion for m in v.motions), self.x_azimuth) for v in self.levels
+        ]
+
+    @property
+    def stripes(self) -> list[Stripe]:
+        """The levels as fragilities see them: by the peak acceleration of this floor."""
+        return [
+            Stripe(
+                tuple(m.motion for m in v.motions),
+                tuple(m.measures["pga"] for m in v.motions),
+                v.return_period_years,
+            )
+            for v in self.levels
+        ]
+
+    @property
+    def summaries(self) -> tuple[MotionSummary, ...]:
+        """What a report shows of its motions."""
+        return summaries(self.levels, self.name)
+
+
+def storeys(settings: Settings, site: Site, items: Sequence[Item]) -> list[Storey]:
+    """Sort the objects by the floor that their gallery stands on, the ground first; each on one.
+
+    raises : as `floors_of`
+    """
+    places: dict[str, list[int]] = {}
+    for index, item in enumerate(items):
+        places.setdefault(floor_name(settings, item.gallery), []).append(index)
+    found = floors_of(settings, site, {item.gallery for item in items})
+    return [replace(storey, members=tuple(places[name])) for name, storey in found.items()]
+
+
+def floors_of(settings: Settings, site: Site, galleries: Collection[str]) -> dict[str, Storey]:
+    """Return the floors that some galleries stand on, by name, the ground first; without any objects.
+
+    raises : SettingsError for a floor that the manifest does not have; MotionError for a record of a floor
+    """
+    known(settings, site)
+    wanted = {settings.floors.of(gallery) or GROUND_FLOOR for gallery in galleries}
+    x_azimuth = site.manifest.site.x_azimuth
+    found = {}
+    for name in (GROUND_FLOOR, *site.floors):
+        if name in wanted:
+            said = "" if name == GROUND_FLOOR else name
+            found[said] = Storey(said, levels_at(site, name), (), x_azimuth)
+    return found
+
+
+def floor_name(settings: Settings, gallery: str) -> str:
+    """Return the name of the floor that a gallery stands on, "" for the ground."""
+    name = settings.floors.of(gallery)
+    return "" if name is None or name == GROUND_FLOOR else name
+
+
+def known(settings: Settings, site: Site) -> None:
+    """Check that the floors of the settings are floors of the manifest.
+
+    raises : SettingsError naming the floor and those that there are
+    """
+    there = (GROUND_FLOOR, *site.floors)
+    for name in settings.floors.root:
+        if name not in there:
+            raise SettingsError(
+                f"kouros.toml: floors.{name!r}: {site.file} has no such floor; it has {', '.join(there)}"
+            )
+
+
+def strangers(floors: Floors, galleries: Iterable[str]) -> list[str]:
+    """Say of each gallery of the settings that the inventory does not have that it is not there."""
+    there = set(galleries)
+    notes = []
+    for floor, names in floors.root.items():
+        for name in names:
+            if name != "*" and name not in there:
+                close = get_close_matches(name, there, n=1)
+                hint = f"; is {close[0]!r} meant?" if close else ""
+                notes.append(
+                    f"kouros.toml puts gallery {name!r} on floor {floor!r}: the inventory has no such gallery{hint}"
+                )
+    return notes
+
+
+def notes(settings: Settings, site: Site, galleries: Collection[str]) -> list[str]:
+    """Say how each floor's motion was obtained and which galleries stand where."""
+    if not site.floors:
+        return [
+            "Every gallery is taken to stand on the ground: the manifest names no upper floors, which would shake more."
+        ]
+    out = []
+    for table in site.manifest.floor:
+        on = sorted(name for name in galleries if settings.floors.of(name) == table.name)
+        if on:
+            out.append(f"Floor {table.name} ({method(table)}): {_listed(on)}.")
+    ground = sorted(name for name in galleries if (settings.floors.of(name) or GROUND_FLOOR) == GROUND_FLOOR)
+    if ground:
+        out.append(f"On the ground: {_listed(ground)}.")
+    return [*out, *(f"{text}." for text in strangers(settings.floors, galleries))]
+
+
+def method(table: FloorTable) -> str:
+    """Say in words how a floor's motion is obtained."""
+    if table.records:
+        return "recorded on the floor"
+    where = f"{table.height_ratio:g} of the building's height"
+    period = "unknown period" if table.period_s is None else f"period {table.period_s:g} s"
+    if table.method == "modal":
+        return f"modes of a shear-flexural beam, {where}, {period}, Miranda and Taghavi 2005"
+    return f"floor factor, {where}, {period}, ASCE 7-22"
+
+
+def _listed(names: Sequence[str], most: int = 12) -> str:
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more

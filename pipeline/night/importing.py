@@ -1,0 +1,203 @@
+"""The museum's records -> Kouros's inventory, with a log of what was read, refused and changed."""
+
+import csv
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from heapq import merge
+from operator import itemgetter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pipeline.collection.inventory import Difference, held, latest_import, replace_inventory, return_to
+from pipeline.collection.limits import Limits
+from pipeline.collection.mapping import load_mapping, preset_file, preset_names
+from pipeline.collection.reading import NOWHERE, Reading, read_items
+from pipeline.collection.sources.address import expand_secrets
+from pipeline.collection.sources.opening import is_database
+from pipeline.collection.suspicion import Suspicion
+from pipeline.night.source_state import known_blocks, mapping_of
+from pipeline.operations.workspace import IMPORTS, Workspace
+from pipeline.records import Item, Problem
+from pipeline.report.text import safe_cell
+from pipeline.resources import replacing
+from pipeline.settings import Settings
+
+if TYPE_CHECKING:
+    from pipeline.collection.guess import Guess
+
+LOG_COLUMNS = ("row", "line", "object_number", "field", "what", "message", "remedy")
+
+
+@dataclass(frozen=True)
+class Imported:
+    """What an import read, and what it changes, or would change if it were not a dry run.
+
+    held : the version that a person went back to from this very source; a night leaves it there, and changes nothing
+    log  : the file of the log; None for a dry run, and where nothing changed
+    """
+
+    reading: Reading
+    changes: Difference | None
+    held: int | None = None
+    log: Path | None = None
+
+    @property
+    def display_said(self) -> bool:
+        """Whether a column says what is on display, or a location does."""
+        stores = any(not item.on_display and item.gallery != NOWHERE for item in self.reading.items)
+        return self.reading.flagged or stores
+
+    @property
+    def problems(self) -> list[tuple[Item, Problem]]:
+        """Return every value that could not be accepted or is doubted, with its object."""
+        return [(item, problem) for item in self.reading.items for problem in item.problems]
+
+
+def bundled_collection() -> Path:
+    """Return the file of the bundled Carnegie rows."""
+    return Path(__file__).resolve().parents[1] / "collection" / "data" / "carnegie_2000.csv"
+
+
+def presets() -> dict[str, tuple[str, Path]]:
+    """Return the mappings that come with Kouros, by name: the museum or the system that they are for, and the file."""
+    return {name: (load_mapping(name).museum.name, preset_file(name)) for name in preset_names()}
+
+
+@dataclass(frozen=True)
+class Proposed:
+    """A guessed mapping, and what it makes of the source: rows, objects, and some of them in words.
+
+    name  : for a file with the mapping, without its ending
+    shown : the source in messages, without secrets
+    """
+
+    name: str
+    shown: str
+    guess: "Guess"
+    rows: int
+    items: int
+    examples: tuple[str, ...]
+    suspicions: tuple[Suspicion, ...]
+
+
+def proposed(source: str, table: str | None = None, most: int = 10) -> Proposed:
+    """Guess a mapping for a file or a database and read it with that; nothing is written.
+
+    table  : see `guess`
+    raises : CollectionError for a source that cannot be read
+    """
+    from pipeline.collection.guess import guess
+
+    found = guess(source, table)
+    reading = read_items(source, found.mapping)
+    step = max(len(reading.items) // most, 1)
+    examples = tuple(_in_words(item) for item in reading.items[::step][:most])
+    if is_database(source):
+        shown = expand_secrets(source).shown
+        named = re.sub(r"[^A-Za-z0-9_.-]+", "-", found.mapping.source.table or "query").strip("-.") or "mapping"
+    else:
+        shown, named = Path(source).name, Path(source).stem
+    return Proposed(named, shown, found, reading.rows, len(reading.items), examples, reading.suspicions)
+
+
+def _in_words(item: Item) -> str:
+    sides = (("H", item.height_m), ("W", item.width_m), ("D", item.depth_m))
+    size = " x ".join(f"{name} {100.0 * value:.4g}" for name, value in sides if value is not None)
+    mass = "" if item.mass_kg is None else f", {item.mass_kg:.3g} kg"
+    what = " ".join(filter(None, (item.object_name, f"{item.title[:50]!r}", item.medium[:40])))
+    return f"{item.object_number} | {item.gallery} | {what} | {f'{size} cm' if size else 'no size'}{mass}"
+
+
+def source_of(workspace: Workspace, source: str) -> str:
+    """Return where a source of the settings is: a database's URL as it is, a file's path from the settings' folder."""
+    return source if is_database(source) else str(workspace.settings.path(source))
+
+
+def accepted(settings: Settings) -> Limits:
+    """Return how much of the collection the settings accept."""
+    said = settings.limits
+    return Limits(round(1e6 * said.megabytes), said.rows, said.seconds)
+
+
+def import_collection(
+    workspace: Workspace,
+    source: str | Path,
+    mapping: str,
+    *,
+    shrink_limit: float,
+    dry_run: bool = False,
+    nightly: bool = False,
+) -> Imported:
+    """Read a museum's records and make the inventory what they say, all of it or nothing.
+
+    source  : path of a file, or the URL of a database
+    nightly : nobody is there to decide: a version that a person went back to stays until the source changes; and nobody
+              looks on: rows that are as they were at the last reading are not read again
+    raises  : CollectionError, MappingError and ShrunkError, as reading and writing do; nothing is written then
+    """
+    before = known_blocks(workspace, source, mapping) if nightly else None
+    reading = read_items(source, mapping_of(workspace.settings, mapping), accepted(workspace.settings), before)
+    if nightly:
+        stays = held(workspace.engine, reading.sha256)
+        if stays is not None:
+            return Imported(reading, None, held=stays)
+    last = latest_import(workspace.engine)
+    changes = replace_inventory(workspace.engine, reading, shrink_limit=shrink_limit, dry_run=dry_run)
+    after = latest_import(workspace.engine)
+    if after is None or last == after or workspace.settings.rehearsal is not None:
+        return Imported(reading, changes)
+    log = workspace.settings.path(IMPORTS) / f"{after.id:05d}-{after.imported_at[:10]}.csv"
+    _write_log(log, reading, changes)
+    return Imported(reading, changes, log=log)
+
+
+def go_back(workspace: Workspace, version: int, *, dry_run: bool = False) -> Difference:
+    """Make the inventory what it was after an earlier import; a dry run only says what that would change.
+
+    raises : CollectionError for a version that does not exist
+    """
+    return return_to(workspace.engine, version, dry_run=dry_run)
+
+
+def _write_log(path: Path, reading: Reading, changes: Difference) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with replacing(path) as aside, aside.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(LOG_COLUMNS)
+        writer.writerows(
+            [safe_cell(cell) if isinstance(cell, str) else cell for cell in row] for row in log_rows(reading, changes)
+        )
+
+
+def log_rows(reading: Reading, changes: Difference) -> Iterator[tuple[Any, ...]]:
+    """Yield the log, row by row as LOG_COLUMNS names them: what was refused, doubted, new, changed and gone."""
+    for out in reading.rejected:
+        yield out.row, out.line, "", out.field, "rejected", out.message, out.remedy
+    for doubt in reading.suspicions:
+        yield "", "", "", doubt.field, "suspicion", doubt.message, doubt.remedy
+    noted = () if reading.unread is None else reading.unread.noted
+    unread = (
+        (row, line, number, field, "problem", message, remedy) for row, line, number, field, message, remedy in noted
+    )
+    yield from merge(unread, _rows_read(reading, changes), key=itemgetter(0))
+    for number in changes.removed:
+        yield "", "", number, "", "gone", "no longer in the source", ""
+
+
+def _rows_read(reading: Reading, changes: Difference) -> Iterator[tuple[Any, ...]]:
+    added = set(changes.added)
+    for item, (row, line) in zip(reading.items, reading.places, strict=True):
+        number = item.object_number
+        for problem in item.problems:
+            yield row, line, number, problem.field, "problem", problem.message, problem.remedy
+        if number in added:
+            yield row, line, number, "", "new", "", ""
+        for field, (old, new) in changes.changed.get(number, {}).items():
+            yield row, line, number, field, "changed", f"{_short(old)} -> {_short(new)}", ""
+
+
+def _short(value: Any, most: int = 200) -> str:
+    text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= most else f"{text[:most]}..."

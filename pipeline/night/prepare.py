@@ -1,0 +1,224 @@
+"""What all sheets of a run share, made ready: motions and their pictures, rules, measures, and what is asked for."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import datetime
+from typing import Any, Literal
+
+import numpy as np
+
+from pipeline import __version__
+from pipeline.analysis.classify import classify
+from pipeline.analysis.faults import sound, without_failing
+from pipeline.analysis.figures import picture_version
+from pipeline.analysis.plan import Work, plan
+from pipeline.analysis.response_charts.grouping import group_name, groups
+from pipeline.analysis.rules import Table
+from pipeline.collection.catalogue import Catalogue
+from pipeline.collection.inventory import latest_import
+from pipeline.collection.listing import Listing
+from pipeline.execute import Threads
+from pipeline.kernels import KERNEL_VERSION
+from pipeline.mitigate import Means
+from pipeline.mitigate.measures import padded
+from pipeline.motions.record import NO_VERTICAL
+from pipeline.motions.site import Level, Site
+from pipeline.night.context import Brief, motions_of
+from pipeline.night.figures import Pictures
+from pipeline.night.floors import floors_of, notes
+from pipeline.night.reading_summary import told
+from pipeline.night.tasks import ChartErrand
+from pipeline.night.versions import code_digest, rules_digest
+from pipeline.operations.presentation import presentation
+from pipeline.operations.workspace import CHARTS, Workspace
+from pipeline.records import Model, Progress, RunRecord, Scene
+from pipeline.report.pages.reading import INVENTORY, READING
+from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, PICTURES, RULES
+from pipeline.verification import selftest, tradeoff
+
+FRAGILE, SURVEYED = 1e8, 2e8
+"""Objects on display times samples of all motions up to which curves, and wishes, are found unasked: some minutes."""
+
+SAMPLE = 2_000
+"""Objects that are looked at to see which response charts pay for the whole collection."""
+
+WORTH = 6
+"""Times the analyses of a smooth chart that must be asked for: under strong motions charts take up to twice as many,
+and of those who ask, most ask the same."""
+
+PADDED = 0.25
+"""Share of the works on walls that rubber pads are tried for, at least: a third of real ones under strong shaking."""
+
+
+def brief_for(
+    workspace: Workspace,
+    site: Site,
+    catalogue: Catalogue,
+    chosen: Listing,
+    pictures: Pictures,
+    started: datetime,
+    progress: Progress,
+) -> Brief:
+    """Make ready what all sheets of a run share; its shelf is to be tidied at the end.
+
+    catalogue : all objects of the inventory;  chosen : those that the run is of
+    pictures  : where those of the motions are had
+    raises    : SettingsError for a floor that the site does not have, MotionError for a floor's record, TableError and
+                UsageError for tables of the museum's own, ReportError for a language without a catalogue
+    """
+    settings = workspace.settings
+    # A catalogue of phrases that is missing is said before the night's work, not after it.
+    written = presentation(settings)
+    storeys = floors_of(settings, site, chosen.galleries)
+    motions = motions_of(storeys)
+    samples = sum(motion.acceleration.shape[1] for motion in motions.values())
+    shown = chosen.shown * samples
+    fragile = _asked(settings.analysis.fragility, shown <= FRAGILE)
+    surveyed = _asked(settings.report.survey, shown <= SURVEYED)
+    info = latest_import(workspace.engine)
+    said = [_level_note(level) for level in site.levels]
+    said += notes(settings, site, catalogue.objects.galleries)
+    if settings.analysis.fragility and not fragile:
+        said.append(_left_out("From what shaking each object fails", "[analysis] fragility = true"))
+    if settings.report.survey and not surveyed:
+        said.append(_left_out("Which measurements would settle a verdict", "[report] survey = true"))
+    tested = selftest.kept(settings.kept)
+    head = RunRecord(
+        run_id=f"{started:%Y%m%dT%H%M%S}.{started.microsecond // 1000:03d}-{os.getpid()}",
+        started=started.isoformat(timespec="milliseconds"),
+        finished="",
+        version=__version__,
+        site=site.name,
+        museum=settings.museum.name or (info.museum if info else ""),
+        level_notes=tuple(said),
+        settings=_stored_settings(workspace, site, info.credit if info else "", tested)
+        | {INVENTORY: catalogue.version, READING: told(workspace, catalogue)},
+        assessments=(),
+        charts={},
+        motions=tuple(summary for storey in storeys.values() for summary in storey.summaries),
+        demonstration=settings.demonstration,
+    )
+    brief = Brief(
+        head=head,
+        storeys=storeys,
+        analysis=settings.analysis,
+        rules=workspace.rules,
+        means=workspace.means,
+        surveyed=surveyed,
+        fragile=fragile,
+        stores=settings.display.stores,
+        kept=settings.kept / CHARTS,
+        threads=settings.analysis.workers or Threads().workers,
+        units=written["units"],
+        tongue=settings.report.language,
+        catalogues=settings.path(settings.report.catalogues) if settings.report.catalogues else None,
+    )
+    # The pictures are made before the verdicts, which use their charts; motions that two floors share only once.
+    drawn = pictures.of(list(motions.values()), progress)
+    measured = tradeoff.kept(settings.kept)
+    if measured is not None:
+        picture = tradeoff.picture(measured)
+        drawn[picture.key] = picture
+    brief.head = replace(head, charts=drawn)
+    return brief
+
+
+def admit(brief: Brief, catalogue: Catalogue, chosen: Listing, x_azimuth: float) -> list[ChartErrand]:
+    """Decide which response charts are used (see `popular`), and return those to be built before the sheets."""
+    found = popular(catalogue, assessed(chosen, brief.stores), brief.rules, brief.means, x_azimuth)
+    brief.admitted = frozenset(found)
+    return [
+        ChartErrand(model.name, motion, angle, alike)
+        for _, (model, angle, alike) in sorted(found.items())
+        for motion in brief.motions.values()
+    ]
+
+
+def assessed(objects: Listing, stores: bool) -> Listing:
+    """Return those of the objects of a sorted listing that are assessed: those on display, or with stores all."""
+    return objects if stores else objects[: objects.shown]
+
+
+Group = tuple[Model, float | None, dict[str, float]]
+"""What one chart under each motion serves: the model, the direction, the parameters that all who ask share."""
+
+
+def popular(
+    catalogue: Catalogue, chosen: Listing, rules: Table | None, means: Means, x_azimuth: float
+) -> dict[str, Group]:
+    """Return the groups of parameters whose charts pay for a collection, as a sample of its objects says, by name.
+
+    What an object is found to do must not hang on which others happen to be on its sheet, or on who asked first.  Of
+    the measures only rubber pads make something of many objects that one chart could serve.
+    """
+    every = max(1, len(chosen) // SAMPLE)
+    sample = catalogue.items([one.object_number for one in chosen[::every]])
+    # What cannot even be planned for is told by the sheet that it is on.
+    scenes = sound(lambda some: [classify(item, rules) for item in some], list(sample.values()))
+
+    def planned(some: Sequence[Scene]) -> list[tuple[Work, float]]:
+        return [
+            (work, share)
+            for those, share in ((some, 1.0), (padded(some, means), PADDED))
+            for work in plan(those, x_azimuth).work
+        ]
+
+    asking: dict[str, float] = {}
+    found: dict[str, Group] = {}
+    for work, share in without_failing(planned, scenes):
+        if work.model.chart is None:
+            continue
+        for angle, rows in work.by_angle(np.arange(work.size)):
+            for alike, those in groups(work.model, work.some(rows)):
+                name = group_name(work.model, angle, alike)
+                asking[name] = asking.get(name, 0.0) + share * those.size
+                found[name] = (work.model, angle, alike)
+    return {
+        name: group
+        for name, group in found.items()
+        if group[0].chart is not None and asking[name] * every >= WORTH * group[0].chart.nodes
+    }
+
+
+def _asked(wanted: bool | Literal["auto"], affordable: bool) -> bool:
+    return affordable if wanted == "auto" else bool(wanted)
+
+
+def _left_out(what: str, remedy: str) -> str:
+    return f"{what} was not found out: of so many objects and motions that takes long ({remedy} does it all the same)."
+
+
+def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: selftest.SelfTest | None) -> dict[str, Any]:
+    # Never the database's address: it may hold a password.
+    settings = workspace.settings
+    return {
+        KERNELS: KERNEL_VERSION,
+        PICTURES: picture_version(),
+        CODE: code_digest(),
+        RULES: rules_digest(settings),
+        LEVELS: {level.name: level.combine for level in site.levels},
+        "credit": credit,
+        "analysis": settings.analysis.model_dump(),
+        "length": settings.report.length,
+        "site": settings.site.folder,
+        "floors": settings.floors.model_dump(),
+        DISPLAY: settings.display.model_dump(),
+        "numerics": None if tested is None else tested.plain(),
+    }
+
+
+def _level_note(level: Level) -> str:
+    period = "" if level.return_period_years is None else f", return period {level.return_period_years:g} years"
+    answers = (
+        f"approved by {level.approved_by} on {level.approved_on}"
+        if level.approved_by
+        else "no engineer has approved these motions"
+    )
+    number = len(level.motions)
+    how = "1 motion" if number == 1 else f"the {level.combine} of {number} motions"
+    caution = f"; {level.caution}" if level.caution else ""
+    flat = [one.motion.name for one in level.motions if NO_VERTICAL in one.motion.steps]
+    if flat:
+        caution += f"; no vertical shaking was recorded, and none is assumed: {', '.join(flat)}"
+    return f"Level {level.name}{period}: {how}{caution}; {answers}."

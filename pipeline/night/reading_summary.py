@@ -1,0 +1,64 @@
+"""What the reading behind the inventory refused and doubts, for programs and in a line."""
+
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
+from typing import Any
+
+from pipeline.collection.account import account, doubts
+from pipeline.collection.catalogue import Catalogue
+from pipeline.collection.reading import NOWHERE
+from pipeline.operations.workspace import Workspace
+from pipeline.quantities import counted
+from pipeline.records import Doubt, RunRecord
+from pipeline.report.pages.reading import INVENTORY, READING
+
+UNKNOWN = "not known what was refused or is doubted: import again"
+
+
+def told(workspace: Workspace, catalogue: Catalogue) -> dict[str, Any] | None:
+    """Return what became of the rows behind the inventory, for JSON; None where that was not noted.
+
+    unsaid : objects that are taken to be on display because neither a column nor a location says what is; else 0
+    """
+    found = account(workspace.engine, catalogue.version)
+    if found is None:
+        return None
+    stores = any(not run.on_display and run.gallery != NOWHERE for run in catalogue.objects.runs)
+    return {
+        "source": found.source,
+        "rows": found.rows,
+        "refused": found.refused,
+        "doubtful": found.doubtful,
+        "sheets": found.sheets,
+        "suspicions": [dict(zip(("field", "message", "remedy"), one, strict=True)) for one in found.suspicions],
+        "unsaid": 0 if found.flagged or stores else catalogue.objects.shown,
+    }
+
+
+def doubts_of(workspace: Workspace, head: RunRecord) -> Callable[[], Iterable[Doubt]] | None:
+    """Return what gives all that was refused or is doubted of the inventory of a run; None where that is not known."""
+    if head.settings.get(READING) is None:
+        return None
+    return partial(doubts, workspace.engine, int(head.settings[INVENTORY]))
+
+
+def in_line(reading: Mapping[str, Any] | None) -> str:
+    """Return how many rows were read, refused and are doubtful, in a line."""
+    if reading is None:
+        return UNKNOWN
+    parts = [counted(reading["rows"], "row"), f"{reading['refused']:,} refused", f"{reading['doubtful']:,} doubtful"]
+    if reading["sheets"]:
+        parts.append(f"{reading['sheets']:,} not used of sheets")
+    if reading["suspicions"]:
+        parts.append(f"{counted(len(reading['suspicions']), 'doubt')} about the whole file")
+    return ", ".join(parts)
+
+
+def to_look_at(reading: Mapping[str, Any] | None) -> bool:
+    """Say whether reading left something that somebody should look at, or nobody knows."""
+    return reading is None or any(reading[name] for name in ("refused", "doubtful", "sheets", "suspicions"))
+
+
+def unsaid(shown: int) -> str:
+    """Return that no column says what is on display."""
+    return f"no column says what is on display: all {counted(shown, 'object')} are taken to be"

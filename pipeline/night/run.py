@@ -1,0 +1,320 @@
+"""The night, from the museum's records to the published report."""
+
+import warnings
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from typing import Any, Protocol, TypeVar
+
+from pipeline.analysis.faults import LIKE
+from pipeline.collection.inventory import latest_import
+from pipeline.collection.listing import Listing
+from pipeline.errors import InputError
+from pipeline.motions.site import Site
+from pipeline.night.figures import pictures
+from pipeline.night.importing import Imported, import_collection, source_of
+from pipeline.night.prepare import admit, brief_for
+from pipeline.night.reading_summary import doubts_of
+from pipeline.night.scheduler import Round
+from pipeline.night.source_state import remember, unchanged
+from pipeline.operations.dry_run import DryRunWarning, rehearsed
+from pipeline.operations.report_status import Status, last_good, mark_good, mark_running, status
+from pipeline.operations.run_summary import SUMMARY, Stores, Summary, summary_text
+from pipeline.operations.stopping import uninterrupted
+from pipeline.operations.workspace import UsageError, Workspace, locked, near, open_workspace, tidy
+from pipeline.records import Progress, RunRecord, Sheet, Tally, Urgent
+from pipeline.report import lasting_name, publish
+from pipeline.report.pages.decided import by_object
+from pipeline.report.pages.reading import READING
+from pipeline.report.pages.survey_words import SURVEY_SECONDS
+from pipeline.report.pages.views import State
+from pipeline.settings import Settings
+from pipeline.store.decisions import decisions_in_force
+from pipeline.store.reuse import SELECTION, whole_runs
+from pipeline.store.runs import commit_run, compare_runs, mark_finished
+
+
+@dataclass(frozen=True)
+class Selection:
+    """Which part of the collection to run; nothing named means all of it."""
+
+    galleries: tuple[str, ...] = ()
+    objects: tuple[str, ...] = ()
+
+    def __bool__(self) -> bool:
+        """Whether anything was named."""
+        return bool(self.galleries or self.objects)
+
+
+def run(
+    settings: Settings,
+    progress: Progress,
+    selection: Selection | None = None,
+    *,
+    dry_run: bool = False,
+    resume: bool = False,
+    strict: bool = False,
+) -> Summary:
+    """Assess the collection and publish the report; the last report stays until this one is whole.
+
+    What has not changed is not found again: results are kept by a digest of everything that they depend on.
+    dry_run : assess and summarise; nothing is written, the museum's source not taken in
+    strict  : objects that cannot be assessed are the exit code 3
+    resume  : go on where a run was cut off: with the inventory as that run had read it, if it got so far
+    raises  : errors with an `exit_code`: settings 2, motions 4, collection 5, lock 6, shrunk 7
+    """
+    with rehearsed(settings, dry_run) as lent:
+        return _run(lent, progress, selection or Selection(), dry_run=dry_run, resume=resume, strict=strict)
+
+
+def _run(
+    settings: Settings, progress: Progress, chosen: Selection, *, dry_run: bool, resume: bool, strict: bool
+) -> Summary:
+    with locked(settings):
+        started = datetime.now(UTC)
+        cut_off = status(settings)
+        if not (chosen or dry_run):
+            mark_running(settings)
+        workspace = open_workspace(settings)
+        shown = last_good(settings)
+        if shown is not None and not dry_run:
+            # A run that was cut off when its report was shown already, and that the database did not hear of.
+            mark_finished(workspace.engine, shown.run_id)
+        site = _read_site(workspace, progress)
+        with pictures(workspace, site) as drawing:
+            if not (resume and _was_read(workspace, cut_off)):
+                _refresh(workspace, progress, dry_run=dry_run)
+            everything = workspace.catalogue()
+            objects = _chosen(everything.objects, chosen)
+            brief = brief_for(workspace, site, everything, objects, drawing, started, progress)
+        try:
+            night = Round(workspace, brief, everything, objects, decisions_in_force(workspace.engine))
+            if night.fresh:
+                night.charts = admit(brief, everything, objects, site.manifest.site.x_azimuth)
+            return _hold(night, progress, chosen, dry_run=dry_run, strict=strict)
+        finally:
+            tidy(settings, brief.shelf, brief.motions)
+
+
+def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool, strict: bool) -> Summary:
+    """Do what there is to do, store it, publish it, say what changed."""
+    workspace, engine = night.workspace, night.workspace.engine
+    if dry_run:
+        found = night.assess(progress)
+        return _judged(summarise(_ended(night, chosen), night.sheets, found), strict=strict)
+    with night.edition() as edition:
+        found = night.publish(edition, progress)
+        _stand_by(night, found)
+        head = _ended(night, chosen)
+        # A part is not compared: what was left out of it has not changed.
+        before = [] if chosen else whole_runs(engine)[:1]
+        strangers = night.strangers(whole=not chosen)
+        whole = replace(head, decisions=(*head.decisions, *strangers))
+        commit_run(engine, whole, night.sheets, published=False)
+        changes = compare_runs(engine, before[0], head.run_id) if before else None
+        progress.step("report", 0, 1)
+        # A part of the collection is worth a report, but not the name of the museum's latest one.
+        latest = None if chosen else lasting_name(workspace.reports)
+        summary = summarise(whole, night.sheets, found)
+        index = edition.folder / "index.html"
+        summary = replace(summary, fresh=night.fresh, report=index, latest=latest, changes=changes)
+        summary = _judged(summary, strict=strict)
+        beside = {SUMMARY: summary_text(summary, edition.folder)}
+        doubts = doubts_of(workspace, head)
+        edition.finish(replace(head, decisions=strangers), found, changes, night.links(changes), beside, doubts)
+    with uninterrupted():
+        # From here on the report is whole: first it is shown, then said to be good.
+        if latest is not None:
+            publish(edition.folder, workspace.reports)
+        mark_finished(engine, head.run_id)
+        if latest is not None:
+            mark_good(workspace.settings, summary)
+    progress.step("report", 1, 1)
+    return summary
+
+
+def _stand_by(night: Round, found: Tally) -> None:
+    """Refuse a night in which Kouros failed on every object that it assessed: that is no object's doing.
+
+    raises : RuntimeError with the first failure; the last report stays
+    """
+    states = (*found.states.items(), *found.stored.items())
+    answered = sum(number for state, number in states if state not in (State.UNKNOWN, State.ASIDE))
+    if night.faults and not answered and found.faults > LIKE:
+        raise RuntimeError(
+            f"nothing could be assessed: Kouros failed on {found.faults:,} objects: {night.faults[0].words}"
+        )
+
+
+def _judged(summary: Summary, *, strict: bool) -> Summary:
+    return replace(summary, exit_code=3 if strict and summary.cannot else 0)
+
+
+def _ended(night: Round, chosen: Selection) -> RunRecord:
+    head = night.brief.head
+    more: dict[str, Any] = {SELECTION: bool(chosen)}
+    if night.brief.surveyed:
+        more[SURVEY_SECONDS] = round(night.seconds, 3)
+    finished = datetime.now(UTC).isoformat(timespec="milliseconds")
+    return replace(head, finished=finished, settings={**head.settings, **more}, decisions=night.standing)
+
+
+def _was_read(workspace: Workspace, cut_off: Status | None) -> bool:
+    """Say whether the run that was cut off had brought the museum's source into the inventory."""
+    info = latest_import(workspace.engine)
+    return (
+        info is not None
+        and cut_off is not None
+        and cut_off.stale
+        and info.imported_at >= (cut_off.began or cut_off.since)
+    )
+
+
+def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None:
+    wanted = workspace.settings.collection
+    if not wanted.source:
+        return
+    progress.step("collection", 0, 1)
+    if not unchanged(workspace, wanted.source, wanted.mapping):
+        source = source_of(workspace, wanted.source)
+        done = import_collection(
+            workspace,
+            source,
+            wanted.mapping,
+            shrink_limit=wanted.shrink_limit,
+            # A database that goes with the dry run takes the records in, so that there is something to assess.
+            dry_run=dry_run and not workspace.scratch,
+            nightly=True,
+        )
+        if dry_run and not workspace.scratch:
+            _told(done)
+        elif not dry_run:
+            # What a person went back to is not what the source says.
+            blocks = done.reading.blocks if done.held is None else ()
+            remember(workspace, source, wanted.mapping, done.reading.sha256, blocks)
+    progress.step("collection", 1, 1)
+
+
+def _told(done: Imported) -> None:
+    """Say what a dry run does not take into the inventory, and so does not assess."""
+    if done.changes:
+        c = done.changes.counts
+        warnings.warn(
+            f"the real one takes the source in first: {c.added:,} new, {c.removed:,} gone, {c.changed:,} changed of "
+            f"{c.after:,} objects; a dry run assesses the inventory as it is",
+            DryRunWarning,
+            stacklevel=2,
+        )
+
+
+def _chosen(objects: Listing, chosen: Selection) -> Listing:
+    if objects and not chosen:
+        return objects
+    return Listing.of(named(objects, galleries=chosen.galleries, objects=chosen.objects))
+
+
+class _Object(Protocol):
+    @property
+    def object_number(self) -> str: ...
+    @property
+    def gallery(self) -> str: ...
+
+
+_Some = TypeVar("_Some", bound=_Object)
+
+
+def named(items: Sequence[_Some], *, galleries: Sequence[str] = (), objects: Sequence[str] = ()) -> list[_Some]:
+    """Return the items of these galleries and with these numbers; nothing named means all.
+
+    raises : EmptyCollectionError where there are none; UsageError for an unknown name, with close ones
+    """
+    if not items:
+        raise EmptyCollectionError("the inventory is empty: import the museum's export first (`kouros import FILE`)")
+    _known("gallery", galleries, {item.gallery for item in items})
+    _known("object", objects, {item.object_number for item in items})
+    return [
+        item
+        for item in items
+        if (not galleries or item.gallery in galleries) and (not objects or item.object_number in objects)
+    ]
+
+
+class EmptyCollectionError(InputError):
+    """There is nothing to assess."""
+
+    exit_code = 5
+
+
+def _known(what: str, wanted: Sequence[str], known: set[str]) -> None:
+    for name in wanted:
+        if name not in known:
+            raise UsageError(f"there is no {what} {name!r} in the inventory{near(name, known)}")
+
+
+def _read_site(workspace: Workspace, progress: Progress) -> Site:
+    progress.step("motions", 0, 1)
+    site = workspace.site()
+    progress.step("motions", 1, 1)
+    return site
+
+
+def summarise(head: RunRecord, sheets: Sequence[Sheet], found: Tally) -> Summary:
+    """Put what a run found on one screen: every object on display is in exactly one of act, open, safe and cannot.
+
+    head  : the run without its objects
+    found : of all its sheets together
+    """
+    states, stored = found.states, found.stored
+    shown = sum(states.values())
+    findings = {there: sum(s.counts["findings"] for s in sheets if s.on_display is there) for there in (True, False)}
+    stores = None
+    if stored and State.ASIDE not in stored:
+        told = {name: stored.get(state, 0) for name, state in _COUNTED.items()}
+        stores = Stores(**told, findings=findings[False], measures=found.stored_measures)
+    return Summary(
+        run_id=head.run_id,
+        started=head.started,
+        finished=head.finished,
+        version=head.version,
+        museum=head.museum,
+        site=head.site,
+        objects=shown + sum(stored.values()),
+        on_display=shown,
+        galleries=len({sheet.gallery for sheet in sheets if sheet.on_display}),
+        assessed=shown - states["unknown"],
+        cannot=states["unknown"],
+        act=states["act"],
+        open=states["open"],
+        safe=states["safe"],
+        findings=findings[True],
+        measures=found.measures,
+        missing=found.missing,
+        stores=stores,
+        reading=head.settings.get(READING),
+        first=[f"{u.object_number}  {u.title[:48]}  ({u.gallery}): {u.outcome}" for u in _unsettled(head, found)],
+        faults=found.faults,
+        worth=found.worth if found.surveyed else None,
+        survey_seconds=float(head.settings.get(SURVEY_SECONDS, 0.0)),
+        decisions=dict(Counter(s.decision.kind.value for s in head.decisions)),
+        doubted=[
+            f"{d.object_number}: {d.matter}, {d.who}, {d.date}: {'; '.join(s.doubts)}"
+            for s in head.decisions
+            for d in (s.decision,)
+            if s.doubts
+        ],
+        efforts=[{"title": title, **effort} for title, effort in found.efforts.items()],
+    )
+
+
+_COUNTED = {"act": State.ACT, "open": State.OPEN, "safe": State.SAFE, "cannot": State.UNKNOWN}
+
+
+def _unsettled(head: RunRecord, found: Tally, most: int = 5) -> list[Urgent]:
+    """Return the worst objects of which not everything is accepted or overruled beyond doubt."""
+    about = by_object(head.decisions)
+    return [
+        one
+        for one in found.first
+        if not all(any(s.covers(*bad) for s in about.get(one.object_number, ())) for bad in one.open)
+    ][:most]

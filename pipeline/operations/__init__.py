@@ -1,0 +1,1 @@
+"""What goes on around a night: workspace, status, log, hooks, retention."""

@@ -1,0 +1,23 @@
+"""The reader's units and language, as the settings ask for them."""
+
+from typing import TypedDict
+
+from pipeline.report import Language, Units, language
+from pipeline.settings import Settings
+
+
+class Presentation(TypedDict):
+    """How a report is written: what `render` is told."""
+
+    units: Units
+    language: Language
+
+
+def presentation(settings: Settings) -> Presentation:
+    """Return the units and the language that the settings ask for.
+
+    raises : ReportError for a language without a catalogue, or with a damaged one
+    """
+    asked = settings.report
+    folder = settings.path(asked.catalogues) if asked.catalogues else None
+    return {"units": Units(length=asked.length), "language": language(asked.language, folder)}

@@ -1,0 +1,173 @@
+"""What a night came to, for programs: the document of `kouros run --json`, of summary.json and of the hooks."""
+
+import errno
+import json
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pipeline.errors import KourosError, fault_words
+from pipeline.records import RunChanges
+from pipeline.resources import replacing
+
+SUMMARY = "summary.json"
+"""The file beside a report's index."""
+
+LISTED = 1000
+"""Changes of each kind that the file lists; `kouros diff --json` has all."""
+
+_FULL = frozenset({errno.ENOSPC, errno.EDQUOT})
+
+_KINDS = ("added", "removed", "moved", "inputs", "verdicts", "motions", "decisions", "settings", "versions")
+
+
+@dataclass(frozen=True)
+class Stores:
+    """Objects that are not on display and were assessed all the same: act + open + safe + cannot are all of them."""
+
+    act: int
+    open: int
+    safe: int
+    cannot: int
+    findings: int
+    measures: Mapping[str, int]
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a run did, for one screen and for programs.
+
+    objects       : of the run; those on display are act + open + safe + cannot, and the numbers besides are theirs
+    fresh         : of the assessed, those whose results were found now; the others' rest on nothing that has changed
+    stores        : what is not on display, where it was asked for
+    reading       : what was refused and is doubted of the museum's records, see `readings.told`; None: not known
+    worth         : how many measurements would settle a verdict, None where that was not asked
+    survey_seconds: what asking cost
+    missing       : why objects could not be assessed, with how many of each
+    faults        : how many objects Kouros itself failed on; the log has the tracebacks
+    decisions     : how many of each kind are in force
+    doubted       : those of them that must be looked at again, with the reasons
+    efforts       : what the verdicts of each model took, see `pipeline.analysis.refinement.Effort`
+    report        : the report's index, None for a dry run
+    exit_code     : of the command: 0, or 3 of a strict run where objects could not be assessed
+    """
+
+    run_id: str
+    started: str
+    finished: str
+    version: str
+    museum: str
+    site: str
+    objects: int
+    on_display: int
+    galleries: int
+    assessed: int
+    cannot: int
+    act: int
+    open: int
+    safe: int
+    findings: int
+    measures: Mapping[str, int]
+    missing: Mapping[str, int]
+    first: Sequence[str]
+    faults: int = 0
+    fresh: int = 0
+    stores: "Stores | None" = None
+    reading: Mapping[str, Any] | None = None
+    worth: int | None = None
+    survey_seconds: float = 0.0
+    decisions: Mapping[str, int] = field(default_factory=dict)
+    doubted: Sequence[str] = ()
+    efforts: Sequence[Mapping[str, Any]] = ()
+    report: Path | None = None
+    latest: Path | None = None
+    exit_code: int = 0
+    changes: RunChanges | None = field(default=None, repr=False)
+
+
+def summary_document(summary: Summary, *, most: int | None = None, base: Path | None = None) -> dict[str, Any]:
+    """Return a summary as schemas/run-summary.schema.json describes it.
+
+    most : changes of each kind that are listed, all of them where None; how many there are is told in any case
+    base : paths are told from this folder on, so that a report that is moved or published names no place of the machine
+    """
+    plain: dict[str, Any] = dict(vars(summary))
+    changes: RunChanges | None = plain.pop("changes")
+    for name in ("report", "latest"):
+        path: Path | None = plain[name]
+        plain[name] = None if path is None else str(path if base is None else _from(path, base))
+    plain["not_on_display"] = summary.objects - summary.on_display
+    plain["stores"] = None if summary.stores is None else asdict(summary.stores)
+    plain["changes"] = None if changes is None else _counted(changes, most)
+    document: dict[str, Any] = json_ready(plain)
+    return document
+
+
+def _from(path: Path, base: Path) -> Path:
+    # The link itself is meant, not what it points at.
+    return Path(os.path.relpath(path.parent.resolve() / path.name, base.resolve()))
+
+
+def _counted(changes: RunChanges, most: int | None) -> dict[str, Any]:
+    counts = {kind: len(getattr(changes, kind)) for kind in _KINDS}
+    counts |= {"worsened": len(changes.worsened), "fixed": len(changes.fixed)}
+    plain = plain_changes(changes)
+    return {"counts": counts, **{name: v[:most] if name in _KINDS else v for name, v in plain.items()}}
+
+
+def plain_changes(changes: RunChanges) -> dict[str, Any]:
+    """Return the changes for JSON; each verdict's says whether it is fixed or worsened."""
+    plain = asdict(changes)
+    for row, change in zip(plain["verdicts"], changes.verdicts, strict=True):
+        row |= {"fixed": change.fixed, "worsened": change.worsened}
+    return plain
+
+
+def json_ready(value: Any) -> Any:
+    """Return a value of texts, numbers, lists and mappings as JSON can hold it: None for infinity and no number."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {str(key): json_ready(one) for key, one in value.items()}
+    return [json_ready(one) for one in value] if isinstance(value, list | tuple) else value
+
+
+def exit_code_of(problem: BaseException) -> int:
+    """Return the exit code of the command that ends with this error."""
+    if not isinstance(problem, Exception):
+        return getattr(problem, "exit_code", 130)  # stopped, see `pipeline.operations.stopping`
+    return problem.exit_code if isinstance(problem, KourosError) else 1
+
+
+def words_of(problem: BaseException) -> str:
+    """Return an error in words: what people can mend as it says; a fault of Kouros as such, with its place."""
+    if isinstance(problem, KeyboardInterrupt):
+        return str(problem) or "it was stopped by hand"
+    if isinstance(problem, KourosError) or not isinstance(problem, Exception):
+        return str(problem)
+    hint = "run again with --debug for the traceback"
+    if isinstance(problem, OSError) and problem.errno in _FULL:
+        # Of a link and of a renaming the second is what was to be made.
+        file = problem.filename2 or problem.filename
+        where = "the disk" if file is None else f"the disk of {file}"
+        return f"no space is left on {where}: make room (`kouros prune` removes old reports), then run again"
+    if isinstance(problem, OSError) and problem.errno is not None:
+        return f"{problem} ({type(problem).__name__}; {hint})"
+    return f"a fault of Kouros, not of yours: {fault_words(problem)}; {hint}"
+
+
+def summary_text(summary: Summary, folder: Path) -> str:
+    """Return the contents of summary.json, which lies beside a report's index.
+
+    folder : of the report; paths in the file are told from it
+    """
+    return json.dumps(summary_document(summary, most=LISTED, base=folder), indent=2, allow_nan=False) + "\n"
+
+
+def write_aside(path: Path, text: str) -> None:
+    """Put a file (UTF-8) in place of another by one rename, so that nobody ever reads half of it."""
+    with replacing(path) as aside:
+        aside.write_text(text, encoding="utf-8", newline="\n")

@@ -1,0 +1,220 @@
+"""Where a job works: settings, database, lock."""
+
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pipeline.errors import InputError, KourosError
+from pipeline.operations.dry_run import SCRATCH, read_only
+from pipeline.resources import resource, sweep
+
+if TYPE_CHECKING:
+    from pipeline.analysis.response_charts import Shelf
+    from pipeline.analysis.rules import Table
+    from pipeline.collection.catalogue import Catalogue
+    from pipeline.collection.database import Database
+    from pipeline.mitigate import Means
+    from pipeline.motions.site import Site
+    from pipeline.settings import Settings
+
+CHARTS = "charts"
+"""Folder in it for the response charts."""
+
+HISTORIES = "histories"
+"""Folder in it for the histories of what was worked on together, see `pipeline.analysis.response_charts.histories`."""
+
+IMPORTS = "imports"
+"""Folder beside the settings that holds the log of every import that changed something."""
+
+LISTING = "listing.arrow"
+"""File in it for the listing of the inventory's objects, see `pipeline.collection.listing`."""
+
+
+class LockedError(KourosError):
+    """Another run is at work."""
+
+    exit_code = 6
+
+
+class UsageError(InputError):
+    """A wish that cannot be carried out as it was put."""
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """Open settings: the database is at the newest schema, the folders are known."""
+
+    settings: "Settings"
+    engine: "Database"
+
+    @cached_property
+    def rules(self) -> "Table | None":
+        """The rules of classification, where the museum has some of its own.
+
+        raises : UsageError for a file that is not there, TableError for one that cannot be used
+        """
+        from pipeline.analysis.rules import with_own
+
+        path = self._own(self.settings.collection.rules, "[collection] rules names the file of your own rules")
+        return None if path is None else with_own(path)
+
+    @cached_property
+    def means(self) -> "Means":
+        """The measures and isolators that the museum has.
+
+        raises : UsageError for a file that is not there, TableError for one that cannot be used
+        """
+        wanted = self.settings.mitigation
+        from pipeline.mitigate import means
+
+        return means(
+            self._own(wanted.measures, "[mitigation] measures names the file of your own measures"),
+            self._own(wanted.catalogue, "[mitigation] catalogue names the file of your own isolators"),
+        )
+
+    def catalogue(self) -> "Catalogue":
+        """Return the objects of the inventory; their listing is kept for another time."""
+        from pipeline.collection.catalogue import catalogue
+
+        return catalogue(self.engine, self.settings.kept / LISTING)
+
+    def site(self) -> "Site":
+        """Read the site of the settings; its processed motions are kept for the next time.
+
+        raises : MotionError
+        """
+        from pipeline.motions.site import read_site
+
+        settings = self.settings
+        return read_site(site_folder(settings.home, settings.site.folder), kept=settings.kept)
+
+    def _own(self, name: str, remedy: str) -> Path | None:
+        if not name:
+            return None
+        path = self.settings.path(name)
+        if not path.is_file():
+            raise UsageError(f"{path} is not there; {remedy}")
+        return path
+
+    @property
+    def scratch(self) -> bool:
+        """Whether the database goes with the dry run that made it: then anything may be written to it."""
+        home = self.settings.rehearsal
+        return home is not None and self.engine.url.database == str(home / SCRATCH)
+
+    @property
+    def reports(self) -> Path:
+        """The folder of all reports."""
+        return self.settings.path(self.settings.report.folder)
+
+
+def near(name: str, known: Collection[str]) -> str:
+    """Return "; did you mean 'x' or 'y'?" for the names that are most like this one, or nothing where none is."""
+    close = get_close_matches(name, known, n=3)
+    return f"; did you mean {' or '.join(map(repr, close))}?" if close else ""
+
+
+def site_folder(home: Path, name: str) -> Path:
+    """Return a site's folder: the bundled one for "demo", else relative to a home, the folder of the settings."""
+    return resource("site_motions", "demo") if name == "demo" else home / Path(name).expanduser()
+
+
+def open_workspace(settings: "Settings") -> Workspace:
+    """Open the database, bringing its tables to the newest schema; in a dry run it can only be read."""
+    from pipeline.collection.database import open_database
+    from pipeline.store import migrate
+
+    if settings.rehearsal is not None:
+        return Workspace(settings, read_only(settings, settings.rehearsal))
+    engine = open_database(settings.database)
+    migrate.upgrade(engine)
+    return Workspace(settings, engine)
+
+
+@contextmanager
+def locked(settings: "Settings", *, sweeping: bool = True) -> Iterator[None]:
+    """Hold the lock of this workspace: one run at a time.  A dry run where none ever was makes no file for it.
+
+    sweeping : remove what processes that died left unfinished; not where nothing is to be written
+    raises   : LockedError at once where another process holds it
+    """
+    from filelock import FileLock, Timeout
+
+    file = settings.home / ".kouros.lock"
+    if settings.rehearsal is not None and not file.is_file():
+        yield
+        return
+    settings.home.mkdir(parents=True, exist_ok=True)
+    lock = FileLock(file, timeout=0)
+    try:
+        lock.acquire()
+    except Timeout as problem:
+        raise LockedError(
+            f"another run holds {lock.lock_file}; wait for it to end (the lock goes with the process that holds it)"
+        ) from problem
+    try:
+        if sweeping and settings.rehearsal is None:
+            _sweep(settings)
+        yield
+    finally:
+        lock.release()
+
+
+def _sweep(settings: "Settings") -> None:
+    kept = settings.kept
+    folders = [settings.home, settings.path(IMPORTS), settings.path(settings.report.folder)]
+    folders += [kept, kept / CHARTS, kept / HISTORIES]
+    if settings.site.folder != "demo":
+        folders.append(site_folder(settings.home, settings.site.folder))
+    for folder in dict.fromkeys(folders):
+        sweep(folder)
+
+
+@contextmanager
+def charts_of(
+    settings: "Settings | None", using: Collection[str] = (), admitted: Collection[str] | None = None
+) -> Iterator["Shelf"]:
+    """Lend the shelf of the workspace's response charts, and tidy it up at the end; None: one in memory only.
+
+    using    : hashes of motions in use, whose charts stay although perhaps none of them is asked for
+    admitted : see `Shelf`
+    """
+    from pipeline.analysis.response_charts import Shelf
+
+    if settings is None:
+        yield Shelf()
+        return
+    shelf = Shelf(settings.kept / CHARTS, admitted=None if admitted is None else frozenset(admitted))
+    try:
+        yield shelf
+    finally:
+        tidy(settings, shelf, using)
+
+
+def tidy(settings: "Settings", shelf: "Shelf", using: Collection[str]) -> None:
+    """Remove the charts and the histories that the settings do not keep any longer.
+
+    using : as in `charts_of`
+    """
+    from pipeline.analysis.response_charts import prune_histories
+
+    limits = settings.charts
+    most = round(1e6 * limits.megabytes)
+    shelf.tidy(days=limits.unused_days, most_bytes=most, using=using)
+    prune_histories(settings.kept / HISTORIES, days=limits.unused_days, most_bytes=most)
+
+
+def folder_of_site(settings: "Settings | None", site: str | None) -> Path:
+    """Return the folder of a site named on the command line, or else of the settings.
+
+    raises : UsageError where neither names one
+    """
+    if site is not None:
+        return site_folder(Path() if settings is None else settings.home, site)
+    if settings is None:
+        raise UsageError("name a site's folder, or 'demo'; or run this beside kouros.toml, which names one")
+    return site_folder(settings.home, settings.site.folder)

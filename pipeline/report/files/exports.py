@@ -1,0 +1,270 @@
+"""The findings, recommendations and objects of a run as files that other programs read.  SI throughout."""
+
+import csv
+import io
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import cache
+from math import isfinite, isnan
+from pathlib import Path
+from typing import Any
+
+from pipeline.records import Assessment, Finding, Recommendation, RunRecord
+from pipeline.report.files.workbook import write_workbook
+from pipeline.report.pages.judging import first_failure
+from pipeline.report.pages.ranking import state_of
+from pipeline.report.text import encodable, safe_cell
+from pipeline.report.units import Units
+
+_NUMBERS = (
+    "demand", "low", "high", "capacity", "utilisation", "error", "median_g", "dispersion", "annual_rate",
+)  # fmt: skip
+_LISTS = ("assumptions", "parameters", "checks", "rejected")
+FINDING_COLUMNS = (
+    "run",
+    "object_number",
+    "gallery",
+    "level",
+    "model",
+    "title",
+    "demand_name",
+    "demand",
+    "unit",
+    "low",
+    "high",
+    "range_is",
+    "capacity",
+    "capacity_origin",
+    "utilisation",
+    "verdict",
+    "outcome",
+    "fidelity",
+    "error",
+    "decided_by",
+    "motion",
+    "motion_hash",
+    "screen",
+    "note",
+    "assumptions",
+    "version",
+)
+RECOMMENDATION_COLUMNS = (
+    "run",
+    "object_number",
+    "gallery",
+    "level",
+    "measure",
+    "title",
+    "sentence",
+    "parameters",
+    "checks",
+    "rejected",
+    "source",
+)
+OBJECT_COLUMNS = (
+    "run",
+    "object_number",
+    "title",
+    "gallery",
+    "on_display",
+    "state",
+    "object_class",
+    "missing",
+    "median_g",
+    "median_is",
+    "dispersion",
+    "annual_rate",
+    "page",
+)
+
+
+TABLES = {"findings": FINDING_COLUMNS, "recommendations": RECOMMENDATION_COLUMNS, "objects": OBJECT_COLUMNS}
+"""The exported tables, each as CSV and Parquet; findings as JSON Lines too, and all of them as one workbook."""
+
+TEXT_FILES = ("findings.csv", "findings.jsonl", "recommendations.csv", "objects.csv")
+
+WORKBOOK = "findings.xlsx"
+
+WORKBOOK_ROWS = 10_000
+"""Rows of a table up to which there is a workbook; a spreadsheet holds more, but writing them takes minutes."""
+
+HEADERS = {f"{name}.csv": (",".join(columns) + "\n").encode() for name, columns in TABLES.items()}
+"""What the text files begin with."""
+
+
+@dataclass(frozen=True)
+class Fragment:
+    """What a sheet adds to the exports.
+
+    texts  : by the name of the file, the bytes that are added to it
+    tables : by the name of the table, its rows in Arrow's own format
+    """
+
+    texts: Mapping[str, bytes]
+    tables: Mapping[str, bytes]
+
+
+def fragment(record: RunRecord, run: str, page: str, anchors: Callable[[Assessment], str], units: Units) -> Fragment:
+    """Return what the objects of a sheet add to the exports.
+
+    Numbers are in SI; ``unit`` names the unit of demand, low, high, capacity and error, 1 for a ratio.  ``range_is``
+    says whether low and high are demands, or bounds around them.  CSV files are UTF-8 with a header row; an unknown
+    number is an empty cell and an endless one is ``inf``.  In CSV a text that starts with ``=``, ``+``, ``-``, ``@``, a
+    tab or a carriage return gets a leading apostrophe, because a spreadsheet would run it as a formula; JSON Lines and
+    Parquet keep the text as it is.  JSON has no infinity: it is the text "inf" there.  Only the sentences of
+    recommendations are in the reader's units.  objects.csv has one row for every object, so that what could not be
+    assessed is not lost.
+
+    record : the sheet's objects
+    run    : the run that found it
+    """
+    rows: dict[str, Sequence[Mapping[str, Any]]] = {
+        "findings": [_finding(run, f) for a in record.assessments for f in a.findings],
+        "recommendations": [_recommendation(run, r, units) for a in record.assessments for r in a.recommendations],
+        "objects": [_object(run, a, f"{page}#{anchors(a)}") for a in record.assessments],
+    }
+    texts = {f"{name}.csv": _csv(TABLES[name], rows[name]) for name in TABLES}
+    lines = (json.dumps({k: _json(row[k]) for k in FINDING_COLUMNS}, allow_nan=False) for row in rows["findings"])
+    texts["findings.jsonl"] = "".join(line + "\n" for line in lines).encode()
+    return Fragment(texts, {name: _arrow(name, rows[name]) for name in TABLES})
+
+
+def workbook(folder: Path, started: str) -> None:
+    """Write findings.xlsx from the Parquet files of a folder; in it a text is a text whatever it begins with."""
+    import pyarrow.parquet as pq
+
+    tables: dict[str, tuple[Sequence[str], Iterable[Mapping[str, Any]]]] = {
+        name: (TABLES[name], pq.read_table(folder / f"{name}.parquet").to_pylist()) for name in TABLES
+    }
+    write_workbook(folder / WORKBOOK, tables, _began(started))
+
+
+ONE = "1"
+"""The unit of a ratio, as UCUM writes it."""
+
+
+def _began(started: str) -> datetime:
+    try:
+        return datetime.fromisoformat(started)
+    except ValueError:
+        return datetime(1980, 1, 1, tzinfo=UTC)
+
+
+def exported_unit(unit: str) -> str:
+    """Return a unit as other programs read it: 1 for a ratio, which a "-" would be a formula to a spreadsheet."""
+    return ONE if unit == "-" else unit
+
+
+def _finding(run: str, f: Finding) -> dict[str, Any]:
+    row: dict[str, Any] = {name: getattr(f, name) for name in FINDING_COLUMNS if name != "run"}
+    row["run"] = run
+    row["unit"] = exported_unit(f.unit)
+    row["verdict"] = f.verdict.value
+    row["capacity_origin"] = f.capacity_origin.value if f.capacity_origin else None
+    row["assumptions"] = list(f.assumptions)
+    return row
+
+
+def _recommendation(run: str, r: Recommendation, units: Units) -> dict[str, Any]:
+    values: dict[str, tuple[float | None, str]] = {k: (v, r.units.get(k, "")) for k, v in r.parameters.items()}
+    return {
+        "run": run,
+        "object_number": r.object_number,
+        "gallery": r.gallery,
+        "level": r.level,
+        "measure": r.measure,
+        "title": r.title,
+        "sentence": units.fill(r.sentence, values, f"object {r.object_number}, recommendation {r.measure}"),
+        "parameters": [f"{k}={v!r} {exported_unit(r.units.get(k, ''))}".rstrip() for k, v in r.parameters.items()],
+        "checks": [
+            f"{c.model}: {'' if c.before is None else f'{c.before!r} -> '}{c.demand!r} of {c.capacity!r} "
+            f"{exported_unit(c.unit)}, {'passes' if c.passes else 'fails'}"
+            for c in r.checks
+        ],
+        "rejected": list(r.rejected),
+        "source": r.source,
+    }
+
+
+_NOT_SHOWN = "not on display"
+"""The state of an object that was left aside, in the exports."""
+
+
+def _object(run: str, a: Assessment, page: str) -> dict[str, Any]:
+    """Return the plain row of an object, assessed or not, for the export that adds up to all."""
+    item = a.scene.item
+    return {
+        "run": run,
+        "object_number": item.object_number,
+        "title": item.title,
+        "gallery": item.gallery,
+        "on_display": item.on_display,
+        "state": _NOT_SHOWN if a.aside else state_of(a).value,
+        "object_class": a.scene.object_class,
+        "missing": "" if a.aside else "; ".join(a.scene.missing),
+        **first_failure(a),
+        "page": page,
+    }
+
+
+def _csv(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> bytes:
+    stream = io.StringIO(newline="")
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerows([_cell(row[name]) for name in columns] for row in rows)
+    return stream.getvalue().encode()
+
+
+def _cell(value: object) -> str:
+    # Most are texts; there are forty to an object.
+    if isinstance(value, str):
+        return safe_cell(str(value))
+    match value:
+        case None:
+            return ""
+        case bool():
+            return "true" if value else "false"
+        case float() | int():
+            return "" if isnan(value) else repr(float(value))
+        case list():
+            return safe_cell("; ".join(str(v) for v in value))
+        case _:
+            return safe_cell(str(value))
+
+
+def _json(value: object) -> object:
+    if isinstance(value, float) and not isfinite(value):
+        return None if isnan(value) else str(value)
+    return value
+
+
+@cache
+def schema_of(name: str) -> Any:
+    """Return the types of the columns of a table, for Parquet."""
+    import pyarrow as pa
+
+    kinds = {column: pa.float64() for column in _NUMBERS} | {"on_display": pa.bool_()}
+    kinds |= dict.fromkeys(_LISTS, pa.list_(pa.string()))
+    return pa.schema([(column, kinds.get(column, pa.string())) for column in TABLES[name]])
+
+
+def _arrow(name: str, rows: Sequence[Mapping[str, Any]]) -> bytes:
+    import pyarrow as pa
+
+    schema = schema_of(name)
+    columns = [pa.array(_writable([row[field.name] for row in rows], field.type), field.type) for field in schema]
+    sink = pa.BufferOutputStream()
+    with pa.ipc.new_stream(sink, schema) as stream:
+        stream.write_table(pa.Table.from_arrays(columns, schema=schema))
+    return bytes(sink.getvalue().to_pybytes())
+
+
+def _writable(values: list[Any], kind: Any) -> list[Any]:
+    import pyarrow as pa
+
+    if kind == pa.string():
+        return [value if value is None or value.isascii() else encodable(value) for value in values]
+    if pa.types.is_list(kind):
+        return [[encodable(text) for text in value] for value in values]
+    return values

@@ -1,0 +1,116 @@
+"""One sheet drawn: its page, what it adds to the exports, and what the index says of it."""
+
+import hashlib
+from base64 import b64encode
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from jinja2 import Environment
+from markupsafe import Markup
+
+from pipeline.records import Found, RunRecord, Sheet, Standing
+from pipeline.report.files.exports import Fragment, fragment
+from pipeline.report.language import Language, speaking
+from pipeline.report.pages.compose import compose, page_head
+from pipeline.report.pages.environment import environment, fill
+from pipeline.report.pages.notes import page_notes
+from pipeline.report.pages.views import Entry, FigureView, State
+from pipeline.report.plots.svg import PATTERNS, Drawing
+from pipeline.report.units import Units
+from pipeline.resources import resource
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A sheet as a report holds it."""
+
+    page: bytes
+    fragment: Fragment
+    entry: Entry
+
+
+@dataclass(frozen=True)
+class Pen:
+    """What draws the sheets of one run: what they share is made once.
+
+    head : the run without its objects, with all its charts and motions
+    """
+
+    head: RunRecord
+    units: Units
+    language: Language
+
+    def draw(self, sheet: Sheet, found: Found, decisions: Sequence[Standing]) -> Drawn:
+        """Return a sheet's page and what it adds to the report; the same results give the same bytes.
+
+        decisions : those about the sheet's objects
+        raises    : ReportError where the results cannot be shown (see `compose`)
+        """
+        record = replace(
+            self.head,
+            assessments=found.assessments,
+            wishes=found.wishes,
+            spacings=found.spacings,
+            decisions=tuple(decisions),
+        )
+        with speaking(self.language):
+            made = compose(record, sheet, self.units, several=len({m.level for m in self.head.motions}) > 1)
+            gallery = made.gallery
+            context: dict[str, Any] = {"museum": page_head(self.head, sheet), "units": self.units, "State": State}
+            context |= {"here": "gallery", "gallery": gallery}
+            if gallery.counts.aside:
+                page = fill(self._environment, "aside.html", context)
+            else:
+                context |= drawn(gallery.charts, self.drawings) | self._script
+                page = fill(self._environment, "gallery.html", context | {"notes": page_notes(gallery.objects)})
+            exported = fragment(record, sheet.run, gallery.page, made.anchor, self.units)
+        return Drawn(page.encode(), exported, made.entry)
+
+    @cached_property
+    def identity(self) -> str:
+        """What all pages say of the run and how they say it, as one digest."""
+        head = self.head
+        said = (
+            repr(self.units), self.language.code, head.museum, head.settings.get("credit"), head.version,
+            head.demonstration,
+            [(m.hash, m.name, m.level, m.floor, m.approved_by, m.approved_on) for m in head.motions],
+            sorted(head.charts),
+        )  # fmt: skip
+        return hashlib.sha256(repr(said).encode("utf-8", "surrogatepass")).hexdigest()
+
+    @cached_property
+    def drawings(self) -> dict[str, Drawing]:
+        """The charts of the run, ready to be put on pages; each has the same name on every page."""
+        motions = [motion.hash[:16] for motion in self.head.motions]
+        with speaking(self.language):
+            return {
+                # Those of no motion show what accuracy costs, where somebody measured it.
+                key: Drawing(chart, self.units, f"{'c' if any(m in key for m in motions) else 'm'}{i}")
+                for i, (key, chart) in enumerate(self.head.charts.items())
+            }
+
+    @cached_property
+    def _environment(self) -> Environment:
+        return environment(self.language)
+
+    @cached_property
+    def _script(self) -> dict[str, Any]:
+        script = resource("templates", "gallery.js").read_text(encoding="utf-8").strip()
+        allowed = b64encode(hashlib.sha256(script.encode()).digest()).decode()
+        return {"script": Markup(script), "script_hash": allowed}  # noqa: S704 - our own
+
+
+def drawn(keys: Sequence[str], drawings: Mapping[str, Drawing]) -> dict[str, Any]:
+    """Return what a page needs to show these charts: their symbols, the charts themselves, and the marking of them."""
+    mine = {key: drawings[key] for key in keys}
+    symbols = PATTERNS + "".join(d.symbol() for d in mine.values())
+
+    def figure(view: FigureView, subject: str) -> Markup:
+        return Markup(mine[view.chart].figure(view.spots, subject))  # noqa: S704
+
+    def bare(key: str) -> Markup:
+        return Markup(mine[key].figure((), ""))  # noqa: S704
+
+    return {"drawings": mine, "symbols": Markup(symbols), "figure": figure, "bare": bare}  # noqa: S704

@@ -1,0 +1,172 @@
+"""The survey as a workbook: a sheet to print and fill in (and import again), what comes first, and how to measure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pipeline.quantities import LENGTHS
+from pipeline.records import Wish
+from pipeline.report.files.workbook import saved, write_text
+from pipeline.report.text import safe_cell
+from pipeline.resources import replacing
+
+if TYPE_CHECKING:
+    from openpyxl.worksheet.worksheet import Worksheet
+
+    from pipeline.analysis.survey import Measurable
+
+HEADER_ROW = 2
+"""The row of the column names that the import reads; above it stand the words for people."""
+
+SHOWN = ("object_number", "gallery", "title")
+"""Columns that say which object it is."""
+
+WHY = "why"
+
+_INK = "FF1F2A37"
+_QUIET = "FF6B7280"
+_FILL = "FFFFF6DB"
+_LINE = "FF9CA3AF"
+
+
+def sheet_title(length: str) -> str:
+    """Return the name of the sheet to fill in; it says the unit of all its lengths."""
+    return f"survey in {length}"
+
+
+def column_name(field: str, length: str) -> str:
+    """Return the name of a field's column: lengths name their unit, the others are the fields themselves."""
+    return f"{field.removesuffix('_m')} [{length}]" if field.endswith("_m") else field
+
+
+def write_survey(
+    path: Path, found: Sequence[Wish], fields: Sequence[Measurable], *, length: str = "cm"
+) -> dict[str, int]:
+    """Write the workbook of what is worth measuring; wishes that would settle nothing are counted and left out.
+
+    found  : wishes, in the order in which they should be done
+    fields : all that a survey may ask for, with words and how to measure it
+    length : unit of lengths
+    returns: how many objects and quantities it asks for, and how many would be a waste
+    """
+    from openpyxl import Workbook
+
+    asked = [wish for wish in found if not wish.waste]
+    book = Workbook()
+    names = [m for m in fields if any(wish.field == m.field for wish in asked)]
+    first = book.active
+    if first is None:
+        first = book.create_sheet()
+    first.title = sheet_title(length)
+    _fill_in(first, asked, names, length)
+    _ranking(book.create_sheet("what first"), asked, {m.field: m.label for m in fields})
+    _how(book.create_sheet("how to measure"), names, length)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with replacing(path) as aside:
+        aside.write_bytes(saved(book))
+    return {
+        "objects": len({wish.object_number for wish in asked}),
+        "quantities": len(asked),
+        "waste": len(found) - len(asked),
+    }
+
+
+def _fill_in(sheet: Worksheet, asked: Sequence[Wish], fields: Sequence[Measurable], length: str) -> None:
+    from openpyxl.styles import Alignment, Border, PatternFill, Side
+
+    columns = [*SHOWN, *(m.field for m in fields), WHY]
+    labels = ["Object", "Gallery", "Title", *(_labelled(m, length) for m in fields), "Why"]
+    keys = [*SHOWN, *(column_name(m.field, length) for m in fields), WHY]
+    sheet.append(labels)
+    sheet.append(keys)
+    objects: dict[str, list[Wish]] = {}
+    for wish in asked:
+        objects.setdefault(wish.object_number, []).append(wish)
+    # By gallery, for a person walks from one to the next; in each the objects that settle most come first.
+    order = sorted(objects.values(), key=lambda mine: mine[0].gallery)
+    box = Border(*(Side(style="thin", color=_LINE) for _ in range(4)))
+    for row, mine in enumerate(order, start=HEADER_ROW + 1):
+        why = "; ".join(_reason(wish, length) for wish in mine)
+        texts = {"object_number": mine[0].object_number, "gallery": mine[0].gallery, "title": mine[0].title, WHY: why}
+        wished = {wish.field for wish in mine}
+        for at, name in enumerate(columns, start=1):
+            cell = sheet.cell(row, at)
+            if name in texts:
+                _write_text(cell, texts[name])
+                cell.alignment = Alignment(wrap_text=True, vertical="top")
+            if name in wished:
+                cell.fill, cell.border = PatternFill("solid", fgColor=_FILL), box
+    _headed(sheet, [16, 24, 32, *(14 for _ in fields), 60], rows=HEADER_ROW)
+    sheet.freeze_panes = sheet.cell(HEADER_ROW + 1, len(SHOWN) + 1)
+
+
+def _ranking(sheet: Worksheet, asked: Sequence[Wish], labels: Mapping[str, str]) -> None:
+    sheet.append(["Gallery", "Quantity", "Objects", "Verdicts it would settle", "Models it would make possible"])
+    totals: dict[tuple[str, str], list[float]] = {}
+    for wish in asked:
+        total = totals.setdefault((wish.gallery, wish.field), [0, 0.0, 0])
+        total[0] += 1
+        total[1] += wish.settles
+        total[2] += wish.unlocks
+    ranked = sorted(totals.items(), key=lambda entry: (-(entry[1][1] + entry[1][2]), entry[0]))
+    for row, ((gallery, field), (objects, settles, unlocks)) in enumerate(ranked, start=2):
+        _write_text(sheet.cell(row, 1), gallery)
+        _write_text(sheet.cell(row, 2), labels[field])
+        for at, number in ((3, objects), (4, round(settles, 1)), (5, unlocks)):
+            sheet.cell(row, at).value = number
+    _headed(sheet, [32, 36, 10, 22, 26], rows=1)
+
+
+def _how(sheet: Worksheet, fields: Sequence[Measurable], length: str) -> None:
+    from openpyxl.styles import Alignment
+
+    sheet.append(["Quantity", "Column", "How to measure it"])
+    for row, m in enumerate(fields, start=2):
+        for at, text in enumerate((m.label, column_name(m.field, length), m.how), start=1):
+            _write_text(sheet.cell(row, at), text)
+            sheet.cell(row, at).alignment = Alignment(wrap_text=True, vertical="top")
+    _headed(sheet, [36, 24, 100], rows=1)
+
+
+def _labelled(m: Measurable, length: str) -> str:
+    unit = length if m.unit == "m" else m.unit
+    return m.label if unit in ("", "-") else f"{m.label} ({unit})"
+
+
+def _reason(wish: Wish, length: str) -> str:
+    if wish.unlocks:
+        return f"{column_name(wish.field, length)}: {wish.reason}, without it nothing can be said"
+    span = ""
+    if wish.low is not None and wish.high is not None:
+        per = LENGTHS[length] if wish.unit == "m" else 1.0
+        unit = length if wish.unit == "m" else "" if wish.unit == "-" else wish.unit
+        span = f"{wish.low / per:.3g} to {wish.high / per:.3g} {unit}".strip()
+        span = f", taken as {span} now"
+    return f"{column_name(wish.field, length)}: settles {wish.settles:.2g} of {wish.open} open verdicts{span}"
+
+
+def _headed(sheet: Worksheet, widths: Sequence[int], *, rows: int) -> None:
+    from openpyxl.styles import Alignment, Font
+    from openpyxl.utils import get_column_letter
+
+    for at, width in enumerate(widths, start=1):
+        sheet.column_dimensions[get_column_letter(at)].width = width
+        for row in range(1, rows + 1):
+            cell = sheet.cell(row, at)
+            cell.font = Font(bold=row == 1, color=_INK if row == 1 else _QUIET, size=10 if row == 1 else 8)
+            cell.alignment = Alignment(wrap_text=True, vertical="bottom")
+    sheet.page_setup.orientation = "landscape"
+    sheet.page_setup.fitToWidth, sheet.page_setup.fitToHeight = 1, 0
+    sheet.sheet_properties.pageSetUpPr.fitToPage = True
+    sheet.print_title_rows = f"1:{rows}"
+    if sheet.freeze_panes is None:
+        sheet.freeze_panes = sheet.cell(rows + 1, 1)
+
+
+def _write_text(cell: Any, text: str) -> None:
+    write_text(cell, text)
+    # Object numbers must come back as they are: in a sheet that people edit a quotation prefix keeps the text one.
+    if safe_cell(text) != text:
+        cell.quotePrefix = True

@@ -1,0 +1,1 @@
+"""Pages for people: what was found becomes views, and views become HTML."""

@@ -1,0 +1,298 @@
+"""What was found about a sheet's objects becomes the view of its page, and all pages' entries become the index."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import inf, isnan
+
+from pipeline.records import Assessment, Recommendation, RunRecord, Sheet, Tally, Verdict
+from pipeline.report.errors import ReportError
+from pipeline.report.language import ngettext, said
+from pipeline.report.pages.decided import Decided, decisions_view, merged
+from pipeline.report.pages.describe import Describer, percent
+from pipeline.report.pages.floor_plan import plan_view
+from pipeline.report.pages.ground import motion_view
+from pipeline.report.pages.judging import room_views, shaking_view, spacing_views
+from pipeline.report.pages.museum_views import GalleryView, MuseumView
+from pipeline.report.pages.numerics import decided_views, fidelities
+from pipeline.report.pages.ranking import urgency
+from pipeline.report.pages.reading import reading_view
+from pipeline.report.pages.selftest import self_test_view
+from pipeline.report.pages.survey_words import SURVEY_SECONDS, errands, survey_sentence
+from pipeline.report.pages.views import (
+    Counts,
+    EffortView,
+    Entry,
+    GalleryRow,
+    Lead,
+    ObjectView,
+    Pointer,
+    SheetView,
+    SinceView,
+    State,
+    TaskView,
+)
+from pipeline.report.text import clean, count, digest, slug, words
+from pipeline.report.units import Units
+
+STORED = "not-on-display"
+"""Stem of the files of the objects that are not on display; a gallery's ends in a hash, so the two never meet."""
+
+SELECTION = "selection"
+"""Key of a run's settings that is true for a run of a part of the collection."""
+
+LEADERS = 8
+"""Objects that the index names as the most urgent."""
+
+_LAST = (len(State), True, True, "", inf, "", "")
+"""Sorts after every object."""
+
+_HELPLESS = "\0"
+"""Groups the objects for which nothing helps; no measure of a table can have this name."""
+
+
+@dataclass(frozen=True, slots=True)
+class PageHead:
+    """What a gallery's page says of where it comes from; it stays as it is as long as its results do.
+
+    finished : when its results were found
+    """
+
+    museum: str
+    run_id: str
+    finished: str
+    version: str
+    credit: str
+    demonstration: bool
+    started: str = ""
+
+
+def page_head(head: RunRecord, sheet: Sheet) -> PageHead:
+    """Return what the page of a sheet says of the run that found it."""
+    return PageHead(
+        museum=clean(head.museum),
+        run_id=clean(sheet.run),
+        finished=clean(sheet.made),
+        version=clean(head.version),
+        credit=clean(str(head.settings.get("credit") or "")),
+        demonstration=head.demonstration,
+    )
+
+
+@dataclass(frozen=True)
+class Composed:
+    """A gallery's page ready to be filled in, what the index says of it, and the ids of its objects."""
+
+    gallery: GalleryView
+    entry: Entry
+    anchor: Callable[[Assessment], str]
+
+
+def compose(record: RunRecord, sheet: Sheet, units: Units, *, several: bool) -> Composed:
+    """Return everything that the page of a sheet shows, in the order in which it shows it.
+
+    record  : the run with the objects, wishes, spacings and decisions of this sheet only
+    several : whether the run has several levels of shaking
+    raises  : ReportError for a sentence with an unknown placeholder or a mark on a chart that the run does not hold
+    """
+    describer = Describer(record, units)
+    members = sorted(record.assessments, key=urgency)
+    page = page_name(sheet.gallery, sheet.number, on_display=sheet.on_display)
+    views = [describer.object(a, page) for a in members]
+    pairs = list(zip(members, views, strict=True))
+    by_state = Counter(v.state for v in views)
+    numbers = sorted(v.number for v in views)
+    gallery = GalleryView(
+        name=clean(sheet.gallery) if sheet.on_display else "",
+        page=page,
+        on_display=sheet.on_display,
+        sheet=SheetView(page, sheet.number, sheet.of, *(numbers[:1] + numbers[-1:])),
+        counts=Counts(**{state.value: by_state[state] for state in State}),
+        tasks=_tasks(pairs, describer, units),
+        objects=tuple(views),
+        charts=tuple(dict.fromkeys(f.chart for v in views for f in v.figures)),
+        motions=tuple(dict.fromkeys(f.motion for v in views for f in v.findings)),
+        several_levels=several,
+        survey=errands(pairs, describer.wishes),
+        surveyed=describer.surveyed,
+        plan=plan_view(pairs, units),
+        spacings=spacing_views(record.spacings, units) if sheet.on_display else (),
+        rooms=room_views(members, units) if sheet.on_display else (),
+        shaking=shaking_view(members) if sheet.on_display else None,
+        decisions=decisions_view([(v.decisions, v.settled, pointer(v)) for v in views if v.decisions]),
+    )
+    return Composed(gallery, _entry(gallery, pairs), describer.anchor)
+
+
+def _entry(gallery: GalleryView, pairs: Sequence[tuple[Assessment, ObjectView]]) -> Entry:
+    leaders = [(urgency(a), pointer(v)) for a, v in pairs if v.state is State.ACT and not v.settled]
+    return Entry(
+        name=gallery.name,
+        on_display=gallery.on_display,
+        sheet=gallery.sheet,
+        counts=gallery.counts,
+        task=_first_task(gallery),
+        leaders=tuple(leaders[:LEADERS]),
+        decisions=decisions_view([(v.decisions, v.settled, pointer(v)) for _, v in pairs if v.decisions]),
+    )
+
+
+def pointer(view: ObjectView) -> Pointer:
+    """Return an object as other pages than its own name it."""
+    return Pointer(
+        number=view.number,
+        short=view.short,
+        page=view.page,
+        anchor=view.anchor,
+        gallery=view.gallery,
+        state=view.state,
+        lead=None if view.lead is None else Lead(view.lead.title, view.lead.outcome),
+        measure=view.measures[0].sentence if view.measures else "",
+    )
+
+
+def _first_task(gallery: GalleryView) -> str:
+    if not gallery.tasks:
+        return ""
+    task = gallery.tasks[0]
+    number = len(task.objects)
+    if task.advised:
+        told = ngettext("%(title)s: %(shown)s object", "%(title)s: %(shown)s objects", number)
+    else:
+        told = ngettext(
+            "No measure found for %(shown)s object: ask an engineer",
+            "No measure found for %(shown)s objects: ask an engineer",
+            number,
+        )
+    return told % {"title": task.title, "shown": count(number)}
+
+
+def museum_view(
+    head: RunRecord, entries: Sequence[Entry], tally: Tally, units: Units, since: SinceView | None, *, workbook: bool
+) -> MuseumView:
+    """Return everything that the index, the method page and the motion page show.
+
+    head    : the run without its objects; the decisions about objects that the run does not have are told besides
+    entries : of all pages
+    tally   : of all sheets together
+    raises  : ReportError where two galleries' files would have one name
+    """
+    pages = Counter(entry.sheet.page for entry in entries)
+    twins = [entry.name for entry in entries if pages[entry.sheet.page] > 1]
+    if twins:
+        raise ReportError(f"galleries {twins} would share one file; rename one of them in the collection's records")
+    shown = [entry for entry in entries if entry.on_display]
+    leaders = sorted((leader for entry in shown for leader in entry.leaders), key=lambda leader: leader[0])
+    strangers = decisions_view([((d,), False, None) for d in Decided(head.decisions, units).all()])
+    return MuseumView(
+        museum=clean(head.museum),
+        site=clean(head.site),
+        run_id=clean(head.run_id),
+        started=clean(head.started),
+        finished=clean(head.finished),
+        version=clean(head.version),
+        credit=clean(str(head.settings.get("credit") or "")),
+        demonstration=head.demonstration,
+        counts=_total(entry.counts for entry in shown),
+        rows=_rows(shown),
+        stores=next(iter(_rows([entry for entry in entries if not entry.on_display])), None),
+        first=tuple(leader for _, leader in leaders[:LEADERS]),
+        motions=tuple(motion_view(m, head.charts, units) for m in head.motions),
+        level_notes=tuple(clean(n) for n in head.level_notes),
+        efforts=tuple(_effort(title, efforts) for title, efforts in tally.efforts.items()),
+        self_test=self_test_view(head),
+        decided=decided_views(tally),
+        fidelities=fidelities(tally),
+        survey=survey_sentence(tally, float(head.settings.get(SURVEY_SECONDS, 0.0))),
+        decisions=merged([*(entry.decisions for entry in entries), strangers]),
+        since=since,
+        workbook=workbook,
+        reading=reading_view(head.settings),
+        whole=not head.settings.get(SELECTION),
+    )
+
+
+def _rows(entries: Sequence[Entry]) -> tuple[GalleryRow, ...]:
+    """Gather the pages of each gallery into a row, the gallery with the most to do first."""
+    galleries: dict[tuple[bool, str], list[Entry]] = {}
+    for entry in entries:
+        galleries.setdefault((entry.on_display, entry.name), []).append(entry)
+    rows = []
+    for (on_display, name), members in galleries.items():
+        members.sort(key=lambda entry: entry.sheet.number)
+        # What comes first is what comes first on the page of the gallery's worst object.
+        worst = min(members, key=lambda entry: entry.leaders[0][0] if entry.leaders else _LAST)
+        task = worst.task or next((entry.task for entry in members if entry.task), "")
+        rows.append(
+            GalleryRow(name, on_display, tuple(e.sheet for e in members), _total(e.counts for e in members), task)
+        )
+    return tuple(sorted(rows, key=lambda g: (-g.counts.act, -g.counts.open, -g.counts.unknown, g.name)))
+
+
+def page_name(gallery: str, number: int = 1, *, on_display: bool = True) -> str:
+    """Return the file of a gallery's page; the first one's has no number."""
+    stem = slug(gallery) if on_display else STORED
+    return f"{stem}.html" if number == 1 else f"{stem}-{number}.html"
+
+
+def anchor_of(object_number: str) -> str:
+    """Return the id of an object on its page; it stays the same from run to run."""
+    return f"o{digest(object_number, 10)}"
+
+
+def _effort(title: str, effort: Mapping[str, int]) -> EffortView:
+    analyses, needing = effort["analyses"], effort["needing_history"]
+    return EffortView(
+        said(clean(title)),
+        analyses,
+        effort["certificate"],
+        effort["chart"],
+        effort["history"],
+        f"{100.0 * needing / max(analyses, 1):.0f} %",
+    )
+
+
+def _total(counts: Iterable[Counts]) -> Counts:
+    listed = list(counts)
+    return Counts(**{state.value: sum(getattr(c, state.value) for c in listed) for state in State})
+
+
+def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], describer: Describer, units: Units) -> tuple[TaskView, ...]:
+    """Group the recommendations by measure; the pairs come by urgency, and so do the groups.
+
+    What people accepted or overruled is no task, as long as nothing of that is in doubt.
+    """
+    members: dict[str, list[ObjectView]] = {}
+    advice: dict[str, list[Recommendation]] = {}
+    for assessment, view in pairs:
+        for recommendation in assessment.recommendations:
+            if describer.decided.covered(assessment, recommendation.level):
+                continue
+            group = members.setdefault(recommendation.measure, [])
+            if not group or group[-1] is not view:
+                group.append(view)
+            advice.setdefault(recommendation.measure, []).append(recommendation)
+        if view.state is State.ACT and not assessment.recommendations and not view.settled:
+            members.setdefault(_HELPLESS, []).append(view)
+    size = {view.anchor: _utilisation(assessment) for assessment, view in pairs}
+    worst = {key: percent(max(size[o.anchor] for o in objects)) for key, objects in members.items()}
+    return tuple(
+        TaskView(said(clean(advice[key][0].title)), tuple(objects), _spans(advice[key], units), worst=worst[key])
+        if key in advice
+        else TaskView("", tuple(objects), advised=False, worst=worst[key])
+        for key, objects in members.items()
+    )
+
+
+def _utilisation(assessment: Assessment) -> float:
+    """Return the largest utilisation of an object, endless where one of a failure is not known."""
+    sizes = [f.utilisation for f in assessment.findings if f.verdict is not Verdict.PASS]
+    return max((inf if u is None or isnan(u) else u for u in sizes), default=0.0)
+
+
+def _spans(advice: Sequence[Recommendation], units: Units) -> tuple[tuple[str, str], ...]:
+    values: dict[tuple[str, str], list[float]] = {}
+    for recommendation in advice:
+        for name, value in recommendation.parameters.items():
+            values.setdefault((name, recommendation.units.get(name, "")), []).append(value)
+    return tuple((words(name), units.pair(min(v), max(v), unit)) for (name, unit), v in values.items())

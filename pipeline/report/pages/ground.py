@@ -1,0 +1,87 @@
+"""A motion as its section shows it: a table of measures, the charts that were drawn for it, what was done to it."""
+
+import re
+from collections.abc import Mapping
+from math import inf, isfinite
+
+from pipeline.motions.record import NO_VERTICAL
+from pipeline.records import Chart, MotionSummary
+from pipeline.report.language import _
+from pipeline.report.pages.describe import approval, motion_anchor
+from pipeline.report.pages.views import MotionView
+from pipeline.report.text import clean, count, plain, words
+from pipeline.report.units import Units
+
+_ROWS = (("pga", "PGA", "m/s2"), ("pgv", "PGV", "m/s"), ("pgd", "PGD", "m"), ("arias", "", ""))
+_ENDS = ("_x", "_y", "_z", "", "_resultant")
+_SECONDS = ("d5_", "significant_duration", "duration", "pulse_period", "tp")
+_FIGURE = re.compile(r"Figure (\d+)")
+
+
+def motion_view(motion: MotionSummary, charts: Mapping[str, Chart], units: Units) -> MotionView:
+    """Return one motion's section.
+
+    charts : all charts of the run; those whose key holds the first 16 digits of the motion's hash belong to it
+    """
+    table: list[tuple[str, tuple[str, ...]]] = []
+    used: set[str] = set()
+    flat = NO_VERTICAL in motion.steps
+    for stem, title, unit in _ROWS:
+        cells = [(f"{stem}{end}", motion.measures.get(f"{stem}{end}")) for end in _ENDS]
+        if any(value is not None for _, value in cells):
+            used.update(key for key, _ in cells)
+            # A vertical that nobody recorded is not a vertical of zero.
+            told = [(key, None if flat and key.endswith("_z") else value) for key, value in cells]
+            texts = tuple("–" if value is None else _write(key, value, unit, units) for key, value in told)
+            table.append((title or _("Arias intensity"), texts))
+    rest = {key: value for key, value in motion.measures.items() if key not in used}
+    mine = [key for key in charts if motion.hash[:16] in key]
+    return MotionView(
+        name=clean(motion.name),
+        hash=clean(motion.hash),
+        anchor=motion_anchor(motion.hash),
+        level=clean(motion.level),
+        source=clean(motion.source),
+        licence=clean(motion.licence),
+        approved=approval(motion),
+        sampling=_("%(samples)s samples, %(step)s s apart, %(duration)s s")
+        % {
+            "samples": count(motion.samples),
+            "step": f"{motion.dt:.6g}",
+            "duration": f"{(motion.samples - 1) * motion.dt:.4g}",
+        },
+        columns=(_("East (x)"), _("North (y)"), _("Up (z)"), _("Larger horizontal"), _("Resultant")),
+        table=tuple(table),
+        others=tuple((_name(key), _write(key, value, _unit(key), units)) for key, value in rest.items()),
+        charts=tuple(sorted(mine, key=lambda key: _figure(charts[key]))),
+        steps=tuple(clean(s) for s in motion.steps),
+    )
+
+
+def _figure(chart: Chart) -> float:
+    # The paper's order is the one that engineers know; a chart without a figure there comes last.
+    found = _FIGURE.search(chart.source)
+    return float(found.group(1)) if found else inf
+
+
+def _name(key: str) -> str:
+    head, _bar, rest = key.partition("_")
+    if head in ("pga", "pgv", "pgd"):
+        return f"{head.upper()} {words(rest)}".strip()
+    if key == "duration_5_95":
+        return _("Significant duration (5 to 95 %)")
+    told = words(plain(key))
+    return told[:1].upper() + told[1:]
+
+
+def _unit(key: str) -> str:
+    if key.startswith(_SECONDS):
+        return "s"
+    return next((unit for stem, _title, unit in _ROWS if key.startswith(stem)), "")
+
+
+def _write(key: str, value: float, unit: str, units: Units) -> str:
+    if unit or not isfinite(value):
+        return units.text(value, unit)
+    # The Arias intensity is quoted in m/s everywhere; anything that is not known here is shown in SI and says so.
+    return f"{value:.3g} m/s" if key.startswith("arias") else f"{value:.3g} (SI)"

@@ -1,0 +1,277 @@
+"""Fragility curves and the spacing of neighbours in words, numbers and small pictures."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf, isfinite
+from statistics import median
+
+from markupsafe import Markup
+
+from pipeline.analysis.fragility.published import all_published
+from pipeline.quantities import G
+from pipeline.records import Assessment, Finding, Fragility, Spacing, Support, Verdict
+from pipeline.records.fragility import ABOVE, BELOW
+from pipeline.records.result import BOUNDS
+from pipeline.report.language import _, ngettext, said
+from pipeline.report.plots.svg import path
+from pipeline.report.text import clean, count
+from pipeline.report.units import Units, significant
+
+_WIDE, _HIGH, _FLOOR = 220.0, 72.0, 58.0
+_MOST = 2.0 * G
+"""Right end of the picture's axis, m/s2."""
+_POINTS = 13
+
+_TOLD = (0.25 * G, 0.5 * G, G)
+"""Where the picture's text alternative tells the probability."""
+
+MOVES = ("displacement",)
+"""Outputs that tell how far an object moves from where it stands."""
+
+
+@dataclass(frozen=True, slots=True)
+class FragilityView:
+    """One fragility curve: what fails and from when on, why it is not sharper, how often, beside what; its picture."""
+
+    title: str
+    sentence: str
+    sources: str
+    rate: str
+    beside: str
+    picture: Markup
+
+
+@dataclass(frozen=True, slots=True)
+class SpacingView:
+    """Two neighbours: object numbers, lengths in the reader's units, and how it was decided."""
+
+    first: str
+    second: str
+    level: str
+    gap: str
+    needed: str
+    together: str
+    state: str
+    decided: str
+    note: str
+
+
+@dataclass(frozen=True, slots=True)
+class RoomView:
+    """How much room one object needs around it: by how much it moves at most, with its range."""
+
+    number: str
+    level: str
+    moves: str
+    span: str
+    capacity: str
+
+
+@dataclass(frozen=True, slots=True)
+class ShakingView:
+    """From what shaking on the free objects of a gallery fail, beside what others published.
+
+    note : why nothing is said of how often that comes; "" where it is said of some
+    """
+
+    sentence: str
+    rows: tuple[tuple[str, str, str], ...]
+    note: str
+
+
+def fragility_views(assessment: Assessment, *, drawn: bool) -> tuple[FragilityView, ...]:
+    """Return the curves of an object, what fails first to begin with; only that one is drawn."""
+    number = clean(assessment.scene.item.object_number)
+    # Of what is only bounded there is no curve.
+    return tuple(
+        _view(f, number if drawn and i == 0 and not f.bound else "") for i, f in enumerate(assessment.fragilities)
+    )
+
+
+def _view(f: Fragility, draw: str) -> FragilityView:
+    at = in_g(f.median)
+    if f.bound:
+        phrase = _("stands up to %(at)s at least") if f.bound == ABOVE else _("fails already at %(at)s or less")
+        sentence = phrase % {"at": at}
+    else:
+        sentence = _("fails from about %(at)s (%(low)s to %(high)s)") % {
+            "at": at,
+            "low": in_g(f.low),
+            "high": in_g(f.high),
+        }
+    again = "; " + _("stronger shaking of the same kind may pass: the weakest that fails counts") if f.returns else ""
+    beside = "" if f.published_median is None else in_g(f.published_median)
+    return FragilityView(
+        said(clean(f.title)),
+        sentence + again,
+        _sources(f),
+        _rate(f),
+        clean(beside),
+        _picture(f, draw) if draw else Markup(""),
+    )
+
+
+def _sources(f: Fragility) -> str:
+    motions = ngettext("%(count)s motion", "%(count)s motions", f.motions) % {"count": count(f.motions)}
+    # That few motions cannot tell it is said once a gallery.
+    record = _("stated") if f.stated else _("of %(motions)s") % {"motions": motions}
+    return _("Dispersion %(whole)s: records %(record)s (%(how)s), measures %(inputs)s, model %(model)s.") % {
+        "whole": f"{f.dispersion:.2f}",
+        "record": f"{f.record:.2f}",
+        "how": record,
+        "inputs": f"{f.inputs:.2f}",
+        "model": f"{f.modelling:.2f}",
+    }
+
+
+def _rate(f: Fragility) -> str:
+    if f.annual_rate is None or f.rate_low is None or f.rate_high is None:
+        return ""
+    return _("about once in %(years)s years (%(low)s to %(high)s)") % {
+        "years": years(f.annual_rate),
+        "low": years(f.rate_high),
+        "high": years(f.rate_low),
+    }
+
+
+def in_g(acceleration: float) -> str:
+    """Write an acceleration in g with two digits: more would be a boast."""
+    return f"{significant(acceleration / G, 2)}\u202fg"
+
+
+def years(rate: float) -> str:
+    """Write 1 / rate with two digits; "∞" for never."""
+    if not (rate > 0.0 and isfinite(rate)):
+        return "∞"
+    period = 1.0 / rate
+    # In words of this size a digit more would be a boast.
+    rounded = float(f"{period:.2g}")
+    return count(int(rounded)) if rounded >= 100.0 else significant(period, 2)
+
+
+def _picture(f: Fragility, number: str) -> Markup:
+    """Return the probability of failing against the peak acceleration of the floor, 0 to 2 g."""
+    # Closer together where curves are steep.
+    steps = [_MOST * (i / (_POINTS - 1)) ** 2 for i in range(_POINTS)]
+    points = [(round(_across(a)), round(_FLOOR - 52.0 * f.probability(a))) for a in steps]
+    # From where it is certain on it is one line.
+    rising = next((i for i, (_x, y) in enumerate(points) if y == points[-1][1]), len(points) - 1) + 1
+    curve = path([*points[:rising], points[-1]] if rising < len(points) else points)
+    beside = f"M{_across(f.published_median):.0f} 6V{_FLOOR:.0f}" if f.published_median is not None else ""
+    title = f"{clean(number)}: {said(clean(f.title))}"
+    at = [
+        _("%(probability)s at %(acceleration)s") % {"probability": f"{f.probability(a):.0%}", "acceleration": in_g(a)}
+        for a in _TOLD
+    ]
+    told = _("Probability of failure:") + " " + ", ".join(at)
+    return Markup(
+        '<svg class="chart curve" viewBox="0 0 {wide} {high}" role="img"><title>{title}</title><desc>{told}.</desc>'
+        '<path class="ax" d="M10 6V{floor}H200"/>'
+    ).format(wide=int(_WIDE), high=int(_HIGH), floor=int(_FLOOR), title=title, told=told) + Markup(  # noqa: S704
+        (f'<path class="gd" d="{beside}"/>' if beside else "")
+        + f'<path class="cu" d="{curve}"/><text class="ty" x="216" y="68">2 g</text></svg>'
+    )
+
+
+def _across(acceleration: float) -> float:
+    return 10.0 + 190.0 * min(acceleration / _MOST, 1.0)
+
+
+def shaking_view(members: Sequence[Assessment]) -> ShakingView | None:
+    """Return the median of the free objects' medians beside the published ones; None where there is none.
+
+    Where half of them stand at all that was tried, the median is said to be at least that.
+    """
+    free = [a.fragilities[0] for a in members if a.scene.support is Support.FREESTANDING and a.fragilities]
+    if not free:
+        return None
+    middle = median(inf if f.bound == ABOVE else f.median for f in free)
+    if isfinite(middle):
+        phrase = ngettext(
+            "The one object that stands free fails from about %(at)s of peak acceleration of its floor on.",
+            "Half of the %(count)s objects that stand free fail below %(at)s of peak acceleration of their floor.",
+            len(free),
+        )
+    else:
+        # Each of these bounds is below its own median, and so is their median below that of the medians.
+        middle = median(0.0 if f.bound == BELOW else f.median for f in free)
+        phrase = ngettext(
+            "The one object that stands free stands at %(at)s of peak acceleration at least.",
+            "Half of the %(count)s objects that stand free stand at %(at)s of peak acceleration at least.",
+            len(free),
+        )
+    rows = tuple((said(p.what), in_g(p.median), p.source) for p in all_published())
+    note = "" if any(f.annual_rate is not None for f in free) else free[0].note
+    return ShakingView(phrase % {"count": count(len(free)), "at": in_g(middle)}, rows, said(clean(note)))
+
+
+def spacing_views(spacings: Sequence[Spacing], units: Units) -> tuple[SpacingView, ...]:
+    """Return the neighbours of a gallery, those that may meet first, then the closest."""
+    order = {Verdict.FAIL: 0, Verdict.UNDETERMINED: 1, Verdict.PASS: 2}
+    listed = sorted(spacings, key=lambda s: (order[s.verdict], s.gap - s.together, s.first, s.second, s.level))
+    return tuple(_spacing(s, units) for s in listed)
+
+
+def _spacing(s: Spacing, units: Units) -> SpacingView:
+    needed = "–"
+    if s.needed is not None and s.low is not None and s.high is not None:
+        span = f" ({units.pair(s.low, s.high, 'm')})" if s.low < s.high else ""
+        needed = units.text(s.needed, "m") + span
+    decided = _("both moving together") if s.decided_by == "history" else _("bound: the sum of both")
+    state = {Verdict.FAIL: "act", Verdict.UNDETERMINED: "open", Verdict.PASS: "safe"}[s.verdict]
+    return SpacingView(
+        clean(s.first),
+        clean(s.second),
+        clean(s.level),
+        units.text(s.gap, "m"),
+        needed,
+        units.text(s.together, "m"),
+        state,
+        decided,
+        clean(s.note),
+    )
+
+
+def room_views(members: Sequence[Assessment], units: Units) -> tuple[RoomView, ...]:
+    """Return how far each object of a gallery moves, the furthest first: what to keep free of walls and edges."""
+    moving = [f for a in members for f in a.findings if f.demand_name in MOVES and f.demand is not None and f.high]
+    moving.sort(key=lambda f: (-(f.high or 0.0), f.object_number, f.level))
+    return tuple(
+        RoomView(
+            clean(f.object_number),
+            clean(f.level),
+            most(f, units),
+            spanned(f, units) or most(f, units),
+            units.text(f.capacity, f.unit),
+        )
+        for f in moving
+    )
+
+
+def most(f: Finding, units: Units) -> str:
+    """Write a demand, and that it is only known not to be more where that is so."""
+    demand = units.text(f.demand, f.unit)
+    return _("at most %(demand)s") % {"demand": demand} if f.fidelity == "bound" and f.error else demand
+
+
+def spanned(f: Finding, units: Units) -> str:
+    """Write the range of a demand; "" where it has none.  Of bounds only the upper one tells anything of it."""
+    if f.low is None or f.high is None or f.low == f.high or (f.range_is == BOUNDS and f.high == f.demand):
+        return ""
+    if f.range_is == BOUNDS:
+        return _("at most %(demand)s") % {"demand": units.text(f.high, f.unit)}
+    return units.pair(f.low, f.high, f.unit)
+
+
+def first_failure(assessment: Assessment) -> dict[str, str | float | None]:
+    """Return the columns of an export that tell what fails first; empty where no curve was made.
+
+    median_is : "" where the median is known, else "above" or "below": it is only known to be that
+    """
+    first = next(iter(assessment.fragilities), None)
+    return {
+        "median_g": None if first is None else first.median / G,
+        "median_is": "" if first is None else first.bound,
+        "dispersion": None if first is None else first.dispersion,
+        "annual_rate": None if first is None else first.annual_rate,
+    }

@@ -1,0 +1,101 @@
+"""What the page of a gallery and the index show, put together of the views of their parts."""
+
+from dataclasses import dataclass, field
+
+from pipeline.report.pages.judging import RoomView, ShakingView, SpacingView
+from pipeline.report.pages.numerics import DecidedView
+from pipeline.report.pages.plan_views import PlanView
+from pipeline.report.pages.reading import ReadingView
+from pipeline.report.pages.selftest import SelfTestView
+from pipeline.report.pages.views import (
+    NO_DECISIONS,
+    Counts,
+    DecisionsView,
+    EffortView,
+    GalleryRow,
+    MotionLink,
+    MotionView,
+    ObjectView,
+    Pointer,
+    SheetView,
+    SinceView,
+    State,
+    SurveyView,
+    TaskView,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class GalleryView:
+    """One gallery's page, or one of its pages."""
+
+    name: str
+    page: str
+    on_display: bool
+    sheet: SheetView
+    counts: Counts
+    tasks: tuple[TaskView, ...]
+    objects: tuple[ObjectView, ...]
+    charts: tuple[str, ...]
+    motions: tuple[MotionLink, ...]
+    several_levels: bool
+    survey: tuple[SurveyView, ...] = ()
+    surveyed: bool = False
+    plan: PlanView | None = None
+    spacings: tuple[SpacingView, ...] = ()
+    rooms: tuple[RoomView, ...] = ()
+    shaking: ShakingView | None = None
+    decisions: DecisionsView = NO_DECISIONS
+
+    def standing(self, state: State) -> tuple[ObjectView, ...]:
+        """Return the objects in that state, the most urgent first."""
+        return tuple(o for o in self.objects if o.state is state)
+
+
+@dataclass(frozen=True, slots=True)
+class MuseumView:
+    """The index: all galleries, ranked, with totals over all on display; ``credit`` is the source's own line.
+
+    counts     : of what is on display
+    rows       : the galleries, the one with the most to do first
+    stores     : what is not on display, with totals of its own; None where everything is on display
+    reading    : what was refused and is doubted of the museum's records
+    whole      : whether the run is of the whole collection
+    workbook   : whether the exports include a workbook: it is left out where it would be too long
+    decided    : what settled the verdicts, by kind
+    fidelities : how many verdicts were asked at which fidelity, in one line
+    self_test  : None where none was run before this run
+    survey     : what is worth measuring in the whole museum and what asking cost, "" where it was not asked
+    since     : None where there was no run before
+    """
+
+    museum: str
+    site: str
+    run_id: str
+    started: str
+    finished: str
+    version: str
+    credit: str
+    demonstration: bool
+    counts: Counts
+    rows: tuple[GalleryRow, ...]
+    first: tuple[Pointer, ...]
+    motions: tuple[MotionView, ...]
+    level_notes: tuple[str, ...] = field(default=())
+    efforts: tuple[EffortView, ...] = ()
+    self_test: SelfTestView | None = None
+    decided: tuple[DecidedView, ...] = ()
+    fidelities: str = ""
+    survey: str = ""
+    decisions: DecisionsView = NO_DECISIONS
+    since: SinceView | None = None
+    workbook: bool = True
+    stores: GalleryRow | None = None
+    reading: ReadingView | None = None
+    whole: bool = True
+
+    @property
+    def complete(self) -> bool:
+        """Whether none of the museum's objects is left out of the counts, and this is known."""
+        read = self.reading
+        return self.whole and self.stores is None and read is not None and read.known and not read.refused

@@ -1,0 +1,147 @@
+"""Texts that many objects of a page share: listed once, numbered, and cited by a short link wherever they count."""
+
+from collections import Counter
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from markupsafe import Markup, escape
+
+from pipeline.report.language import _
+from pipeline.report.pages.views import NumberView, ObjectView
+
+_HEAD = 48
+"""The longest beginning of a note (up to its colon) that is repeated in front of its number."""
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """One entry of a page's list; ``label`` is its number there, such as "A5", and its id."""
+
+    label: str
+    text: str
+    source: str
+
+
+class Notes:
+    """The texts of one kind on one page.
+
+    letter : what the numbers of this list begin with, so that two lists are told apart on paper
+    headed : whether a citation repeats the beginning of the text, up to its colon
+    texts  : (text, source) as often as each is used; what is used once is not listed but written where it is used
+    """
+
+    def __init__(self, letter: str, texts: Iterable[tuple[str, str]], *, headed: bool = True) -> None:
+        uses: Counter[str] = Counter()
+        sources: dict[str, dict[str, None]] = {}
+        for text, source in texts:
+            uses[text] += 1
+            if source:
+                sources.setdefault(text, {})[source] = None
+        shared = [text for text, times in uses.items() if times > 1]
+        self.listed = tuple(
+            Note(f"{letter}{i}", text, "; ".join(sources.get(text, ()))) for i, text in enumerate(shared, 1)
+        )
+        self._headed = headed
+        self._places = {note.text: at for at, note in enumerate(self.listed)}
+        self._tags = {n.text: Markup(" ") + _link(n.label, n.label) for n in self.listed}
+        self._cited: dict[tuple[str, ...], Markup] = {}
+
+    def cite(self, texts: Iterable[str]) -> Markup:
+        """Return the texts in one line: a link to the list for what is listed there, the others in full.
+
+        What stands one after the other there is one link: "friction; mass A4 to A5".
+        """
+        key = tuple(texts)
+        if key not in self._cited:
+            parts = [self._run(run) for run in self._runs(key)]
+            self._cited[key] = Markup("; ".join(parts))  # noqa: S704 - each part is escaped in _run
+        return self._cited[key]
+
+    def _runs(self, texts: Sequence[str]) -> list[list[str]]:
+        runs: list[list[str]] = []
+        for text in texts:
+            place = self._places.get(text)
+            follows = bool(runs) and place is not None and self._places.get(runs[-1][-1]) == place - 1
+            # A text without a short beginning would not be told apart in a longer link.
+            if follows and _head(text) and _head(runs[-1][0]) and self._headed:
+                runs[-1].append(text)
+            else:
+                runs.append([text])
+        return runs
+
+    def _run(self, texts: Sequence[str]) -> Markup:
+        if texts[0] not in self._places:
+            return escape(texts[0])
+        first, last = (self.listed[self._places[text]].label for text in (texts[0], texts[-1]))
+        heads = "; ".join(filter(None, map(_head, texts))) if self._headed else ""
+        labels = first if first == last else _("%(first)s to %(last)s") % {"first": first, "last": last}
+        return _link(first, f"{heads} {labels}".strip())
+
+    def tag(self, text: str, source: str, *, cited: bool = False) -> Markup:
+        """Return " A5" for a text that is listed, as a link where none stands beside, or it and its source in brackets.
+
+        cited : whether a link to it stands beside
+        """
+        if text in self._places:
+            return Markup(" {}").format(self.listed[self._places[text]].label) if cited else self._tags[text]
+        told = "; ".join(part for part in (text, source) if part)
+        return escape(f" ({told})") if told else Markup()
+
+
+@dataclass(frozen=True, slots=True)
+class PageNotes:
+    """The three lists of a gallery's page, and the sources of the measures on it by their titles."""
+
+    assumed: Notes
+    rejected: Notes
+    skipped: Notes
+    sources: tuple[tuple[str, str], ...] = ()
+
+    def numbers(self, numbers: Sequence[NumberView], cited: Collection[str] = ()) -> Markup:
+        """Return the numbers that an object was run with in one line, grouped by where they come from.
+
+        cited : the notes to which links stand beside
+        """
+        groups = (
+            f"{escape(origin[:1].upper() + origin[1:])}: "
+            + "; ".join([escape(n.text) + self.assumed.tag(n.note, n.source, cited=n.note in cited) for n in members])
+            for origin, members in groupby(numbers, key=lambda n: n.origin)
+        )
+        return Markup(". ".join(groups) + "." if numbers else "")  # noqa: S704 - each part is escaped above
+
+
+def page_notes(objects: Iterable[ObjectView]) -> PageNotes:
+    """Collect what the objects of a page share, in the order in which the page first needs it."""
+    told = [o for o in objects if o.carded]
+    return PageNotes(
+        assumed=Notes(
+            "A",
+            (
+                pair
+                for o in told
+                for pair in (
+                    *((text, "") for text in o.assumptions),
+                    *((n.note, n.source) for n in o.numbers if n.note),
+                )
+            ),
+        ),
+        rejected=Notes("R", ((text, "") for o in told for m in o.measures for text in m.rejected)),
+        # Objects of one kind leave out the same models for the same reasons: one note for all of an object's.
+        skipped=Notes("M", ((left_out(o), "") for o in told if o.skipped), headed=False),
+        sources=tuple(dict.fromkeys((m.title, m.source) for o in told for m in o.measures if m.source)),
+    )
+
+
+def left_out(view: ObjectView) -> str:
+    """Return the models that were not run for an object, with the reasons, in one text."""
+    return "; ".join(view.skipped)
+
+
+def _head(text: str) -> str:
+    head, colon, _rest = text.partition(":")
+    return head if colon and len(head) <= _HEAD else ""
+
+
+def _link(label: str, shown: str) -> Markup:
+    return Markup('<a href="#{}">{}</a>').format(label, shown)

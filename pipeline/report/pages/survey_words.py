@@ -1,0 +1,98 @@
+"""What is worth measuring, in words: for one object, for a gallery as errands, for the museum in a sentence."""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from pipeline.analysis.survey import ENDS, measurables
+from pipeline.records import Assessment, Tally, Wish
+from pipeline.report.language import _, ngettext, said
+from pipeline.report.pages.views import ObjectView, SurveyView, WishView
+from pipeline.report.text import clean, count, words
+from pipeline.report.units import Units, significant
+
+SURVEY_SECONDS = "survey_seconds"
+"""The setting of a run that says what its survey cost."""
+
+
+def wish_views(wishes: Iterable[Wish], units: Units) -> tuple[WishView, ...]:
+    """Return what is worth measuring on one object, what settles most first; what settles nothing comes last."""
+    ordered = sorted(wishes, key=lambda w: (-w.gain, w.field))
+    return tuple(
+        WishView(
+            what=_label(wish.field),
+            effect=_effect(wish),
+            now="" if wish.low is None or wish.high is None else units.pair(wish.low, wish.high, wish.unit),
+            waste=wish.waste,
+        )
+        for wish in ordered
+    )
+
+
+def errands(
+    pairs: Sequence[tuple[Assessment, ObjectView]], wishes: Mapping[str, Sequence[Wish]]
+) -> tuple[SurveyView, ...]:
+    """Group what is worth measuring in a gallery by quantity, for one tool serves many objects."""
+    how = {m.field: said(m.how) for m in measurables()}
+    found: dict[str, list[tuple[float, Wish, ObjectView]]] = {}
+    for assessment, view in pairs:
+        item = assessment.scene.item
+        for wish in wishes.get(item.object_number, ()):
+            if item.on_display and not wish.waste and wish.gallery == item.gallery:
+                found.setdefault(wish.field, []).append((wish.gain, wish, view))
+    ranked = sorted(found.items(), key=lambda entry: (-sum(gain for gain, _wish, _view in entry[1]), entry[0]))
+    out = []
+    for name, entries in ranked:
+        entries.sort(key=lambda entry: -entry[0])
+        settles, unlocks = sum(w.settles for _g, w, _v in entries), sum(w.unlocks for _g, w, _v in entries)
+        objects = tuple(view for _gain, _wish, view in entries)
+        out.append(SurveyView(_label(name), how.get(name, ""), _gain(settles, unlocks), objects))
+    return tuple(out)
+
+
+def survey_sentence(tally: Tally, seconds: float) -> str:
+    """Say how many measurements would settle something, and what finding that out cost; "" where it was not asked."""
+    if not tally.surveyed:
+        return ""
+    phrase = ngettext("%(count)s measurement", "%(count)s measurements", tally.worth)
+    measurements = phrase % {"count": count(tally.worth)}
+    on = ngettext("on %(count)s object", "on %(count)s objects", tally.wished) % {"count": count(tally.wished)}
+    told = [_("%(measurements)s %(objects)s would settle a verdict.") % {"measurements": measurements, "objects": on}]
+    if tally.waste:
+        others = ngettext(
+            "%(count)s other alone would settle nothing.", "%(count)s others alone would settle nothing.", tally.waste
+        )
+        told.append(others % {"count": count(tally.waste)})
+    return " ".join([*told, _("Finding this out took %(seconds)s s.") % {"seconds": f"{seconds:.1f}"}])
+
+
+def _label(field: str) -> str:
+    label = next((m.label for m in measurables() if m.field == field), "")
+    return said(label) if label else words(clean(field))
+
+
+def _effect(wish: Wish) -> str:
+    if wish.unlocks:
+        return _("without it nothing can be said")
+    if wish.waste:
+        return _("alone it settles nothing")
+    if wish.open == 1:
+        # The mean over three trials that either settle the verdict or do not: a whole number of them.
+        return _("settles it in %(number)s of %(trials)s trials") % {
+            "number": round(wish.settles * len(ENDS)),
+            "trials": len(ENDS),
+        }
+    return _("settles %(settles)s of %(open)s open verdicts on average") % {
+        "settles": significant(wish.settles, 2),
+        "open": wish.open,
+    }
+
+
+def _gain(settles: float, unlocks: int) -> str:
+    told = []
+    if settles:
+        about = max(1, round(settles))
+        phrase = ngettext("settles about %(count)s verdict", "settles about %(count)s verdicts", about)
+        told.append(phrase % {"count": count(about)})
+    if unlocks:
+        phrase = ngettext("makes %(count)s check possible", "makes %(count)s checks possible", unlocks)
+        told.append(phrase % {"count": count(unlocks)})
+    return ", ".join(told)

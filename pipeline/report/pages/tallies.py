@@ -1,0 +1,131 @@
+"""What a sheet adds to the totals of a run, and the totals."""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from math import isfinite
+
+from pipeline.records import Assessment, Errors, Finding, Found, Tally, Urgent, Verdict
+from pipeline.report.pages.ranking import finding_order, state_of, urgency
+from pipeline.report.pages.views import STATES, State
+
+MOST = 50
+"""Objects that are kept as the worst: more than a list names, for some of them may be settled by people."""
+
+
+def tally(found: Found) -> Tally:
+    """Count what was found about the objects of a sheet."""
+    findings = [f for a in found.assessments for f in a.findings]
+    shown = [a for a in found.assessments if a.scene.item.on_display]
+    stored = [a for a in found.assessments if not a.scene.item.on_display]
+    states = Counter(state_of(a) for a in shown)
+    reasons = (reason for a in shown if not a.assessed for reason in a.scene.missing)
+    worth = [w for w in found.wishes or () if not w.waste]
+    return Tally(
+        states={state.value: states[state] for state in STATES},
+        measures=dict(Counter(r.title for a in shown for r in a.recommendations)),
+        missing=dict(Counter(reasons)),
+        first=_worst(_urgent(a) for a in shown if state_of(a) is State.ACT),
+        decided=_decided(findings),
+        fidelities=dict(Counter(f.fidelity for f in findings)),
+        efforts=_efforts(found),
+        surveyed=found.wishes is not None,
+        worth=len(worth),
+        waste=len(found.wishes or ()) - len(worth),
+        wished=len({w.object_number for w in worth}),
+        faults=sum(bool(a.fault) for a in found.assessments),
+        stored=dict(Counter(state_of(a).value for a in stored)),
+        stored_measures=dict(Counter(r.title for a in stored for r in a.recommendations)),
+    )
+
+
+def total(tallies: Iterable[Tally]) -> Tally:
+    """Return the tally of several sheets together."""
+    listed = list(tallies)
+    return Tally(
+        states=_sum(t.states for t in listed),
+        measures=_sum(t.measures for t in listed),
+        missing=_sum(t.missing for t in listed),
+        first=_worst(urgent for t in listed for urgent in t.first),
+        decided=_all_decided(listed),
+        fidelities=_sum(t.fidelities for t in listed),
+        efforts=_all_efforts(listed),
+        surveyed=bool(listed) and all(t.surveyed for t in listed),
+        worth=sum(t.worth for t in listed),
+        waste=sum(t.waste for t in listed),
+        wished=sum(t.wished for t in listed),
+        faults=sum(t.faults for t in listed),
+        stored=_sum(t.stored for t in listed),
+        stored_measures=_sum(t.stored_measures for t in listed),
+    )
+
+
+def _urgent(assessment: Assessment) -> Urgent:
+    item = assessment.scene.item
+    worst = min((f for f in assessment.findings if f.verdict is Verdict.FAIL), key=finding_order)
+    bad = dict.fromkeys((f.model, f.level) for f in assessment.findings if f.verdict is not Verdict.PASS)
+    return Urgent(urgency(assessment), item.object_number, item.title, item.gallery, worst.outcome, tuple(bad))
+
+
+def _worst(urgent: Iterable[Urgent]) -> tuple[Urgent, ...]:
+    return tuple(sorted(urgent, key=lambda one: one.order)[:MOST])
+
+
+def _decided(findings: Iterable[Finding]) -> dict[str, Errors]:
+    members: dict[str, list[Finding]] = {}
+    for finding in findings:
+        members.setdefault(finding.decided_by, []).append(finding)
+    out = {}
+    for by, those in members.items():
+        sizes = [
+            abs(f.error / f.demand)
+            for f in those
+            if f.error is not None and f.demand and isfinite(f.error) and isfinite(f.demand)
+        ]
+        # Two digits are what a page shows.
+        out[by] = Errors(len(those), dict(Counter(f"{size:.1e}" for size in sizes)), max(sizes, default=0.0))
+    return out
+
+
+def _efforts(found: Found) -> dict[str, dict[str, int]]:
+    """Count by model what its verdicts were decided by, and for how many any history was run."""
+    out: dict[str, dict[str, int]] = {}
+    titles: dict[str, str] = {}
+    for finding in (f for a in found.assessments for f in a.findings):
+        titles[finding.model] = finding.title
+        counts = out.setdefault(finding.title, dict.fromkeys(("analyses", *_BY, "needing_history"), 0))
+        counts["analyses"] += 1
+        if finding.decided_by in _BY:
+            counts[finding.decided_by] += 1
+    for needing in found.needing.values():
+        for model, often in needing.items():
+            out[titles[model]]["needing_history"] += often
+    return out
+
+
+_BY = ("certificate", "chart", "history")
+
+
+def _all_decided(tallies: Iterable[Tally]) -> dict[str, Errors]:
+    members: dict[str, list[Errors]] = {}
+    for one in tallies:
+        for by, errors in one.decided.items():
+            members.setdefault(by, []).append(errors)
+    return {
+        by: Errors(sum(e.verdicts for e in those), _sum(e.sizes for e in those), max(e.worst for e in those))
+        for by, those in members.items()
+    }
+
+
+def _all_efforts(tallies: Iterable[Tally]) -> dict[str, dict[str, int]]:
+    members: dict[str, list[Mapping[str, int]]] = {}
+    for one in tallies:
+        for model, effort in one.efforts.items():
+            members.setdefault(model, []).append(effort)
+    return {model: _sum(those) for model, those in members.items()}
+
+
+def _sum(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
+    found: Counter[str] = Counter()
+    for one in counts:
+        found.update(one)
+    return dict(found.most_common())

@@ -1,0 +1,418 @@
+"""What a page shows, as plain data in the reader's units: the museum, a gallery, an object, a finding, a measure."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import groupby
+
+from pipeline.report.pages.judging import FragilityView
+from pipeline.report.plots.svg import Spot
+
+
+class State(StrEnum):
+    """Where an object stands, in the order in which the report lists it; aside: not on display, and not assessed."""
+
+    ACT = "act"
+    OPEN = "open"
+    UNKNOWN = "unknown"
+    SAFE = "safe"
+    ASIDE = "aside"
+
+
+STATES = (State.ACT, State.OPEN, State.UNKNOWN, State.SAFE)
+"""Those of what is assessed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """How many objects are in each state; the five add up to all."""
+
+    act: int = 0
+    open: int = 0
+    unknown: int = 0
+    safe: int = 0
+    aside: int = 0
+
+    @property
+    def total(self) -> int:
+        """All objects counted."""
+        return self.act + self.open + self.unknown + self.safe + self.aside
+
+
+@dataclass(frozen=True, slots=True)
+class Bar:
+    """A utilisation as a bar: percent of its track (the limit lies in the middle) and whether it runs off the end."""
+
+    percent: int
+    beyond: bool
+    over: bool
+
+
+@dataclass(frozen=True, slots=True)
+class MotionLink:
+    """Which motion a finding rests on: its name, the start of its hash, its section, and who answers for it."""
+
+    name: str
+    short: str
+    anchor: str
+    approved: str
+
+
+@dataclass(frozen=True, slots=True)
+class FindingView:
+    """One finding in words; ``state`` is act, open or safe, ``numbers`` the sums behind the sentence in one line.
+
+    size : the utilisation for sorting, "" where it is not known
+    """
+
+    title: str
+    level: str
+    state: State
+    outcome: str
+    sentence: str
+    numbers: str
+    utilisation: str
+    bar: Bar | None
+    screen: str
+    note: str
+    motion: MotionLink
+    assumptions: tuple[str, ...]
+    size: str
+
+
+@dataclass(frozen=True, slots=True)
+class CheckView:
+    """One model run again on the changed chain; ``before`` and its utilisation are "" where nothing was found then."""
+
+    title: str
+    before: str
+    demand: str
+    capacity: str
+    utilisation_before: str
+    utilisation: str
+    bar_before: Bar | None
+    bar: Bar | None
+    passes: bool
+
+
+@dataclass(frozen=True, slots=True)
+class MeasureView:
+    """One recommendation in words; ``ended`` are the failures that can no longer happen with it."""
+
+    measure: str
+    title: str
+    level: str
+    sentence: str
+    checks: tuple[CheckView, ...]
+    ended: tuple[CheckView, ...]
+    rejected: tuple[str, ...]
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class WishView:
+    """A quantity of one object that is worth measuring: what it is, what it does, what is taken for it now."""
+
+    what: str
+    effect: str
+    now: str
+    waste: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SurveyView:
+    """One errand of measuring in a gallery: a quantity, how to measure it, on which objects, and what that settles."""
+
+    what: str
+    how: str
+    settles: str
+    objects: tuple["ObjectView", ...]
+
+
+@dataclass(frozen=True, slots=True)
+class NumberView:
+    """A number that a model was run with: name, value and range in one text, and where it comes from."""
+
+    text: str
+    origin: str
+    note: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class FigureView:
+    """A chart of the run with an object's marks."""
+
+    chart: str
+    spots: tuple[Spot, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class DecisionView:
+    """What a person decided about an object, in words; ``doubts`` say why it must be looked at again."""
+
+    kind: str
+    number: str
+    title: str
+    what: str
+    who: str
+    date: str
+    why: str
+    until: str
+    doubts: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectView:
+    """One object with everything that the report says about it; ``lead`` is its most urgent finding.
+
+    settled : whether people accepted or overruled all that does not pass, and nothing of that is in doubt
+    """
+
+    number: str
+    title: str
+    short: str
+    anchor: str
+    gallery: str
+    page: str
+    state: State
+    value_class: str
+    object_class: str
+    rule: str
+    support: str
+    place: str
+    lead: FindingView | None
+    findings: tuple[FindingView, ...]
+    measures: tuple[MeasureView, ...]
+    figures: tuple[FigureView, ...]
+    numbers: tuple[NumberView, ...]
+    assumptions: tuple[str, ...]
+    missing: tuple[str, ...]
+    problems: tuple[tuple[str, str, str], ...]
+    skipped: tuple[str, ...]
+    wishes: tuple[WishView, ...] = ()
+    grave: bool = False
+    fragilities: tuple[FragilityView, ...] = ()
+    decisions: tuple[DecisionView, ...] = ()
+    settled: bool = False
+
+    @property
+    def carded(self) -> bool:
+        """Whether the object has an entry of its own below the table: something was found about it."""
+        return self.state not in (State.UNKNOWN, State.ASIDE)
+
+    @property
+    def failing(self) -> tuple[FindingView, ...]:
+        """The findings that the entry explains at length: those that fail or are open."""
+        return tuple(f for f in self.findings if f.state is not State.SAFE)
+
+    @property
+    def passing(self) -> tuple[FindingView, ...]:
+        """The findings that pass."""
+        return tuple(f for f in self.findings if f.state is State.SAFE)
+
+    @property
+    def worthwhile(self) -> str:
+        """What is worth measuring, in one line: in its order, what does as much said together; "" for nothing."""
+        worth = (w for w in self.wishes if not w.waste)
+        parts = []
+        for effect, group in groupby(worth, key=lambda w: w.effect):
+            told = [f"{w.what} ({w.now})" if w.now else w.what for w in group]
+            parts.append(f"{', '.join(told)}: {effect}")
+        return "; ".join(parts)
+
+    @property
+    def unsettled(self) -> tuple[str, ...]:
+        """What the open findings assume: measuring it settles them."""
+        return tuple(dict.fromkeys(text for f in self.findings if f.state is State.OPEN for text in f.assumptions))
+
+    @property
+    def assumed_besides(self) -> tuple[str, ...]:
+        """What is assumed besides what the entry asks to be measured."""
+        named = self.unsettled if self.state is State.OPEN else ()
+        return tuple(text for text in self.assumptions if text not in named)
+
+
+@dataclass(frozen=True, slots=True)
+class Lead:
+    """The most urgent finding of an object, as a page other than its own names it."""
+
+    title: str
+    outcome: str
+
+
+@dataclass(frozen=True, slots=True)
+class Pointer:
+    """An object as a page other than its own names it: what it is, where its entry is, what happens, what to do.
+
+    measure : the first recommendation in a sentence, "" where there is none
+    """
+
+    number: str
+    short: str
+    page: str
+    anchor: str
+    gallery: str
+    state: State
+    lead: Lead | None = None
+    measure: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class TaskView:
+    """One line of "What to do first": a measure and the objects it is for, the most urgent ones first.
+
+    worst   : the largest utilisation, in words; "" where none is known
+    numbers : parameters of the measure with the range over the objects, such as ("clearance", "9 to 14 cm")
+    """
+
+    title: str
+    objects: tuple[ObjectView, ...]
+    numbers: tuple[tuple[str, str], ...] = ()
+    advised: bool = True
+    worst: str = ""
+
+    @property
+    def grave(self) -> int:
+        """How many of the objects overturn or break."""
+        return sum(o.grave for o in self.objects)
+
+
+@dataclass(frozen=True, slots=True)
+class DecisionsView:
+    """The decisions of a page: how many of each kind, and each with its object (None where that is gone).
+
+    settled : how many objects are settled by them
+    doubted : those that must be looked at again;  groups : the others by kind
+    """
+
+    accepted: int = 0
+    installed: int = 0
+    classes: int = 0
+    verdicts: int = 0
+    settled: int = 0
+    doubted: tuple[tuple[DecisionView, Pointer | None], ...] = ()
+    groups: tuple[tuple[str, tuple[tuple[DecisionView, Pointer | None], ...]], ...] = ()
+
+    def __bool__(self) -> bool:
+        """Whether there is any."""
+        return bool(self.doubted or self.groups)
+
+
+NO_DECISIONS = DecisionsView()
+
+
+@dataclass(frozen=True, slots=True)
+class TurnView:
+    """A verdict that turned, and why; ``view`` is the object where the report has it."""
+
+    number: str
+    view: Pointer | None
+    gallery: str
+    model: str
+    level: str
+    before: str
+    after: str
+    causes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ChangeView:
+    """One line of what changed: the object where it is about one, and the change in words."""
+
+    number: str
+    view: Pointer | None
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class SinceView:
+    """What changed since the run before; lists are cut, each with how many more there are.
+
+    before : when that run began;  counts, causes : how many of what, those above zero only
+    """
+
+    before: str
+    changed: bool
+    worse: tuple[tuple[TurnView, ...], int]
+    fixed: tuple[tuple[TurnView, ...], int]
+    counts: tuple[tuple[str, str], ...]
+    causes: tuple[tuple[str, str], ...]
+    lists: tuple[tuple[str, tuple[ChangeView, ...], int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SheetView:
+    """Which of its gallery's pages a page is: large galleries are cut into several.
+
+    number, of : from 1;  first, last : numbers of the objects between which it lies in the catalogue's order
+    """
+
+    page: str
+    number: int = 1
+    of: int = 1
+    first: str = ""
+    last: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """What the index says of a gallery's page, and of those on it that it names; kept beside the report as JSON.
+
+    task     : what is to do first there, in words, "" where nothing is advised
+    leaders  : its most urgent objects that nobody has settled, each with the key that sorts it among all
+    """
+
+    name: str
+    on_display: bool
+    sheet: SheetView
+    counts: Counts
+    task: str
+    leaders: tuple[tuple[tuple[int, bool, bool, str, float, str, str], Pointer], ...] = ()
+    decisions: DecisionsView = DecisionsView()
+
+
+@dataclass(frozen=True, slots=True)
+class GalleryRow:
+    """One gallery's row of the index, with all its pages."""
+
+    name: str
+    on_display: bool
+    sheets: tuple[SheetView, ...]
+    counts: Counts
+    task: str
+
+
+@dataclass(frozen=True, slots=True)
+class MotionView:
+    """One motion's section: measures with units, charts, processing steps, who answers for it.
+
+    table  : rows of PGA, PGV, PGD, Arias intensity; one text a column (see ``columns``), "–" where not computed
+    others : measures that fit in no column
+    charts : keys of the charts that were drawn for this motion, in the order of the paper's figures
+    """
+
+    name: str
+    hash: str
+    anchor: str
+    level: str
+    source: str
+    licence: str
+    approved: str
+    sampling: str
+    columns: tuple[str, ...]
+    table: tuple[tuple[str, tuple[str, ...]], ...]
+    others: tuple[tuple[str, str], ...]
+    charts: tuple[str, ...]
+    steps: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EffortView:
+    """By what the verdicts of one model were decided; ``any`` is the share of analyses for which a history was run."""
+
+    title: str
+    analyses: int
+    certificate: int
+    chart: int
+    history: int
+    any: str

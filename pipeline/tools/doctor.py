@@ -1,0 +1,170 @@
+"""Whether the next night can run, and what to mend if not."""
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache, partial
+from pathlib import Path
+from time import monotonic
+
+from pipeline.collection.inventory import galleries, latest_import, read_inventory
+from pipeline.collection.sources.opening import is_database
+from pipeline.night.reading_summary import in_line, told, unsaid
+from pipeline.night.source_state import mapping_of
+from pipeline.operations.secrets import hider
+from pipeline.operations.workspace import Workspace, open_workspace
+from pipeline.quantities import counted
+from pipeline.records import Item
+from pipeline.settings import Settings, load_settings
+from pipeline.tools import doctor_checks as checkup
+
+LONGEST = 10.0
+"""Seconds that objects are tried for: some 100,000 of them."""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """One thing looked at: whether it is well ("ok", "warning", "wrong"), and what mends it."""
+
+    what: str
+    state: str
+    message: str
+
+
+def diagnose(file: Path) -> list[Diagnosis]:
+    """Look at everything a night needs; every look is made, whatever the others found."""
+    try:
+        settings = load_settings(file)
+    except ValueError as problem:
+        return [Diagnosis("settings", "wrong", str(problem))]
+    found = [Diagnosis("settings", "ok", str(file))]
+    try:
+        workspace = open_workspace(settings)
+    except Exception as problem:  # noqa: BLE001 - a doctor reports whatever a database driver raises
+        found.append(Diagnosis("database", "wrong", hider(settings)(f"{type(problem).__name__}: {problem}")))
+        return [*found, *_each(settings, None)]
+    found.append(Diagnosis("database", "ok", f"{workspace.engine.dialect.name}, tables up to date"))
+    return [*found, *_each(settings, workspace)]
+
+
+def _each(settings: Settings, workspace: Workspace | None) -> list[Diagnosis]:
+    looks: list[tuple[str, Callable[[], tuple[str, str]]]] = [
+        ("collection", lambda: _collection(settings)),
+        ("motions", lambda: _motions(settings)),
+    ]
+    if workspace is not None:
+        items = cache(partial(read_inventory, workspace.engine))
+        looks += [
+            ("measures", lambda: _means(workspace)),
+            ("inventory", lambda: _inventory(workspace, items())),
+            ("objects", lambda: _objects(workspace, items())),
+        ]
+    looks += checkup.looks(settings, workspace)
+    hide = hider(settings)
+    out = []
+    for what, look in looks:
+        try:
+            state, message = look()
+        except Exception as problem:  # noqa: BLE001 - one thing that is broken must not hide the others
+            state, message = "wrong", str(problem) or type(problem).__name__
+        out.append(Diagnosis(what, state, hide(message)))
+    return out
+
+
+def _collection(settings: Settings) -> tuple[str, str]:
+    wanted = settings.collection
+    mapping_of(settings, wanted.mapping)
+    if not wanted.source:
+        return "ok", "no source: the inventory is used as it was last imported"
+    if is_database(wanted.source):
+        return "ok", f"a database, mapping {wanted.mapping}; `kouros import --dry-run` asks it"
+    source = settings.path(wanted.source)
+    if not source.is_file():
+        return "wrong", f"{source} is not there; export the collection to it, or change [collection] source"
+    return "ok", f"{source.name}, mapping {wanted.mapping}"
+
+
+def _motions(settings: Settings) -> tuple[str, str]:
+    from pipeline.motions.manifest import unlisted
+    from pipeline.motions.site import levels_at, read_site
+    from pipeline.night.floors import known
+    from pipeline.operations.workspace import site_folder
+    from pipeline.quantities import G
+
+    site = read_site(site_folder(settings.home, settings.site.folder))
+    peaks = [f"{m.motion.name} {m.measures['pga'] / G:.2f} g" for level in site.levels for m in level.motions]
+    text = f"{site.name} ({site.folder}): {', '.join(peaks)}"
+    known(settings, site)
+    for floor in site.floors:
+        levels_at(site, floor)
+        text += f"; floor {floor}"
+    doubts = [f"level {level.name}: {level.caution}" for level in site.levels if level.caution]
+    nobody = [level.name for level in site.levels if not level.approved_by]
+    flat = [record.name for _, record in site.manifest.records() if record.vertical]
+    if flat:
+        doubts.append(f"no vertical was recorded, and none shakes anything: {', '.join(flat)}")
+    stray = unlisted(site.file, site.manifest)
+    if stray:
+        doubts.append(
+            f"not in the manifest: {_hashed(site.folder, stray)}; `kouros motions entries` prints their entries"
+        )
+    if nobody:
+        doubts.append(f"nobody has approved: {', '.join(nobody)} (approved_by in the manifest)")
+    return ("warning", "; ".join([text, *doubts])) if doubts else ("ok", text)
+
+
+def _hashed(folder: Path, names: Sequence[str], most: int = 5) -> str:
+    told = [f"{name} (sha256 {hashlib.sha256((folder / name).read_bytes()).hexdigest()})" for name in names[:most]]
+    return ", ".join(told) + (f" and {len(names) - most:,} more" if len(names) > most else "")
+
+
+def _means(workspace: Workspace) -> tuple[str, str]:
+    have = workspace.means
+    return "ok", f"{counted(len(have.measures), 'measure')}, {counted(len(have.isolators), 'isolator')}"
+
+
+def _inventory(workspace: Workspace, items: Sequence[Item]) -> tuple[str, str]:
+    from pipeline.night.floors import strangers
+
+    info = latest_import(workspace.engine)
+    if info is None:
+        return "warning", "nothing imported yet; `kouros import FILE` does that, `kouros run` too where a source is set"
+    shown = sum(galleries(items).values())
+    doubts = strangers(workspace.settings.floors, {item.gallery for item in items})
+    read = told(workspace, workspace.catalogue())
+    text = f"{counted(len(items), 'object')}, {shown:,} on display, from {info.source} on {info.imported_at}; "
+    text += f"read: {in_line(read)}"
+    if read is None:
+        return "warning", "; ".join([text, *doubts])
+    doubts += [f"{one['message']}; {one['remedy']}" for one in read["suspicions"]]
+    doubts += [unsaid(read["unsaid"])] if read["unsaid"] else []
+    wrong = doubts or read["refused"] or read["sheets"]
+    return "warning" if wrong else "ok", "; ".join([text, *doubts])
+
+
+def _objects(workspace: Workspace, inventory: Sequence[Item]) -> tuple[str, str]:
+    """Try on every object what comes before the models: its class, its numbers, its measures, what is to be run."""
+    from pipeline.analysis.faults import apart, fault
+    from pipeline.analysis.plan import plan
+    from pipeline.night.assessment import place
+    from pipeline.store.decisions import decisions_in_force
+
+    items, decisions = [item for item in inventory if item.on_display], decisions_in_force(workspace.engine)
+
+    def tried(some: Sequence[Item]) -> Sequence[Item]:
+        plan([place(item, workspace.rules, decisions.get(item.object_number, ())).scene for item in some])
+        return some
+
+    bad, until, looked = [], monotonic() + LONGEST, 0
+    while looked < len(items) and monotonic() < until:
+        some = items[looked : looked + 1000]
+        looked += len(some)
+        found = zip(some, apart(tried, some, lambda item: item.support), strict=True)
+        bad += [fault(item, problem) for item, problem in found if isinstance(problem, Exception)]
+    text = f"{looked:,} of {len(items):,} on display tried: each can be classed and planned for"
+    if not bad:
+        return "ok", text
+    return "warning", (
+        f"Kouros fails on {len(bad):,} of {looked:,} objects, such as {bad[0].object_number}: {bad[0].words}; "
+        "a night goes on without them, but please tell its makers"
+    )

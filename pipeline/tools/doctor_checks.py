@@ -1,0 +1,159 @@
+"""What a doctor looks at besides the inputs: the last good night, the lock, room, permissions, hooks, compiled code."""
+
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+
+from pipeline.operations.hooks import look, named
+from pipeline.operations.report_status import FAILED, GOOD, RUNNING, last_good, status
+from pipeline.operations.workspace import LockedError, Workspace, locked
+from pipeline.quantities import counted
+from pipeline.settings import Settings
+from pipeline.store.runs import list_runs
+
+SPACE = 1_000_000_000
+"""Bytes of free disk below which a night may fail to write, whatever its last report weighed."""
+
+OVERDUE_H = 36.0
+"""Hours after which a nightly run is missing: a day, and the half of one for a night that was put off."""
+
+Found = tuple[str, str]
+"""State ("ok", "warning", "wrong") and message."""
+
+Look = tuple[str, Callable[[], Found]]
+
+
+def looks(settings: Settings, workspace: Workspace | None) -> Iterator[Look]:
+    """Yield what to look at, by name; each look returns what it found, and may raise."""
+    yield "disk", lambda: _disk(settings)
+    yield "permissions", lambda: _permissions(settings)
+    yield "kernels", _kernels
+    yield "lock", lambda: _lock(settings)
+    yield "last report", lambda: _last_report(settings)
+    yield "retention", lambda: _retention(settings)
+    yield "hooks", lambda: _hooks(settings)
+    yield "log", lambda: _log(settings)
+    if workspace is not None:
+        yield "clock", lambda: _clock(workspace)
+
+
+def _there(folder: Path) -> Path:
+    """Return the folder, or the nearest one above it that exists."""
+    while not folder.exists():
+        folder = folder.parent
+    return folder
+
+
+def _disk(settings: Settings) -> Found:
+    """Room for another report as large as the last one, and for the database to grow by half."""
+    wanted = float(SPACE)
+    good = last_good(settings)
+    reports = settings.path(settings.report.folder)
+    if good is not None:
+        folder = (reports / good.report).parent
+        wanted += 2.0 * sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
+    database = None if "://" in settings.database else Path(settings.database)
+    if database is not None and database.is_file():
+        wanted += 0.5 * database.stat().st_size
+    places = {_there(folder) for folder in (reports, settings.home, *([database.parent] if database else []))}
+    free, place = min((shutil.disk_usage(place).free, str(place)) for place in places)
+    text = f"{free / 1e9:.1f} GB free at {place}, {wanted / 1e9:.1f} GB wanted for the next night"
+    return ("ok", text) if free >= wanted else ("warning", f"{text}; make room, or set [retention]")
+
+
+def _permissions(settings: Settings) -> Found:
+    folders = [settings.home, settings.path(settings.report.folder), settings.kept]
+    if settings.logs.file:
+        folders.append(settings.path(settings.logs.file).parent)
+    if "://" not in settings.database:
+        folders.append(Path(settings.database).parent)
+    closed = sorted({str(_there(f)) for f in folders if not os.access(_there(f), os.W_OK | os.X_OK)})
+    if closed:
+        return "wrong", f"{', '.join(closed)} cannot be written; change its permissions, or the folder in kouros.toml"
+    file = settings.home / "kouros.toml"
+    if os.name == "posix" and file.is_file() and file.stat().st_mode & 0o002:
+        return "warning", f"everybody may change {file}, and with it the programs that hooks start: chmod o-w"
+    return "ok", "reports, database, log and what is kept between nights can be written"
+
+
+def _kernels() -> Found:
+    from pipeline.kernels import KERNEL_VERSION, cache_folder
+
+    folder = Path(cache_folder())
+    if not os.access(_there(folder), os.W_OK):
+        return "warning", f"{folder} cannot be written, so that every run compiles anew; set KOUROS_CACHE"
+    compiled = sum(1 for _ in folder.rglob("*.nbc")) if folder.is_dir() else 0
+    others = sum(1 for other in folder.parent.glob("kernels-*") if other != folder)
+    text = f"version {KERNEL_VERSION}, {counted(compiled, 'piece')} of compiled code in {folder}"
+    return "ok", f"{text}; {counted(others, 'folder')} of other versions may be deleted" if others else text
+
+
+def _lock(settings: Settings) -> Found:
+    try:
+        with locked(settings, sweeping=False):
+            return "ok", "no other run is at work"
+    except LockedError as problem:
+        now = status(settings)
+        holder = f" (process {now.pid}, since {now.since})" if now is not None and now.state == RUNNING else ""
+        return "warning", f"{problem}{holder}"
+
+
+def _last_report(settings: Settings) -> Found:
+    now = status(settings)
+    good = last_good(settings)
+    if good is None:
+        said = f"; the last attempt failed: {now.message}" if now is not None and now.state == FAILED else ""
+        return "warning", f"there is no good report yet{said}; `kouros run` makes one"
+    text = f"{good.report}, of {good.finished or 'a run that did not say when'}"
+    if now is not None and now.state == FAILED:
+        return "warning", f"stale: {text}; the run of {now.since} failed: {now.message}"
+    if now is not None and now.state == RUNNING and _lock(settings)[0] == "ok":
+        return "warning", f"stale: {text}; the run that began at {now.since} was interrupted; run again"
+    try:
+        age = (datetime.now(UTC) - datetime.fromisoformat(good.finished)).total_seconds() / 3600.0
+    except (ValueError, TypeError):
+        return "ok", text
+    if age > OVERDUE_H:
+        return "warning", f"{text}, {age / 24.0:.1f} days ago; see whether the nightly run is still started"
+    return "ok", f"{text}, {age:.1f} hours ago" + ("" if now is None or now.state == GOOD else "; a run is at work")
+
+
+def _retention(settings: Settings) -> Found:
+    limits = settings.retention
+    if not (limits.runs or limits.reports or limits.days):
+        return "warning", "every run and every report is kept for ever; set [retention] before the disk is full"
+    said = [
+        counted(limits.runs, "run") if limits.runs else "",
+        counted(limits.reports, "report") if limits.reports else "",
+        f"{limits.days:g} {'day' if limits.days == 1 else 'days'}" if limits.days else "",
+    ]
+    return "ok", f"{', '.join(filter(None, said))} kept at most; the last good ones always"
+
+
+def _hooks(settings: Settings) -> Found:
+    hooks = named(settings.hooks)
+    if not hooks:
+        return "ok", "none: nobody is told"
+    wrong = [f"{name}: {problem}" for name, hook in hooks for problem in (look(hook),) if problem]
+    if wrong:
+        return "wrong", "; ".join(wrong)
+    return "ok", f"{len(hooks)} found and not tried: {', '.join(name for name, _ in hooks)}"
+
+
+def _log(settings: Settings) -> Found:
+    if not settings.logs.file:
+        return "ok", "none is kept; `kouros --log-json` writes one to standard error"
+    path = settings.path(settings.logs.file)
+    if path.exists() and not (path.is_file() and os.access(path, os.W_OK)):
+        return "wrong", f"{path} cannot be written; change its permissions or [logs] file"
+    return "ok", f"{path}, {counted(settings.logs.keep + 1, 'file')} of {settings.logs.megabytes:g} MB at most"
+
+
+def _clock(workspace: Workspace) -> Found:
+    now = datetime.now(UTC)
+    runs = list_runs(workspace.engine)
+    if runs and datetime.fromisoformat(runs[0].started) > now:
+        return "wrong", f"the last run is of {runs[0].started}, later than now ({now.isoformat()}); set the clock"
+    return "ok", now.isoformat(timespec="seconds")

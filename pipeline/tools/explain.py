@@ -1,0 +1,203 @@
+"""Why one object was judged as it was: every step from its record to its advice, and nothing stored."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import isnan
+from typing import Any
+
+from pipeline.analysis.assess import assess
+from pipeline.analysis.findings import findings
+from pipeline.analysis.plan import Work, plan
+from pipeline.analysis.refinement import AUTO, Climb, examine
+from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.verdicts import LevelMotions, capacity_of
+from pipeline.collection.inventory import read_inventory
+from pipeline.execute import Threads
+from pipeline.mitigate import advise
+from pipeline.mitigate.installed import Placed, assess_above
+from pipeline.models import model_named
+from pipeline.night.assessment import place
+from pipeline.night.floors import storeys
+from pipeline.night.prepare import assessed, popular
+from pipeline.night.run import named
+from pipeline.operations.workspace import Workspace, charts_of
+from pipeline.quantities import Array
+from pipeline.records import Estimate, Executor, Finding, Item, Progress, Recommendation, Scene
+from pipeline.settings import Settings
+from pipeline.store.decisions import InForce, decisions_in_force
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """A step that was taken for one parameter set under one motion.
+
+    inputs     : which of the uncertain inputs is at an end of its range, and the direction where it is known
+    step       : bound, chart, or the fidelity that was integrated at
+    low, high  : between these the demand lies; of a chart its value less and plus its error, of a history the same
+    error      : as the chart or the history states it; None of a bound
+    told       : what the object does then, where the history tells
+    """
+
+    motion: str
+    inputs: str
+    step: str
+    low: float
+    high: float
+    error: float | None = None
+    told: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Reasoning:
+    """One model under one level: the steps in the order in which they were taken, and what came of them.
+
+    taken : none of what stands on an isolator, which is integrated under what that passes on
+    """
+
+    finding: Finding
+    capacity: Estimate
+    taken: tuple[Taken, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """The whole chain of reasoning for one object."""
+
+    scene: Scene
+    reasonings: tuple[Reasoning, ...]
+    advice: tuple[Recommendation, ...]
+
+
+def explain(workspace: Workspace, number: str, progress: Progress) -> list[Explanation]:
+    """Assess one object as a night would, and keep every step; all records of that number, if it has several.
+
+    raises : UsageError for an object that the inventory does not have, with close ones; errors as a run
+    """
+    settings = workspace.settings
+    everything, inventory = workspace.catalogue(), read_inventory(workspace.engine)
+    items = named(inventory, objects=(number,))
+    site = workspace.site()
+    executor, decisions = Threads(settings.analysis.workers or None), decisions_in_force(workspace.engine)
+    out = []
+    for storey in storeys(settings, site, items):
+        levels = storey.shaking
+        # The charts that a night uses, so that the reasons are those of the night.
+        asked = assessed(everything.objects, settings.display.stores)
+        charted = popular(everything, asked, workspace.rules, workspace.means, storey.x_azimuth)
+        with charts_of(settings, [m.hash for level in levels for m in level.motions], charted) as shelf:
+            for index in storey.members:
+                one = _placed(workspace, items[index], decisions)
+                one = replace(one, scene=replace(one.scene, floor=storey.name))
+                # What is advised for a case depends on all that stand in it.
+                others = [_placed(workspace, other, decisions) for other in _neighbours(items[index], inventory)]
+                out.append(_explain(one, others, levels, workspace, executor, progress, shelf))
+    return out
+
+
+def _placed(workspace: Workspace, item: Item, decisions: InForce) -> Placed:
+    return place(item, workspace.rules, decisions.get(item.object_number, ()))
+
+
+def _neighbours(item: Item, inventory: Sequence[Item]) -> list[Item]:
+    where = (item.gallery, item.case)
+    # As on a night, where what is not on display is no company of what is.
+    company = [other for other in inventory if item.case and other.on_display == item.on_display]
+    return [other for other in company if other != item and (other.gallery, other.case) == where]
+
+
+def _explain(
+    one: Placed,
+    others: Sequence[Placed],
+    levels: Sequence[LevelMotions],
+    workspace: Workspace,
+    executor: Executor,
+    progress: Progress,
+    shelf: Shelf,
+) -> Explanation:
+    settings = workspace.settings
+    todo = plan([one.scene], levels[0].x_azimuth)
+    reasonings = [_reason(work, one.scene, level, settings, executor, shelf) for level in levels for work in todo.work]
+    how = settings.analysis
+    fineness: dict[str, Any] = {"fidelity": how.fidelity, "azimuth_step": how.azimuth_step, "charts": shelf}
+    integrated = {"fidelity": "reference" if how.fidelity == "reference" else "history"}
+    on_top = [
+        assess_above([each], levels, executor, progress, azimuth_step=how.azimuth_step, **integrated)[0]
+        for each in (one, *others)
+    ]
+    if one.above is not None:
+        above = one.above
+        reasonings += [Reasoning(f, capacity_of(model_named(f.model), above)[1], ()) for f in on_top[0][0]]
+    done = {r.finding.title for r in reasonings}
+    left_out = {title: why for title, why in {**todo.skipped[0], **on_top[0][1]}.items() if title not in done}
+    scene = replace(one.scene, skipped=left_out)
+    scenes = [scene, *(other.scene for other in others)]
+    around = assess(scenes[1:], levels, executor, progress, **fineness)[1] if others else []
+    found = [
+        [r.finding for r in reasonings],
+        *([*own, *above_it] for own, (above_it, _) in zip(around, on_top[1:], strict=True)),
+    ]
+    advice = advise(scenes, found, levels, executor, progress, means=workspace.means, **fineness)
+    return Explanation(scene, tuple(reasonings), tuple(advice[0]))
+
+
+def _reason(
+    work: Work, scene: Scene, level: LevelMotions, settings: Settings, executor: Executor, shelf: Shelf
+) -> Reasoning:
+    bounds: list[Mapping[str, tuple[Array, Array]]] = []
+
+    def watch(climb: Climb) -> None:
+        for found in climb.found:
+            found.trail = []
+            bounds.append({output: (low.copy(), found.high[output].copy()) for output, low in found.low.items()})
+
+    analysis = settings.analysis
+    examined = examine(
+        work,
+        [scene],
+        level,
+        executor,
+        fidelity=analysis.fidelity,
+        azimuth_step=analysis.azimuth_step,
+        charts=shelf,
+        watch=watch,
+    )
+    ((case, known),) = examined.cases
+    (finding,) = findings(examined.climb, case, known, [scene])
+    names = _named(work)
+    taken = []
+    for found, bound in zip(examined.climb.found, bounds, strict=True):
+        low, high = bound[case.output]
+        exact = work.model.exact and case.output == work.model.demand
+        no_error = exact or work.model.output(case.output).unit == "bool"
+        for row in dict.fromkeys(work.spans.rows.ravel().tolist()):
+            # Only `auto` asks for bounds besides certificates.
+            if analysis.fidelity == AUTO or low[row] == high[row]:
+                taken.append(Taken(found.motion.name, names[row], "bound", float(low[row]), float(high[row])))
+        for step, rows, columns in found.trail or ():
+            fidelity = "chart" if step.name == "CHART" else examined.climb.integrated
+            for at, row in enumerate(rows.tolist()):
+                # Where the certificate is the demand, a history only tells what happens after.
+                value = float(low[row]) if exact else float(columns[case.output][at])
+                error = 0.0 if no_error else float(columns[work.model.error_of(case.output)][at])
+                off = error if fidelity == "chart" else 0.0
+                one = {name: float(column[at]) for name, column in columns.items()}
+                told = work.model.outcome(one, {name: float(v[row]) for name, v in work.values.items()})[1]
+                taken.append(Taken(found.motion.name, names[row], fidelity, value - off, value + off, error, told))
+    return Reasoning(finding, case.estimates[0], tuple(taken))
+
+
+def _named(work: Work) -> list[str]:
+    """Say of each parameter set of one object in what it differs from the best estimates."""
+    spans = work.spans
+    names = [""] * work.size
+    for side in range(spans.rows.shape[1]):
+        best = int(spans.rows[0, side])
+        for row in spans.rows[:, side].tolist():
+            other = [
+                f"{name} = {float(column[row]):.4g}" for name, column in work.values.items()
+                if column[row] != column[best] and not isnan(column[row])
+            ]  # fmt: skip
+            angle = float(work.angles[row])
+            where = [] if isnan(angle) else [f"along {angle:.0f} degrees"]
+            names[row] = ", ".join([*(other or ["best estimates"]), *where])
+    return names

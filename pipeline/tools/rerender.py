@@ -1,0 +1,69 @@
+"""Looking at runs that are over: render one again, compare two."""
+
+from pathlib import Path
+
+from pipeline.night.reading_summary import doubts_of
+from pipeline.operations.presentation import presentation
+from pipeline.operations.report_status import renew
+from pipeline.operations.run_summary import SUMMARY
+from pipeline.operations.workspace import UsageError, locked, open_workspace
+from pipeline.quantities import counted
+from pipeline.records import RunChanges
+from pipeline.report import publish
+from pipeline.report.files.page_renderer import Pen
+from pipeline.report.files.report_writer import Edition
+from pipeline.report.render import draw_all
+from pipeline.settings import Settings
+from pipeline.store.results import load_found
+from pipeline.store.reuse import whole_runs
+from pipeline.store.runs import compare_runs, load_head
+
+
+def render_again(settings: Settings, run_id: str | None) -> Path:
+    """Render a run from the store into a new folder; the newest of the whole collection becomes the latest report.
+
+    Nothing is computed again, and one sheet at a time is in memory.
+    returns : the report's index
+    """
+    with locked(settings):
+        workspace = open_workspace(settings)
+        engine, whole = workspace.engine, whole_runs(workspace.engine)
+        head, sheets = load_head(engine, run_id or (whole[0] if whole else None))
+        # As on the night itself: against the whole run before it, and a part of the collection against none.
+        at = whole.index(head.run_id) if head.run_id in whole else len(whole)
+        before = whole[at + 1 : at + 2]
+        changes = compare_runs(engine, before[0], head.run_id) if before else None
+        found = ((sheet, load_found(engine, sheet.key)) for sheet in sheets)
+        told = workspace.reports / head.run_id / SUMMARY
+        beside = {SUMMARY: told.read_text(encoding="utf-8")} if told.is_file() else {}
+        with Edition(_free(workspace.reports / head.run_id), Pen(head, **presentation(settings))) as edition:
+            index = draw_all(edition, head, found, changes, beside, doubts_of(workspace, head))
+        if [head.run_id] == whole[:1]:
+            publish(index.parent, workspace.reports)
+            renew(settings)
+        return index
+
+
+def _free(folder: Path) -> Path:
+    # A report never overwrites another one.
+    number = 2
+    candidate = folder
+    while candidate.exists():
+        candidate = folder.with_name(f"{folder.name}-{number}")
+        number += 1
+    return candidate
+
+
+def compare(settings: Settings, old: str | None, new: str | None) -> RunChanges:
+    """Return what changed between two runs; the last two of the whole collection where none is named.
+
+    raises : UsageError where there are not two runs yet
+    """
+    engine = open_workspace(settings).engine
+    runs = whole_runs(engine)
+    if new is None:
+        if not runs or (old is None and len(runs) < 2):
+            there = f"there {'is' if len(runs) == 1 else 'are'} {counted(len(runs), 'finished run')}"
+            raise UsageError(f"{there} of the whole collection and two are needed; make another with `kouros run`")
+        new = runs[0]
+    return compare_runs(engine, old or runs[1], new)

@@ -1,0 +1,170 @@
+"""The seismologist's desk: list, look at, process and accept the records of a site."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pipeline.motions.errors import Judgement, MotionError
+from pipeline.motions.manifest import GROUND_FLOOR, load_manifest, manifest_file
+from pipeline.motions.site import levels_at, prepare, read_site
+from pipeline.motions.writing import accept, write_site
+from pipeline.operations.workspace import UsageError
+from pipeline.report import Units
+
+if TYPE_CHECKING:
+    from pipeline.motions.inspection import Inspection
+
+
+@dataclass(frozen=True)
+class MotionRow:
+    """One motion of a site in a line; SI, "" or None where there is none.
+
+    pulse_period : s, of a pulse-like motion
+    """
+
+    level: str
+    floor: str
+    name: str
+    dt: float
+    duration: float
+    pga: float
+    pgv: float
+    pgd: float
+    duration_5_95: float
+    pulse_period: float | None
+    approved_by: str
+    hash: str
+
+
+def listed(folder: Path) -> list[MotionRow]:
+    """Return the motions of a site, those of its floors after those of the ground.
+
+    raises : MotionError
+    """
+    site = read_site(folder)
+    return [
+        MotionRow(
+            level=level.name,
+            floor="" if floor == GROUND_FLOOR else floor,
+            name=one.motion.name,
+            dt=one.motion.dt,
+            duration=one.motion.duration,
+            pga=one.measures["pga"],
+            pgv=one.measures["pgv"],
+            pgd=one.measures["pgd"],
+            duration_5_95=one.measures["duration_5_95"],
+            pulse_period=one.measures.get("pulse_period"),
+            approved_by=level.approved_by,
+            hash=one.motion.hash,
+        )
+        for floor in (GROUND_FLOOR, *site.floors)
+        for level in levels_at(site, floor)
+        for one in level.motions
+    ]
+
+
+def show(folder: Path, name: str, page: Path, units: Units) -> "tuple[list[Inspection], Path]":
+    """Look at the records of a site and write the page of it.
+
+    name   : of one record, or "" for all
+    raises : MotionError
+    """
+    from pipeline.motions.inspection import inspect
+    from pipeline.report.pages.record_page import render_record
+
+    found = inspect(folder, name)
+    return found, render_record(found, page, units)
+
+
+def described(one: "Inspection") -> dict[str, Any]:
+    """Return an inspection as plain values for programs: measures in SI, corners in Hz, spectra in m/s2, the pulse."""
+    return {
+        "name": one.motion.name,
+        "level": one.level,
+        "place": one.place,
+        "dt": one.motion.dt,
+        "samples": one.motion.samples,
+        "hash": one.motion.hash,
+        "filtered": one.filtered,
+        "highpass_hz": one.corners[0],
+        "lowpass_hz": one.corners[1],
+        "measures_before": dict(one.measures_before),
+        "measures": dict(one.measures),
+        "spectra": {
+            name: {
+                "periods_s": spectrum.periods.tolist(),
+                "damping": spectrum.damping.tolist(),
+                "psa": spectrum.pseudo_acceleration.tolist(),
+            }
+            for name, spectrum in one.spectra.items()
+        },
+        "pulse": one.pulse
+        and {
+            "is_pulse": one.pulse.is_pulse,
+            "indicator": one.pulse.indicator,
+            "period_s": one.pulse.period,
+            "angle_deg": one.pulse.angle,
+            "pgv": one.pulse.pgv,
+            "pulse_pgv": one.pulse.pulse_pgv,
+            "method": one.pulse.method,
+        },
+        "steps": list(one.motion.steps),
+    }
+
+
+def entries(folder: Path) -> list[str]:
+    """Return the entries that a site's manifest needs for the record files beside it, see `motions.entries`.
+
+    raises : MotionError
+    """
+    from pipeline.motions.entries import entries as found
+
+    return found(folder)
+
+
+def process(folder: Path, out: Path, name: str, *, dry_run: bool = False) -> Path:
+    """Process the records of a site's ground and write them as a site of their own.
+
+    name    : of one record, or "" for all
+    dry_run : write nothing
+    returns : the new manifest
+    raises  : MotionError
+    """
+    site = read_site(folder)
+    chosen = [(v.name, one.motion) for v in site.levels for one in v.motions if name in {"", one.motion.name}]
+    if not chosen:
+        names = ", ".join(repr(one.motion.name) for v in site.levels for one in v.motions)
+        raise UsageError(f"there is no record {name!r} on the ground of {site.file}; its records are {names}")
+    why = f"Processed by Kouros from {site.name}; the steps stand with each record."
+    return write_site(out, chosen, site.manifest.site, licence="as the original", why=why, dry_run=dry_run)
+
+
+def overrule(folder: Path, name: str, reason: str, *, dry_run: bool = False) -> Sequence[str]:
+    """Overrule, with a reason, the refusals of one record that are a matter of judgement; the manifest keeps it.
+
+    dry_run : leave the manifest as it is
+    returns : what was refused, in words, one for each refusal overruled; none where nothing was refused
+    raises  : MotionError for what is corrupt, or for a record that the manifest does not have
+    """
+    file = manifest_file(folder)
+    manifest = load_manifest(file)
+    found = [(key, record) for key, record in manifest.records() if record.name == name]
+    if not found:
+        known = ", ".join(repr(record.name) for _, record in manifest.records())
+        raise UsageError(f"{file}: there is no record {name!r}; its records are {known}")
+    (key, record), overruled = found[0], dict[Judgement, str]()
+    targets = {r.name: level.target for level in manifest.level for r in level.record}
+    while True:
+        try:
+            granted = record.model_copy(update={"accept": record.accept | dict.fromkeys(overruled, reason)})
+            prepare(file, key, granted, targets.get(name), manifest.site.x_azimuth)
+        except MotionError as refused:
+            if not refused.judgement or refused.judgement in overruled:
+                raise
+            overruled[refused.judgement] = str(refused)
+        else:
+            break
+    if overruled and not dry_run:
+        accept(file, name, dict.fromkeys(overruled, reason))
+    return tuple(overruled.values())

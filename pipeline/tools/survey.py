@@ -1,0 +1,128 @@
+"""What to measure first, as a workbook to print, fill in and import again."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from functools import partial
+from pathlib import Path
+
+from pipeline.analysis.assess import assess
+from pipeline.analysis.faults import Fault, apart, fault
+from pipeline.analysis.survey import in_order, measurables, wishes
+from pipeline.analysis.verdicts import LevelMotions
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.inventory import Difference, add_sheet, read_inventory
+from pipeline.collection.mapping import Mapping, load_mapping
+from pipeline.collection.reading import Reading, read_items
+from pipeline.execute import Threads
+from pipeline.night.assessment import place
+from pipeline.night.floors import storeys
+from pipeline.operations.workspace import Workspace
+from pipeline.records import Item, Progress, Wish
+from pipeline.report.files.survey_sheet import HEADER_ROW, column_name, sheet_title, write_survey
+from pipeline.store.decisions import decisions_in_force
+
+LENGTH_UNITS = ("cm", "mm", "m", "in", "ft")
+
+
+@dataclass(frozen=True)
+class Surveyed:
+    """What a survey asks for, where its workbook is, and the objects that Kouros failed on."""
+
+    path: Path
+    wishes: tuple[Wish, ...]
+    objects: int
+    quantities: int
+    waste: int
+    faults: tuple[Fault, ...] = ()
+
+
+def survey(
+    workspace: Workspace, progress: Progress, *, galleries: tuple[str, ...] = (), path: Path | None = None
+) -> Surveyed:
+    """Assess the objects on display, and write what is worth measuring to a workbook.
+
+    galleries : only these; none named means all
+    path      : of the workbook; None for survey-<date>.xlsx beside the settings
+    raises    : as a run does, where motions or settings are wrong
+    """
+    settings = workspace.settings
+    items = [
+        item
+        for item in read_inventory(workspace.engine)
+        if item.on_display and (not galleries or item.gallery in galleries)
+    ]
+    if not items:
+        raise CollectionError("nothing on display to survey: import the collection, or name another gallery")
+    site = workspace.site()
+    executor = Threads(settings.analysis.workers or None)
+    fidelity, step = settings.analysis.fidelity, settings.analysis.azimuth_step
+    if fidelity == "chart":
+        # Each trial is asked once: a chart that is not there would not pay.
+        fidelity = "auto"
+    found: list[Wish] = []
+    decisions = decisions_in_force(workspace.engine)
+    faults: list[Fault] = []
+
+    def asked(shaking: Sequence[LevelMotions], some: Sequence[Item]) -> list[list[Wish]]:
+        scenes = [place(item, workspace.rules, decisions.get(item.object_number, ())).scene for item in some]
+        _, findings = assess(scenes, shaking, executor, progress, fidelity=fidelity, azimuth_step=step, outcomes=False)
+        by_object: dict[str, list[Wish]] = {item.object_number: [] for item in some}
+        for wish in wishes(scenes, findings, shaking, executor, progress, fidelity=fidelity, azimuth_step=step):
+            by_object[wish.object_number].append(wish)
+        return list(by_object.values())
+
+    for storey in storeys(settings, site, items):
+        here = [items[index] for index in storey.members]
+        for item, came in zip(here, apart(partial(asked, storey.shaking), here, lambda one: one.support), strict=True):
+            if isinstance(came, Exception):
+                faults.append(fault(item, came))
+            else:
+                found += came
+    found = in_order(found)
+    target = path or settings.path(f"survey-{datetime.now():%Y-%m-%d}.xlsx")
+    # The counts are those of the workbook; that of a dry run goes with it.
+    written = target if settings.rehearsal is None else settings.rehearsal / target.name
+    counts = write_survey(written, found, measurables(), length=settings.report.length)
+    return Surveyed(target, tuple(found), **counts, faults=tuple(faults))
+
+
+def read_sheet(path: Path) -> Reading:
+    """Read a sheet that was filled in: a survey's workbook, or a CSV with the columns of the preset "kouros".
+
+    raises : CollectionError for a file that cannot be read, or a workbook without the survey's sheet
+    """
+    if path.suffix.lower() != ".xlsx":
+        return read_items(path, load_mapping("kouros"))
+    fault: CollectionError | None = None
+    for length in LENGTH_UNITS:
+        try:
+            return read_items(path, sheet_mapping(length))
+        except CollectionError as problem:
+            if f"has no sheet {sheet_title(length)!r}" not in str(problem):
+                raise
+            fault = fault or problem
+    raise CollectionError(f"{path.name}: no sheet of a survey, such as {sheet_title('cm')!r}; {fault}")
+
+
+def sheet_mapping(length: str) -> Mapping:
+    """Return the mapping that reads a survey's sheet whose lengths are in this unit."""
+    whole = load_mapping("kouros").model_dump(exclude_none=True, exclude_defaults=True)
+    whole["source"] = {"format": "xlsx", "sheet": sheet_title(length), "header_row": HEADER_ROW}
+    columns = {}
+    for field, column in whole["columns"].items():
+        unit = {"unit": length} if field.endswith("_m") else {}
+        columns[field] = column | {"column": column_name(field, length)} | unit
+    return Mapping.model_validate(whole | {"columns": columns})
+
+
+def add_measurements(
+    workspace: Workspace, path: Path, *, dry_run: bool = False
+) -> tuple[Reading, Difference, list[str]]:
+    """Lay a filled-in sheet over the inventory; a dry run only says what that would change.
+
+    returns : what was read, what changed, and the objects of the sheet that the inventory does not have
+    """
+    reading = read_sheet(path)
+    changes, unknown = add_sheet(workspace.engine, reading, dry_run=dry_run)
+    return reading, changes, unknown

@@ -1,0 +1,1 @@
+"""Self-measurement: stability at the extremes, error against cost."""

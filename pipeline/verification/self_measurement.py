@@ -1,0 +1,291 @@
+"""The numerical self-test: the compiled kernels of this very machine at the extremes, each against its exact limit."""
+
+import tracemalloc
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from pipeline.analysis.response import respond, trace
+from pipeline.quantities import Array, G, counted
+from pipeline.records import Motion
+from pipeline.verification.extremes import MODELS, PROMISED, along_x, complaint, motions, objects, shaking
+from pipeline.verification.outcome import Outcome
+
+
+@dataclass(frozen=True)
+class Case:
+    """An extreme, the truth that it is held against, and how far off it may be.
+
+    measure : -> what is held against the limit: a relative error where nothing else is said
+    """
+
+    what: str
+    truth: str
+    limit: float
+    measure: Callable[[], float]
+
+
+def outcomes() -> Iterator[Outcome]:
+    """Run each case and yield its outcome; a case that fails does not stop the others."""
+    for case in CASES:
+        start = perf_counter()
+        result, problem = np.nan, ""
+        try:
+            result = float(case.measure())
+        except Exception as wrong:  # noqa: BLE001 - a self-test reports whatever its cases raise
+            problem = f"{type(wrong).__name__}: {wrong}"
+        # A NaN is not within any limit.
+        ok, number = result <= case.limit, result if np.isfinite(result) else None
+        yield Outcome(case.what, case.truth, number, case.limit, ok, perf_counter() - start, problem)
+
+
+def _worst(got: Any, want: Any, scale: Any = None) -> float:
+    got, want = np.asarray(got, dtype=np.float64), np.asarray(want, dtype=np.float64)
+    return float(np.max(np.abs(got - want) / (np.abs(want) if scale is None else scale)))
+
+
+def _largest(values: Iterable[float]) -> float:
+    # Unlike max(), which passes a NaN over.
+    return float(np.max(list(values)))
+
+
+def _ground(a: Array, dt: float) -> Array:
+    # Displacement (n,) of a base at its samples, exact for the polygon.
+    v = np.concatenate([[0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1]))])
+    return np.concatenate([[0.0], np.cumsum(v[:-1] * dt + dt**2 * (2.0 * a[:-1] + a[1:]) / 6.0)])
+
+
+def _in_space(motion: Motion, friction: float) -> float:
+    # What nothing holds stays in space: u = -ground displacement.
+    want = -_ground(motion.acceleration[0], motion.dt)
+    moved = [trace("sliding", motion, friction_static=friction, directions=d)["u_x"][: want.size] for d in (1, 2)]
+    return _largest(_worst(u, want, np.abs(want).max()) for u in moved)
+
+
+def _newmark(friction: Array, directions: int, peak: float = 0.5 * G, duration: float = 0.2) -> float:
+    # d = V^2 / (2 mu g) (1 - mu g / A), V = A T (Newmark 1965): two samples are a rectangular pulse.
+    pulse = along_x(np.full(2, -peak), duration)
+    tail = 1.1 * peak * duration / (float(friction.min()) * G)
+    slid = respond("sliding", pulse, friction_static=friction, directions=directions, tail=tail)["displacement"]
+    coast = (peak * duration) ** 2 / (2.0 * friction * G)
+    return _worst(slid, coast * np.maximum(0.0, 1.0 - friction * G / peak), coast)
+
+
+def step_response(x: Array, zeta: float) -> Array:
+    """Return w^2 u / A of an oscillator under a suddenly applied force, x = w t: the four textbook branches."""
+    if zeta < 1.0:
+        d = np.sqrt(1.0 - zeta**2)
+        return np.asarray(1.0 - np.exp(-zeta * x) * (np.cos(d * x) + zeta / d * np.sin(d * x)))
+    if zeta == 1.0:
+        return np.asarray(1.0 - (1.0 + x) * np.exp(-x))
+    k = np.sqrt(zeta**2 - 1.0)
+    s1, s2 = -zeta + k, -zeta - k
+    return np.asarray(1.0 + (s2 * np.exp(s1 * x) - s1 * np.exp(s2 * x)) / (s1 - s2))
+
+
+def _steps(zeta: float) -> float:
+    errors = []
+    for frequency in (0.02, 1.0, 20.0, 500.0):
+        w = 2.0 * np.pi * frequency
+        history = trace("oscillator", along_x(np.full(501, -3.0), 0.02), frequency=frequency, damping=zeta)
+        want = 3.0 / w**2 * step_response(w * history["t"].to_numpy(), zeta)
+        errors.append(_worst(history["u_x"], want, 3.0 / w**2))
+    return _largest(errors)
+
+
+def _static(name: str, **extra: float) -> float:
+    # w -> infinity: u = -a / w^2.  What the kinks of the polygon add is at most 2 / (w dt) of the peak: 1 / w dt here.
+    motion, w = shaking(vertical=0.0), 2.0 * np.pi * 500.0
+    asked: dict[str, Any] = {"frequency": 500.0, "damping": 1.0, "tail": 0.0, **extra}
+    moved = respond(name, motion, **asked)["displacement"]
+    return _worst(moved, np.abs(motion.acceleration[0]).max() / w**2)
+
+
+def _soft() -> float:
+    # w -> 0: u = -ground displacement; what is left is about (w t)^2 = 1e-6 here.
+    motion = shaking(vertical=0.0)
+    w = 1e-3 / motion.duration
+    moved = respond("oscillator", motion, frequency=w / (2.0 * np.pi), damping=0.0, tail=0.0)["displacement"]
+    return _worst(moved, np.abs(_ground(motion.acceleration[0], motion.dt)).max())
+
+
+def _tilted(name: str, length: float) -> float:
+    # Undamped, under a suddenly applied constant a, it swings about atan(a / g) and out to twice that (energy).
+    a = 2.0
+    swing = respond(name, along_x(np.full(801, a), 0.02), length=length, damping=0.0, tail=0.0)["displacement"]
+    return _worst(swing, length * np.sin(2.0 * np.arctan(a / G)))
+
+
+def _crept(name: str) -> float:
+    # Overdamped it creeps to the angle at which it would hang for good.
+    a = 2.0
+    still = along_x(np.full(4001, a), 0.02)
+    swung = respond(name, still, length=[0.001, 1.0], damping=[1.0, 2.0], tail=0.0)["displacement"]
+    return _worst(swung, np.array([0.001, 1.0]) * np.sin(np.arctan(a / G)))
+
+
+def _uplift(alpha: float) -> float:
+    # Lifts at a = g tan(alpha), to a part in 1e9, and not below: 0 where both are right.
+    body = {"half_width": 0.5 * np.tan(alpha), "cg_height": 0.5}
+    ratios = [
+        respond("rocking", along_x(np.full(2, G * np.tan(alpha) * k), 0.01), **body)["rotation_ratio"][0]
+        for k in (1.0 - 1e-9, 1.0 + 1e-9)
+    ]
+    return float(ratios[0] > 0.0) + float(ratios[1] == 0.0)
+
+
+def _released(alpha: float, e: float) -> float:
+    # Let go at half its angle it comes down, and e times the rate is left: with phi the rotation, by energy,
+    # cos(alpha - phi) - cos(alpha) is e^2 of what it was (Housner 1963).  Of alpha.
+    dt = 0.0005
+    still = along_x(np.zeros(round(4.0 / dt)), dt)
+    theta = trace(
+        "rocking", still, half_width=0.5 * np.tan(alpha), cg_height=0.5, restitution=e, initial_rotation=0.5 * alpha
+    )["rotation"]
+    peak = -float(theta.to_numpy().min())
+    if e == 0.0:
+        return peak / alpha
+    left = np.cos(alpha) + e**2 * (np.cos(0.5 * alpha) - np.cos(alpha))
+    return _worst(peak, alpha - np.arccos(left), alpha)
+
+
+def _scaled(k: float) -> float:
+    # k times the motion is k times what is linear, and k times the slip where the friction is k times as well.
+    motion = shaking(vertical=0.0)
+    larger = Motion(motion.dt, k * motion.acceleration)
+    stiff: dict[str, Any] = {"frequency": 2.0, "damping": 0.02}
+    linear = [respond("oscillator", m, **stiff)["displacement"] for m in (motion, larger)]
+    slid = [
+        respond("sliding", m, friction_static=0.1 * times, directions=1)["displacement"]
+        for m, times in ((motion, 1.0), (larger, k))
+    ]
+    return _largest(_worst(large, k * small) for small, large in (linear, slid))
+
+
+def _small_swings() -> float:
+    # A thousandth of a small swing is a thousandth of it, but for theta^2 / 16.
+    base = shaking(vertical=0.0)
+    small, tiny = (Motion(base.dt, k * base.acceleration) for k in (1e-3, 1e-6))
+    return _largest(
+        _worst(*(k * respond(n, m, length=1.0, damping=0.05)["displacement"] for k, m in ((1.0, tiny), (1e-3, small))))
+        for n in ("swing", "swing_3d")
+    )
+
+
+def _sampled(name: str, dt: float) -> float:
+    motion = shaking(samples=400, dt=dt)
+    parameters: dict[str, Any] = next(p for model, p, _ in PROMISED if model == name)
+    history, reference = (
+        float(respond(name, motion, fidelity=fidelity, **parameters).iloc[:, 0].to_numpy()[0])
+        for fidelity in ("history", "reference")
+    )
+    return abs(history - reference) / max(abs(reference), 1e-12)
+
+
+def _long() -> float:
+    # The steady state under 3 million samples of a sine at resonance: u = A / (2 zeta w^2), A that of the polygon's
+    # fundamental; its harmonics, 1 / per_cycle^2 and less, are granted.
+    per_cycle, zeta, dt = 400, 0.05, 0.0025
+    w = 2.0 * np.pi / (per_cycle * dt)
+    x = np.sin(2.0 * np.pi / per_cycle * np.arange(3_000_000))
+    moved = respond("oscillator", along_x(x, dt), frequency=w / (2.0 * np.pi), damping=zeta, tail=0.0)["displacement"]
+    return _worst(moved, np.sinc(1.0 / per_cycle) ** 2 / (2.0 * zeta * w**2))
+
+
+def _million() -> float:
+    return _newmark(np.linspace(0.1, 0.6, 1_000_000), 1)
+
+
+def _memory() -> float:
+    # Bytes held at the worst moment for each of many objects; fewer than a million, as tracing takes its time.
+    count = 100_000
+    friction = np.linspace(0.1, 0.6, count)
+    tracemalloc.start()
+    try:
+        _newmark(friction, 1)
+        return tracemalloc.get_traced_memory()[1] / count
+    finally:
+        tracemalloc.stop()
+
+
+def _moved(motion: str) -> float:
+    # Metres, or a share of an angle.
+    return _largest(_answers(name, directions, motion).iloc[:, 0].to_numpy().max() for name, directions in MODELS)
+
+
+def _answers(name: str, directions: int | None, motion: str) -> Any:
+    asked: dict[str, Any] = {**objects(name), "tail": 1.0}
+    if directions is not None:
+        asked["directions"] = directions
+    return respond(name, motions()[motion], **asked)
+
+
+def _unexplained(name: str, directions: int | None) -> float:
+    problems = [
+        f"{motion}: {said}"
+        for motion in motions()
+        for _, row in _answers(name, directions, motion).iterrows()
+        if (said := complaint(row))
+    ]
+    if problems:
+        raise ArithmeticError(f"{counted(len(problems), 'result')}, such as {problems[0]}")
+    return 0.0
+
+
+def _cases() -> Iterator[Case]:
+    plain = shaking(vertical=0.0)
+    sunk = Motion(plain.dt, np.vstack([plain.acceleration[:2], np.full((1, plain.samples), -2.0 * G)]))
+    stays = "it stays in space: minus the ground's displacement"
+    yield Case("friction 0", stays, 1e-9, partial(_in_space, plain, 0.0))
+    yield Case("vertical below -g: no friction", stays, 1e-9, partial(_in_space, sunk, 0.3))
+    for directions, limit in ((1, 1e-11), (2, 1e-5)):
+        for mu in (1e-6, 0.2):
+            what = f"friction {mu:g}, {directions} direction{'s'[: directions - 1]}, two samples"
+            yield Case(what, "Newmark 1965", limit, partial(_newmark, np.array([mu]), directions))
+    yield Case("friction 5", "does not move", 0.0, partial(_newmark, np.array([5.0]), 2))
+    for zeta in (0.0, 1.0, 2.0):
+        what = f"damping {zeta:g}, 0.02 to 500 Hz at dt 0.02"
+        yield Case(what, "closed form of the step response", 1e-9, partial(_steps, zeta))
+    yield Case("oscillator at 500 Hz", "static: u = a / w^2", 0.03, partial(_static, "oscillator"))
+    isolated = {"friction": 0.0, "directions": 1.0}
+    yield Case("isolator at 500 Hz", "static: u = a / w^2", 0.03, partial(_static, "horizontal_isolator", **isolated))
+    yield Case("oscillator at 3e-5 Hz", stays, 1e-5, _soft)
+    for name, limit in (("swing", 1e-6), ("swing_3d", 1e-4)):
+        for length in (0.001, 0.01, 1.0, 100.0):
+            what = f"{name}, {length:g} m, undamped"
+            yield Case(what, "twice the tilt, by energy", limit, partial(_tilted, name, length))
+        yield Case(f"{name}, damping 1 and 2", "hangs tilted", limit, partial(_crept, name))
+    for alpha in (0.02, 0.2, 1.2):
+        yield Case(f"slenderness {alpha:g} rad", "lifts at g tan(alpha)", 0.0, partial(_uplift, alpha))
+        for e in (0.0, 0.6, 1.0):
+            what = f"slenderness {alpha:g} rad, restitution {e:g}"
+            yield Case(what, "energy after an impact (Housner 1963)", 1e-5, partial(_released, alpha, e))
+    for k in (1e-6, 1000.0):
+        yield Case(f"acceleration times {k:g}", "scales", 1e-9, partial(_scaled, k))
+    yield Case("swings of 1e-3 and 1e-6 of it", "scale", 1e-5, _small_swings)
+    for dt in (0.0005, 0.04):
+        for name, _, promised in PROMISED:
+            what = f"{name} at dt {1000.0 * dt:g} ms"
+            yield Case(what, "reference", promised, partial(_sampled, name, dt))
+    yield Case("one sample", "does not move", 0.0, partial(_moved, "one sample"))
+    yield Case("3 million samples", "steady state at resonance", 1e-5, _long)
+    yield Case("a million objects", "Newmark 1965", 1e-11, _million)
+    yield Case("many objects: memory", "bytes for each object", 1000.0, _memory)
+    yield Case("denormal accelerations", "nothing that can be seen", 1e-290, partial(_moved, "denormals"))
+    yield Case("a motion of zeros", "does not move", 0.0, partial(_moved, "zeros"))
+    for name, ways in MODELS:
+        what = name if ways is None else f"{name}, {ways} direction{'s'[: ways - 1]}"
+        yield Case(
+            f"{what}: {counted(len(motions()), 'motion')}, extreme objects",
+            "no NaN without a reason",
+            0.0,
+            partial(_unexplained, name, ways),
+        )
+
+
+CASES = tuple(_cases())
+"""Every extreme that the self-test runs."""

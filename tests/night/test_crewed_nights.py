@@ -1,0 +1,131 @@
+"""The same night by this process, by processes of this machine and by a cluster: the same results, bit for bit."""
+
+import os
+import signal
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from threading import Barrier
+
+import pytest
+from distributed import LocalCluster
+
+from pipeline.analysis.response_charts import Shelf
+from pipeline.night import scheduler as rounds
+from pipeline.settings import Settings
+
+from .test_unchanged_nights import found, museum, night, rows
+
+pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
+
+OBJECTS = rows(galleries=8, each=4)
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Settings:
+    """The museum after a night of this process alone."""
+    settings = museum(tmp_path_factory.mktemp("crews") / "alone", OBJECTS)
+    night(settings)
+    return settings
+
+
+@pytest.fixture
+def shared(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two sheets a batch, and others do the work whatever its size."""
+    monkeypatch.setattr(rounds, "BATCH", 8)
+    monkeypatch.setattr(rounds, "FEW", 0)
+
+
+def files(settings: Settings) -> dict[str, bytes]:
+    """Return pages and exports, without the run that is named in them and the time."""
+    folder = settings.path("reports").joinpath("latest").resolve()
+    run = folder.name.encode()
+    names = [*(p.name for p in folder.glob("room-*.html")), "findings.jsonl", "objects.csv", "recommendations.csv"]
+    stamp = run[:15]
+    date = b"%s-%s-%s" % (stamp[:4], stamp[4:6], stamp[6:8])
+    out = {}
+    for name in names:
+        text = (folder / name).read_bytes().replace(run, b"")
+        out[name] = b"\n".join(line for line in text.split(b"\n") if date not in line)
+    return out
+
+
+@pytest.mark.usefixtures("shared")
+def test_two_processes_of_this_machine(alone: Settings, tmp_path: Path) -> None:
+    settings = museum(tmp_path / "two", OBJECTS)
+    execution = settings.execution.model_copy(update={"processes": 2})
+    settings = settings.model_copy(update={"execution": execution})
+    assert night(settings).fresh == len(OBJECTS)
+    assert found(settings) == found(alone)
+    assert files(settings) == files(alone)
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[LocalCluster]:
+    """A cluster of two workers that sees none of the museum's folders, as far as this test lets it."""
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50) as made:
+        yield made
+
+
+def of_a_cluster(folder: Path, cluster: LocalCluster) -> Settings:
+    """The museum after a night whose work a cluster did."""
+    settings = museum(folder, OBJECTS)
+    execution = settings.execution.model_copy(update={"cluster": cluster.scheduler_address})
+    settings = settings.model_copy(update={"execution": execution})
+    assert night(settings).fresh == len(OBJECTS)
+    return settings
+
+
+@pytest.mark.usefixtures("shared")
+def test_a_cluster_given_by_its_address(alone: Settings, cluster: LocalCluster, tmp_path: Path) -> None:
+    settings = of_a_cluster(tmp_path / "cluster", cluster)
+    assert found(settings).assessments == found(alone).assessments
+    assert files(settings) == files(alone)
+
+
+@pytest.mark.usefixtures("shared")
+def test_a_worker_with_several_threads(alone: Settings, tmp_path: Path) -> None:
+    """As `dask worker` has by default: batches that are worked on at once know nothing of each other."""
+    with LocalCluster(n_workers=1, threads_per_worker=4, processes=False, dashboard_address=":0") as made:
+        settings = of_a_cluster(tmp_path / "threads", made)
+    assert found(settings).assessments == found(alone).assessments
+    assert files(settings) == files(alone)
+
+
+def test_each_thread_remembers_the_histories_of_its_own_work(tmp_path: Path) -> None:
+    """Before: whoever began last was remembered by all, and whoever ended first was forgotten by all."""
+    shelf, both = Shelf(), Barrier(2)
+
+    def own(file: Path) -> bool:
+        with shelf.remembering(file):
+            both.wait(10)
+            mine = shelf.histories
+            both.wait(10)
+        both.wait(10)
+        return mine is not None and shelf.histories is None and mine._file == file
+
+    with ThreadPoolExecutor(2) as pool:
+        assert list(pool.map(own, [tmp_path / "a.npz", tmp_path / "b.npz"])) == [True, True]
+
+
+@pytest.mark.usefixtures("shared")
+def test_a_worker_that_is_killed_in_the_middle_of_a_night_loses_nothing(
+    alone: Settings, cluster: LocalCluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Killed when the first results are stored, while both workers are at later ones."""
+    settings = museum(tmp_path / "killed", OBJECTS)
+    execution = settings.execution.model_copy(update={"cluster": cluster.scheduler_address})
+    settings = settings.model_copy(update={"execution": execution})
+    killed = []
+
+    def note(self: rounds.Round, piece: object, came: object) -> object:
+        if not killed:
+            killed.append(next(iter(cluster.workers.values())).process.pid)
+            os.kill(killed[0], signal.SIGKILL)
+        return true(self, piece, came)
+
+    true = rounds.Round._note
+    monkeypatch.setattr(rounds.Round, "_note", note)
+    assert night(settings).fresh == len(OBJECTS)
+    assert killed
+    assert found(settings).assessments == found(alone).assessments

@@ -1,0 +1,178 @@
+"""Fragilities and spacings through the whole night: several levels, one level, places, hostile numbers and texts."""
+
+import csv
+from pathlib import Path
+
+import pytest
+
+from pipeline.analysis.fragility.hazard import EXTENDED
+from pipeline.cli.console import Console
+from pipeline.collection.database import open_database
+from pipeline.motions.manifest import SiteTable
+from pipeline.motions.synthesis import half_sine_pulse
+from pipeline.motions.writing import write_site
+from pipeline.night.run import run
+from pipeline.quantities import G
+from pipeline.records import Assessment, RunRecord, Verdict
+from pipeline.settings import Settings, load_settings
+from pipeline.store.runs import load_run
+from tests.night.test_jobs import workspace
+
+SILENT = Console(quiet=True)
+EXTRA = """
+[columns.position_x_m]
+column = "x"
+unit = "m"
+[columns.position_y_m]
+column = "y"
+unit = "m"
+[columns.orientation_deg]
+column = "turned"
+[columns.friction]
+column = "friction"
+[columns.clearance_m]
+column = "room"
+unit = "m"
+"""
+HEADER = "object_number,gallery,title,height_m,width_m,depth_m,x,y,turned,friction,room"
+ROWS = [
+    "1,A,Block,0.4,0.1,0.1,0,0,0,0.1,0.5",
+    "2,A,Block,0.1,0.1,0.1,0.15,0,0,0.1,0.5",
+    "3,A,Block,0.1,0.1,0.1,0.30,0,0,0.02,0.5",
+]
+HOSTILE = [
+    '"<b>4</b>",A,<script>alert(1)</script>,0.1,0.1,0.1,0.15,0,0,0.1,0.5',  # where 2 stands
+    '"=5+5",A,Block,0.1,0.1,0.1,1e9,0,0,0.1,0.5',
+    "6,A,Block,0.1,0.1,0.1,nan,inf,0,0.1,0.5",
+    "7,A,Block,0.1,0.1,0.1,5,5,1e300,-1,0",
+    "8,A,Block,,,,5.05,5,0,0.1,0.5",
+    "9,A,Block,0.1,0.1,0.1,-5,-5,0,0,0",
+]
+
+
+def museum(folder: Path, *levels: tuple[str, float | None, tuple[float, ...]], combine: str = "max",
+           rows: list[str] | None = None) -> Settings:  # fmt: skip
+    """Blocks with places, and a site of half-sine pulses of 0.3 s with these peaks in g, level by level."""
+    motions = [
+        (name, half_sine_pulse(peak * G, 0.3).called(f"{name} {number}"))
+        for name, _, peaks in levels
+        for number, peak in enumerate(peaks)
+    ]
+    site = SiteTable(name="Test", latitude=0.0, longitude=0.0)
+    manifest = write_site(folder / "site", motions, site, licence="none", why="a test")
+    text = manifest.read_text().replace('combine = "max"', f'combine = "{combine}"')
+    for name, years, _ in levels:
+        if years is not None:
+            text = text.replace(f'name = "{name}"\n', f'name = "{name}"\nreturn_period_years = {years:g}\n', 1)
+    manifest.write_text(text)
+    workspace(folder, [], site=str(folder / "site"))
+    (folder / "export.csv").write_text("\n".join([HEADER, *(rows or ROWS)]) + "\n", encoding="utf-8")
+    mapping = folder / "mapping.toml"
+    mapping.write_text(mapping.read_text() + EXTRA, encoding="utf-8")
+    return load_settings(folder / "kouros.toml")
+
+
+def record_of(settings: Settings) -> RunRecord:
+    run(settings, SILENT)
+    return load_run(open_database(settings.database))
+
+
+def of(record: RunRecord, number: str) -> Assessment:
+    return next(a for a in record.assessments if a.scene.item.object_number == number)
+
+
+def onset(record: RunRecord, number: str) -> float:
+    """What lifts an edge of a block, m/s2: g b/h."""
+    known = of(record, number).scene.parameters
+    return G * known["half_width"].value / known["cg_height"].value
+
+
+def page(settings: Settings) -> str:
+    return "".join(p.read_text(encoding="utf-8") for p in settings.path("reports/latest").glob("*.html"))
+
+
+def test_two_levels_make_curves_rates_and_spacings(tmp_path: Path) -> None:
+    settings = museum(tmp_path, ("often", 100.0, (0.2,)), ("rare", 1000.0, (0.4,)))
+    record = record_of(settings)
+    first = of(record, "1").fragilities[0]
+    assert first.title == "Rocking"
+    assert first.median == pytest.approx(onset(record, "1"), rel=1e-3)
+    assert first.motions == 2
+    # The hazard falls by 10 where the shaking doubles: a slope of 3.3, and a rate of failure above that of the median.
+    assert first.annual_rate is not None
+    assert first.annual_rate > 1.0 / 100.0 * (first.median / (0.2 * G)) ** -3.32
+    assert first.median < EXTENDED * 0.4 * G
+    pairs = {(s.level, s.first, s.second): s for s in record.spacings}
+    assert set(pairs) >= {("often", "1", "2"), ("rare", "1", "2"), ("rare", "2", "3")}
+    same = pairs["rare", "1", "2"]
+    assert (same.verdict, same.needed) == (Verdict.PASS, 0.0)
+    assert same.together > same.gap
+    # 3 slides further than 2 under each level, to the west, where 2 stands.
+    assert pairs["rare", "2", "3"].needed == pytest.approx(pairs["rare", "2", "3"].radial)
+    text = page(settings)
+    assert "fails from about" in text
+    assert "about once in" in text
+    assert "Between neighbours" in text
+    assert "both moving together" in text
+    assert "Room to keep" in text
+    assert "objects on a slippery shelf" in text
+    with (tmp_path / "reports/latest/objects.csv").open(encoding="utf-8", newline="") as stream:
+        row = next(r for r in csv.DictReader(stream) if r["object_number"] == "1")
+    assert float(row["median_g"]) == pytest.approx(first.median / G)
+    assert float(row["dispersion"]) == pytest.approx(first.dispersion)
+    assert float(row["annual_rate"]) == pytest.approx(first.annual_rate)
+    assert row["median_is"] == ""
+
+
+def test_how_a_level_combines_its_motions_leaves_the_curves_alone(tmp_path: Path) -> None:
+    """Seven motions: the verdicts of max and mean differ, what single earthquakes do does not."""
+    peaks = (0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4)
+    most = record_of(museum(tmp_path / "max", ("design", None, peaks)))
+    mean = record_of(museum(tmp_path / "mean", ("design", None, peaks), combine="mean"))
+    for number in ("1", "2", "3"):
+        assert of(most, number).fragilities == of(mean, number).fragilities
+    assert of(most, "1").findings != of(mean, "1").findings
+    assert [s.together for s in most.spacings] > [s.together for s in mean.spacings]
+    assert not of(most, "1").fragilities[0].stated
+
+
+def test_one_level_without_a_period_says_what_is_missing(tmp_path: Path) -> None:
+    settings = museum(tmp_path, ("design", None, (0.3,)))
+    record = record_of(settings)
+    first = of(record, "1").fragilities[0]
+    assert first.annual_rate is None
+    assert first.stated
+    assert "return periods of two levels or more" in page(settings)
+    assert "once in" not in page(settings)
+
+
+def test_hostile_numbers_and_texts_end_in_a_report(tmp_path: Path) -> None:
+    settings = museum(tmp_path, ("often", 100.0, (0.2,)), ("rare", 1000.0, (0.4,)), rows=ROWS + HOSTILE)
+    record = record_of(settings)
+    notes = {(s.first, s.second): s.note for s in record.spacings if s.level == "rare"}
+    assert "mend their places" in notes["2", "<b>4</b>"]
+    known = {n for pair in notes for n in pair}
+    assert not known & {"=5+5", "6", "8"}  # no place, or nothing to run
+    assert of(record, "8").fragilities == ()
+    # No room at all, and a friction of 0 that is refused: it fails when it begins to slide, at mu g.
+    friction = of(record, "9").scene.parameters["friction_static"].value
+    assert of(record, "9").fragilities[0].median == pytest.approx(friction * G, rel=0.07)
+    text = page(settings)
+    assert "<script>alert" not in text
+    assert "<b>4</b>" not in text
+    assert "&lt;b&gt;4&lt;/b&gt;" in text
+    with (tmp_path / "reports/latest/objects.csv").open(encoding="utf-8", newline="") as stream:
+        rows = {r["object_number"]: r for r in csv.DictReader(stream)}
+    assert rows["8"]["median_g"] == ""
+    assert rows["9"]["median_g"] != ""
+    assert "'=5+5" in rows
+
+
+def test_fragilities_can_be_left_out(tmp_path: Path) -> None:
+    settings = museum(tmp_path, ("design", None, (0.3,)))
+    file = tmp_path / "kouros.toml"
+    file.write_text(file.read_text().replace('fragility = "auto"', "fragility = false"))
+    record = record_of(load_settings(file))
+    assert all(a.fragilities == () for a in record.assessments)
+    assert record.spacings
+    assert "From what shaking on" not in page(settings)

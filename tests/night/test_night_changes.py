@@ -1,0 +1,185 @@
+"""Nights of a small museum with one thing changed at a time: each verdict that moves says why, on both databases."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from uuid import uuid4
+
+import pytest
+from sqlalchemy import create_engine, make_url, text
+
+from pipeline.analysis import classify
+from pipeline.cli.differing import plain_changes
+from pipeline.collection.database import database_url
+from pipeline.night import prepare as briefing
+from pipeline.night import units as sheets
+from pipeline.night.run import run
+from pipeline.operations.workspace import open_workspace
+from pipeline.records import CauseKind, DecisionKind, Estimate, Origin, RunChanges
+from pipeline.settings import DATABASE_VARIABLE, Settings, load_settings
+from pipeline.tools.decisions import Wish, decide
+from pipeline.tools.rerender import compare
+from tests.cli.test_cli import kouros
+from tests.night.test_jobs import SILENT, workspace
+
+ROWS = ["1,A,Vase,0.4,0.2,0.2", "2,B,Vase,0.4,0.2,0.2", "3,B,Plate,0.03,0.3,0.3"]
+OWN = "rule,class,aat,classification,words,medium,shape,why\nours,bust,,,vase,,,our vases are busts\n"
+FLOOR = '\n[[floor]]\nname = "2"\nheight_ratio = 0.5\nperiod_s = 0.4\n'
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def database(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """A database of the test's own: the museum's file, or one on the server."""
+    monkeypatch.delenv(DATABASE_VARIABLE, raising=False)
+    if request.param == "sqlite":
+        yield "sqlite"
+        return
+    server = database_url(make_url(request.getfixturevalue("postgresql_url")).render_as_string(False))
+    name = f"nights_{uuid4().hex}"
+    administrator = create_engine(server, isolation_level="AUTOCOMMIT")
+    with administrator.connect() as connection:
+        connection.execute(text(f"CREATE DATABASE {name}"))
+    monkeypatch.setenv(DATABASE_VARIABLE, server.set(database=name).render_as_string(False))
+    yield "postgresql"
+    with administrator.connect() as connection:
+        connection.execute(text(f"DROP DATABASE {name} WITH (FORCE)"))
+    administrator.dispose()
+
+
+def museum(folder: Path, rows: list[str] | None = None) -> Settings:
+    return workspace(folder, rows or ROWS, site="site")
+
+
+def own_site(folder: Path) -> Path:
+    """A site of one short motion that a test may change: 7 m/s2 at 1.5 Hz, strong enough to tip the vases."""
+    words = ("sine", "amplitude=7", "frequency=1.5", "cycles=3", "--out", "site")
+    assert kouros("motions", "synthesise", *words, folder=folder).returncode == 0
+    manifest = folder / "site" / "manifest.toml"
+    edit(manifest, "processed = true", "processed = true\nscale = 1.0")
+    return manifest
+
+
+def edit(file: Path, before: str, after: str) -> None:
+    said = file.read_text(encoding="utf-8")
+    assert before in said
+    file.write_text(said.replace(before, after), encoding="utf-8")
+
+
+def night(folder: Path) -> RunChanges:
+    """Run a night and return what changed since the one before."""
+    changes = run(load_settings(folder / "kouros.toml"), SILENT).changes
+    assert changes is not None
+    return changes
+
+
+def kinds(changes: RunChanges, number: str = "") -> set[tuple[CauseKind, ...]]:
+    """The kinds of cause of the verdicts that changed, of one object or of all; there must be such verdicts."""
+    moved = [v for v in changes.verdicts if number in ("", v.object_number)]
+    assert moved
+    return {tuple(dict.fromkeys(cause.kind for cause in v.causes)) for v in moved}
+
+
+def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    manifest, toml = own_site(tmp_path), tmp_path / "kouros.toml"
+    run(museum(tmp_path), SILENT)
+
+    # Nothing: nothing.
+    assert not night(tmp_path)
+
+    # Input: a low vase stands; only its own verdicts move.
+    museum(tmp_path, ["1,A,Vase,0.1,0.2,0.2", *ROWS[1:]])
+    changes = night(tmp_path)
+    assert {v.object_number for v in changes.verdicts} == {"1"}
+    assert kinds(changes) == {(CauseKind.INPUT,)}
+    assert {cause.what for v in changes.verdicts for cause in v.causes} == {"height_m"}
+    ((height, *_),) = (i.fields for i in changes.inputs)
+    assert (height.name, height.before, height.after) == ("height_m", 0.4, 0.1)
+    assert "rocking" in {v.model for v in changes.fixed}
+
+    # Motion: 7 % of it moves nothing.
+    edit(manifest, "scale = 1.0", "scale = 0.07")
+    changes = night(tmp_path)
+    (motion,) = changes.motions
+    assert kinds(changes) == {(CauseKind.MOTION,)}
+    assert {cause.what for v in changes.verdicts for cause in v.causes} == {motion.name}
+    assert not changes.worsened
+
+    # Back again, and a higher vase besides: both are named for that vase, the motion for the others.
+    edit(manifest, "scale = 0.07", "scale = 1.0")
+    museum(tmp_path, ["1,A,Vase,0.5,0.2,0.2", *ROWS[1:]])
+    changes = night(tmp_path)
+    assert kinds(changes, "1") == {(CauseKind.INPUT, CauseKind.MOTION)}
+    assert kinds(changes, "2") == {(CauseKind.MOTION,)}
+    assert not changes.fixed
+
+    # Settings: the museum's own rules make busts of vases.
+    (tmp_path / "own.csv").write_text(OWN, encoding="utf-8")
+    edit(toml, 'rules = ""', 'rules = "own.csv"')
+    changes = night(tmp_path)
+    assert [f.name for f in changes.settings] == ["collection.rules"]
+    assert {cause for v in changes.verdicts for cause in {c.kind for c in v.causes}} <= {CauseKind.SETTINGS}
+    assert changes.inputs[0].fields[0].name == "scene.object_class"
+    edit(toml, 'rules = "own.csv"', 'rules = ""')
+    night(tmp_path)
+
+    # Decision: room that is there now.
+    open_ = open_workspace(load_settings(toml))
+    made = decide(open_, Wish("2", DecisionKind.INSTALLED, ["clearance", "clearance_m=50"], "moved", "Ann"))
+    changes = night(tmp_path)
+    assert {v.object_number for v in changes.verdicts} == {"2"}
+    assert kinds(changes) == {(CauseKind.DECISION,)}
+    assert [(c.decision.id, c.new) for c in changes.decisions] == [(made.id, True)]
+    decide(open_, Wish("2", DecisionKind.WITHDRAW, [str(made.id)], "moved back", "Ann"))
+    changes = night(tmp_path)
+    assert kinds(changes) == {(CauseKind.DECISION,)}
+    assert [(c.decision.id, c.new) for c in changes.decisions] == [(made.id, False)]
+
+    # Floor: gallery A goes up to where it shakes more or less; the record's motion is the same.
+    edit(manifest, "\n[[level]]", f"{FLOOR}\n[[level]]")
+    edit(manifest, "scale = 1.0", "scale = 0.3")
+    night(tmp_path)
+    edit(toml, "[floors]", '[floors]\n"2" = ["A"]')
+    changes = night(tmp_path)
+    assert {v.object_number for v in changes.verdicts} == {"1"}
+    assert kinds(changes) == {(CauseKind.FLOOR,)}
+    assert {cause.what for v in changes.verdicts for cause in v.causes} == {"the ground -> 2"}
+
+    # A gallery's object that moves to where it does not shake so: a move, and its floor.
+    museum(tmp_path, ["1,B,Vase,0.5,0.2,0.2", *ROWS[1:]])
+    changes = night(tmp_path)
+    assert [(m.object_number, m.before, m.after) for m in changes.moved] == [("1", "A", "B")]
+    assert not changes.inputs
+
+    # Version: another Kouros assumes other room.
+    monkeypatch.setattr(briefing, "__version__", "9.9")
+    monkeypatch.setattr(briefing, "code_digest", lambda: "another")
+    monkeypatch.setattr(sheets, "_code", lambda: "another")
+    monkeypatch.setattr(
+        classify, "_clearance_of", lambda _: Estimate(1e-9, "m", Origin.ASSUMED, 1e-9, 1e-9, "no room", "")
+    )
+    edit(manifest, "scale = 0.3", "scale = 1.0")
+    night(tmp_path)
+    monkeypatch.undo()
+    if database == "postgresql":
+        return  # the address of the server went with the rest
+    changes = night(tmp_path)
+    assert kinds(changes) == {(CauseKind.VERSION,)}
+    assert {f.name for f in changes.versions} == {"Kouros", "code and tables"}
+
+
+def test_the_order_is_stable_and_json_has_all(tmp_path: Path) -> None:
+    own_site(tmp_path)
+    settings = museum(tmp_path)
+    run(settings, SILENT)
+    museum(tmp_path, [*reversed(ROWS[1:]), "\U0001f3fa<b>,A,Vase,0.4,0.2,0.2", "4,A,Vase,0.4,0.2,0.2"])
+    edit(tmp_path / "kouros.toml", "shrink_limit = 0.2", "shrink_limit = 0.9")
+    edit(tmp_path / "site" / "manifest.toml", "scale = 1.0", "scale = 0.07")
+    run(load_settings(tmp_path / "kouros.toml"), SILENT)
+    once, again = compare(settings, None, None), compare(settings, None, None)
+    assert once == again
+    assert plain_changes(once) == plain_changes(again)
+    assert [p.object_number for p in once.added] == ["4", "\U0001f3fa<b>"]
+    assert [p.object_number for p in once.removed] == ["1"]
+    keys = [(v.gallery, v.object_number, v.level, v.model) for v in once.verdicts]
+    assert keys == sorted(keys)
+    said = kouros("diff", folder=tmp_path).stdout
+    assert "  fixed: 2 (B) rocking, test: fail -> pass, because of motion" in said

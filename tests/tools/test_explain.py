@@ -1,0 +1,110 @@
+"""`kouros run --explain`: what it prints is what a night finds, step by step, and nothing is stored."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from pipeline.cli.commands import run as command
+from pipeline.cli.console import Console
+from pipeline.cli.options import Options
+from pipeline.collection.database import open_database
+from pipeline.night.run import run
+from pipeline.operations.workspace import open_workspace
+from pipeline.records import DecisionKind
+from pipeline.settings import Settings
+from pipeline.store.runs import list_runs, load_run
+from pipeline.tools.decisions import Wish, decide
+from tests.night.test_jobs import workspace
+
+ROWS = [
+    "1,A,Vase \x1b[31mred,0.4,0.2,0.2",
+    "2,B,Plate,0.03,0.3,0.3",
+    "3,B,Vase,,0.2,0.2",
+]
+
+
+@pytest.fixture(scope="module")
+def museum(tmp_path_factory: pytest.TempPathFactory) -> Settings:
+    settings = workspace(tmp_path_factory.mktemp("museum"), ROWS)
+    run(settings, Console(quiet=True))
+    return settings
+
+
+def explained(museum: Settings, *words: str) -> Result:
+    options = Options(config=str(Path(museum.home) / "kouros.toml"), quiet=True, verbose=False, debug=False)
+    return CliRunner().invoke(command, ["--explain", *words], obj=options)
+
+
+def test_the_chain_of_reasoning_is_that_of_the_night(museum: Settings) -> None:
+    engine = open_database(museum.database)
+    before = [r.run_id for r in list_runs(engine)]
+    result = explained(museum, "1", "--json")
+    assert result.exit_code == 0
+    (one,) = json.loads(result.stdout)
+    assert [r.run_id for r in list_runs(engine)] == before
+    (night,) = [a for a in load_run(engine).assessments if a.scene.item.object_number == "1"]
+    assert [(r["finding"]["model"], r["finding"]["verdict"]) for r in one["reasonings"]] == [
+        (f.model, f.verdict.value) for f in night.findings
+    ]
+    assert [r["finding"]["demand"] for r in one["reasonings"]] == [f.demand for f in night.findings]
+    assert [a["measure"] for a in one["advice"]] == [r.measure for r in night.recommendations]
+    assert set(one["scene"]["skipped"]) == set(night.scene.skipped)
+    # Each step narrows what the one before it left.
+    for reasoning in one["reasonings"]:
+        bounds = {(t["motion"], t["inputs"]): t for t in reasoning["taken"] if t["step"] == "bound"}
+        for taken in reasoning["taken"]:
+            bound = bounds[taken["motion"], taken["inputs"]]
+            middle = 0.5 * (taken["low"] + taken["high"]) if taken["high"] is not None else taken["low"]
+            assert bound["low"] <= middle
+            assert bound["high"] is None or middle <= bound["high"]
+
+
+def test_the_words_name_every_step_and_no_control_character_passes(museum: Settings) -> None:
+    text = explained(museum, "1").stdout
+    for part in (
+        "class    vessel",
+        "friction_static",
+        "not run",
+        "bound ",
+        "capacity",
+        "verdict",
+        "advice",
+        "rejected",
+    ):
+        assert part in text, part
+    assert "\x1b" not in text
+    assert "height" in explained(museum, "3").stdout.split("missing")[1]
+
+
+def test_an_unknown_object_is_refused_with_close_ones(museum: Settings) -> None:
+    from pipeline.operations.workspace import UsageError
+
+    problem = explained(museum, "11").exception
+    assert isinstance(problem, UsageError)
+    assert problem.exit_code == 2
+    assert "did you mean '1'" in str(problem)
+
+
+def test_what_stands_on_an_installed_isolator_is_explained_as_the_night_judged_it(tmp_path: Path) -> None:
+    """The isolator's own demand, and the object's own models on what it passes on; a reason steers no terminal."""
+    settings = workspace(tmp_path, ROWS)
+    run(settings, Console(quiet=True))
+    words = ["isolator=generic 0.5 Hz, friction 0.05", "stroke_m=0.9"]
+    wish = Wish("1", DecisionKind.INSTALLED, ["horizontal_isolator", *words], why="bought \x1b[31m in May", who="Ann")
+    decide(open_workspace(settings), wish)
+    run(settings, Console(quiet=True))
+    (night,) = [a for a in load_run(open_database(settings.database)).assessments if a.scene.item.object_number == "1"]
+    assert {f.model for f in night.findings} == {"horizontal_isolator", "rocking", "sliding"}
+    result = explained(settings, "1", "--json")
+    (one,) = json.loads(result.stdout)
+    assert [(r["finding"]["model"], r["finding"]["demand"]) for r in one["reasonings"]] == [
+        (f.model, f.demand) for f in night.findings
+    ]
+    assert one["scene"]["skipped"] == dict(night.scene.skipped)
+    assert [a["measure"] for a in one["advice"]] == [r.measure for r in night.recommendations]
+    spoken = explained(settings, "1")
+    assert spoken.exit_code == 0
+    assert "\x1b" not in spoken.stdout
+    assert "isolator passes on" in spoken.stdout

@@ -1,0 +1,194 @@
+"""The survey asks for what would settle a verdict, for nothing else; its workbook comes back as measurements."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import openpyxl
+import pytest
+
+from pipeline.analysis.assess import LevelMotions, assess
+from pipeline.analysis.classify import classify
+from pipeline.analysis.survey import by_gallery, measurables, wishes
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.inventory import add_sheet, read_inventory, replace_inventory, return_to, versions
+from pipeline.collection.reading import Reading
+from pipeline.execute import Threads
+from pipeline.mitigate.installed import Measure, placed
+from pipeline.operations.workspace import open_workspace
+from pipeline.quantities import G
+from pipeline.records import ITEM_FIELDS, Item, Motion, Origin, Support, Verdict, Wish
+from pipeline.report.files.survey_sheet import HEADER_ROW, column_name, sheet_title, write_survey
+from pipeline.settings import load_settings
+from pipeline.tools.survey import LENGTH_UNITS, read_sheet
+
+
+class Silent:
+    def step(self, what: str, done: int, total: int) -> None:
+        """Say nothing."""
+
+
+DT = 0.01
+TIME = np.arange(600) * DT
+SINE = 0.35 * G * np.sin(2 * np.pi * 1.5 * TIME)
+MOTION = Motion(dt=DT, acceleration=np.array([SINE, 0.4 * SINE, 0.0 * SINE]), name="sine")
+LEVELS = [LevelMotions("design", "max", (MOTION,))]
+
+BOX = Item("1", "East", "Box", height_m=0.2, base_width_m=0.6, base_depth_m=0.6, cg_height_m=0.08, mass_kg=5.0,
+           support=Support.FREESTANDING, clearance_m=0.05, susceptible=False)  # fmt: skip
+
+
+def surveyed(*items: Item) -> list[Wish]:
+    scenes = [classify(item) for item in items]
+    _, findings = assess(scenes, LEVELS, Threads(1), Silent())
+    return wishes(scenes, findings, LEVELS, Threads(1), Silent())
+
+
+def verdicts(item: Item) -> set[tuple[str, Verdict]]:
+    _, (findings,) = assess([classify(item)], LEVELS, Threads(1), Silent())
+    return {(finding.model, finding.verdict) for finding in findings}
+
+
+def test_a_friction_that_decides_is_asked_for_and_settles_what_it_says() -> None:
+    """The truth is the assessment of the record with the number filled in, low, best and high."""
+    assert ("sliding", Verdict.UNDETERMINED) in verdicts(BOX)
+    (wish,) = surveyed(BOX)
+    assert (wish.field, wish.open, wish.unlocks) == ("friction", 1, 0)
+    assert wish.low is not None
+    assert wish.high is not None
+    assert wish.best is not None
+    assert wish.low < wish.best < wish.high
+    filled = [verdicts(replace(BOX, friction=value)) for value in (wish.low, wish.best, wish.high)]
+    settled = sum(("sliding", Verdict.UNDETERMINED) not in found for found in filled)
+    assert wish.settles == pytest.approx(settled / 3)
+    assert settled > 0
+
+
+def test_what_would_settle_nothing_is_a_waste() -> None:
+    """Friction and room are both open, and so wide that neither settles anything without the other."""
+    found = {wish.field: wish for wish in surveyed(replace(BOX, clearance_m=None))}
+    _, (findings,) = assess([classify(replace(BOX, clearance_m=None))], LEVELS, Threads(1), Silent())
+    (sliding,) = [f for f in findings if f.model == "sliding"]
+    for wish in found.values():
+        assert wish.waste == (wish.settles == 0.0)
+    assert sliding.verdict is Verdict.UNDETERMINED
+    assert {"friction", "clearance_m"} <= set(found)
+
+
+def test_what_is_settled_already_is_not_asked_for() -> None:
+    assert surveyed(replace(BOX, friction=0.8)) == []
+
+
+def test_what_is_missing_comes_first_and_what_is_not_on_display_never() -> None:
+    lost = Item("2", "West", height_m=0.2, support=Support.FREESTANDING)
+    first, *_ = found = surveyed(BOX, lost, replace(lost, object_number="3", on_display=False))
+    assert (first.object_number, first.field, first.waste) == ("2", "width_m", False)
+    assert first.unlocks > 0
+    assert {wish.object_number for wish in found} == {"1", "2"}
+    assert list(by_gallery(found)) == ["East", "West"]
+
+
+def test_every_field_of_the_survey_is_one_of_the_record() -> None:
+    for measurable in measurables():
+        assert measurable.field in ITEM_FIELDS
+        assert measurable.how.endswith(".")
+
+
+HOSTILE = '=HYPERLINK("http://x";"y")'
+
+
+@pytest.mark.parametrize("length", LENGTH_UNITS)
+def test_a_sheet_comes_back_as_it_was_filled_in(length: str, tmp_path: Path) -> None:
+    named = replace(BOX, object_number=HOSTILE, title="+1-1", gallery="=East")
+    path = tmp_path / "survey.xlsx"
+    wish = surveyed(named)
+    assert write_survey(path, wish, measurables(), length=length) == {"objects": 1, "quantities": 1, "waste": 0}
+    book = openpyxl.load_workbook(path)
+    sheet = book[sheet_title(length)]
+    keys = [cell.value for cell in sheet[HEADER_ROW]]
+    assert sheet.cell(HEADER_ROW + 1, 1).data_type == "s"
+    sheet.cell(HEADER_ROW + 1, keys.index("friction") + 1).value = 0.31
+    book.save(path)
+    (item,) = read_sheet(path).items
+    assert (item.object_number, item.gallery, item.friction, item.problems) == (HOSTILE, "=East", 0.31, ())
+
+
+def test_lengths_are_read_in_the_unit_of_the_sheet(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    sheet = book.create_sheet(sheet_title("in"))
+    sheet.append(["Object", "Gallery", "Free distance"])
+    sheet.append(["object_number", "gallery", column_name("clearance_m", "in")])
+    sheet.append(["1", "East", 10])
+    book.save(tmp_path / "survey.xlsx")
+    (item,) = read_sheet(tmp_path / "survey.xlsx").items
+    assert item.clearance_m == 0.254
+
+
+def test_a_workbook_that_is_no_survey_is_refused(tmp_path: Path) -> None:
+    openpyxl.Workbook().save(tmp_path / "other.xlsx")
+    with pytest.raises(CollectionError, match=r"other\.xlsx: no sheet of a survey, such as 'survey in cm'"):
+        read_sheet(tmp_path / "other.xlsx")
+
+
+def made(*items: Item, source: str = "a.csv", sha256: str = "0" * 64) -> Reading:
+    return Reading(items, len(items), (), source, sha256, "m", "M")
+
+
+def test_measurements_stay_through_later_imports(tmp_path: Path) -> None:
+    (tmp_path / "kouros.toml").write_text("", encoding="utf-8")
+    engine = open_workspace(load_settings(tmp_path / "kouros.toml")).engine
+    plain = Item("1", "East", height_m=0.2)
+    replace_inventory(engine, made(plain, Item("2", "East")))
+    with pytest.raises(CollectionError, match="no row fills in anything for an object of the inventory"):
+        add_sheet(engine, made(Item("1", "East"), source="s.xlsx"))
+    changes, unknown = add_sheet(
+        engine, made(Item("1", "", clearance_m=0.1, friction=0.4), Item("9", "", friction=1.0))
+    )
+    assert set(changes.changed["1"]) == {"clearance_m", "friction"}
+    assert unknown == ["9"]
+    # A later sheet's cell replaces an earlier one's; what it leaves empty stays.
+    add_sheet(engine, made(Item("1", "", friction=0.5), source="s2.xlsx"))
+    # The museum's file comes again, now with a friction of its own.
+    replace_inventory(engine, made(replace(plain, friction=0.2, title="New"), Item("2", "East"), sha256="1" * 64))
+    first, second = read_inventory(engine)
+    assert (first.title, first.clearance_m, first.friction, first.height_m) == ("New", 0.1, 0.5, 0.2)
+    (problem,) = first.problems
+    assert "the museum's record says 0.2, the sheet s2.xlsx says 0.5, which is used" in problem.message
+    assert second == Item("2", "East")
+    assert [info.kind for info in versions(engine)] == ["import", "sheet", "sheet", "import"]
+    # Going back takes the sheets of later versions away as well.
+    return_to(engine, versions(engine)[-1].id)
+    replace_inventory(engine, made(replace(plain, title="Newer"), Item("2", "East"), sha256="2" * 64))
+    assert read_inventory(engine)[0] == replace(plain, title="Newer")
+
+
+def test_a_filled_in_number_says_which_sheet_it_is_from(tmp_path: Path) -> None:
+    (tmp_path / "kouros.toml").write_text("", encoding="utf-8")
+    engine = open_workspace(load_settings(tmp_path / "kouros.toml")).engine
+    replace_inventory(engine, made(Item("1", "East")))
+    sheet = tmp_path / "ours.csv"
+    sheet.write_text("object_number,gallery,clearance_m\n1,East,0.25\n", encoding="utf-8")
+    add_sheet(engine, read_sheet(sheet))
+    ((item),) = read_inventory(engine)
+    (told,) = item.provenance
+    assert (told.field, told.origin, told.written, told.note) == (
+        "clearance_m",
+        Origin.MEASURED,
+        "0.25 m",
+        "sheet ours.csv",
+    )
+
+
+def test_what_is_open_on_an_isolator_is_not_tried_without_it() -> None:
+    """Its models run on what the isolator passes on; tried on the floor, nothing would come of it but a wrong waste."""
+    springs = Measure(
+        "horizontal_isolator", {"frequency": 0.5, "damping": 0.02, "friction": 0.05, "stroke": 0.3}, "Ann"
+    )
+    stands = placed(classify(BOX), [springs])
+    _, (own,) = assess([stands.scene], LEVELS, Threads(1), Silent())
+    _, (free,) = assess([classify(BOX)], LEVELS, Threads(1), Silent())
+    above = [f for f in free if f.verdict is Verdict.UNDETERMINED]
+    assert above
+    assert wishes([stands.scene], [[*own, *above]], LEVELS, Threads(1), Silent()) == []

@@ -1,0 +1,63 @@
+"""kouros check --numerics beside kouros.toml: its result is kept, and the next night shows it."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from pipeline.cli.console import Console
+from pipeline.kernels import KERNEL_VERSION
+from pipeline.night.run import run
+from pipeline.settings import load_settings
+from pipeline.tools.rerender import render_again
+from pipeline.verification import self_measurement as numerics
+from pipeline.verification import selftest
+from tests.night.test_jobs import workspace
+
+QUICK = tuple(case for case in numerics.CASES if case.what.startswith(("friction", "one sample")))
+
+
+def test_it_is_kept_and_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The quick cases of the real self-test: kept as they came out, on the next night's page, and rendered again."""
+    monkeypatch.setattr(numerics, "CASES", QUICK)
+    settings = workspace(tmp_path)
+    assert selftest.kept(settings.kept) is None
+    done = list(selftest.self_test(settings))
+    test = selftest.kept(settings.kept)
+    assert test is not None
+    assert list(test.cases) == done
+    assert all(outcome.ok for outcome in done)
+    assert test.kernels == KERNEL_VERSION
+    report = run(settings, Console(quiet=True)).report
+    assert report is not None
+    page = (report.parent / "method.html").read_text(encoding="utf-8")
+    assert f"All {len(done)} cases passed" in page
+    assert "outdated" not in page
+    again = render_again(load_settings(tmp_path / "kouros.toml"), None)
+    assert (again.parent / "method.html").read_text(encoding="utf-8") == page
+
+
+def test_without_a_workspace_nothing_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(numerics, "CASES", QUICK[:1])
+    assert len(list(selftest.self_test(None))) == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("broken", ["", "{", "[]", "null", '{"when": 1}', '{"cases": [{"what": 5}]}', "\x00"])
+def test_a_damaged_file_counts_as_none(tmp_path: Path, broken: str) -> None:
+    (tmp_path / selftest.KEPT_AS).write_text(broken)
+    assert selftest.kept(tmp_path) is None
+
+
+def test_a_case_of_the_wrong_type_is_refused(tmp_path: Path) -> None:
+    """Text where a number stands would stop the report; a result that is no number is kept as none."""
+    outcome = selftest.Outcome("a", "b", None, 0.0, False, 0.1, "ValueError: no")
+    test = selftest.SelfTest("2026-01-01T00:00:00+00:00", "0.1.0", KERNEL_VERSION, "a machine", [outcome])
+    file = selftest.keep(test, tmp_path)
+    assert selftest.kept(tmp_path) == replace(test, cases=[outcome])
+    said = json.loads(file.read_text())
+    said["cases"][0]["limit"] = "large"
+    file.write_text(json.dumps(said))
+    assert selftest.kept(tmp_path) is None
