@@ -16,7 +16,7 @@ from pipeline.execute import Threads
 from pipeline.quantities import G
 from pipeline.records import Item, Motion, Support, Verdict
 
-from .mitigate.scenes import TOWER, Silent, demo_motion, solve
+from tests.mitigate.scenes import TOWER, Silent, demo_motion, solve
 
 
 @pytest.fixture(scope="module")
