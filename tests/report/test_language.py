@@ -88,7 +88,7 @@ def phrases() -> Iterator[tuple[str, tuple[str, ...]]]:
 
 
 def _ours(folder: str) -> bool:
-    return Path(folder).name in ("templates", "pipeline", "report", "tables", "models")
+    return Path(folder).name in ("templates", "pipeline", "report", "pages", "plots", "files", "tables", "models")
 
 
 def pseudo(phrase: str) -> str:
