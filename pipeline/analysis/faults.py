@@ -158,14 +158,15 @@ def each_apart(
     except Exception:  # noqa: BLE001 - as above
         kept = sorted(sound([], every))
     faults.extend(bad.values())
-    told = tuple(_told(a, bad[at], without) if at in bad else a for at, a in enumerate(assessments))
+    told = tuple(with_fault(a, bad[at].words, without) if at in bad else a for at, a in enumerate(assessments))
     return told, done(kept)
 
 
-def _told(assessment: Assessment, told: Fault, without: str) -> Assessment:
-    said = f"{without}: Kouros failed, which is not your fault ({told.words}); please tell its makers"
+def with_fault(assessment: Assessment, words: str, without: str) -> Assessment:
+    """Return what was found about an object, saying what of it is not known because Kouros failed."""
+    said = f"{without}: Kouros failed, which is not your fault ({words}); please tell its makers"
     scene = replace(assessment.scene, assumptions=(*assessment.scene.assumptions, said))
-    return replace(assessment, scene=scene, fault=told.words)
+    return replace(assessment, scene=scene, fault=words)
 
 
 def fitting(found: Found, work: Callable[[Found], Made], faults: list[Fault]) -> tuple[Found, Made]:

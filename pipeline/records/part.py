@@ -1,17 +1,18 @@
-"""What a run finds, sheet by sheet: a sheet holds the objects of one gallery, or a part of them where they are many."""
+"""What a run finds: results, one for each object whatever it is called; and the pages on which objects are shown."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from pipeline.records.result import Assessment, Spacing
+from pipeline.records.result import Assessment, Finding, Fragility, Recommendation, Spacing
+from pipeline.records.scene import Estimate, Support
 from pipeline.records.wish import Wish
 
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """Everything that was found about the objects of a sheet; no other sheet has a say in it.
+    """Everything that was found about some objects.
 
     wishes  : what is worth measuring; None where the run did not ask
     needing : by object number and name of the model, for how many of its analyses any history was run
@@ -21,6 +22,34 @@ class Found:
     wishes: tuple[Wish, ...] | None = None
     spacings: tuple[Spacing, ...] = ()
     needing: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What was found about one object, whatever its number, its place and its title, which are empty in all of it.
+
+    object_class, rule, support, models, parameters, assumptions, missing, skipped, floor : see `Scene`
+    needing : by name of the model, for how many of its analyses any history was run
+    wishes  : what is worth measuring on it; None where the run did not ask
+    fault, aside : see `Assessment`
+    """
+
+    object_class: str
+    rule: str
+    support: Support
+    models: tuple[str, ...]
+    parameters: Mapping[str, Estimate]
+    assumptions: tuple[str, ...]
+    missing: tuple[str, ...]
+    skipped: Mapping[str, str]
+    floor: str
+    findings: tuple[Finding, ...] = ()
+    recommendations: tuple[Recommendation, ...] = ()
+    fragilities: tuple[Fragility, ...] = ()
+    needing: Mapping[str, int] = field(default_factory=dict)
+    wishes: tuple[Wish, ...] | None = None
+    fault: str = ""
+    aside: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +81,7 @@ class Errors:
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """What a sheet adds to the totals of a run.
+    """What a page adds to the totals of a run.
 
     states   : objects on display by state: act, open, unknown (cannot be assessed), safe
     measures : recommendations for them by title
@@ -63,6 +92,8 @@ class Tally:
     faults   : objects that Kouros itself failed on
     stored   : objects that are not on display by state, "aside" for those that were not assessed
     stored_measures : recommendations for them by title
+    findings, stored_findings : how many there are, of objects that are on display and that are not
+    verdicts : of all objects, by what they are
     """
 
     states: Mapping[str, int]
@@ -79,6 +110,9 @@ class Tally:
     faults: int = 0
     stored: Mapping[str, int] = field(default_factory=dict)
     stored_measures: Mapping[str, int] = field(default_factory=dict)
+    findings: int = 0
+    stored_findings: int = 0
+    verdicts: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +124,6 @@ class Outline:
     """
 
     object_number: str
-    title: str
     gallery: str
     floor: str
     item: str
@@ -99,13 +132,13 @@ class Outline:
 
 
 @dataclass(frozen=True, slots=True)
-class Sheet:
-    """A sheet of a run: which objects it is of, and under which key its result is stored.
+class Page:
+    """A page of a run: which objects are shown on it, in which order.
 
-    key          : of everything that the result depends on
+    key          : digest of its objects' numbers, places, records and results
     gallery      : "" for objects that are not on display
-    number, of   : which of its gallery's sheets it is, from 1, and how many there are
-    run, made    : the run that found its result, perhaps an earlier one, and when (ISO 8601, UTC)
+    number, of   : which of its gallery's pages it is, from 1, and how many there are
+    run, made    : the run that found the newest of its results, perhaps an earlier one, and when (ISO 8601, UTC)
     """
 
     key: str
@@ -115,4 +148,3 @@ class Sheet:
     of: int
     run: str
     made: str
-    counts: Mapping[str, int]

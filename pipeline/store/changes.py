@@ -22,9 +22,14 @@ from pipeline.records import (
 )
 from pipeline.store import codec
 from pipeline.store.causes import Causes, MotionKey
-from pipeline.store.results import load_found, load_outlines
+from pipeline.store.pages import Members, found_of, load_members
+from pipeline.store.results import fetch, outline_of, outlines
 from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES
-from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_SHEET
+from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_PAGE
+
+
+_Place = tuple[Members, int, str, str, str, int]
+"""An object of a run: its page and its place on it, gallery, digest of its record, key of its result and place there."""
 
 
 def changes(connection: Connection, old: str, new: str) -> RunChanges:
@@ -56,20 +61,47 @@ class _Comparison:
         )
 
     @cached_property
-    def _keys(self) -> tuple[list[str], list[str]]:
-        """The sheets that only one of the two runs has: what both have cannot have changed."""
+    def _members(self) -> tuple[list[Members], list[Members]]:
+        """The pages that only one of the two runs has: what both have cannot have changed."""
         sides = []
         for run_id in (self.old, self.new):
-            query = select(RUN_SHEET.c.key).where(RUN_SHEET.c.run_id == run_id).order_by(RUN_SHEET.c.position)
+            query = select(RUN_PAGE.c.key).where(RUN_PAGE.c.run_id == run_id).order_by(RUN_PAGE.c.position)
             sides.append(list(self.connection.execute(query).scalars()))
         before, after = (set(side) for side in sides)
-        return [key for key in sides[0] if key not in after], [key for key in sides[1] if key not in before]
+        own = ([key for key in sides[0] if key not in after], [key for key in sides[1] if key not in before])
+        return tuple([load_members(self.connection, key) for key in keys] for keys in own)  # type: ignore[return-value]
+
+    @cached_property
+    def _places(self) -> tuple[dict[str, _Place], dict[str, _Place]]:
+        """Where the objects of those pages are, by number, before and after."""
+        before, after = (
+            {
+                number: (members, at, gallery, members.digests[at], *members.results[at])
+                for members in side
+                for at, (number, gallery) in enumerate(
+                    zip(members.column("object_number"), members.column("gallery"), strict=True)
+                )
+            }
+            for side in self._members
+        )
+        return before, after
 
     @cached_property
     def _outlines(self) -> tuple[dict[str, Outline], dict[str, Outline]]:
-        """The objects of those sheets, by number, before and after."""
-        before, after = ({o.object_number: o for o in load_outlines(self.connection, keys)} for keys in self._keys)
-        return before, after
+        """The objects of those pages that are not what they were, by number, before and after."""
+        before, after = self._places
+        same = {number for number, place in after.items() if number in before and before[number][2:] == place[2:]}
+        sides = []
+        for places in (before, after):
+            left = {number: place for number, place in places.items() if number not in same}
+            found = outlines(self.connection, {key for *_, key, _ in left.values()})
+            sides.append(
+                {
+                    number: outline_of(number, gallery, digest, found[key][at])
+                    for number, (_, _, gallery, digest, key, at) in left.items()
+                }
+            )
+        return sides[0], sides[1]
 
     @cached_property
     def _both(self) -> list[tuple[Outline, Outline]]:
@@ -91,7 +123,7 @@ class _Comparison:
         differing = {now.object_number for was, now in self._both if (was.item, was.scene) != (now.item, now.scene)}
         if not differing:
             return ()
-        was, now = (self._scenes(keys, differing) for keys in self._keys)
+        was, now = (self._scenes(places, differing) for places in self._places)
         found = []
         for number, scene in now.items():
             before = was[number]
@@ -107,13 +139,14 @@ class _Comparison:
                 found.append(InputChange(number, scene.item.gallery, tuple(fields)))
         return tuple(sorted(found, key=lambda change: (change.gallery, change.object_number)))
 
-    def _scenes(self, keys: Sequence[str], numbers: Set[str]) -> dict[str, Scene]:
-        """Return the scenes of some objects; of a sheet without any of them only its outline is read."""
+    def _scenes(self, places: Mapping[str, _Place], numbers: Set[str]) -> dict[str, Scene]:
+        """Return the scenes of some objects."""
+        pages = {id(places[number][0]): places[number][0] for number in sorted(numbers)}
         found: dict[str, Scene] = {}
-        for key in keys:
-            if any(outline.object_number in numbers for outline in load_outlines(self.connection, [key])):
-                scenes = (assessment.scene for assessment in load_found(self.connection, key).assessments)
-                found |= {scene.item.object_number: scene for scene in scenes if scene.item.object_number in numbers}
+        for members in pages.values():
+            kept, _ = fetch(self.connection, [*members.keys, *filter(None, [members.spacings])])
+            scenes = (a.scene for a in found_of(members, {k: one.found for k, one in kept.items()}).assessments)
+            found |= {scene.item.object_number: scene for scene in scenes if scene.item.object_number in numbers}
         return found
 
     @cached_property

@@ -126,3 +126,14 @@ def plain(hint: Any, value: Any) -> Any:
     raises : StoreError as `to_json`
     """
     return from_json(to_json(hint, value))
+
+
+def check_type(where: str, hint: Any, value: Any) -> None:
+    """Refuse a value that is not of a type, saying where it is.
+
+    raises : StoreError
+    """
+    try:
+        to_json(hint, value)
+    except StoreError as error:
+        raise StoreError(f"{where}: {error}") from error

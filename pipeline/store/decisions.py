@@ -8,8 +8,8 @@ from sqlalchemy.exc import IntegrityError
 
 from pipeline.records import Basis, Decision, in_force
 from pipeline.store.codec import StoreError
-from pipeline.store.results import load_found, load_outlines
-from pipeline.store.tables import DECISION, RUN_SHEET
+from pipeline.store.pages import load_members, load_page
+from pipeline.store.tables import DECISION, RUN_PAGE
 
 _BASIS = tuple(field.name for field in fields(Basis))
 _NAMES = tuple(field.name for field in fields(Decision))
@@ -57,14 +57,14 @@ def decisions_in_force(engine: Engine) -> InForce:
 def looked_at(engine: Engine, run_id: str, object_number: str, gallery: str = "") -> tuple[Basis, ...]:
     """Return what a run found of an object, as a decision remembers it; nothing where the run has no such object.
 
-    gallery : where it stood, so that those sheets are looked at first
+    gallery : where it stood, so that those pages are looked at first
     """
-    order = RUN_SHEET.c.gallery != gallery
+    order = RUN_PAGE.c.gallery != gallery
     with engine.connect() as connection:
-        query = select(RUN_SHEET.c.key).where(RUN_SHEET.c.run_id == run_id).order_by(order, RUN_SHEET.c.position)
+        query = select(RUN_PAGE.c.key).where(RUN_PAGE.c.run_id == run_id).order_by(order, RUN_PAGE.c.position)
         for key in connection.execute(query).scalars().all():
-            if any(outline.object_number == object_number for outline in load_outlines(connection, [key])):
-                found = load_found(engine, key)
+            if object_number in load_members(connection, key).column("object_number"):
+                found = load_page(connection, key)
                 mine = next(a for a in found.assessments if a.scene.item.object_number == object_number)
                 return tuple(Basis(*(getattr(f, name) for name in _BASIS)) for f in mine.findings)
     return ()

@@ -4,11 +4,13 @@ from collections.abc import Iterable
 
 from sqlalchemy import Engine, delete, select
 
-from pipeline.store.tables import RESULT, RUN, RUN_SHEET
+from pipeline.store.pages import fetch_pages
+from pipeline.store.results import forget
+from pipeline.store.tables import PAGE, RESULT, RUN, RUN_PAGE
 
 
 def remove_runs(engine: Engine, run_ids: Iterable[str]) -> None:
-    """Remove runs, each in a transaction of its own, and then the results that no run holds.
+    """Remove runs, each in a transaction of its own, and then the pages and the results that no run holds.
 
     run_ids : one that is not there is passed by
 
@@ -19,4 +21,13 @@ def remove_runs(engine: Engine, run_ids: Iterable[str]) -> None:
         with engine.begin() as connection:
             connection.execute(delete(RUN).where(RUN.c.run_id == run_id))
     with engine.begin() as connection:
-        connection.execute(delete(RESULT).where(RESULT.c.key.not_in(select(RUN_SHEET.c.key))))
+        connection.execute(delete(PAGE).where(PAGE.c.key.not_in(select(RUN_PAGE.c.key))))
+    used: set[str] = set()
+    with engine.connect() as connection:
+        # Page by page: a page names a thousand results.
+        for key in connection.execute(select(PAGE.c.key)).scalars().all():
+            for page in fetch_pages(connection, [key])[0].values():
+                used.update(page.members.keys)
+                used.add(page.members.spacings)
+        there = set(connection.execute(select(RESULT.c.key)).scalars())
+    forget(engine, there - used)

@@ -1,219 +1,303 @@
-"""What was found about the objects of a sheet, into the database and out of it: compressed JSON, never changed."""
+"""Results in the database, each under the key of everything that it depends on: sealed, compressed, never changed.
+
+What is assessed together is a unit, one object or all in one case; a row holds a result for each of its objects, in
+their order.  Neither numbers nor places of the objects are in it, so that objects that are alike share a row.
+"""
 
 import hashlib
 import zlib
-from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
-from sqlalchemy import Connection, Engine, insert, select
+from sqlalchemy import Connection, Engine, delete, insert, select
 
-from pipeline.records import Assessment, Finding, Found, Fragility, Item, Outline, Recommendation, Tally, Verdict
+from pipeline.records import Assessment, Item, Outline, Result, Scene, Spacing, Verdict
 from pipeline.store import codec
 from pipeline.store.codec import StoreError
+from pipeline.store.sealing import seal
 from pipeline.store.speaking import speaking
 from pipeline.store.tables import RESULT
 
 NAMED = 500
 """Keys in one statement: databases bound the number of parameters."""
 
-WISHES = "wishes"
-"""Counted only where the run asked what is worth measuring: nothing asked is not the same as nothing found."""
-
 _SEVERITY = {Verdict.PASS: 0, Verdict.UNDETERMINED: 1, Verdict.FAIL: 2}
-_TITLE = 80
-"""Characters of a title that a comparison shows."""
 
 
 @dataclass(frozen=True, slots=True)
-class Encoded:
-    """A result as it is kept; a worker makes it, so that whoever writes only writes.
+class Stored:
+    """What is kept under a key, ready to be written; a worker makes it, so that whoever writes only writes.
 
-    basis : the digest of what it depends on besides its objects
+    Attributes
+    ----------
+    key
+        Digest of everything that the results depend on.
+    outline
+        Of each result what comparisons need, as JSON.
+    found
+        The results, as compressed JSON.
     """
 
     key: str
-    basis: str
-    counts: Mapping[str, int]
-    tally: Tally
-    outline: bytes
+    outline: str
     found: bytes
 
 
-def encode(key: str, basis: str, found: Found, tally: Callable[[Found], Tally]) -> Encoded:
-    """Make a result ready to be kept.
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What is there under a key: the run that found it, when that began (ISO 8601, UTC), and what it found."""
 
-    basis  : the digest of what it depends on besides its objects
-    tally  : what it adds to the totals of a run
+    run: str
+    made: str
+    outline: str
+    found: bytes
 
-    raises : StoreError naming the object, for a value of the wrong type, for text that is not Unicode, and for a
-             finding that stands with another object
+
+Digests = tuple[str, str, tuple[tuple[str, str, str], ...]]
+"""Of a result: floor, digest of what else its object was run with, and model, level and worst verdict of each."""
+
+_OUTLINES = tuple[Digests, ...]
+_RESULTS = tuple[Result, ...]
+_SPACINGS = tuple[tuple[Spacing, ...], dict[str, str]]
+
+
+def anonymous(assessment: Assessment, needing: dict[str, int], wishes: tuple[Any, ...] | None) -> Result:
+    """Return what was found about an object without its number, its place and its title.
+
+    Parameters
+    ----------
+    assessment
+        Of the object.
+    needing
+        By name of the model, for how many of its analyses any history was run.
+    wishes
+        What is worth measuring on it; None where the run did not ask.
     """
-    for assessment in found.assessments:
-        _check_numbers(assessment)
-    _check_twins(found)
-    try:
-        everything = _packed(Found, found)
-    except StoreError:
-        # All at once is quicker; one by one says which object it is.
-        for assessment in found.assessments:
-            check_type(_where(assessment), Assessment, assessment)
-        raise
-    outline = _packed(tuple[Outline, ...], outlines(found))
-    return Encoded(key, basis, counts(found), tally(found), outline, everything)
+    scene = assessment.scene
+    return Result(
+        scene.object_class,
+        scene.rule,
+        scene.support,
+        scene.models,
+        scene.parameters,
+        scene.assumptions,
+        scene.missing,
+        scene.skipped,
+        scene.floor,
+        tuple(replace(one, object_number="", gallery="") for one in assessment.findings),
+        tuple(replace(one, object_number="", gallery="") for one in assessment.recommendations),
+        tuple(replace(one, object_number="") for one in assessment.fragilities),
+        needing,
+        None if wishes is None else tuple(replace(w, object_number="", gallery="", title="") for w in wishes),
+        assessment.fault,
+        assessment.aside,
+    )
 
 
-def keep(engine: Engine, run_id: str, made: str, results: Iterable[Encoded]) -> None:
-    """Write results that no run has yet, in one transaction; one that is there already is left as it is.
+def of_object(result: Result, item: Item) -> Assessment:
+    """Return a result as what was found about an object."""
+    number, gallery = item.object_number, item.gallery
+    scene = Scene(
+        item,
+        result.object_class,
+        result.rule,
+        result.support,
+        result.models,
+        result.parameters,
+        result.assumptions,
+        result.missing,
+        result.skipped,
+        result.floor,
+    )
+    return Assessment(
+        scene,
+        tuple(replace(one, object_number=number, gallery=gallery) for one in result.findings),
+        tuple(replace(one, object_number=number, gallery=gallery) for one in result.recommendations),
+        tuple(replace(one, object_number=number) for one in result.fragilities),
+        result.fault,
+        result.aside,
+    )
 
-    run_id, made : the run that found them, and when it began
-    raises       : StoreError for a database that refuses
+
+def encode(key: str, results: Sequence[Result]) -> Stored:
+    """Make results ready to be kept.
+
+    Raises
+    ------
+    StoreError
+        For a value of the wrong type, and for text that is not Unicode.
+    """
+    found = _packed(_RESULTS, tuple(results))
+    return Stored(key, codec.to_json(_OUTLINES, tuple(_digests(one) for one in results)), found)
+
+
+def encode_spacings(key: str, spacings: Sequence[Spacing], faults: dict[str, str]) -> Stored:
+    """Make the gaps between the neighbours of a gallery ready to be kept.
+
+    Parameters
+    ----------
+    key
+        Digest of everything that they depend on, the objects' numbers among it.
+    spacings
+        The gaps.
+    faults
+        By object number, what Kouros itself failed on.
+    """
+    return Stored(key, "[]", _packed(_SPACINGS, (tuple(spacings), faults)))
+
+
+def decode(found: bytes) -> tuple[Result, ...]:
+    """Read results as they are kept.
+
+    Raises
+    ------
+    StoreError
+        Where they are damaged.
+    """
+    results: tuple[Result, ...] = _unpacked(_RESULTS, found)
+    return results
+
+
+def decode_spacings(found: bytes) -> tuple[tuple[Spacing, ...], dict[str, str]]:
+    """Read what `encode_spacings` encoded: the gaps, and what Kouros failed on by object number."""
+    spacings: tuple[tuple[Spacing, ...], dict[str, str]] = _unpacked(_SPACINGS, found)
+    return spacings
+
+
+def keep(engine: Engine, run_id: str, made: str, stored: Iterable[Stored]) -> None:
+    """Write results that are not there yet, in one transaction; one that is there is left as it is.
+
+    Parameters
+    ----------
+    engine
+        The database.
+    run_id, made
+        The run that found them, and when it began.
+    stored
+        The results.
+
+    Raises
+    ------
+    StoreError
+        For a database that refuses.
     """
     with speaking(engine, "results were not stored"), engine.begin() as connection:
-        add(connection, run_id, made, results)
+        add(connection, run_id, made, stored)
 
 
-def add(connection: Connection, run_id: str, made: str, results: Iterable[Encoded]) -> None:
+def add(connection: Connection, run_id: str, made: str, stored: Iterable[Stored]) -> None:
     """Write results as a part of a transaction, as `keep` does in one of its own."""
-    wanted = {result.key: result for result in results}
-    there = known(connection, list(wanted))
+    wanted = {one.key: one for one in stored}
+    there = _known(connection, wanted)
     rows = [
         {
             "key": key,
-            "basis": result.basis,
             "run_id": run_id,
             "made": made,
-            "counts": dict(result.counts),
-            "tally": result.tally,
-            "outline": result.outline,
-            "found": result.found,
+            "outline": one.outline,
+            "found": one.found,
+            "seal": seal(key, run_id, made, one.outline, one.found),
         }
-        for key, result in wanted.items()
+        for key, one in wanted.items()
         if key not in there
     ]
     if rows:
         connection.execute(insert(RESULT), rows)
 
 
-@dataclass(frozen=True, slots=True)
-class Kept:
-    """A result that is there: the run that found it, when that began, what it adds to the totals."""
+def known(engine: Engine, keys: Collection[str]) -> set[str]:
+    """Return those of the keys that there are results for.
 
-    run: str
-    made: str
-    counts: Mapping[str, int]
-    tally: Tally
-
-
-def known(connection: Connection, keys: Sequence[str]) -> dict[str, Kept]:
-    """Return those of the keys that there are results for, with what is known of them."""
-    found: dict[str, Kept] = {}
-    columns = (RESULT.c.key, RESULT.c.run_id, RESULT.c.made, RESULT.c.counts, RESULT.c.tally)
-    for start in range(0, len(keys), NAMED):
-        some = RESULT.c.key.in_(keys[start : start + NAMED])
-        found |= {row.key: Kept(*tuple(row)[1:]) for row in connection.execute(select(*columns).where(some))}
-    return found
-
-
-def known_to(engine: Engine, keys: Sequence[str]) -> dict[str, Kept]:
-    """Return those of the keys that the database has results for, with what is known of them.
-
-    raises : StoreError for a database that refuses
+    Raises
+    ------
+    StoreError
+        For a database that refuses.
     """
     with speaking(engine, "the results of earlier runs could not be read"), engine.connect() as connection:
-        return known(connection, keys)
+        return _known(connection, keys)
 
 
-def on_same_basis(engine: Engine, keys: Sequence[str], basis: str) -> list[str]:
-    """Return those of the keys whose results rest on a basis."""
-    found: list[str] = []
-    with engine.connect() as connection:
-        for start in range(0, len(keys), NAMED):
-            some = RESULT.c.key.in_(keys[start : start + NAMED])
-            found += connection.execute(select(RESULT.c.key).where(some, RESULT.c.basis == basis)).scalars()
+def _known(connection: Connection, keys: Collection[str]) -> set[str]:
+    found: set[str] = set()
+    for some in _some(keys):
+        found.update(connection.execute(select(RESULT.c.key).where(RESULT.c.key.in_(some))).scalars())
     return found
 
 
-def copy(source: Engine, target: Engine, key: str) -> None:
-    """Copy a result from one database to another, where the other does not have it."""
-    with target.begin() as into:
-        if known(into, [key]):
-            return
-        with source.connect() as out:
-            row = out.execute(select(RESULT).where(RESULT.c.key == key)).mappings().one()
-        into.execute(insert(RESULT), [dict(row)])
+def fetch(database: Engine | Connection, keys: Collection[str]) -> tuple[dict[str, Kept], list[str]]:
+    """Return what is kept under some keys, and those of the keys whose rows are damaged.
 
-
-def packed(database: Engine | Connection, key: str) -> bytes:
-    """Return everything that was found, as it is kept.
-
-    raises : StoreError where there is no such result
+    What is not there is in neither of them.
     """
-    wanted = select(RESULT.c.found).where(RESULT.c.key == key)
     if isinstance(database, Engine):
-        with database.connect() as connection:
-            content = connection.execute(wanted).scalar()
-    else:
-        content = database.execute(wanted).scalar()
-    if content is None:
-        raise StoreError(f"there is no result {key[:12]}; it was pruned while it was read: choose another run")
-    return bytes(content)
+        with speaking(database, "the results of earlier runs could not be read"), database.connect() as connection:
+            return fetch(connection, keys)
+    found: dict[str, Kept] = {}
+    damaged: list[str] = []
+    for some in _some(keys):
+        for row in database.execute(select(RESULT).where(RESULT.c.key.in_(some))):
+            if _sound(row):
+                found[row.key] = Kept(row.run_id, row.made, row.outline, bytes(row.found))
+            else:
+                damaged.append(row.key)
+    return found, damaged
 
 
-def load_found(database: Engine | Connection, key: str) -> Found:
-    """Return everything that was found about the objects of a sheet.
-
-    raises : StoreError where there is no such result, or where it is damaged
-    """
-    return unpacked(packed(database, key))
-
-
-def unpacked(content: bytes) -> Found:
-    """Read a result as it is kept.
-
-    raises : StoreError where it is damaged
-    """
-    found: Found = _unpacked(Found, content)
+def outlines(connection: Connection, keys: Collection[str]) -> dict[str, tuple[Digests, ...]]:
+    """Return the outlines of the results that are kept under some keys."""
+    found: dict[str, tuple[Digests, ...]] = {}
+    for some in _some(keys):
+        columns = (RESULT.c.key, RESULT.c.outline)
+        for row in connection.execute(select(*columns).where(RESULT.c.key.in_(some))):
+            found[row.key] = codec.of_json(_OUTLINES, row.outline)
     return found
 
 
-def load_outlines(connection: Connection, keys: Sequence[str]) -> Iterator[Outline]:
-    """Yield the outlines of all objects of some results."""
-    for start in range(0, len(keys), NAMED):
-        some = RESULT.c.key.in_(keys[start : start + NAMED])
-        for row in connection.execute(select(RESULT.c.outline).where(some)):
-            yield from _unpacked(tuple[Outline, ...], row.outline)
-
-
-def outlines_of(engine: Engine, keys: Sequence[str]) -> list[Outline]:
-    """Return the outlines of all objects of some results."""
+def damaged(engine: Engine) -> Iterator[str]:
+    """Yield the keys of all rows that are not what was written."""
     with engine.connect() as connection:
-        return list(load_outlines(connection, keys))
+        for row in connection.execute(select(RESULT), execution_options={"yield_per": NAMED}):
+            if not _sound(row):
+                yield row.key
 
 
-def outlines(found: Found) -> tuple[Outline, ...]:
-    """Return the outline of each object."""
-    return tuple(_outline(assessment) for assessment in found.assessments)
+def forget(engine: Engine, keys: Collection[str]) -> None:
+    """Remove what is kept under some keys, so that it is made again."""
+    with engine.begin() as connection:
+        for some in _some(keys):
+            connection.execute(delete(RESULT).where(RESULT.c.key.in_(some)))
 
 
-def _outline(assessment: Assessment) -> Outline:
-    scene = assessment.scene
+def copy(source: Engine, target: Engine, keys: Collection[str]) -> None:
+    """Copy results from one database to another, where the other does not have them."""
+    with target.begin() as into:
+        wanted = [key for key in dict.fromkeys(keys) if key not in _known(into, [key])]
+        with source.connect() as out:
+            for some in _some(wanted):
+                rows = out.execute(select(RESULT).where(RESULT.c.key.in_(some))).mappings().all()
+                into.execute(insert(RESULT), [dict(row) for row in rows])
+
+
+def _some(keys: Collection[str]) -> Iterator[list[str]]:
+    listed = list(keys)
+    for start in range(0, len(listed), NAMED):
+        yield listed[start : start + NAMED]
+
+
+def _sound(row: Any) -> bool:
+    return bool(row.seal == seal(row.key, row.run_id, row.made, row.outline, bytes(row.found)))
+
+
+def _digests(result: Result) -> Digests:
     worst: dict[tuple[str, str], Verdict] = {}
-    for finding in assessment.findings:
+    for finding in result.findings:
         key = (finding.model, finding.level)
         if key not in worst or _SEVERITY[finding.verdict] > _SEVERITY[worst[key]]:
             worst[key] = finding.verdict
-    run_with = (scene.support, scene.object_class, scene.models, dict(scene.parameters))
-    return Outline(
-        scene.item.object_number,
-        (scene.item.title or scene.item.object_name)[:_TITLE],
-        scene.item.gallery,
-        scene.floor,
-        _digest(Item, scene.item),
-        _digest(_RunWith, run_with),
-        tuple((model, level, verdict.value) for (model, level), verdict in worst.items()),
-    )
+    run_with = (result.support, result.object_class, result.models, dict(result.parameters))
+    verdicts = tuple((model, level, verdict.value) for (model, level), verdict in worst.items())
+    return result.floor, _digest(_RunWith, run_with), verdicts
 
 
 _RunWith = tuple[Any, str, tuple[str, ...], dict[str, Any]]
@@ -223,17 +307,18 @@ def _digest(hint: Any, value: Any) -> str:
     return hashlib.blake2b(codec.to_json(hint, value).encode(), digest_size=12).hexdigest()
 
 
-def counts(found: Found) -> dict[str, int]:
-    """Count what a result holds."""
-    verdicts = [finding.verdict for assessment in found.assessments for finding in assessment.findings]
-    return {
-        "objects": len(found.assessments),
-        "assessed": sum(assessment.assessed for assessment in found.assessments),
-        "findings": len(verdicts),
-        **{verdict.value: verdicts.count(verdict) for verdict in Verdict},
-        "recommendations": sum(len(assessment.recommendations) for assessment in found.assessments),
-        **({} if found.wishes is None else {WISHES: len(found.wishes)}),
-    }
+def outline_of(number: str, gallery: str, digest: str, found: Digests) -> Outline:
+    """Return an object in as much as two runs are compared by.
+
+    Parameters
+    ----------
+    number, gallery, digest
+        Of its record.
+    found
+        Of its result.
+    """
+    floor, scene, verdicts = found
+    return Outline(number, gallery, floor, digest, scene, verdicts)
 
 
 def _packed(hint: Any, value: Any) -> bytes:
@@ -247,44 +332,3 @@ def _unpacked(hint: Any, content: bytes) -> Any:
     except (zlib.error, UnicodeDecodeError) as error:
         raise StoreError(f"a result is damaged: {error}; the database was changed by hand or is broken") from error
     return codec.of_json(hint, text)
-
-
-def _where(assessment: Assessment) -> str:
-    item = assessment.scene.item
-    return f"object {item.object_number!a} in gallery {item.gallery!a}"
-
-
-def _check_numbers(assessment: Assessment) -> None:
-    number = assessment.scene.item.object_number
-    judged: tuple[Finding | Recommendation | Fragility, ...] = (
-        *assessment.findings,
-        *assessment.recommendations,
-        *assessment.fragilities,
-    )
-    for one in judged:
-        if one.object_number != number:
-            kind = type(one).__name__.lower()
-            raise StoreError(
-                f"{_where(assessment)} has a {kind} of object {one.object_number!a}; keep each with its object"
-            )
-
-
-def _check_twins(found: Found) -> None:
-    times = Counter(assessment.scene.item.object_number for assessment in found.assessments)
-    twice = sorted(number for number, often in times.items() if often > 1)
-    if twice:
-        listed = ", ".join(map(ascii, twice[:5])) + (f" and {len(twice) - 5} more" if len(twice) > 5 else "")
-        raise StoreError(
-            f"it has more than one object {listed}; give each object its own number in the museum's records"
-        )
-
-
-def check_type(where: str, hint: Any, value: Any) -> None:
-    """Refuse a value that is not of a type, saying where it is.
-
-    raises : StoreError
-    """
-    try:
-        codec.to_json(hint, value)
-    except StoreError as error:
-        raise StoreError(f"{where}: {error}") from error

@@ -9,13 +9,13 @@ from typing import Any
 from sqlalchemy import Connection, Engine, Row, Table, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
-from pipeline.records import Chart, MotionSummary, RunChanges, RunRecord, Sheet, Standing, Verdict
+from pipeline.records import Chart, MotionSummary, Page, RunChanges, RunRecord, Standing
 from pipeline.store import codec
 from pipeline.store.changes import changes
 from pipeline.store.codec import StoreError
-from pipeline.store.results import WISHES, Encoded, add, check_type, load_found
+from pipeline.store.pages import add_pages, load_page
 from pipeline.store.speaking import speaking, where_is
-from pipeline.store.tables import RESULT, RUN, RUN_CHART, RUN_DECISION, RUN_MOTION, RUN_SHEET
+from pipeline.store.tables import PAGE, RUN, RUN_CHART, RUN_DECISION, RUN_MOTION, RUN_PAGE
 
 __all__ = [
     "RunChanges",
@@ -43,7 +43,7 @@ class RunSummary:
     """A run as a list shows it.
 
     status : "finished", or "unfinished" for a run without a time of finishing
-    counts : objects, assessed, findings, pass, fail, undetermined, recommendations, charts, motions,
+    counts : objects, assessed, findings, pass, fail, undetermined, recommendations, pages, charts, motions,
              and wishes where it asked for them
     """
 
@@ -61,16 +61,19 @@ class RunSummary:
 def commit_run(
     engine: Engine,
     head: RunRecord,
-    sheets: Sequence[Sheet],
-    results: Sequence[Encoded] = (),
+    pages: Sequence[Page],
+    fresh: Iterable[Mapping[str, Any]] = (),
     *,
+    counts: Mapping[str, int],
     published: bool = True,
 ) -> None:
-    """Make a run of its sheets, whose results are kept already or given: in one transaction, all of it or nothing.
+    """Make a run of its pages, the results on which are kept already: in one transaction, all of it or nothing.
 
     engine  : from `collection.database.open_database`, brought to head by `migrate.upgrade`
     head    : the run without its objects; times as text that sorts like time (ISO 8601, UTC); settings of text,
               numbers, truth values, None, and tuples, lists and mappings of them; every other Mapping is a dict
+    fresh   : rows of those of its pages that are not kept yet (see `pages.page_row`)
+    counts  : how many objects, findings and so on it has
     published : whether it has its report already; where not, nobody takes it for a finished run until `mark_finished`
     raises  : StoreError for a run_id that is there already, a result that is not kept, a value of the wrong type or
               text that is not Unicode, or a database that refuses
@@ -80,8 +83,8 @@ def commit_run(
     failure = f"run {head.run_id!a} was not stored, and nothing of it was kept"
     try:
         with speaking(engine, failure), engine.begin() as connection:
-            add(connection, head.run_id, head.finished, results)
-            for table, rows in _tables(head, sheets, status):
+            add_pages(connection, fresh)
+            for table, rows in _tables(head, pages, counts, status):
                 waiting = iter(rows)
                 while chunk := list(islice(waiting, _CHUNK)):
                     connection.execute(insert(table), chunk)
@@ -102,8 +105,8 @@ def mark_finished(engine: Engine, run_id: str) -> None:
         connection.execute(update(RUN).where(RUN.c.run_id == run_id, RUN.c.status != FINISHED).values(status=FINISHED))
 
 
-def load_head(engine: Engine, run_id: str | None = None) -> tuple[RunRecord, tuple[Sheet, ...]]:
-    """Return a run without its objects, and its sheets, whose results `results.load_found` gives.
+def load_head(engine: Engine, run_id: str | None = None) -> tuple[RunRecord, tuple[Page, ...]]:
+    """Return a run without its objects, and its pages, whose objects `pages.load_page` gives.
 
     run_id : None means the newest finished run
     raises : StoreError for a run that is not there (listing those that are)
@@ -121,20 +124,15 @@ def load_head(engine: Engine, run_id: str | None = None) -> tuple[RunRecord, tup
             motions=tuple(_records(connection, RUN_MOTION, MotionSummary, run_id)),
             decisions=tuple(_records(connection, RUN_DECISION, Standing, run_id)),
         )
-        sheets = _sheets(connection, run_id)
-    if _counts(record, sheets) != head["counts"]:
+        pages = _pages(connection, run_id)
+    there = {"pages": len(pages), "charts": len(record.charts), "motions": len(record.motions)}
+    told = {name: head["counts"].get(name) for name in there}
+    if there != told:
         raise StoreError(
-            f"run {run_id!r} is not whole in {where_is(engine)}: {_counts(record, sheets)} instead of "
-            f"{head['counts']}; "
-            "it was pruned while it was read, or changed by hand: choose another run"
+            f"run {run_id!r} is not whole in {where_is(engine)}: {there} instead of {told}; it was pruned while it was "
+            "read, or changed by hand: choose another run"
         )
-    return record, sheets
-
-
-def sheets_of(engine: Engine, run_id: str) -> tuple[Sheet, ...]:
-    """Return the sheets of a run, in their order."""
-    with speaking(engine, f"the sheets of run {run_id!a} could not be read"), engine.connect() as connection:
-        return _sheets(connection, run_id)
+    return record, pages
 
 
 def load_run(engine: Engine, run_id: str | None = None) -> RunRecord:
@@ -142,8 +140,8 @@ def load_run(engine: Engine, run_id: str | None = None) -> RunRecord:
 
     raises : as `load_head`
     """
-    head, sheets = load_head(engine, run_id)
-    found = [load_found(engine, sheet.key) for sheet in sheets]
+    head, pages = load_head(engine, run_id)
+    found = [load_page(engine, page.key) for page in pages]
     wishes = [one.wishes for one in found]
     return replace(
         head,
@@ -186,24 +184,26 @@ def _check(head: RunRecord) -> None:
     """Refuse what could not be read back equal, before anything is written."""
     run = f"run {head.run_id!a}"
     for motion in head.motions:
-        check_type(f"{run}, motion {motion.name!a}", MotionSummary, motion)
+        codec.check_type(f"{run}, motion {motion.name!a}", MotionSummary, motion)
     for standing in head.decisions:
-        check_type(f"{run}, decision {standing.decision.id}", Standing, standing)
+        codec.check_type(f"{run}, decision {standing.decision.id}", Standing, standing)
     for key, chart in head.charts.items():
-        check_type(f"{run}, chart {key!a}", dict[str, Chart], {key: chart})
+        codec.check_type(f"{run}, chart {key!a}", dict[str, Chart], {key: chart})
     named = {name: getattr(head, name) for name in _RUN_FIELDS if name not in {"settings", "level_notes"}}
-    check_type(run, dict[str, str | bool], named)
-    check_type(f"{run}, level_notes", tuple[str, ...], head.level_notes)
+    codec.check_type(run, dict[str, str | bool], named)
+    codec.check_type(f"{run}, level_notes", tuple[str, ...], head.level_notes)
     try:
         codec.settings_to_json(head.settings)
     except StoreError as error:
         raise StoreError(f"{run}: {error}") from error
 
 
-def _tables(head: RunRecord, sheets: Sequence[Sheet], status: str) -> Iterator[tuple[Table, Iterable[dict[str, Any]]]]:
+def _tables(
+    head: RunRecord, pages: Sequence[Page], counts: Mapping[str, int], status: str
+) -> Iterator[tuple[Table, Iterable[dict[str, Any]]]]:
     """Yield each table with its rows, parents first."""
     of_run = {"run_id": head.run_id}
-    yield RUN, [_run_row(head, sheets, status)]
+    yield RUN, [_run_row(head, {**counts, "pages": len(pages)}, status)]
     yield RUN_MOTION, _rows(of_run, MotionSummary, head.motions)
     charts = enumerate(head.charts.items())
     yield RUN_CHART, ({**of_run, "position": i, "key": key, "chart": chart} for i, (key, chart) in charts)
@@ -213,15 +213,15 @@ def _tables(head: RunRecord, sheets: Sequence[Sheet], status: str) -> Iterator[t
     yield RUN_DECISION, standing
     names = ("key", "gallery", "on_display", "number", "of")
     yield (
-        RUN_SHEET,
-        ({**of_run, "position": i, **{n: getattr(sheet, n) for n in names}} for i, sheet in enumerate(sheets)),
+        RUN_PAGE,
+        ({**of_run, "position": i, **{n: getattr(page, n) for n in names}} for i, page in enumerate(pages)),
     )
 
 
-def _run_row(head: RunRecord, sheets: Sequence[Sheet], status: str) -> dict[str, Any]:
+def _run_row(head: RunRecord, counts: Mapping[str, int], status: str) -> dict[str, Any]:
     return {name: getattr(head, name) for name in _RUN_FIELDS} | {
         "status": status if head.finished else UNFINISHED,
-        "counts": _counts(head, sheets),
+        "counts": {**counts, "charts": len(head.charts), "motions": len(head.motions)},
     }
 
 
@@ -230,16 +230,6 @@ def _rows(of_run: dict[str, Any], kind: type[Any], records: Iterable[Any]) -> It
     values = attrgetter(*names)
     for position, record in enumerate(records):
         yield {**of_run, "position": position, **dict(zip(names, values(record), strict=True))}
-
-
-def _counts(head: RunRecord, sheets: Sequence[Sheet]) -> dict[str, int]:
-    """Count what a run holds; wishes only where every sheet asked for them."""
-    names = ("objects", "assessed", "findings", *Verdict, "recommendations")
-    total = {str(name): sum(sheet.counts[name] for sheet in sheets) for name in names}
-    total |= {"charts": len(head.charts), "motions": len(head.motions)}
-    if all(WISHES in sheet.counts for sheet in sheets):
-        total[WISHES] = sum(sheet.counts[WISHES] for sheet in sheets)
-    return total
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -275,12 +265,12 @@ def _records(connection: Connection, table: Table, kind: type[Any], run_id: str)
         yield kind(*row)
 
 
-def _sheets(connection: Connection, run_id: str) -> tuple[Sheet, ...]:
-    joined = RUN_SHEET.join(RESULT, RUN_SHEET.c.key == RESULT.c.key)
-    columns = [RUN_SHEET.c[name] for name in ("key", "gallery", "on_display", "number", "of")]
-    query = select(*columns, RESULT.c.run_id, RESULT.c.made, RESULT.c.counts).select_from(joined)
-    rows = connection.execute(query.where(RUN_SHEET.c.run_id == run_id).order_by(RUN_SHEET.c.position))
-    return tuple(Sheet(*tuple(row)) for row in rows)
+def _pages(connection: Connection, run_id: str) -> tuple[Page, ...]:
+    joined = RUN_PAGE.join(PAGE, RUN_PAGE.c.key == PAGE.c.key)
+    columns = [RUN_PAGE.c[name] for name in ("key", "gallery", "on_display", "number", "of")]
+    query = select(*columns, PAGE.c.run_id, PAGE.c.made).select_from(joined)
+    rows = connection.execute(query.where(RUN_PAGE.c.run_id == run_id).order_by(RUN_PAGE.c.position))
+    return tuple(Page(*tuple(row)) for row in rows)
 
 
 def _charts(connection: Connection, run_id: str) -> dict[str, Chart]:

@@ -28,7 +28,7 @@ from pipeline.collection.database import METADATA
 from pipeline.collection.inventory import IMPORT_BATCH, ITEM
 from pipeline.collection.noting import READING
 from pipeline.collection.supplement import SUPPLEMENT
-from pipeline.records import Chart, Decision, MotionSummary, Standing, Tally
+from pipeline.records import Chart, Decision, MotionSummary, Standing
 from pipeline.store import codec
 
 # The inventory's tables are handed on so that METADATA is whole wherever this module is imported.
@@ -38,12 +38,13 @@ __all__ = [
     "ITEM",
     "METADATA",
     "READING",
+    "PAGE",
     "RESULT",
     "RUN",
     "RUN_CHART",
     "RUN_DECISION",
     "RUN_MOTION",
-    "RUN_SHEET",
+    "RUN_PAGE",
     "SUPPLEMENT",
 ]
 
@@ -250,34 +251,47 @@ RESULT = Table(
     "result",
     METADATA,
     Column("key", Words(), primary_key=True),
-    Column("basis", Words(), nullable=False, server_default=""),
     Column("run_id", Words(), nullable=False),
     Column("made", Words(), nullable=False),
-    Column("counts", Json(dict[str, int]), nullable=False),
-    Column("tally", Json(Tally), nullable=False),
-    Column("outline", LargeBinary(), nullable=False),
+    Column("outline", Words(), nullable=False),
     Column("found", LargeBinary(), nullable=False),
+    Column("seal", Text(), nullable=False),
 )
-"""What was found about the objects of one sheet, under the digest of everything that it depends on; never changed.
+"""What was found about a unit, one object or all in one case, under the digest of everything that it depends on.
 
-basis   : the digest of what it depends on besides its objects; "" where that is not known
 run_id  : the run that found it, which may be gone;  made : when, ISO 8601, UTC
-outline : of each object what comparisons need, found : everything; compressed JSON (see `results`)
+outline : of each object what comparisons need, JSON;  found : everything, compressed JSON (see `results`)
+seal    : of all the others (see `sealing`)
 """
 
-RUN_SHEET = Table(
-    "run_sheet",
+PAGE = Table(
+    "page",
+    METADATA,
+    Column("key", Words(), primary_key=True),
+    Column("run_id", Words(), nullable=False),
+    Column("made", Words(), nullable=False),
+    Column("members", LargeBinary(), nullable=False),
+    Column("seal", Text(), nullable=False),
+)
+"""The objects of a page, under the digest of their numbers, places, records and results; never changed.
+
+run_id, made : of the newest of their results
+members      : their records, and the keys of their results, compressed JSON (see `pages`)
+"""
+
+RUN_PAGE = Table(
+    "run_page",
     METADATA,
     _of_run(),
     _position(),
-    Column("key", Words(), ForeignKey("result.key"), nullable=False),
+    Column("key", Words(), ForeignKey("page.key"), nullable=False),
     Column("gallery", Words(), nullable=False),
     Column("on_display", Boolean(), nullable=False),
     Column("number", Integer(), nullable=False),
     Column("of", Integer(), nullable=False),
     Index(None, "key"),
 )
-"""The sheets of a run, each with its result; an unchanged sheet has the one that an earlier run found."""
+"""The pages of a run; an unchanged one is that of an earlier run."""
 
 DECISION = Table(
     "decision",

@@ -1,0 +1,246 @@
+"""The objects of a page in the database, under a digest of them: their records as they were, and where results are."""
+
+import json
+import zlib
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from sqlalchemy import Connection, Engine, delete, insert, select
+
+from pipeline.analysis.faults import with_fault
+from pipeline.analysis.survey import in_order
+from pipeline.collection.catalogue import read_packed
+from pipeline.records import ITEM_FIELDS, Found, Item, Page
+from pipeline.store.codec import StoreError
+from pipeline.store.results import decode, decode_spacings, fetch, of_object
+from pipeline.store.sealing import seal
+from pipeline.store.tables import PAGE, RUN, RUN_PAGE
+
+NAMED = 500
+"""Keys in one statement."""
+
+NEIGHBOURS = "how near its neighbours come is not known"
+
+
+@dataclass(frozen=True)
+class Members:
+    """The objects of a page, in their order.
+
+    Attributes
+    ----------
+    items
+        Their records, packed as `collection` packs them.
+    fields
+        Names of the fields of a packed record.
+    digests
+        Of their records.
+    results
+        Of each the key of its unit's results, and which of these it has.
+    spacings
+        Key of the gaps between the neighbours of its gallery; "" where there are none.
+    """
+
+    items: bytes
+    digests: tuple[str, ...]
+    results: tuple[tuple[str, int], ...]
+    spacings: str = ""
+    fields: tuple[str, ...] = ITEM_FIELDS
+
+    @property
+    def keys(self) -> list[str]:
+        """The keys of all results, each once."""
+        return list(dict.fromkeys(key for key, _ in self.results))
+
+    @cached_property
+    def _rows(self) -> list[list[Any]]:
+        rows: list[list[Any]] = json.loads(self.items)
+        return rows
+
+    def column(self, name: str) -> list[Any]:
+        """Return one field of all records."""
+        at = self.fields.index(name)
+        return [row[at] for row in self._rows]
+
+    def packed(self) -> bytes:
+        """Return what is kept."""
+        head = {"fields": self.fields, "digests": self.digests, "results": self.results, "spacings": self.spacings}
+        return zlib.compress(json.dumps(head, separators=(",", ":")).encode() + b"\n" + self.items, 1)
+
+    @classmethod
+    def of_packed(cls, content: bytes) -> "Members":
+        """Read what `packed` gave.
+
+        Raises
+        ------
+        StoreError
+            Where it is damaged.
+        """
+        try:
+            head, _, items = zlib.decompress(content).partition(b"\n")
+            told = json.loads(head)
+            results = tuple((str(key), int(at)) for key, at in told["results"])
+            return cls(items, tuple(told["digests"]), results, str(told["spacings"]), tuple(told["fields"]))
+        except (zlib.error, ValueError, KeyError, TypeError) as error:
+            raise StoreError(f"a page is damaged: {error}; the database was changed by hand or is broken") from error
+
+    def read(self) -> list[Item]:
+        """Return the records.
+
+        Raises
+        ------
+        DamagedRecordError
+            Where one is not what was written.
+        """
+        return read_packed(self.items)
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A page in the database: its objects, and the run that found the newest of their results, with its time."""
+
+    run: str
+    made: str
+    members: Members
+
+
+def found_of(members: Members, kept: Mapping[str, bytes]) -> Found:
+    """Return everything that was found about the objects of a page.
+
+    Parameters
+    ----------
+    members
+        Of the page.
+    kept
+        Results by key, as they are kept.
+
+    Raises
+    ------
+    StoreError
+        Where a result is not there, or damaged.
+    """
+    try:
+        results = {key: decode(kept[key]) for key in members.keys}
+        gaps, failed = decode_spacings(kept[members.spacings]) if members.spacings else ((), {})
+    except KeyError as error:
+        raise StoreError(f"there is no result {error.args[0][:12]}; it was pruned while it was read") from error
+    pairs = [(results[key][at], item) for (key, at), item in zip(members.results, members.read(), strict=True)]
+    assessments = tuple(of_object(result, item) for result, item in pairs)
+    numbers = {item.object_number for _, item in pairs}
+    asked = bool(pairs) and all(result.wishes is not None for result, _ in pairs)
+    wishes = [
+        replace(one, object_number=item.object_number, gallery=item.gallery, title=item.title)
+        for result, item in pairs
+        for one in result.wishes or ()
+    ]
+    if failed.keys() & numbers:
+        assessments = tuple(
+            with_fault(one, failed[one.scene.item.object_number], NEIGHBOURS)
+            if one.scene.item.object_number in failed
+            else one
+            for one in assessments
+        )
+    return Found(
+        assessments,
+        tuple(in_order(wishes)) if asked else None,
+        tuple(gap for gap in gaps if gap.first in numbers),
+        {item.object_number: result.needing for result, item in pairs if result.needing},
+    )
+
+
+def page_row(page: Page, members: Members) -> dict[str, Any]:
+    """Return a page as a row of its table."""
+    content = members.packed()
+    whole = seal(page.key, page.run, page.made, content)
+    return {"key": page.key, "run_id": page.run, "made": page.made, "members": content, "seal": whole}
+
+
+def add_pages(connection: Connection, rows: Iterable[Mapping[str, Any]]) -> None:
+    """Write pages that are not there yet, as a part of a transaction."""
+    wanted = {row["key"]: row for row in rows}
+    for some in _some(wanted):
+        there = set(connection.execute(select(PAGE.c.key).where(PAGE.c.key.in_(some))).scalars())
+        fresh = [dict(wanted[key]) for key in some if key not in there]
+        if fresh:
+            connection.execute(insert(PAGE), fresh)
+
+
+def fetch_pages(database: Engine | Connection, keys: Collection[str]) -> tuple[dict[str, Shown], list[str]]:
+    """Return the pages that are kept under some keys, and those of the keys whose rows are damaged."""
+    if isinstance(database, Engine):
+        with database.connect() as connection:
+            return fetch_pages(connection, keys)
+    found: dict[str, Shown] = {}
+    damaged: list[str] = []
+    for some in _some(keys):
+        for row in database.execute(select(PAGE).where(PAGE.c.key.in_(some))):
+            if _sound(row):
+                found[row.key] = Shown(row.run_id, row.made, Members.of_packed(bytes(row.members)))
+            else:
+                damaged.append(row.key)
+    return found, damaged
+
+
+def load_members(connection: Connection, key: str) -> Members:
+    """Return the objects of a page.
+
+    Raises
+    ------
+    StoreError
+        Where there is no such page, or where it is damaged.
+    """
+    found, damaged = fetch_pages(connection, [key])
+    if key not in found:
+        why = "is damaged: the database was changed by hand or is broken" if damaged else "was pruned while it was read"
+        raise StoreError(f"page {key[:12]} {why}; choose another run")
+    return found[key].members
+
+
+def load_page(database: Engine | Connection, key: str) -> Found:
+    """Return everything that was found about the objects of a page.
+
+    Raises
+    ------
+    StoreError
+        Where there is no such page, or where something of it is gone or damaged.
+    """
+    if isinstance(database, Engine):
+        with database.connect() as connection:
+            return load_page(connection, key)
+    members = load_members(database, key)
+    wanted = [*members.keys, *filter(None, [members.spacings])]
+    kept, damaged = fetch(database, wanted)
+    if damaged:
+        raise StoreError(
+            f"result {damaged[0][:12]} is damaged: the database was changed by hand or is broken; `kouros run` makes "
+            "it again"
+        )
+    return found_of(members, {key: one.found for key, one in kept.items()})
+
+
+def damaged_pages(engine: Engine) -> Iterator[str]:
+    """Yield the keys of all pages that are not what was written."""
+    with engine.connect() as connection:
+        for row in connection.execute(select(PAGE), execution_options={"yield_per": NAMED}):
+            if not _sound(row):
+                yield row.key
+
+
+def forget_pages(engine: Engine, keys: Collection[str]) -> None:
+    """Remove damaged pages, and with them the runs that have them: what they showed is not known any more."""
+    with engine.begin() as connection:
+        for some in _some(keys):
+            mine = select(RUN_PAGE.c.run_id).where(RUN_PAGE.c.key.in_(some))
+            connection.execute(delete(RUN).where(RUN.c.run_id.in_(mine)))
+            connection.execute(delete(PAGE).where(PAGE.c.key.in_(some)))
+
+
+def _some(keys: Collection[str]) -> Iterator[list[str]]:
+    listed = list(keys)
+    for start in range(0, len(listed), NAMED):
+        yield listed[start : start + NAMED]
+
+
+def _sound(row: Any) -> bool:
+    return bool(row.seal == seal(row.key, row.run_id, row.made, bytes(row.members)))
