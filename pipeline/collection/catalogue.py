@@ -49,6 +49,13 @@ class Catalogue:
                 out |= {row.object_number: row.digest for row in connection.execute(wanted.where(some))}
         return out
 
+    def placed(self) -> set[str]:
+        """Return the galleries in which places of objects on display are recorded."""
+        known = ITEM.c.position_x_m.is_not(None) & ITEM.c.position_y_m.is_not(None) & ITEM.c.on_display
+        with self.engine.connect() as connection:
+            wanted = select(ITEM.c.gallery).where(state_at(self.version), known).distinct()
+            return set(connection.execute(wanted).scalars())
+
     def packed(self, numbers: Sequence[str]) -> bytes:
         """Return the records of some objects as they were in this version, as JSON that `read_packed` reads.
 

@@ -33,6 +33,10 @@ class Listed(NamedTuple):
     digest: str
     kind: int | None
 
+    @property
+    def assessment_digest(self) -> str:
+        return self.digest if self.kind is None else f"{self.kind & (2**64 - 1):016x}"
+
 
 class Run(NamedTuple):
     """The objects of one gallery that are on display, or that are not, as they lie in a listing."""

@@ -4,28 +4,28 @@ What Kouros fails on costs one object its answer (see `pipeline.analysis.faults`
 """
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from operator import attrgetter
 from time import perf_counter
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify, object_classes
 from pipeline.analysis.faults import Fault, apart, each_apart, fault, unassessed
 from pipeline.analysis.fragility.objects import fragilities
-from pipeline.analysis.neighbours import neighbours
 from pipeline.analysis.rules import Table
-from pipeline.analysis.survey import in_order, wishes
+from pipeline.analysis.survey import wishes
+from pipeline.collection.record import INDIVIDUAL
 from pipeline.mitigate import advise
 from pipeline.mitigate.installed import Measure, Placed, assess_above, placed
 from pipeline.models import model_named
-from pipeline.night.context import Brief
-from pipeline.night.deduplication import Known, Twins, as_own, likeness
+from pipeline.night.context import RunContext
 from pipeline.night.floors import Storey
 from pipeline.records import (
+    ITEM_FIELDS,
     Assessment,
     Decision,
     DecisionKind,
     Finding,
-    Found,
     Fragility,
     Item,
     Scene,
@@ -33,6 +33,28 @@ from pipeline.records import (
     Support,
     Wish,
 )
+
+# The classification, whose result is a part of the scene, looks at titles; neighbours are looked at afterwards.
+_shared = attrgetter(*(name for name in ITEM_FIELDS if name not in (*INDIVIDUAL, "title")))
+
+
+@dataclass(frozen=True, slots=True)
+class Assessed:
+    """One object with everything that was found about it, without its neighbours.
+
+    Attributes
+    ----------
+    assessment
+        What was found.
+    needing
+        By name of the model, for how many of its analyses any history was run.
+    wishes
+        What is worth measuring on it; None where the run does not ask.
+    """
+
+    assessment: Assessment
+    needing: Mapping[str, int]
+    wishes: tuple[Wish, ...] | None = None
 
 
 def place(item: Item, rules: Table | None, decisions: Sequence[Decision]) -> Placed:
@@ -46,49 +68,122 @@ def place(item: Item, rules: Table | None, decisions: Sequence[Decision]) -> Pla
     return placed(scene, measures)
 
 
-def find(
-    brief: Brief, storey: Storey, items: Sequence[Item], decisions: Sequence[Decision], twins: Twins
-) -> tuple[Found, float, list[Fault]]:
+def assess_objects(
+    context: RunContext, floor: Storey, items: Sequence[Item], decisions: Sequence[Decision]
+) -> tuple[list[Assessed], float, list[Fault]]:
     """Run everything that objects on one floor require under its motions, judge it and advise.
 
-    decisions : those in force: classes and installed measures change what is run
-    twins     : what is known of objects that these may be like
-    returns   : what was found, the seconds that finding out what is worth measuring cost, and what Kouros failed on
+    Parameters
+    ----------
+    context
+        Of the run.
+    floor
+        That they stand on.
+    items
+        Their records.
+    decisions
+        Those in force: classes and installed measures change what is run.
+
+    Returns
+    -------
+    assessed : list of Assessed
+        Of each object.
+    seconds : float
+        What finding out what is worth measuring cost [s].
+    faults : list of Fault
+        What Kouros failed on.
     """
     about = by_object(decisions)
     faults: list[Fault] = []
-    objects = placed_each(brief, storey, items, about)
+    objects = placed_each(context, floor, items, about)
     sound = [one for one in objects if isinstance(one, Placed)]
-    decided = [one.scene.item.object_number in about for one in sound]
-    known = iter(_known(brief, storey, sound, decided, twins, faults))
+    likes = _likes(sound, about)
+    first: dict[Hashable, Placed] = {}
+    for like, one in zip(likes, sound, strict=True):
+        first.setdefault(like, one)
+    known, seconds = _found(context, floor, first, faults)
+    pairs = iter(zip(likes, sound, strict=True))
+    out = []
+    for item, placed_one in zip(items, objects, strict=True):
+        if isinstance(placed_one, Exception):
+            out.append(Assessed(failed_on(item, placed_one, faults), {}, () if context.surveyed else None))
+            continue
+        like, one = next(pairs)
+        out.append(known[like] if first[like] is one else _as_own(one.scene, known[like]))
+    return out, seconds, faults
+
+
+def _found(
+    context: RunContext, floor: Storey, objects: Mapping[Hashable, Placed], faults: list[Fault]
+) -> tuple[dict[Hashable, Assessed], float]:
+    """Return what is found of some objects of which none is like another, and the seconds that the survey cost."""
     every = [
-        next(known) if isinstance(one, Placed) else failed_on(item, one, faults)
-        for item, one in zip(items, objects, strict=True)
+        (failed_on(one.scene, came, faults), {}) if isinstance(came, Exception) else came
+        for one, came in zip(objects.values(), each_assessed(context, floor, list(objects.values())), strict=True)
     ]
     assessments = tuple(assessment for assessment, _ in every)
+    asked: dict[str, list[Wish]] = {}
     began = perf_counter()
-    wished: tuple[Wish, ...] | None = None
-    if brief.surveyed:
-        fidelity, step = _integrating(brief), brief.analysis.azimuth_step
+    if context.surveyed:
+        fidelity, step = _integrating(context), context.analysis.azimuth_step
         # Each trial is asked once: a chart would not pay.
-        assessments, asked = each_apart(
+        assessments, several = each_apart(
             assessments,
             lambda scenes, found: wishes(
-                scenes, found, storey.shaking, brief.executor, Silent(), fidelity=fidelity, azimuth_step=step
+                scenes, found, floor.shaking, context.executor, Silent(), fidelity=fidelity, azimuth_step=step
             ),
             "what is worth measuring on it is not known",
             faults,
         )
-        wished = tuple(in_order(asked))
-    seconds = perf_counter() - began if brief.surveyed else 0.0
-    assessments, spacings = each_apart(
-        assessments,
-        lambda scenes, found: neighbours(scenes, found, storey.shaking),
-        "how near its neighbours come is not known",
-        faults,
+        for wish in several:
+            asked.setdefault(wish.object_number, []).append(wish)
+    seconds = perf_counter() - began if context.surveyed else 0.0
+    found = {}
+    for like, assessment, (_, needing) in zip(objects, assessments, every, strict=True):
+        mine = tuple(asked.get(assessment.scene.item.object_number, ())) if context.surveyed else None
+        found[like] = Assessed(assessment, needing, mine)
+    return found, seconds
+
+
+def _likes(objects: Sequence[Placed], about: Mapping[str, Sequence[Decision]]) -> list[Hashable]:
+    """Return of each object what it shares with those that are alike; its place stands for one of its own kind."""
+    likes: list[Hashable] = []
+    for at, one in enumerate(objects):
+        like = None if one.scene.item.object_number in about else likeness(one.scene)
+        likes.append(at if like is None else like)
+    return likes
+
+
+def likeness(scene: Scene) -> Hashable | None:
+    """Return what objects that are alike share; None for one whose company counts.
+
+    That is one that stands in a case, whose measures are for all in it, or on an isolator.
+    """
+    if scene.item.case.strip() or scene.support is Support.ISOLATED:
+        return None
+    return (
+        *(scene.object_class, scene.rule, scene.support, scene.models, tuple(scene.parameters.items())),
+        *(scene.assumptions, scene.missing, scene.floor),
+        *_shared(scene.item),
     )
-    needing = {a.scene.item.object_number: counts for a, counts in every if counts}
-    return Found(assessments, wished, tuple(spacings), needing), seconds, faults
+
+
+def _as_own(scene: Scene, twin: Assessed) -> Assessed:
+    """Return what was found of one object as found of another one that is like it."""
+    number, gallery, found = scene.item.object_number, scene.item.gallery, twin.assessment
+    if found.fault and not found.findings:
+        return replace(twin, assessment=unassessed(scene, Fault(number, found.fault, "")))
+    same = replace(scene, skipped=found.scene.skipped, missing=found.scene.missing, assumptions=found.scene.assumptions)
+    return replace(
+        twin,
+        assessment=Assessment(
+            same,
+            tuple(replace(one, object_number=number, gallery=gallery) for one in found.findings),
+            tuple(replace(one, object_number=number, gallery=gallery) for one in found.recommendations),
+            tuple(replace(one, object_number=number) for one in found.fragilities),
+            found.fault,
+        ),
+    )
 
 
 def by_object(decisions: Iterable[Decision]) -> dict[str, list[Decision]]:
@@ -100,28 +195,45 @@ def by_object(decisions: Iterable[Decision]) -> dict[str, list[Decision]]:
 
 
 def placed_each(
-    brief: Brief, storey: Storey, items: Sequence[Item], about: Mapping[str, Sequence[Decision]]
+    context: RunContext, floor: Storey, items: Sequence[Item], about: Mapping[str, Sequence[Decision]]
 ) -> list[Placed | Exception]:
     """Return each object as it stands, or the error that placing it came to."""
 
     def some(these: Sequence[Item]) -> list[Placed]:
-        objects = [place(item, brief.rules, about.get(item.object_number, ())) for item in these]
-        return [replace(one, scene=replace(one.scene, floor=storey.name)) for one in objects]
+        objects = [place(item, context.rules, about.get(item.object_number, ())) for item in these]
+        return [replace(one, scene=replace(one.scene, floor=floor.name)) for one in objects]
 
     return apart(some, items, lambda item: item.support)
 
 
-def failed_on(item: Item | Scene, problem: Exception, faults: list[Fault]) -> Known:
+def failed_on(item: Item | Scene, problem: Exception, faults: list[Fault]) -> Assessment:
     """Return what is said of an object that Kouros failed on."""
     told = fault(item if isinstance(item, Item) else item.item, problem)
     faults.append(told)
-    return unassessed(item, told), {}
+    return unassessed(item, told)
 
 
-def each_assessed(brief: Brief, storey: Storey, objects: Sequence[Placed]) -> list[Known | Exception]:
+def left_aside(
+    context: RunContext, floor: Storey, items: Sequence[Item], decisions: Sequence[Decision]
+) -> tuple[list[Assessed], float, list[Fault]]:
+    """Return objects that are not on display as what they are, with nothing found about them.
+
+    Parameters and what is returned are those of `assess_objects`.
+    """
+    faults: list[Fault] = []
+    objects = placed_each(context, floor, items, by_object(decisions))
+    assessments = [
+        Assessment(one.scene, (), ()) if isinstance(one, Placed) else failed_on(item, one, faults)
+        for item, one in zip(items, objects, strict=True)
+    ]
+    asked = () if context.surveyed else None
+    return [Assessed(replace(one, aside=True), {}, asked) for one in assessments], 0.0, faults
+
+
+def each_assessed(context: RunContext, floor: Storey, objects: Sequence[Placed]) -> list[tuple[Assessment, dict[str, int]] | Exception]:
     """Return what is found of each object, or the error that finding it came to."""
     return apart(
-        lambda some: _assessed(brief, storey, some),
+        lambda some: _assessed(context, floor, some),
         objects,
         lambda one: (one.scene.object_class, one.scene.support),
         # What is advised for a case depends on all that stand in it.
@@ -129,53 +241,24 @@ def each_assessed(brief: Brief, storey: Storey, objects: Sequence[Placed]) -> li
     )
 
 
-def _integrating(brief: Brief) -> str:
-    return "reference" if brief.analysis.fidelity == "reference" else "history"
+def _integrating(context: RunContext) -> str:
+    return "reference" if context.analysis.fidelity == "reference" else "history"
 
 
-def _known(
-    brief: Brief, storey: Storey, objects: Sequence[Placed], decided: Sequence[bool], twins: Twins, faults: list[Fault]
-) -> list[Known]:
-    """Return what is found of each object, where several are alike that of the first."""
-    likes: list[Hashable] = []
-    for at, (one, mine) in enumerate(zip(objects, decided, strict=True)):
-        like = None if mine else likeness(one.scene)
-        # Its place, which nothing else has, stands for an object of its own kind.
-        likes.append(at if like is None else like)
-    known = {like: before for like in likes if (before := twins.get(like)) is not None}
-    fresh: dict[Hashable, int] = {}
-    for at, like in enumerate(likes):
-        if like not in known:
-            fresh.setdefault(like, at)
-    own = each_assessed(brief, storey, [objects[at] for at in fresh.values()])
-    for (like, at), came in zip(fresh.items(), own, strict=True):
-        if isinstance(came, Exception):
-            known[like] = failed_on(objects[at].scene, came, faults)
-            continue
-        known[like] = came
-        if not isinstance(like, int):
-            twins.note(like, *came)
-    out = []
-    for at, (like, one) in enumerate(zip(likes, objects, strict=True)):
-        assessment, needing = known[like]
-        out.append((assessment if fresh.get(like) == at else as_own(one.scene, assessment), needing))
-    return out
-
-
-def _assessed(brief: Brief, storey: Storey, objects: Sequence[Placed]) -> list[Known]:
+def _assessed(context: RunContext, floor: Storey, objects: Sequence[Placed]) -> list[tuple[Assessment, dict[str, int]]]:
     """Run everything that objects require, judge it and advise."""
     if not objects:
         return []
     told = Silent()
     scenes = [one.scene for one in objects]
-    levels, executor = storey.shaking, brief.executor
-    fidelity, step = brief.analysis.fidelity, brief.analysis.azimuth_step
+    levels, executor = floor.shaking, context.executor
+    fidelity, step = context.analysis.fidelity, context.analysis.azimuth_step
     needing: list[dict[str, int]] = [{} for _ in scenes]
     plan, findings = assess(
-        scenes, levels, executor, told, fidelity=fidelity, azimuth_step=step, charts=brief.shelf, needing=needing
+        scenes, levels, executor, told, fidelity=fidelity, azimuth_step=step, charts=context.shelf, needing=needing
     )
     # Few objects stand on isolators, each on its own: neither charts nor bounds of what these pass on would pay.
-    above = assess_above(objects, levels, executor, told, fidelity=_integrating(brief), azimuth_step=step)
+    above = assess_above(objects, levels, executor, told, fidelity=_integrating(context), azimuth_step=step)
     for at, (on_top, left_out) in enumerate(above):
         findings[at] += on_top
         done = {finding.title for finding in findings[at]}
@@ -187,17 +270,17 @@ def _assessed(brief: Brief, storey: Storey, objects: Sequence[Placed]) -> list[K
         levels,
         executor,
         told,
-        means=brief.means,
+        means=context.means,
         fidelity=fidelity,
         azimuth_step=step,
-        charts=brief.shelf,
-        carriage=brief.carriage,
+        charts=context.shelf,
+        carriage=context.carriage,
     )
     curves: Sequence[tuple[Fragility, ...]] = [()] * len(scenes)
-    if brief.fragile:
+    if context.fragile:
         # What an isolator passes on would have to be scaled too.
         shown = [s.item.on_display and s.support is not Support.ISOLATED for s in scenes]
-        curves = fragilities(scenes, plan.work, storey.stripes, executor, told, chosen=shown)
+        curves = fragilities(scenes, plan.work, floor.stripes, executor, told, chosen=shown)
     scenes = [_needing(scene, those) for scene, those in zip(scenes, findings, strict=True)]
     return [
         (Assessment(scene, tuple(those), tuple(advised), curve), counts)

@@ -1,4 +1,4 @@
-"""What all sheets of a run share: it goes once to whoever works on them."""
+"""What everything that is done in a run shares: it goes once to each worker."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,7 +12,6 @@ from pipeline.analysis.rules import Table
 from pipeline.execute import Threads
 from pipeline.mitigate import Means
 from pipeline.mitigate.bench import Carriage
-from pipeline.night.deduplication import Twins
 from pipeline.night.floors import Storey
 from pipeline.operations.workspace import HISTORIES
 from pipeline.records import (
@@ -26,14 +25,14 @@ from pipeline.settings import Analysis
 
 
 @dataclass
-class Brief:
-    """What all sheets of a run share.
+class RunContext:
+    """What everything that is done in a run shares.
 
     head      : the run without its objects: its motions and its charts, what pages say of it
     storeys   : the floors by name
     surveyed, fragile : whether to find out what is worth measuring, and from what shaking objects fail
     stores    : whether what is not on display is assessed too
-    admitted  : which response charts are built (see `response_charts.Shelf`); None: those that pay for a sheet
+    admitted  : which response charts are built (see `response_charts.Shelf`); None: those that pay
     kept      : folder in which charts are kept; None: in memory only
     threads   : of one who works
     """
@@ -55,7 +54,7 @@ class Brief:
 
     def __getstate__(self) -> dict[str, Any]:
         # What was made on the way is made again where it is needed.
-        made = {"shelf", "carriage", "pen", "executor", "twins"}
+        made = {"shelf", "carriage", "pen", "executor"}
         return {name: value for name, value in self.__dict__.items() if name not in made}
 
     @property
@@ -71,7 +70,7 @@ class Brief:
     def memory(self, *batch: object) -> Path | None:
         """Return the file in which the histories of what is worked on together are kept from night to night.
 
-        batch : what is the same every night, such as gallery and number of its sheets
+        batch : what is the same every night
         """
         if self.kept is None:
             return None
@@ -80,22 +79,17 @@ class Brief:
 
     @cached_property
     def carriage(self) -> Carriage:
-        """What isolators pass on, once for all sheets."""
+        """What isolators pass on, once for all objects."""
         return Carriage()
 
     @cached_property
-    def twins(self) -> Twins:
-        """What was found of objects that others may be like."""
-        return Twins()
-
-    @cached_property
     def executor(self) -> Threads:
-        """Where the parts of a sheet's work run."""
+        """Where the parts of the work run."""
         return Threads(self.threads)
 
     @cached_property
     def pen(self) -> Pen:
-        """What draws the sheets.
+        """What draws the pages.
 
         raises : ReportError for a language without a catalogue
         """

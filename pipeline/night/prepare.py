@@ -1,4 +1,4 @@
-"""What all sheets of a run share, made ready: motions and their pictures, rules, measures, and what is asked for."""
+"""What everything that is done in a run shares, made ready: motions and their pictures, rules, measures, and what is asked for."""
 
 import os
 from collections.abc import Sequence
@@ -24,16 +24,17 @@ from pipeline.mitigate import Means
 from pipeline.mitigate.measures import padded
 from pipeline.motions.record import NO_VERTICAL
 from pipeline.motions.site import Level, Site
-from pipeline.night.context import Brief, motions_of
+from pipeline.night.context import RunContext, motions_of
 from pipeline.night.figures import Pictures
 from pipeline.night.floors import floors_of, notes
 from pipeline.night.reading_summary import told
-from pipeline.night.tasks import ChartErrand
-from pipeline.night.versions import code_digest, rules_digest
+from pipeline.night.tasks import ChartTask
+from pipeline.night.source_state import rules_digest
 from pipeline.operations.presentation import presentation
 from pipeline.operations.workspace import CHARTS, Workspace
 from pipeline.records import Model, Progress, RunRecord, Scene
 from pipeline.report.pages.reading import INVENTORY, READING
+from pipeline.resources import code_version
 from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, PICTURES, RULES
 from pipeline.verification import selftest, tradeoff
 
@@ -51,7 +52,7 @@ PADDED = 0.25
 """Share of the works on walls that rubber pads are tried for, at least: a third of real ones under strong shaking."""
 
 
-def brief_for(
+def run_context(
     workspace: Workspace,
     site: Site,
     catalogue: Catalogue,
@@ -59,8 +60,8 @@ def brief_for(
     pictures: Pictures,
     started: datetime,
     progress: Progress,
-) -> Brief:
-    """Make ready what all sheets of a run share; its shelf is to be tidied at the end.
+) -> RunContext:
+    """Make ready what everything that is done in a run shares; its shelf is to be tidied at the end.
 
     catalogue : all objects of the inventory;  chosen : those that the run is of
     pictures  : where those of the motions are had
@@ -99,7 +100,7 @@ def brief_for(
         motions=tuple(summary for storey in storeys.values() for summary in storey.summaries),
         demonstration=settings.demonstration,
     )
-    brief = Brief(
+    context = RunContext(
         head=head,
         storeys=storeys,
         analysis=settings.analysis,
@@ -120,18 +121,18 @@ def brief_for(
     if measured is not None:
         picture = tradeoff.picture(measured)
         drawn[picture.key] = picture
-    brief.head = replace(head, charts=drawn)
-    return brief
+    context.head = replace(head, charts=drawn)
+    return context
 
 
-def admit(brief: Brief, catalogue: Catalogue, chosen: Listing, x_azimuth: float) -> list[ChartErrand]:
+def admit(context: RunContext, catalogue: Catalogue, chosen: Listing, x_azimuth: float) -> list[ChartTask]:
     """Decide which response charts are used (see `popular`), and return those to be built before the sheets."""
-    found = popular(catalogue, assessed(chosen, brief.stores), brief.rules, brief.means, x_azimuth)
-    brief.admitted = frozenset(found)
+    found = popular(catalogue, assessed(chosen, context.stores), context.rules, context.means, x_azimuth)
+    context.admitted = frozenset(found)
     return [
-        ChartErrand(model.name, motion, angle, alike)
+        ChartTask(model.name, motion, angle, alike)
         for _, (model, angle, alike) in sorted(found.items())
-        for motion in brief.motions.values()
+        for motion in context.motions.values()
     ]
 
 
@@ -149,12 +150,12 @@ def popular(
 ) -> dict[str, Group]:
     """Return the groups of parameters whose charts pay for a collection, as a sample of its objects says, by name.
 
-    What an object is found to do must not hang on which others happen to be on its sheet, or on who asked first.  Of
+    What an object is found to do must not hang on which others happen to be worked on with it, or on who asked first.  Of
     the measures only rubber pads make something of many objects that one chart could serve.
     """
     every = max(1, len(chosen) // SAMPLE)
     sample = catalogue.items([one.object_number for one in chosen[::every]])
-    # What cannot even be planned for is told by the sheet that it is on.
+    # What cannot even be planned for is told where it is assessed.
     scenes = sound(lambda some: [classify(item, rules) for item in some], list(sample.values()))
 
     def planned(some: Sequence[Scene]) -> list[tuple[Work, float]]:
@@ -195,7 +196,7 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
     return {
         KERNELS: KERNEL_VERSION,
         PICTURES: picture_version(),
-        CODE: code_digest(),
+        CODE: code_version()[:12],
         RULES: rules_digest(settings),
         LEVELS: {level.name: level.combine for level in site.levels},
         "credit": credit,

@@ -14,9 +14,9 @@ from pipeline.errors import InputError
 from pipeline.motions.site import Site
 from pipeline.night.figures import pictures
 from pipeline.night.importing import Imported, import_collection, source_of
-from pipeline.night.prepare import admit, brief_for
+from pipeline.night.prepare import admit, run_context
 from pipeline.night.reading_summary import doubts_of
-from pipeline.night.scheduler import Round
+from pipeline.night.scheduler import NightRun
 from pipeline.night.source_state import remember, unchanged
 from pipeline.operations.dry_run import DryRunWarning, rehearsed
 from pipeline.operations.report_status import Status, last_good, mark_good, mark_running, status
@@ -28,6 +28,7 @@ from pipeline.report import lasting_name, publish
 from pipeline.report.pages.decided import by_object
 from pipeline.report.pages.reading import READING
 from pipeline.report.pages.survey_words import SURVEY_SECONDS
+from pipeline.report.pages.tallies import counts
 from pipeline.report.pages.views import State
 from pipeline.settings import Settings
 from pipeline.store.decisions import decisions_in_force
@@ -87,46 +88,47 @@ def _run(
                 _refresh(workspace, progress, dry_run=dry_run)
             everything = workspace.catalogue()
             objects = _chosen(everything.objects, chosen)
-            brief = brief_for(workspace, site, everything, objects, drawing, started, progress)
+            context = run_context(workspace, site, everything, objects, drawing, started, progress)
         try:
-            night = Round(workspace, brief, everything, objects, decisions_in_force(workspace.engine))
-            if night.fresh:
-                night.charts = admit(brief, everything, objects, site.manifest.site.x_azimuth)
+            charts = admit(context, everything, objects, site.manifest.site.x_azimuth)
+            night = NightRun(workspace, context, everything, objects, decisions_in_force(workspace.engine))
+            night.charts = charts
             return _hold(night, progress, chosen, dry_run=dry_run, strict=strict)
         finally:
-            tidy(settings, brief.shelf, brief.motions)
+            tidy(settings, context.shelf, context.motions)
 
 
-def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool, strict: bool) -> Summary:
+def _hold(night: NightRun, progress: Progress, chosen: Selection, *, dry_run: bool, strict: bool) -> Summary:
     """Do what there is to do, store it, publish it, say what changed."""
     workspace, engine = night.workspace, night.workspace.engine
+    night.assess(progress, store=not dry_run)
     if dry_run:
-        found = night.assess(progress)
-        return _judged(summarise(_ended(night, chosen), night.sheets, found), strict=strict)
-    with night.edition() as edition:
-        found = night.publish(edition, progress)
+        return _judged(summarise(_ended(night, chosen), night.pages, night.tally(progress)), strict=strict)
+    with night.writer() as writer:
+        found = night.publish(writer, progress)
         _stand_by(night, found)
         head = _ended(night, chosen)
         # A part is not compared: what was left out of it has not changed.
         before = [] if chosen else whole_runs(engine)[:1]
         strangers = night.strangers(whole=not chosen)
         whole = replace(head, decisions=(*head.decisions, *strangers))
-        commit_run(engine, whole, night.sheets, published=False)
+        told = counts(found)
+        commit_run(engine, whole, night.pages, night.rows(), counts=told, damaged=night.damaged, published=False)
         changes = compare_runs(engine, before[0], head.run_id) if before else None
         progress.step("report", 0, 1)
         # A part of the collection is worth a report, but not the name of the museum's latest one.
         latest = None if chosen else lasting_name(workspace.reports)
-        summary = summarise(whole, night.sheets, found)
-        index = edition.folder / "index.html"
+        summary = summarise(whole, night.pages, found)
+        index = writer.folder / "index.html"
         summary = replace(summary, fresh=night.fresh, report=index, latest=latest, changes=changes)
         summary = _judged(summary, strict=strict)
-        beside = {SUMMARY: summary_text(summary, edition.folder)}
+        beside = {SUMMARY: summary_text(summary, writer.folder)}
         doubts = doubts_of(workspace, head)
-        edition.finish(replace(head, decisions=strangers), found, changes, night.links(changes), beside, doubts)
+        writer.finish(replace(head, decisions=strangers), found, changes, night.links(changes), beside, doubts)
     with uninterrupted():
         # From here on the report is whole: first it is shown, then said to be good.
         if latest is not None:
-            publish(edition.folder, workspace.reports)
+            publish(writer.folder, workspace.reports)
         mark_finished(engine, head.run_id)
         if latest is not None:
             mark_good(workspace.settings, summary)
@@ -134,7 +136,7 @@ def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool,
     return summary
 
 
-def _stand_by(night: Round, found: Tally) -> None:
+def _stand_by(night: NightRun, found: Tally) -> None:
     """Refuse a night in which Kouros failed on every object that it assessed: that is no object's doing.
 
     raises : RuntimeError with the first failure; the last report stays
@@ -151,10 +153,10 @@ def _judged(summary: Summary, *, strict: bool) -> Summary:
     return replace(summary, exit_code=3 if strict and summary.cannot else 0)
 
 
-def _ended(night: Round, chosen: Selection) -> RunRecord:
-    head = night.brief.head
+def _ended(night: NightRun, chosen: Selection) -> RunRecord:
+    head = night.context.head
     more: dict[str, Any] = {SELECTION: bool(chosen)}
-    if night.brief.surveyed:
+    if night.context.surveyed:
         more[SURVEY_SECONDS] = round(night.seconds, 3)
     finished = datetime.now(UTC).isoformat(timespec="milliseconds")
     return replace(head, finished=finished, settings={**head.settings, **more}, decisions=night.standing)
@@ -259,19 +261,19 @@ def _read_site(workspace: Workspace, progress: Progress) -> Site:
     return site
 
 
-def summarise(head: RunRecord, sheets: Sequence[Sheet], found: Tally) -> Summary:
+def summarise(head: RunRecord, pages: Sequence[Page], found: Tally) -> Summary:
     """Put what a run found on one screen: every object on display is in exactly one of act, open, safe and cannot.
 
     head  : the run without its objects
-    found : of all its sheets together
+    pages : of the run
+    found : of all its pages together
     """
     states, stored = found.states, found.stored
     shown = sum(states.values())
-    findings = {there: sum(s.counts["findings"] for s in sheets if s.on_display is there) for there in (True, False)}
     stores = None
     if stored and State.ASIDE not in stored:
         told = {name: stored.get(state, 0) for name, state in _COUNTED.items()}
-        stores = Stores(**told, findings=findings[False], measures=found.stored_measures)
+        stores = Stores(**told, findings=found.stored_findings, measures=found.stored_measures)
     return Summary(
         run_id=head.run_id,
         started=head.started,
@@ -281,13 +283,13 @@ def summarise(head: RunRecord, sheets: Sequence[Sheet], found: Tally) -> Summary
         site=head.site,
         objects=shown + sum(stored.values()),
         on_display=shown,
-        galleries=len({sheet.gallery for sheet in sheets if sheet.on_display}),
+        galleries=len({page.gallery for page in pages if page.on_display}),
         assessed=shown - states["unknown"],
         cannot=states["unknown"],
         act=states["act"],
         open=states["open"],
         safe=states["safe"],
-        findings=findings[True],
+        findings=found.findings,
         measures=found.measures,
         missing=found.missing,
         stores=stores,

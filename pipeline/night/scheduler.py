@@ -1,137 +1,205 @@
-"""One round through the sheets of a collection: which have results, who finds the others, what becomes of all."""
+"""The work of a run: which units have results, which pages the last report has, and who does what is left."""
 
 import logging
-from collections import Counter
-from collections.abc import Callable, Container, Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
+from itertools import groupby
 from math import ceil
 from time import monotonic
+from typing import Any
 
 from pipeline.analysis.faults import Fault
 from pipeline.collection.catalogue import Catalogue
+from pipeline.collection.database import Database
 from pipeline.collection.inventory import fields_since
 from pipeline.collection.listing import Listing
-from pipeline.collection.record import family_of
 from pipeline.execute.crew import Crew, cores, crew
 from pipeline.execute.memory import give_back
-from pipeline.night.context import Brief
+from pipeline.night.context import RunContext
 from pipeline.night.decision_review import now, standing
-from pipeline.night.floors import floor_name
-from pipeline.night.tasks import Batch, ChartErrand, Done, Errand, KindErrand, build, find_kinds, stand, work
-from pipeline.night.units import Keys, Part, cut
-from pipeline.night.versions import rules_digest
+from pipeline.night.paging import Part, paged
+from pipeline.night.source_state import rules_digest
+from pipeline.night.tasks import (
+    Assessments,
+    ChartTask,
+    GalleryTask,
+    PageTask,
+    Rendered,
+    UnitTask,
+    assess_units,
+    build_chart,
+    find_neighbours,
+    render_page,
+)
+from pipeline.night.units import Decisions, Unit, UnitKeys
 from pipeline.operations.event_log import note
 from pipeline.operations.workspace import Workspace
-from pipeline.records import Decision, Progress, RunChanges, Sheet, Standing, Tally
-from pipeline.report.files.report_writer import Edition, Shelved, link_to, sheet_key
+from pipeline.records import Found, Page, Progress, RunChanges, Standing, Tally
+from pipeline.report.files.report_writer import PreviousReport, ReportWriter, link_to, page_key
 from pipeline.report.pages.since import mentioned
 from pipeline.report.pages.tallies import total
 from pipeline.report.pages.views import Pointer
-from pipeline.store.parcels import Parcel
-from pipeline.store.results import (
-    Encoded,
-    Kept,
-    keep,
-    known_to,
-    load_found,
-    on_same_basis,
-    outlines_of,
-    packed,
-)
-from pipeline.store.reuse import whole_runs
-from pipeline.store.runs import sheets_of
+from pipeline.store.pages import Members, Shown, fetch_pages, found_of, page_digest, page_row
+from pipeline.store.results import Kept, Stored, copy, fetch, forget, keep, known, stamps
 
 FEW = 5_000
-"""Objects whose results are to be found for which other processes do not pay: they take seconds to start."""
+"""Objects to be assessed or shown for which other processes do not pay: they take seconds to start."""
 
-BATCH = 16_000
-"""Objects, about, that one worker works on together at most: each model is called once for all of them under each
-motion, which costs some seconds however few they are."""
-
-KIND_BATCH = 100_000
-"""Kinds of objects, about, that one worker works on together at most; they are neither stored nor drawn.  Of eleven
-motions 30,000 take 39 s, 90,000 take 92: some 13 s are for sets that every part asks for."""
-
-KINDS = 400_000
-"""Kinds of objects that are found before the sheets at most, of about 0.5 kB each."""
+BATCH = 100_000
+"""Units, about, that one worker assesses together at most: each model is called once for all of them under each
+motion.  Of eleven motions 30,000 take 39 s, 90,000 take 92: some 13 s are for sets that every batch asks for."""
 
 _SECONDS = 5.0
 """Longest time for which results wait to be stored together."""
 
 
 @dataclass
-class _Piece:
-    """A sheet and what is known of it so far.
+class _Shown:
+    """A page of the run, and what is known of it so far.
 
-    basis : of its result, see `Keys`
-    kept  : its result, where there is one
-    there : the decisions about its objects as they stand, once there is a result
+    Attributes
+    ----------
+    part
+        Its objects.
+    units
+        Theirs, in their order.
+    spacings
+        Key of the gaps between the neighbours of its gallery; "" where no places are known.
+    kept
+        The page in the database, where it is there.
+    page, standing
+        As it is shown, once all results on it are known.
+    row
+        Of the database, where it is not there yet.
     """
 
     part: Part
+    units: list[Unit]
+    spacings: str = ""
+    kept: Shown | None = None
+    page: Page | None = None
+    standing: tuple[Standing, ...] = ()
+    row: dict[str, Any] | None = None
+
+    def results(self, names: Mapping[str, str]) -> tuple[tuple[str, int], ...]:
+        """Return of each object the key of its unit's results, and which of these it has."""
+        return tuple((names.get(u.key, u.key), at) for u in self.units for at in range(len(u.members)))
+
+    def digests(self) -> tuple[str, ...]:
+        return tuple(one.digest for unit in self.units for one in unit.members)
+
+    def numbers(self) -> list[str]:
+        return [one.object_number for unit in self.units for one in unit.members]
+
+
+@dataclass
+class _Work:
+    """The units of a floor that have no results yet, by key."""
+
     floor: str
-    basis: str
-    key: str
-    decisions: tuple[Decision, ...]
-    kept: Kept | None
-    there: tuple[Standing, ...] = ()
+    assessed: bool
+    units: dict[str, Unit] = field(default_factory=dict)
+    every: int = 0
 
 
-class Round:
-    """The sheets of a run, and the doing of them.
+class NightRun:
+    """The units and the pages of a run, and the doing of what is not done yet.
 
-    fresh    : objects that must be assessed, because nothing is known of them
-    sheets   : as they are stored with the run, once all is done; standing: the decisions about their objects
-    seconds  : what finding out what is worth measuring cost
-    charts   : response charts that are built before the sheets
+    Attributes
+    ----------
+    fresh
+        Objects that must be assessed, because nothing is known of them.
+    seconds
+        What finding out what is worth measuring cost [s].
+    faults
+        Objects that Kouros failed on.
+    charts
+        Response charts that are built before anything is assessed.
+    damaged
+        Keys of pages whose rows in the database are not what was written.
     """
 
     def __init__(
-        self,
-        workspace: Workspace,
-        brief: Brief,
-        catalogue: Catalogue,
-        objects: Listing,
-        decisions: Mapping[str, tuple[Decision, ...]],
+        self, workspace: Workspace, context: RunContext, catalogue: Catalogue, objects: Listing, decisions: Decisions
     ) -> None:
-        self.workspace, self.brief = workspace, brief
-        self._catalogue, self._decisions = catalogue, decisions
-        settings, keys = workspace.settings, Keys(brief, rules_digest(workspace.settings))
-        self._cut = cut(objects, settings)
-        parts, decided = self._cut.parts, self._cut.holding(decisions.keys())
-        self._numbers = catalogue.digests(list(decided))
-        about: dict[int, tuple[Decision, ...]] = {}
-        for number, part in decided.items():
-            about[id(part)] = about.get(id(part), ()) + decisions[number]
-        theirs = [about.get(id(part), ()) for part in parts]
-        floors = [floor_name(settings, part.objects[0].gallery) for part in parts]
-        named = [keys.of(*of) for of in zip(parts, floors, theirs, strict=True)]
-        there = known_to(workspace.engine, named)
-        self._pieces = [
-            _Piece(part, floor, keys.basis(part, floor), key, mine, there.get(key))
-            for part, floor, key, mine in zip(parts, floors, named, theirs, strict=True)
-        ]
-        self.fresh = sum(len(p.part.objects) for p in self._pieces if p.kept is None and self._assessed(p))
+        self.workspace, self.context = workspace, context
+        self._catalogue, self._decisions, self._objects = catalogue, decisions, objects
+        keys = UnitKeys(context, rules_digest(workspace.settings))
+        self._pages = [_Shown(part, keys.units(part, decisions)) for part in paged(objects, workspace.settings)]
+        placed = catalogue.placed()
+        for (gallery, shown), several in groupby(self._pages, lambda one: (one.part.gallery, one.part.on_display)):
+            pages = list(several)
+            if shown and gallery in placed:
+                named = keys.neighbours(pages[0].part, [unit for page in pages for unit in page.units])
+                for page in pages:
+                    page.spacings = named
+        self._digests = catalogue.digests(list(decisions))
+        self._names: dict[str, str] = {}
+        self._memory: dict[str, Kept] | None = None
+        self._work = self._missing()
+        self.fresh = sum(
+            sum(unit.key in work.units for page in self._of(work) for unit in page.units for _ in unit.members)
+            for work in self._work
+            if work.assessed
+        )
         self.seconds = 0.0
-        self.charts: Sequence[ChartErrand] = ()
+        self.charts: Sequence[ChartTask] = ()
         self.faults: list[Fault] = []
-        self._tallies: list[Tally] = []
-        self._sheets: list[Sheet] = []
+
+    # -----------------------------------------------------------------------------------------------------------------
+    # What there is
+
+    def _missing(self) -> list[_Work]:
+        """Find out which pages are as they were, and which units of the others have no results yet."""
+        engine = self.workspace.engine
+        keys = [page_digest(page.digests(), page.results({}), page.spacings) for page in self._pages]
+        found, damaged = fetch_pages(engine, keys)
+        self.damaged = frozenset(damaged)
+        for key in damaged:
+            note("page.damaged", level=logging.WARNING, page=key)
+        work: dict[tuple[str, bool], _Work] = {}
+        wanted: list[_Shown] = []
+        for page, key in zip(self._pages, keys, strict=True):
+            page.kept = found.get(key)
+            if page.kept is not None:
+                page.page = self._page(page, key, page.kept.run, page.kept.made)
+            else:
+                wanted.append(page)
+        there = known(engine, {unit.key for page in wanted for unit in page.units})
+        for page in self._pages:
+            which = (page.part.floor, page.part.on_display or self.context.stores)
+            mine = work.setdefault(which, _Work(*which))
+            mine.every += len(page.units)
+            if page.kept is None:
+                mine.units.update((unit.key, unit) for unit in page.units if unit.key not in there)
+        return [one for one in work.values() if one.units]
+
+    def _of(self, work: _Work) -> Iterator[_Shown]:
+        for page in self._pages:
+            same = (page.part.floor, page.part.on_display or self.context.stores) == (work.floor, work.assessed)
+            if same and page.kept is None:
+                yield page
+
+    def _page(self, shown: _Shown, key: str, run: str, made: str) -> Page:
+        part = shown.part
+        return Page(key, part.gallery, part.on_display, part.number, part.of, run, made)
 
     @property
-    def sheets(self) -> tuple[Sheet, ...]:
-        """The sheets that are done, in order."""
-        return tuple(self._sheets)
+    def pages(self) -> tuple[Page, ...]:
+        """The pages of the run, once all is known."""
+        return tuple(one.page for one in self._pages if one.page is not None)
+
+    def rows(self) -> Iterator[dict[str, Any]]:
+        """Yield the rows of those pages that the database does not have."""
+        for one in self._pages:
+            if one.kept is None and one.page is not None:
+                yield one.row or page_row(one.page, self._members(one))
 
     @property
     def standing(self) -> tuple[Standing, ...]:
-        """The decisions about the objects of the sheets that are done, as they stand."""
-        return tuple(one for piece in self._pieces for one in piece.there)
-
-    def _assessed(self, piece: _Piece) -> bool:
-        return piece.part.on_display or self.brief.stores
+        """The decisions about the objects of the run, as they stand."""
+        return tuple(one for page in self._pages for one in page.standing)
 
     def strangers(self, *, whole: bool) -> tuple[Standing, ...]:
         """Return the decisions about objects that the collection does not have any more.
@@ -140,115 +208,259 @@ class Round:
         """
         if not whole:
             return ()
-        gone = [d for number, mine in self._decisions.items() if number not in self._numbers for d in mine]
-        at = now((), self.brief.head, {}, lambda _number, _digest: ())
+        gone = [d for number, mine in self._decisions.items() if number not in self._digests for d in mine]
+        at = now((), self.context.head, {}, lambda _number, _digest: ())
         return standing(sorted(gone, key=lambda d: d.id), at)
 
     # -----------------------------------------------------------------------------------------------------------------
+    # Assessing
 
-    def assess(self, progress: Progress, take: Callable[[Encoded], None] = lambda _: None) -> Tally:
-        """Find what is not known, and return the totals; nothing is stored and nothing drawn.
+    def assess(self, progress: Progress, *, store: bool = True) -> None:
+        """Find what is not known, and store it as it comes.
 
-        take : is given each new result
+        store : False: it is held in memory only
         """
-        todo = [piece for piece in self._pieces if piece.kept is None]
-        with self._crew(self.fresh) as hands, closing(self._each(hands, todo, progress, draw=False)) as done:
-            for at, piece in enumerate(self._pieces):
-                progress.step("sheets", at, len(self._pieces))
-                came = None if piece.kept is not None else next(done)
-                self._note(piece, came)
-                if came is not None and came.result is not None:
-                    take(came.result)
-        progress.step("sheets", len(self._pieces), len(self._pieces))
-        return total(self._tallies)
+        if not store:
+            self._memory = {}
+        if self._work:
+            with self._pool(self.fresh) as pool:
+                if self.charts and self.context.kept is not None and self.fresh > FEW:
+                    for at, _ in enumerate(pool.each(build_chart, self.context, self.charts)):
+                        progress.step("response charts", at + 1, len(self.charts))
+                tasks = [self._batches(work, pool.workers) for work in self._work]
+                number = sum(len(some) for some in tasks)
+                each = (task() for some in tasks for task in some)
+                self._take(pool, each, number, progress)
+        self._neighbours()
+        for page in self._pages:
+            self._settle(page)
 
-    def edition(self) -> Edition:
-        """Return the report that the sheets go into; it is entered before `publish`, and finished after it."""
-        reports = self.workspace.reports
-        return Edition(reports / self.brief.head.run_id, self.brief.pen, Shelved.read(reports / "latest"))
+    def _batches(self, work: _Work, workers: int) -> list[Callable[[], UnitTask]]:
+        """Part the units of a floor by their records, so that the same ones come together every night."""
+        parts = _shares(len(work.units), workers, BATCH) if len(work.units) > FEW else 1
+        shared: list[list[Unit]] = [[] for _ in range(parts)]
+        for unit in work.units.values():
+            shared[int(unit.members[0].assessment_digest[:8] or "0", 16) % parts].append(unit)
+        # A few among many would take the place of what is kept of all.
+        whole = 2 * len(work.units) > work.every
+        return [
+            lambda some=some, at=at: self._task(work, some, ("units", work.floor, at, parts) if whole else None)
+            for at, some in enumerate(shared)
+            if some
+        ]
 
-    def publish(self, edition: Edition, progress: Progress) -> Tally:
-        """Find what is not known, store it as it comes, put every sheet into the report, and return the totals."""
-        for piece in self._pieces:
-            if piece.kept is not None and piece.decisions:
-                found = load_found(self.workspace.engine, piece.key)
-                piece.there = stand(self.brief.head, found, self._told(piece))
-        keys = [sheet_key(edition.pen, self._sheet(piece), piece.there) for piece in self._pieces]
-        taken = {at for at, piece in enumerate(self._pieces) if piece.kept is not None and edition.has(keys[at])}
-        left = [piece for at, piece in enumerate(self._pieces) if at not in taken]
-        repeated = not left and edition.repeat(keys)
-        waiting: list[Encoded] = []
+    def _task(self, work: _Work, units: Sequence[Unit], batch: tuple[object, ...] | None) -> UnitTask:
+        numbers = [one.object_number for unit in units for one in unit.members]
+        about = [decision for number in numbers for decision in self._decisions.get(number, ())]
+        return UnitTask(
+            work.floor,
+            work.assessed,
+            tuple(unit.key for unit in units),
+            tuple(len(unit.members) for unit in units),
+            self._catalogue.packed(numbers),
+            tuple(about),
+            batch,
+        )
+
+    def _take(self, pool: Crew, tasks: Iterable[UnitTask], number: int, progress: Progress) -> None:
+        waiting: list[Stored] = []
         since = monotonic()
-        todo = sum(len(piece.part.objects) for piece in left)
-        with self._crew(todo) as hands, closing(self._each(hands, left, progress, draw=True)) as done:
-            for at, piece in enumerate(self._pieces):
-                progress.step("sheets", at, len(self._pieces))
-                came = None if at in taken else next(done)
-                sheet = self._note(piece, came)
-                if came is None:
-                    if not repeated:
-                        edition.reuse(keys[at])
-                elif came.drawn is not None:
-                    # How the decisions stand is only known now, where there was no result.
-                    edition.add(sheet_key(edition.pen, sheet, piece.there), came.drawn)
-                if came is not None and came.result is not None:
-                    waiting.append(came.result)
-                if waiting and monotonic() - since > _SECONDS:
+        with closing(pool.each(assess_units, self.context, tasks)) as done:
+            for at, came in enumerate(done):
+                waiting += self._told(came)
+                progress.step("objects", at + 1, number)
+                if monotonic() - since > _SECONDS:
                     self._keep(waiting)
                     since = monotonic()
-            self._keep(waiting)
-        progress.step("sheets", len(self._pieces), len(self._pieces))
-        return total(self._tallies)
+        self._keep(waiting)
 
-    def _each(self, hands: Crew, todo: Sequence[_Piece], progress: Progress, *, draw: bool) -> Generator[Done]:
-        """Yield what comes of each sheet; charts that many ask for are built before, each by one."""
-        # For a few objects not all are read: whoever asks for one finds or builds it.
-        if self.charts and self.brief.kept is not None and self.fresh > FEW:
-            for at, _ in enumerate(hands.each(build, self.brief, self.charts)):
-                progress.step("response charts", at + 1, len(self.charts))
-        fresh = [p for p in todo if p.kept is None and self._assessed(p) and not self._before(p)]
-        # One who works alone remembers what he found.
-        parcels = list(self._kinds(hands, fresh, progress)) if hands.workers > 1 else []
-        objects = sum(len(piece.part.objects) for piece in todo)
-        batches = _batches(todo, ceil(objects / _shares(objects, hands.workers, BATCH)))
-        wanted = (self._batch(batch, parcels, draw=draw) for batch in batches)
-        for done in hands.each(work, self.brief, wanted):
-            yield from done
+    def _told(self, came: Assessments) -> list[Stored]:
+        """Take note of what came of a task, and return what is to be kept of it."""
+        self.seconds += came.seconds
+        self._failed(came.faults)
+        # What failed is kept under a key of its own: it is tried again every night, whatever it depends on.
+        names = {key: f"{key}:{self.context.head.run_id}" for key in came.failed}
+        self._names |= names
+        return [replace(one, key=names.get(one.key, one.key)) for one in came.stored]
 
-    def _kinds(self, hands: Crew, fresh: Sequence[_Piece], progress: Progress) -> Iterator[tuple[str, Parcel]]:
-        """Find what holds for many objects before the sheets that they are on: else each worker finds it for itself.
+    def _failed(self, faults: Iterable[Fault]) -> None:
+        for one in faults:
+            about = {"object": one.object_number, "message": one.words, "traceback": one.traceback}
+            note("object.failed", level=logging.ERROR, **about)
+            self.faults.append(one)
 
-        fresh   : sheets of which the last night knew nothing
-        returns : for a floor, what was found of some kinds
-        """
-        errands: list[tuple[str, tuple[int, int], dict[int, str]]] = []
-        for floor, kinds in _frequent(fresh, self._decisions).items():
-            parts = _shares(len({family_of(kind) for kind in kinds}), hands.workers, KIND_BATCH)
-            shared: list[dict[int, str]] = [{} for _ in range(parts)]
-            for kind, number in kinds.items():
-                shared[family_of(kind) % parts][kind] = number
-            errands += [(floor, (at, parts), part) for at, part in enumerate(shared)]
-        wanted = (
-            KindErrand(floor, place, tuple(part), self._catalogue.packed(list(part.values())))
-            for floor, place, part in errands
-        )
-        for at, found in enumerate(hands.each(find_kinds, self.brief, wanted)):
-            progress.step("kinds of objects", at + 1, len(errands))
-            yield errands[at][0], found
-
-    def _batch(self, batch: Sequence[_Piece], parcels: Sequence[tuple[str, Parcel]], *, draw: bool) -> Batch:
-        errands = tuple(replace(self._errand(piece), draw=draw) for piece in batch)
-        if batch[0].kept is not None:
-            return Batch(errands)
-        kinds = {one.kind for piece in batch for one in piece.part.objects if one.kind is not None}
-        return Batch(errands, tuple(parcel.only(kinds) for floor, parcel in parcels if floor == batch[0].floor))
-
-    def _keep(self, waiting: list[Encoded]) -> None:
-        head = self.brief.head
-        keep(self.workspace.engine, head.run_id, head.started, waiting)
+    def _keep(self, waiting: list[Stored]) -> None:
+        head = self.context.head
+        if self._memory is None:
+            keep(self.workspace.engine, head.run_id, head.started, waiting)
+        else:
+            self._memory |= {one.key: Kept(head.run_id, head.started, one.outline, one.found) for one in waiting}
         waiting.clear()
 
-    def _crew(self, objects: int) -> AbstractContextManager[Crew]:
+    def copy_results(self, target: Database) -> None:
+        """Copy all results of the run into another database, those that are held in memory only among them."""
+        head = self.context.head
+        mine = [Stored(key, one.outline, one.found) for key, one in (self._memory or {}).items()]
+        keep(target, head.run_id, head.started, mine)
+        keys = (self._names.get(unit.key, unit.key) for page in self._pages for unit in page.units)
+        copy(self.workspace.engine, target, [*dict.fromkeys(keys), *{page.spacings for page in self._pages} - {""}])
+
+    def _neighbours(self) -> None:
+        """Find the gaps between the neighbours of those galleries of which they are not known."""
+        galleries: dict[str, list[_Shown]] = {}
+        for page in self._pages:
+            if page.spacings and page.kept is None:
+                galleries.setdefault(page.spacings, []).append(page)
+        there = known(self.workspace.engine, galleries)
+        for key in galleries.keys() - there:
+            # Of all its pages, those that are as they were among them: their results are there.
+            pages = [page for page in self._pages if page.spacings == key]
+            members = tuple(replace(self._members(page), spacings="") for page in pages)
+            results = self._results([k for one in members for k in one.keys])
+            task = GalleryTask(key, pages[0].part.floor, members, {k: one.found for k, one in results.items()})
+            self._keep(self._told(find_neighbours(self.context, task)))
+
+    def _members(self, page: _Shown) -> Members:
+        if page.kept is not None:
+            return page.kept.members
+        return Members(
+            self._catalogue.packed(page.numbers()),
+            page.digests(),
+            page.results(self._names),
+            self._names.get(page.spacings, page.spacings),
+        )
+
+    def _results(self, keys: Iterable[str]) -> dict[str, Kept]:
+        """Return results by key; those that are damaged are made again."""
+        wanted = list(dict.fromkeys(keys))
+        mine = {} if self._memory is None else {key: self._memory[key] for key in wanted if key in self._memory}
+        left = [key for key in wanted if key not in mine]
+        found, damaged = fetch(self.workspace.engine, left)
+        gone = {key for key in left if key not in found}
+        if gone:
+            for key in damaged:
+                note("result.damaged", level=logging.WARNING, result=key)
+            found |= self._again(gone)
+        return mine | found
+
+    def _again(self, keys: set[str]) -> dict[str, Kept]:
+        if self._memory is None:
+            forget(self.workspace.engine, keys)
+        work: dict[tuple[str, bool], _Work] = {}
+        for page in self._pages:
+            which = (page.part.floor, page.part.on_display or self.context.stores)
+            for unit in page.units:
+                if self._names.get(unit.key, unit.key) in keys:
+                    work.setdefault(which, _Work(*which)).units[unit.key] = unit
+        for one in work.values():
+            came = assess_units(self.context, self._task(one, list(one.units.values()), None))
+            self._keep([*self._told(came)])
+        found, _ = fetch(self.workspace.engine, keys) if self._memory is None else (self._memory, [])
+        return {key: found[key] for key in keys if key in found}
+
+    def _settle(self, page: _Shown) -> None:
+        """Say where a page belongs, now that all results on it are known, and how the decisions about it stand."""
+        mine = sorted((d for number in page.numbers() for d in self._decisions.get(number, ())), key=lambda d: d.id)
+        if page.kept is None:
+            named, gaps = page.results(self._names), self._names.get(page.spacings, page.spacings)
+            made, run = self._newest([*dict.fromkeys(key for key, _ in named), *filter(None, [gaps])])
+            page.page = self._page(page, page_digest(page.digests(), named, gaps), run, made)
+        if mine:
+            members = self._members(page)
+            results = self._results([*members.keys, *filter(None, [members.spacings])])
+            found = found_of(members, {key: one.found for key, one in results.items()})
+            page.standing = self._standing(found, mine)
+
+    def _newest(self, keys: Sequence[str]) -> tuple[str, str]:
+        """Return when the newest of some results was made, and by which run."""
+        mine = self._memory or {}
+        there = stamps(self.workspace.engine, [key for key in keys if key not in mine])
+        here = [(mine[key].made, mine[key].run) for key in keys if key in mine]
+        return max([*there, *here])
+
+    def _standing(self, found: Found, decisions: Sequence[Any]) -> tuple[Standing, ...]:
+        digests = {number: self._digests[number] for number in {d.object_number for d in decisions}}
+        engine = self.workspace.engine
+        at = now(
+            found.assessments,
+            self.context.head,
+            digests,
+            lambda number, digest: () if digest == digests[number] else tuple(fields_since(engine, number, digest)),
+        )
+        return standing(decisions, at)
+
+    # -----------------------------------------------------------------------------------------------------------------
+    # Pages
+
+    def writer(self) -> ReportWriter:
+        """Return the report that the pages go into; it is entered before `publish`, and finished after it."""
+        reports = self.workspace.reports
+        return ReportWriter(
+            reports / self.context.head.run_id, self.context.pen, PreviousReport.read(reports / "latest")
+        )
+
+    def publish(self, writer: ReportWriter, progress: Progress) -> Tally:
+        """Put every page into the report, and return the totals."""
+        keys = [page_key(self.context.pen, page, one.standing) for page, one in zip(self.pages, self._pages, strict=True)]
+        reused = [writer.has(key) for key in keys]
+        left = [page for page, there in zip(self._pages, reused, strict=True) if not there]
+        tallies = []
+        with self._rendered(left, draw=True) as rendered:
+            for at, (key, there) in enumerate(zip(keys, reused, strict=True)):
+                progress.step("pages", at, len(keys))
+                if there:
+                    tallies.append(writer.reuse(key))
+                    continue
+                came = next(rendered)
+                self._failed(came.faults)
+                if came.page is None:
+                    raise ValueError("a page that was to be rendered was not")
+                # A page on which an object failed is tried again every night.
+                writer.add(f"{key}:{self.context.head.run_id}" if came.faults else key, came.page)
+                tallies.append(came.tally)
+        progress.step("pages", len(keys), len(keys))
+        return total(tallies)
+
+    def tally(self, progress: Progress) -> Tally:
+        """Return the totals without a report."""
+        tallies = []
+        with self._rendered(self._pages, draw=False) as rendered:
+            for at, came in enumerate(rendered):
+                progress.step("pages", at + 1, len(self._pages))
+                tallies.append(came.tally)
+        return total(tallies)
+
+    def _rendered(self, pages: Sequence[_Shown], *, draw: bool) -> AbstractContextManager[Generator[Rendered]]:
+        return closing(self._each_rendered(pages, draw=draw))
+
+    def _each_rendered(self, pages: Sequence[_Shown], *, draw: bool) -> Generator[Rendered]:
+        with self._pool(sum(len(page.part.objects) for page in pages)) as pool:
+            tasks = (self._page_task(page, draw=draw) for page in pages)
+            with closing(pool.each(render_page, self.context, tasks)) as done:
+                yield from done
+
+    def _page_task(self, shown: _Shown, *, draw: bool) -> PageTask:
+        members = self._members(shown)
+        results = self._results([*members.keys, *filter(None, [members.spacings])])
+        if shown.page is None:
+            raise ValueError("a page is rendered before all results on it are known")
+        if shown.kept is None and draw:
+            shown.row = page_row(shown.page, members)
+        return PageTask(shown.page, members, {k: one.found for k, one in results.items()}, shown.standing, draw)
+
+    def links(self, changes: RunChanges | None) -> dict[str, Pointer]:
+        """Return where the objects are that the index names as changed, by number."""
+        named = set() if changes is None else mentioned(changes)
+        out: dict[str, Pointer] = {}
+        for shown in self._pages:
+            mine = named.intersection(shown.numbers()) if named else set()
+            if mine and shown.page is not None:
+                members = self._members(shown)
+                titles = dict(zip(members.column("object_number"), members.column("title"), strict=True))
+                out |= {number: link_to(shown.page, number, titles[number]) for number in sorted(mine)}
+        return out
+
+    def _pool(self, objects: int) -> AbstractContextManager[Crew]:
         wanted = self.workspace.settings.execution
         if objects <= FEW:
             return crew()
@@ -256,141 +468,12 @@ class Round:
         give_back()
         if wanted.cluster:
             # Its workers may not see our folders.
-            self.brief = replace(self.brief, kept=None, threads=1)
+            self.context = replace(self.context, kept=None, threads=1)
             return crew(address=wanted.cluster)
-        self.brief = replace(self.brief, threads=1)
+        self.context = replace(self.context, threads=1)
         return crew(processes=wanted.processes or cores())
 
-    def _sheet(self, piece: _Piece) -> Sheet:
-        part, kept, head = piece.part, piece.kept, self.brief.head
-        run, made, counts = (head.run_id, head.started, {}) if kept is None else (kept.run, kept.made, kept.counts)
-        return Sheet(piece.key, part.gallery, part.on_display, part.number, part.of, run, made, counts)
 
-    def _told(self, piece: _Piece) -> Errand:
-        """Return what is to be known of a sheet and of the decisions about its objects, whoever works on it."""
-        digests = {number: self._numbers[number] for number in {d.object_number for d in piece.decisions}}
-        changed = {
-            (d.object_number, d.digest): tuple(fields_since(self.workspace.engine, d.object_number, d.digest))
-            for d in piece.decisions
-            if d.digest != digests[d.object_number]
-        }
-        return Errand(self._sheet(piece), piece.floor, decisions=piece.decisions, digests=digests, changed=changed)
-
-    def _errand(self, piece: _Piece) -> Errand:
-        """Return what is to be done for a sheet, with all that it takes: whoever does it has no database."""
-        told = self._told(piece)
-        if piece.kept is not None:
-            return replace(told, found=packed(self.workspace.engine, piece.key))
-        numbers = [one.object_number for one in piece.part.objects]
-        told = replace(told, records=self._catalogue.packed(numbers), basis=piece.basis)
-        if not self._assessed(piece):
-            return told
-        return replace(told, before=tuple(packed(self.workspace.engine, key) for key in self._before(piece)))
-
-    def _before(self, piece: _Piece) -> list[str]:
-        """Return the keys of what the last night found in the place of a sheet, as far as it may be taken over.
-
-        A cut more or less shifts the numbers by one.  More are not looked at: of a gallery whose sheets all changed
-        each would bring all.
-        """
-        part = piece.part
-        places = [(part.gallery, part.on_display, part.number + shift) for shift in (-1, 0, 1)]
-        gone = [self._gone[place] for place in places if place in self._gone]
-        return on_same_basis(self.workspace.engine, gone, piece.basis) if gone else []
-
-    @cached_property
-    def _gone(self) -> dict[tuple[str, bool, int], str]:
-        # By place, the sheets of the last night that are not shown any more: those that are hold other objects.
-        shown = {one.key for one in self._pieces}
-        return {
-            (sheet.gallery, sheet.on_display, sheet.number): sheet.key
-            for run_id in whole_runs(self.workspace.engine)[:1]
-            for sheet in sheets_of(self.workspace.engine, run_id)
-            if sheet.key not in shown
-        }
-
-    def _note(self, piece: _Piece, came: Done | None) -> Sheet:
-        sheet, tally = self._sheet(piece), None if piece.kept is None else piece.kept.tally
-        if came is not None:
-            piece.there = came.standing
-            self.seconds += came.seconds
-            for one in came.faults:
-                note(
-                    "object.failed",
-                    level=logging.ERROR,
-                    object=one.object_number,
-                    message=one.words,
-                    traceback=one.traceback,
-                )
-            self.faults.extend(came.faults)
-            if came.result is not None:
-                # Perhaps under a key of its own.
-                piece.key = came.result.key
-                sheet, tally = replace(self._sheet(piece), counts=came.result.counts), came.result.tally
-        if tally is not None:
-            self._tallies.append(tally)
-        self._sheets.append(sheet)
-        return sheet
-
-    # -----------------------------------------------------------------------------------------------------------------
-
-    def links(self, changes: RunChanges | None) -> dict[str, Pointer]:
-        """Return where the objects are that the index names as changed, by number."""
-        named = set() if changes is None else mentioned(changes)
-        keys = {id(piece.part): piece.key for piece in self._pieces}
-        where = {number: keys[id(part)] for number, part in self._cut.holding(named).items()}
-        sheets = {sheet.key: sheet for sheet in self._sheets}
-        titles = {
-            outline.object_number: (key, outline.title)
-            for key in dict.fromkeys(where.values())
-            for outline in outlines_of(self.workspace.engine, [key])
-        }
-        found = ((number, *titles[number]) for number in where if number in titles)
-        return {number: link_to(sheets[key], number, title) for number, key, title in found}
-
-
-def _batches(pieces: Iterable[_Piece], most: int) -> Iterator[list[_Piece]]:
-    """Yield what is worked on together: sheets of one floor, in their order, that have a result or have none.
-
-    most : objects, about
-    """
-    batch: list[_Piece] = []
-    size = 0
-    for piece in pieces:
-        alike = batch and (batch[0].floor, batch[0].kept is None) == (piece.floor, piece.kept is None)
-        # The sheet with which it would be larger by more than half of that sheet is left to the next.
-        if batch and (not alike or size + len(piece.part.objects) // 2 > most):
-            yield batch
-            batch, size = [], 0
-        batch.append(piece)
-        size += len(piece.part.objects)
-    if batch:
-        yield batch
-
-
-def _shares(objects: int, workers: int, most: int) -> int:
-    """Return how many parts work is cut into: of so many objects at most, and as many for each worker: none waits."""
-    return workers * max(1, ceil(objects / (workers * most)))
-
-
-def _frequent(pieces: Iterable[_Piece], decided: Container[str]) -> dict[str, dict[int, str]]:
-    """Return the kinds that more than one object on a floor may be of, with the number of the first of each.
-
-    Where all kinds can be held they are all taken: many at once are quicker than a few with each sheet.
-
-    decided : numbers of the objects that decisions were made about; what these change is theirs alone
-    """
-    times: Counter[tuple[str, int]] = Counter()
-    first: dict[tuple[str, int], str] = {}
-    for piece in pieces:
-        for one in piece.part.objects:
-            if one.kind is None or one.case or one.object_number in decided:
-                continue
-            times[piece.floor, one.kind] += 1
-            first.setdefault((piece.floor, one.kind), one.object_number)
-    out: dict[str, dict[int, str]] = {}
-    few = len(times) <= KINDS
-    for (floor, kind), often in times.most_common(KINDS):
-        if few or often > 1:
-            out.setdefault(floor, {})[kind] = first[floor, kind]
-    return out
+def _shares(units: int, workers: int, most: int) -> int:
+    """Return how many parts work is cut into: of so many units at most, and as many for each worker: none waits."""
+    return workers * max(1, ceil(units / (workers * most)))

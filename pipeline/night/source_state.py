@@ -95,3 +95,9 @@ def _seen(workspace: Workspace, source: str, mapping: str, content: str) -> dict
         "limits": workspace.settings.limits.model_dump_json(),
         "version": None if info is None else info.id,
     }
+
+
+def rules_digest(settings: Settings) -> str:
+    """Return a digest of the museum's own rules of classification; "" where it has none."""
+    own = settings.collection.rules
+    return hashlib.sha256(settings.path(own).read_bytes()).hexdigest()[:12] if own else ""

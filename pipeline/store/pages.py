@@ -2,12 +2,12 @@
 
 import json
 import zlib
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from sqlalchemy import Connection, Engine, delete, insert, select
+from sqlalchemy import Connection, Engine, insert, select, update
 
 from pipeline.analysis.faults import with_fault
 from pipeline.analysis.survey import in_order
@@ -16,7 +16,7 @@ from pipeline.records import ITEM_FIELDS, Found, Item, Page
 from pipeline.store.codec import StoreError
 from pipeline.store.results import decode, decode_spacings, fetch, of_object
 from pipeline.store.sealing import seal
-from pipeline.store.tables import PAGE, RUN, RUN_PAGE
+from pipeline.store.tables import PAGE
 
 NAMED = 500
 """Keys in one statement."""
@@ -149,6 +149,21 @@ def found_of(members: Members, kept: Mapping[str, bytes]) -> Found:
     )
 
 
+def page_digest(digests: Sequence[str], results: Sequence[tuple[str, int]], spacings: str) -> str:
+    """Return the key of a page.
+
+    Parameters
+    ----------
+    digests
+        Of the records of its objects, their numbers and places among them.
+    results
+        Of each the key of its unit's results, and which of these it has.
+    spacings
+        Key of the gaps between the neighbours of its gallery.
+    """
+    return seal(*digests, *(f"{key} {at}" for key, at in results), spacings)
+
+
 def page_row(page: Page, members: Members) -> dict[str, Any]:
     """Return a page as a row of its table."""
     content = members.packed()
@@ -156,14 +171,17 @@ def page_row(page: Page, members: Members) -> dict[str, Any]:
     return {"key": page.key, "run_id": page.run, "made": page.made, "members": content, "seal": whole}
 
 
-def add_pages(connection: Connection, rows: Iterable[Mapping[str, Any]]) -> None:
-    """Write pages that are not there yet, as a part of a transaction."""
-    wanted = {row["key"]: row for row in rows}
-    for some in _some(wanted):
-        there = set(connection.execute(select(PAGE.c.key).where(PAGE.c.key.in_(some))).scalars())
-        fresh = [dict(wanted[key]) for key in some if key not in there]
-        if fresh:
-            connection.execute(insert(PAGE), fresh)
+def add_pages(connection: Connection, rows: Iterable[Mapping[str, Any]], damaged: Collection[str] = ()) -> None:
+    """Write pages that are not there yet, as a part of a transaction.
+
+    damaged : keys of pages that are there and are not what was written; these are written anew
+    """
+    for row in rows:
+        mine = PAGE.c.key == row["key"]
+        if row["key"] in damaged:
+            connection.execute(update(PAGE).where(mine).values(dict(row)))
+        elif connection.execute(select(PAGE.c.key).where(mine)).scalar() is None:
+            connection.execute(insert(PAGE), [dict(row)])
 
 
 def fetch_pages(database: Engine | Connection, keys: Collection[str]) -> tuple[dict[str, Shown], list[str]]:
@@ -225,15 +243,6 @@ def damaged_pages(engine: Engine) -> Iterator[str]:
         for row in connection.execute(select(PAGE), execution_options={"yield_per": NAMED}):
             if not _sound(row):
                 yield row.key
-
-
-def forget_pages(engine: Engine, keys: Collection[str]) -> None:
-    """Remove damaged pages, and with them the runs that have them: what they showed is not known any more."""
-    with engine.begin() as connection:
-        for some in _some(keys):
-            mine = select(RUN_PAGE.c.run_id).where(RUN_PAGE.c.key.in_(some))
-            connection.execute(delete(RUN).where(RUN.c.run_id.in_(mine)))
-            connection.execute(delete(PAGE).where(PAGE.c.key.in_(some)))
 
 
 def _some(keys: Collection[str]) -> Iterator[list[str]]:

@@ -244,6 +244,16 @@ def fetch(database: Engine | Connection, keys: Collection[str]) -> tuple[dict[st
     return found, damaged
 
 
+def stamps(engine: Engine, keys: Collection[str]) -> list[tuple[str, str]]:
+    """Return when the results under some keys were made, and by which run."""
+    found: list[tuple[str, str]] = []
+    with engine.connect() as connection:
+        for some in _some(keys):
+            rows = connection.execute(select(RESULT.c.made, RESULT.c.run_id).where(RESULT.c.key.in_(some)).distinct())
+            found += [(row.made, row.run_id) for row in rows]
+    return found
+
+
 def outlines(connection: Connection, keys: Collection[str]) -> dict[str, tuple[Digests, ...]]:
     """Return the outlines of the results that are kept under some keys."""
     found: dict[str, tuple[Digests, ...]] = {}

@@ -1,6 +1,6 @@
 """Whole runs into the database and out of it again, exactly as they were."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import islice
 from operator import attrgetter
@@ -65,6 +65,7 @@ def commit_run(
     fresh: Iterable[Mapping[str, Any]] = (),
     *,
     counts: Mapping[str, int],
+    damaged: Collection[str] = (),
     published: bool = True,
 ) -> None:
     """Make a run of its pages, the results on which are kept already: in one transaction, all of it or nothing.
@@ -74,6 +75,7 @@ def commit_run(
               numbers, truth values, None, and tuples, lists and mappings of them; every other Mapping is a dict
     fresh   : rows of those of its pages that are not kept yet (see `pages.page_row`)
     counts  : how many objects, findings and so on it has
+    damaged : keys of pages that are there, and are to be written anew
     published : whether it has its report already; where not, nobody takes it for a finished run until `mark_finished`
     raises  : StoreError for a run_id that is there already, a result that is not kept, a value of the wrong type or
               text that is not Unicode, or a database that refuses
@@ -83,7 +85,7 @@ def commit_run(
     failure = f"run {head.run_id!a} was not stored, and nothing of it was kept"
     try:
         with speaking(engine, failure), engine.begin() as connection:
-            add_pages(connection, fresh)
+            add_pages(connection, fresh, damaged)
             for table, rows in _tables(head, pages, counts, status):
                 waiting = iter(rows)
                 while chunk := list(islice(waiting, _CHUNK)):

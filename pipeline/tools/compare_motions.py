@@ -10,15 +10,14 @@ from pathlib import Path
 from pipeline.collection.database import Database, open_database
 from pipeline.motions.site import Level, Site, read_site
 from pipeline.night.figures import pictures
-from pipeline.night.prepare import admit, brief_for
-from pipeline.night.scheduler import Round
+from pipeline.night.prepare import admit, run_context
+from pipeline.night.scheduler import NightRun
 from pipeline.operations.workspace import Workspace, open_workspace
 from pipeline.quantities import counted
 from pipeline.records import Progress, VerdictChange
 from pipeline.settings import Settings
 from pipeline.store import migrate
 from pipeline.store.decisions import decisions_in_force
-from pipeline.store.results import copy, keep
 from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import commit_run, compare_runs
 
@@ -133,12 +132,12 @@ def _assessed(workspace: Workspace, site: Site, name: str, engine: Database, pro
     """
     everything = workspace.catalogue()
     with pictures(workspace, site) as drawing:
-        brief = brief_for(workspace, site, everything, everything.objects, drawing, datetime.now(UTC), progress)
-    night = Round(workspace, brief, everything, everything.objects, decisions_in_force(workspace.engine))
-    if night.fresh:
-        night.charts = admit(brief, everything, everything.objects, site.manifest.site.x_azimuth)
-    night.assess(progress, lambda result: keep(engine, name, brief.head.started, [result]))
-    for sheet in night.sheets:
-        copy(workspace.engine, engine, sheet.key)
-    commit_run(engine, replace(brief.head, run_id=name, finished=brief.head.started), night.sheets)
+        context = run_context(workspace, site, everything, everything.objects, drawing, datetime.now(UTC), progress)
+    charts = admit(context, everything, everything.objects, site.manifest.site.x_azimuth)
+    night = NightRun(workspace, context, everything, everything.objects, decisions_in_force(workspace.engine))
+    night.charts = charts
+    night.assess(progress, store=False)
+    night.copy_results(engine)
+    head = replace(context.head, run_id=name, finished=context.head.started)
+    commit_run(engine, head, night.pages, night.rows(), counts={})
     return night.fresh

@@ -1,0 +1,77 @@
+"""The collection cut into pages: a gallery, or parts of a large one, in the order of the catalogue."""
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pipeline.collection.listing import Listing, Run
+from pipeline.night.floors import floor_name
+from pipeline.settings import Settings
+
+MOST = 1_000
+"""Objects on a page at most, unless one case holds more: what a browser shows at once."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """The objects of one page, before anything is known about them.
+
+    Attributes
+    ----------
+    gallery
+        "" for objects that are not on display.
+    floor
+        That they stand on, "" for the ground.
+    number, of
+        Which of its gallery's pages it is, from 1, and how many there are.
+    """
+
+    gallery: str
+    on_display: bool
+    floor: str
+    number: int
+    of: int
+    objects: Listing
+
+
+def paged(objects: Listing, settings: Settings, most: int = MOST) -> list[Part]:
+    """Cut a collection into pages: galleries by name, then what is not on display, floor by floor.
+
+    Parameters
+    ----------
+    objects
+        Sorted by `listing.order`.
+    settings
+        Say which gallery is on which floor.
+    most
+        Objects on a page; a case is not cut.
+    """
+    groups: dict[tuple[bool, str], list[Run]] = {}
+    for run in objects.runs:
+        # What is not on display shares pages, but not with what stands on another floor.
+        place = run.gallery if run.on_display else floor_name(settings, run.gallery)
+        groups.setdefault((not run.on_display, place), []).append(run)
+    out: list[Part] = []
+    stored: list[tuple[str, Listing]] = []
+    for absent, place in sorted(groups):
+        pieces = _pieces(objects.joined(groups[absent, place]), most)
+        if absent:
+            stored += [(place, piece) for piece in pieces]
+        else:
+            floor = floor_name(settings, place)
+            out += [Part(place, True, floor, n, len(pieces), piece) for n, piece in enumerate(pieces, 1)]
+    out += [Part("", False, floor, n, len(stored), piece) for n, (floor, piece) in enumerate(stored, 1)]
+    return out
+
+
+def _pieces(members: Listing, most: int) -> Sequence[Listing]:
+    begins = [*members.companies().tolist(), len(members)]
+    out, start = [], 0
+    while start < len(members):
+        # The last case that ends on this page, or the one that is alone there.
+        end = begins[bisect_right(begins, start + most) - 1]
+        if end <= start:
+            end = begins[bisect_right(begins, start)]
+        out.append(members[start:end])
+        start = end
+    return out
