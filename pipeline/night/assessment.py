@@ -6,6 +6,7 @@ What Kouros fails on costs one object its answer (see `pipeline.analysis.faults`
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify, object_classes
@@ -17,7 +18,6 @@ from pipeline.analysis.survey import in_order, wishes
 from pipeline.mitigate import advise
 from pipeline.mitigate.installed import Measure, Placed, assess_above, placed
 from pipeline.models import model_named
-from pipeline.night.context import Brief
 from pipeline.night.deduplication import Known, Twins, as_own, likeness
 from pipeline.night.floors import Storey
 from pipeline.records import (
@@ -34,6 +34,9 @@ from pipeline.records import (
     Wish,
 )
 
+if TYPE_CHECKING:
+    from pipeline.night.context import Brief
+
 
 def place(item: Item, rules: Table | None, decisions: Sequence[Decision]) -> Placed:
     """Return an object as people say that it is and stands: of the class decided, with the measures installed.
@@ -47,7 +50,7 @@ def place(item: Item, rules: Table | None, decisions: Sequence[Decision]) -> Pla
 
 
 def find(
-    brief: Brief, storey: Storey, items: Sequence[Item], decisions: Sequence[Decision], twins: Twins
+    brief: "Brief", storey: Storey, items: Sequence[Item], decisions: Sequence[Decision], twins: Twins
 ) -> tuple[Found, float, list[Fault]]:
     """Run everything that objects on one floor require under its motions, judge it and advise.
 
@@ -100,7 +103,7 @@ def by_object(decisions: Iterable[Decision]) -> dict[str, list[Decision]]:
 
 
 def placed_each(
-    brief: Brief, storey: Storey, items: Sequence[Item], about: Mapping[str, Sequence[Decision]]
+    brief: "Brief", storey: Storey, items: Sequence[Item], about: Mapping[str, Sequence[Decision]]
 ) -> list[Placed | Exception]:
     """Return each object as it stands, or the error that placing it came to."""
 
@@ -118,7 +121,7 @@ def failed_on(item: Item | Scene, problem: Exception, faults: list[Fault]) -> Kn
     return unassessed(item, told), {}
 
 
-def each_assessed(brief: Brief, storey: Storey, objects: Sequence[Placed]) -> list[Known | Exception]:
+def each_assessed(brief: "Brief", storey: Storey, objects: Sequence[Placed]) -> list[Known | Exception]:
     """Return what is found of each object, or the error that finding it came to."""
     return apart(
         lambda some: _assessed(brief, storey, some),
@@ -129,12 +132,17 @@ def each_assessed(brief: Brief, storey: Storey, objects: Sequence[Placed]) -> li
     )
 
 
-def _integrating(brief: Brief) -> str:
+def _integrating(brief: "Brief") -> str:
     return "reference" if brief.analysis.fidelity == "reference" else "history"
 
 
 def _known(
-    brief: Brief, storey: Storey, objects: Sequence[Placed], decided: Sequence[bool], twins: Twins, faults: list[Fault]
+    brief: "Brief",
+    storey: Storey,
+    objects: Sequence[Placed],
+    decided: Sequence[bool],
+    twins: Twins,
+    faults: list[Fault],
 ) -> list[Known]:
     """Return what is found of each object, where several are alike that of the first."""
     likes: list[Hashable] = []
@@ -162,7 +170,7 @@ def _known(
     return out
 
 
-def _assessed(brief: Brief, storey: Storey, objects: Sequence[Placed]) -> list[Known]:
+def _assessed(brief: "Brief", storey: Storey, objects: Sequence[Placed]) -> list[Known]:
     """Run everything that objects require, judge it and advise."""
     if not objects:
         return []

@@ -8,15 +8,13 @@ import hashlib
 from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from itertools import accumulate
 
 from pipeline.collection.listing import Listed, Listing, Run
-from pipeline.kernels import KERNEL_VERSION
 from pipeline.night.context import Brief
 from pipeline.night.floors import Storey, floor_name
 from pipeline.records import Decision, DecisionKind
-from pipeline.resources import digest_of
+from pipeline.resources import code_version
 from pipeline.settings import Settings
 
 MOST = 1_000
@@ -27,9 +25,6 @@ LEAST = 500
 
 _CHOSEN = 32
 """One object in so many is where a cut may be."""
-
-_ELSEWHERE = frozenset({"cli", "collection", "execute", "motions", "operations", "report", "tools", "verification"})
-"""Folders of the package that results do not rest on, or whose own result is a part of the key: items, motions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,11 +103,6 @@ def _chosen(one: Listed) -> bool:
     return hashlib.blake2b(text, digest_size=2).digest()[0] % _CHOSEN == 0
 
 
-@cache
-def _code() -> str:
-    return digest_of(kinds=(".py", ".csv"), but=_ELSEWHERE)
-
-
 class Keys:
     """The key of a sheet: a digest of everything that what is found about it depends on."""
 
@@ -123,11 +113,13 @@ class Keys:
         means = (measures, repr(brief.means.isolators))
         # Whether stores are asked for says which charts pay, and so which verdicts are read from one.
         asked = (sorted(analysis.items()), rules, means, brief.surveyed, brief.fragile, brief.stores)
-        shared = repr((_code(), KERNEL_VERSION, asked))
+        shared = repr((code_version(), asked))
         self._stores = brief.stores
         self._shaken = {name: _digest(f"{shared}{_shaking(storey)!r}") for name, storey in brief.storeys.items()}
         # What is left aside is only classed: no motion and no fineness has a say in it.
-        self._aside = {name: _digest(repr((_code(), rules, brief.surveyed, "aside", name))) for name in brief.storeys}
+        self._aside = {
+            name: _digest(repr((code_version(), rules, brief.surveyed, "aside", name))) for name in brief.storeys
+        }
 
     def basis(self, part: Part, floor: str) -> str:
         """Return the digest of what is found of a part besides its objects and the decisions about them."""
