@@ -1,4 +1,4 @@
-"""Where the files that travel with Kouros are, in a checkout and in a wheel alike, and how files are read and written.
+"""The files that travel with Kouros, in a checkout and in a wheel alike: where they are, and of which version.
 
 A file or folder that is being written has a name of its own until it is whole (`aside_of`), and what a process that
 died left under such a name is removed later (`sweep`).
@@ -9,14 +9,14 @@ import hashlib
 import os
 import re
 import shutil
+import sys
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
+from importlib.metadata import version
 from pathlib import Path
-from threading import RLock, get_ident
-from typing import Any
-
-import numpy as np
+from threading import get_ident
 
 SMALL = 8 << 20
 """Bytes of a file that a person writes: settings, a mapping, a manifest."""
@@ -24,20 +24,70 @@ SMALL = 8 << 20
 _PACKAGE = Path(__file__).resolve().parent
 
 
-def digest_of(*parts: str, kinds: Iterable[str] = (".py",), but: Iterable[str] = ()) -> str:
-    """Return the SHA-256 of files of the package, names included: what is kept depends on the code that made it.
+_ELSEWHERE = frozenset({"_resources", "cli", "operations", "report", "tools", "verification"})
+"""Rooms at the top of the package that no stored result depends on: they ask for results, show and compare them."""
 
-    parts : files, and folders with all below them; none: the whole package
-    kinds : endings of the files in folders that count
-    but   : folders at the top of the package that are left out
+_SOURCES = frozenset({".py", ".csv", ".toml"})
+"""Endings of the files that are code, or tables that code reads."""
+
+LIBRARIES = ("numba", "llvmlite", "numpy", "scipy", "obspy", "pywavelets", "openpyxl", "lxml")
+"""What computes results, and reads what they are computed of, besides the package and Python."""
+
+PRINTERS = ("jinja2", "markupsafe", "pyarrow")
+"""What draws pages and writes exports of results besides."""
+
+
+def code_files() -> list[Path]:
+    """Return the files of the package that results depend on: code and tables of every room that computes."""
+    return [file for file in _package_files() if file.relative_to(_PACKAGE).parts[0] not in _ELSEWHERE]
+
+
+def page_files() -> list[Path]:
+    """Return the files that pages and exports depend on: all code and tables, and the templates."""
+    return [*_package_files(), *sorted(file for file in resource("templates").rglob("*") if file.is_file())]
+
+
+@cache
+def code_version() -> str:
+    """Return the one version of everything that computes, which every kept result depends on.
+
+    Returns
+    -------
+    str
+        SHA-256 in hexadecimal of the names and contents of `code_files`, and of the versions of Python and `LIBRARIES`.
     """
-    found = {file for part in parts or ("",) for file in (_PACKAGE / part, *(_PACKAGE / part).rglob("*"))}
-    left_out = set(but)
-    digest = hashlib.sha256()
-    for file in sorted(found):
-        name = file.relative_to(_PACKAGE)
-        if file.suffix in kinds and file.is_file() and name.parts[0] not in left_out:
-            digest.update(name.as_posix().encode() + b"\0" + file.read_bytes())
+    return _digest(code_files(), LIBRARIES)
+
+
+@cache
+def page_version() -> str:
+    """Return the one version of everything that computes or draws, which every page and export depends on.
+
+    Returns
+    -------
+    str
+        SHA-256 in hexadecimal of `page_files`, and of the versions of Python, `LIBRARIES` and `PRINTERS`.
+    """
+    return _digest(page_files(), (*LIBRARIES, *PRINTERS))
+
+
+def _package_files() -> list[Path]:
+    found = (file for file in _PACKAGE.rglob("*") if file.suffix in _SOURCES and file.is_file())
+    # What a wheel carries beside the code is not the package's own.
+    return sorted(file for file in found if file.relative_to(_PACKAGE).parts[0] != "_resources")
+
+
+def _digest(files: Iterable[Path], libraries: Iterable[str]) -> str:
+    versions = [
+        f"python {sys.version_info.major}.{sys.version_info.minor}",
+        *(f"{name} {version(name)}" for name in libraries),
+    ]
+    digest = hashlib.sha256("\n".join(versions).encode())
+    for file in files:
+        within = _PACKAGE if file.is_relative_to(_PACKAGE) else _PACKAGE.parent
+        content = file.read_bytes()
+        # With its length, so that no byte can pass from one file to the next.
+        digest.update(f"\0{file.relative_to(within).as_posix()}\0{len(content)}\0".encode() + content)
     return digest.hexdigest()
 
 
@@ -118,22 +168,6 @@ def _being_written(path: Path, pid: int) -> bool:
     except OSError:
         pass  # It is somebody else's, and alive.
     return True
-
-
-_READING = RLock()
-
-
-@contextmanager
-def arrays(file: Path) -> Iterator[Any]:
-    """Open a file of arrays (.npz) for one thread at a time; objects of Python in it are refused.
-
-    numpy reads the head of an array by `ast.literal_eval`, which Python 3.11 does not bear in several threads at once:
-    seldom, but it was seen, it ends in "AST constructor recursion depth mismatch".
-
-    raises : what `numpy.load` raises
-    """
-    with _READING, np.load(file, allow_pickle=False) as kept:
-        yield kept
 
 
 def small_text(file: Path) -> str:

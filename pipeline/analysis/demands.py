@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from pipeline.analysis.plan import Indices, Work
 from pipeline.analysis.response import deciding, look_up, run_model
 from pipeline.analysis.response_charts import Shelf
-from pipeline.analysis.response_charts.histories import Histories, history_key
+from pipeline.analysis.response_charts.histories import Histories
+from pipeline.cache import key_of
 from pipeline.quantities import Array
 from pipeline.records import Columns, Executor, Model, Motion
 
@@ -207,7 +208,7 @@ def integrate(
     tasks: list[_RunTask] = []
     for angle, group in work.by_angle(rows):
         each, place = np.unique(work.first[group], return_inverse=True)
-        key = history_key(work.model.name, found.motion.hash, angle, fidelity, azimuth_step)
+        key = key_of(work.model.name, found.motion.hash, angle, fidelity, azimuth_step)
         there = np.zeros(each.size, dtype=bool)
         known: Columns = {}
         if histories is not None:

@@ -1,15 +1,13 @@
 """The paper's Figures 2 to 6 of one motion: pictures of its response charts where there are such."""
 
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache, partial
-from pathlib import Path
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from pipeline.analysis.response import deciding, respond, response_chart, trace
-from pipeline.analysis.response_charts import ResponseChart, Shelf, code_version
+from pipeline.analysis.response_charts import ResponseChart, Shelf
 from pipeline.models.common import largest_push, largest_speed
 from pipeline.models.rocking import VELOCITY_SCREEN
 from pipeline.quantities import Array, G
@@ -55,12 +53,6 @@ KINDS = ("stability", "sliding", "path", "swing", "isolator", "spectrum")
 def chart_keys(motion: Motion) -> list[str]:
     """Return the identities of all charts of a motion."""
     return [chart_key(kind, motion) for kind in KINDS]
-
-
-@cache
-def picture_version() -> str:
-    """Return the version of the kernels and of all code that a picture depends on besides its motion."""
-    return f"{code_version()}-{hashlib.sha256(Path(__file__).read_bytes()).hexdigest()[:12]}"
 
 
 def charts(motion: Motion, executor: Executor, shelf: Shelf) -> dict[str, Chart]:

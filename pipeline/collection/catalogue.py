@@ -15,7 +15,7 @@ from pipeline.collection.inventory import IMPORT_BATCH, ITEM, numbered, state_at
 from pipeline.collection.listing import Listed, Listing, order, read_listing, write_listing
 from pipeline.collection.record import to_items
 from pipeline.records import ITEM_FIELDS, Item
-from pipeline.resources import digest_of
+from pipeline.resources import code_version
 
 FEW = 1_000
 """States that changed since a listing was kept up to which it is brought up to date."""
@@ -125,4 +125,4 @@ def _told(connection: Connection, version: int) -> dict[str, Any] | None:
     if row is None:
         return None
     batch = hashlib.sha256(repr(tuple(row)).encode("utf-8", "surrogatepass")).hexdigest()
-    return {"version": version, "import": batch, "code": digest_of("collection", "records")}
+    return {"version": version, "import": batch, "code": code_version()}

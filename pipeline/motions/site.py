@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
+from pipeline.cache import MOTIONS, Cache, Kept, key_of
 from pipeline.errors import InputError
 from pipeline.motions.blas import one_thread
 from pipeline.motions.errors import MotionError, judged, refusal
 from pipeline.motions.intensity import integrate, measures, strong_part
-from pipeline.motions.keeping import keep, key_of, recall
 from pipeline.motions.manifest import (
     GROUND_FLOOR,
     LEAST_FOR_MEAN,
@@ -150,14 +150,34 @@ def _on_floor(site: Site, number: int, table: FloorTable, level: Level) -> tuple
 
 def _carried(site: Site, table: FloorTable, ground: SiteMotion) -> SiteMotion:
     motion = ground.motion
-    key = key_of(motion.hash, motion.name, table.model_dump_json(), *motion.steps)
-    known = None if site.kept is None else recall(site.kept, key)
-    if known is None:
-        up = carry(motion, table).called(f"{motion.name}, floor {table.name}")
-        known = up, measured(up)
-        if site.kept is not None:
-            keep(site.kept, key, known)
-    return SiteMotion(*known, ground.licence, ground.source)
+
+    def up() -> Measured:
+        made = carry(motion, table).called(f"{motion.name}, floor {table.name}")
+        return made, measured(made)
+
+    told = (motion.name, motion.steps, motion.source, motion.start, motion.v_max)
+    key = key_of(motion.hash, *told, table.model_dump_json())
+    return SiteMotion(*_kept(site.kept, key, up), ground.licence, ground.source)
+
+
+Measured = tuple[Motion, dict[str, float]]
+"""A processed motion and its measures."""
+
+
+def _kept(folder: Path | None, key: str, make: Callable[[], Measured]) -> Measured:
+    """Return what is kept under a key, else make it and keep it; no folder keeps nothing."""
+    if folder is None:
+        return make()
+    cache = Cache(folder)
+    found = cache.get(MOTIONS, key)
+    if found is not None:
+        said = dict(found.said)
+        measures = said.pop("measures")
+        return Motion(acceleration=found.arrays["acceleration"], **said), measures
+    motion, measures = make()
+    said = {name: getattr(motion, name) for name in ("dt", "name", "steps", "source", "start", "v_max")}
+    cache.put(MOTIONS, key, Kept(said | {"measures": measures}, {"acceleration": motion.acceleration}))
+    return motion, measures
 
 
 @one_thread()
@@ -187,14 +207,14 @@ def read_motion(path: str | Path, kept: Path | None = None) -> list[Motion]:
         for j, record in enumerate(level.record):
             # Kept apart from what a night keeps, as it has no measures.
             identity = _identity(record, level.target, manifest.site.x_azimuth, "without measures")
-            known = None if kept is None else recall(kept, identity)
-            if known is None:
-                key = f"level[{i}].record[{j}]"
-                known = prepare(file, key, record, level.target, manifest.site.x_azimuth).motion, {}
-                if kept is not None:
-                    keep(kept, identity, known)
-            motions.append(known[0])
+            place = f"level[{i}].record[{j}]"
+            make = partial(prepare, file, place, record, level.target, manifest.site.x_azimuth)
+            motions.append(_kept(kept, identity, partial(_bare, make))[0])
     return motions
+
+
+def _bare(make: Callable[[], Processed]) -> Measured:
+    return make().motion, {}
 
 
 def _identity(record: Record, target: TargetTable | None, x_azimuth: float, *more: str) -> str:
@@ -276,13 +296,13 @@ def thinned(motion: Motion, points: int = PICTURE_POINTS) -> dict[str, tuple[flo
 
 
 def _site_motion(site: Site, key: str, record: Record, target: TargetTable | None) -> SiteMotion:
-    identity = _identity(record, target, site.manifest.site.x_azimuth)
-    known = None if site.kept is None else recall(site.kept, identity)
-    if known is None:
-        done = prepare(site.file, key, record, target, site.manifest.site.x_azimuth)
-        known = done.motion, measured(done.motion, done.velocity)
-        if site.kept is not None:
-            keep(site.kept, identity, known)
+    x_azimuth = site.manifest.site.x_azimuth
+
+    def processed() -> Measured:
+        done = prepare(site.file, key, record, target, x_azimuth)
+        return done.motion, measured(done.motion, done.velocity)
+
+    known = _kept(site.kept, _identity(record, target, x_azimuth), processed)
     return SiteMotion(*known, record.licence, record.source)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify, object_classes
@@ -18,7 +19,6 @@ from pipeline.collection.record import INDIVIDUAL
 from pipeline.mitigate import advise
 from pipeline.mitigate.installed import Measure, Placed, assess_above, placed
 from pipeline.models import model_named
-from pipeline.night.context import RunContext
 from pipeline.night.floors import Storey
 from pipeline.records import (
     ITEM_FIELDS,
@@ -33,6 +33,9 @@ from pipeline.records import (
     Support,
     Wish,
 )
+
+if TYPE_CHECKING:
+    from pipeline.night.context import RunContext
 
 # The classification, whose result is a part of the scene, looks at titles; neighbours are looked at afterwards.
 _shared = attrgetter(*(name for name in ITEM_FIELDS if name not in (*INDIVIDUAL, "title")))
@@ -69,7 +72,7 @@ def place(item: Item, rules: Table | None, decisions: Sequence[Decision]) -> Pla
 
 
 def assess_objects(
-    context: RunContext, floor: Storey, items: Sequence[Item], decisions: Sequence[Decision]
+    context: "RunContext", floor: Storey, items: Sequence[Item], decisions: Sequence[Decision]
 ) -> tuple[list[Assessed], float, list[Fault]]:
     """Run everything that objects on one floor require under its motions, judge it and advise.
 
@@ -114,7 +117,7 @@ def assess_objects(
 
 
 def _found(
-    context: RunContext, floor: Storey, objects: Mapping[Hashable, Placed], faults: list[Fault]
+    context: "RunContext", floor: Storey, objects: Mapping[Hashable, Placed], faults: list[Fault]
 ) -> tuple[dict[Hashable, Assessed], float]:
     """Return what is found of some objects of which none is like another, and the seconds that the survey cost."""
     every = [
@@ -195,7 +198,7 @@ def by_object(decisions: Iterable[Decision]) -> dict[str, list[Decision]]:
 
 
 def placed_each(
-    context: RunContext, floor: Storey, items: Sequence[Item], about: Mapping[str, Sequence[Decision]]
+    context: "RunContext", floor: Storey, items: Sequence[Item], about: Mapping[str, Sequence[Decision]]
 ) -> list[Placed | Exception]:
     """Return each object as it stands, or the error that placing it came to."""
 
@@ -214,7 +217,7 @@ def failed_on(item: Item | Scene, problem: Exception, faults: list[Fault]) -> As
 
 
 def left_aside(
-    context: RunContext, floor: Storey, items: Sequence[Item], decisions: Sequence[Decision]
+    context: "RunContext", floor: Storey, items: Sequence[Item], decisions: Sequence[Decision]
 ) -> tuple[list[Assessed], float, list[Fault]]:
     """Return objects that are not on display as what they are, with nothing found about them.
 
@@ -230,7 +233,7 @@ def left_aside(
     return [Assessed(replace(one, aside=True), {}, asked) for one in assessments], 0.0, faults
 
 
-def each_assessed(context: RunContext, floor: Storey, objects: Sequence[Placed]) -> list[tuple[Assessment, dict[str, int]] | Exception]:
+def each_assessed(context: "RunContext", floor: Storey, objects: Sequence[Placed]) -> list[tuple[Assessment, dict[str, int]] | Exception]:
     """Return what is found of each object, or the error that finding it came to."""
     return apart(
         lambda some: _assessed(context, floor, some),
@@ -241,11 +244,11 @@ def each_assessed(context: RunContext, floor: Storey, objects: Sequence[Placed])
     )
 
 
-def _integrating(context: RunContext) -> str:
+def _integrating(context: "RunContext") -> str:
     return "reference" if context.analysis.fidelity == "reference" else "history"
 
 
-def _assessed(context: RunContext, floor: Storey, objects: Sequence[Placed]) -> list[tuple[Assessment, dict[str, int]]]:
+def _assessed(context: "RunContext", floor: Storey, objects: Sequence[Placed]) -> list[tuple[Assessment, dict[str, int]]]:
     """Run everything that objects require, judge it and advise."""
     if not objects:
         return []

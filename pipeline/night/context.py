@@ -3,17 +3,16 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 from pipeline.analysis.response_charts import Shelf
 from pipeline.analysis.rules import Table
+from pipeline.cache import key_of
 from pipeline.execute import Threads
 from pipeline.mitigate import Means
 from pipeline.mitigate.bench import Carriage
 from pipeline.night.floors import Storey
-from pipeline.operations.workspace import HISTORIES
 from pipeline.records import (
     Motion,
     RunRecord,
@@ -33,7 +32,7 @@ class RunContext:
     surveyed, fragile : whether to find out what is worth measuring, and from what shaking objects fail
     stores    : whether what is not on display is assessed too
     admitted  : which response charts are built (see `response_charts.Shelf`); None: those that pay
-    kept      : folder in which charts are kept; None: in memory only
+    kept      : folder of the cache; None: in memory only
     threads   : of one who works
     """
 
@@ -67,15 +66,12 @@ class RunContext:
         """The response charts."""
         return Shelf(self.kept, admitted=self.admitted)
 
-    def memory(self, *batch: object) -> Path | None:
-        """Return the file in which the histories of what is worked on together are kept from night to night.
+    def memory(self, *batch: object) -> str | None:
+        """Return the key under which the histories of what is worked on together are kept from night to night.
 
         batch : what is the same every night
         """
-        if self.kept is None:
-            return None
-        name = repr(batch).encode("utf-8", "surrogatepass")
-        return self.kept.parent / HISTORIES / f"{sha256(name).hexdigest()[:32]}.npz"
+        return None if self.kept is None else key_of(*batch)
 
     @cached_property
     def carriage(self) -> Carriage:

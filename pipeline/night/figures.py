@@ -4,12 +4,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 
-from pipeline.analysis.figures import chart_keys, charts, picture_version
+from pipeline.analysis.figures import chart_keys, charts
 from pipeline.analysis.response_charts import Shelf
 from pipeline.execute import Threads
 from pipeline.motions.site import Site
-from pipeline.operations.workspace import CHARTS, Workspace
+from pipeline.operations.workspace import Workspace
 from pipeline.records import Chart, Motion, Progress
+from pipeline.resources import code_version
 from pipeline.store.reuse import stored_charts
 
 
@@ -20,7 +21,7 @@ class Pictures:
         settings = workspace.settings
         self._workspace = workspace
         # Not the shelf of the verdicts, which is made once it is decided what it holds.
-        self._shelf, self._executor = Shelf(settings.kept / CHARTS), Threads(settings.analysis.workers)
+        self._shelf, self._executor = Shelf(settings.kept), Threads(settings.analysis.workers)
         self._hand = ThreadPoolExecutor(1)
         self._stored: dict[str, Mapping[str, Chart]] = {}
         self._begun: dict[str, Future[dict[str, Chart]]] = {}
@@ -29,7 +30,7 @@ class Pictures:
         """Begin with motions that will be asked for, one after the other, and return at once."""
         new = [motion for motion in motions if motion.hash not in self._stored.keys() | self._begun.keys()]
         wanted = [key for motion in new for key in chart_keys(motion)]
-        there = stored_charts(self._workspace.engine, wanted, picture_version()) if wanted else {}
+        there = stored_charts(self._workspace.engine, wanted, code_version()) if wanted else {}
         for motion in new:
             keys = chart_keys(motion)
             if there.keys() >= set(keys):

@@ -11,7 +11,6 @@ import numpy as np
 from pipeline import __version__
 from pipeline.analysis.classify import classify
 from pipeline.analysis.faults import sound, without_failing
-from pipeline.analysis.figures import picture_version
 from pipeline.analysis.plan import Work, plan
 from pipeline.analysis.response_charts.grouping import group_name, groups
 from pipeline.analysis.rules import Table
@@ -31,7 +30,7 @@ from pipeline.night.reading_summary import told
 from pipeline.night.tasks import ChartTask
 from pipeline.night.source_state import rules_digest
 from pipeline.operations.presentation import presentation
-from pipeline.operations.workspace import CHARTS, Workspace
+from pipeline.operations.workspace import Workspace
 from pipeline.records import Model, Progress, RunRecord, Scene
 from pipeline.report.pages.reading import INVENTORY, READING
 from pipeline.resources import code_version
@@ -109,7 +108,7 @@ def run_context(
         surveyed=surveyed,
         fragile=fragile,
         stores=settings.display.stores,
-        kept=settings.kept / CHARTS,
+        kept=settings.kept,
         threads=settings.analysis.workers or Threads().workers,
         units=written["units"],
         tongue=settings.report.language,
@@ -195,7 +194,7 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
     settings = workspace.settings
     return {
         KERNELS: KERNEL_VERSION,
-        PICTURES: picture_version(),
+        PICTURES: code_version(),
         CODE: code_version()[:12],
         RULES: rules_digest(settings),
         LEVELS: {level.name: level.combine for level in site.levels},

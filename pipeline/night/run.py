@@ -95,7 +95,7 @@ def _run(
             night.charts = charts
             return _hold(night, progress, chosen, dry_run=dry_run, strict=strict)
         finally:
-            tidy(settings, context.shelf, context.motions)
+            tidy(settings, context.motions)
 
 
 def _hold(night: NightRun, progress: Progress, chosen: Selection, *, dry_run: bool, strict: bool) -> Summary:

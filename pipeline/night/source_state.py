@@ -12,7 +12,7 @@ from pipeline.collection.inventory import latest_import
 from pipeline.collection.mapping import Mapping, load_mapping, preset_names
 from pipeline.collection.sources.opening import is_database
 from pipeline.operations.workspace import Workspace
-from pipeline.resources import digest_of, replacing
+from pipeline.resources import code_version, replacing
 from pipeline.settings import Settings
 
 
@@ -91,7 +91,7 @@ def _seen(workspace: Workspace, source: str, mapping: str, content: str) -> dict
         "source": named,
         "sha256": content,
         "mapping": hashlib.sha256(mapping_of(workspace.settings, mapping).model_dump_json().encode()).hexdigest(),
-        "code": digest_of("collection", "records", "tables", "quantities.py", kinds=(".py", ".csv", ".toml")),
+        "code": code_version(),
         "limits": workspace.settings.limits.model_dump_json(),
         "version": None if info is None else info.id,
     }

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pipeline.cache import KINDS, Cache
 from pipeline.errors import InputError, KourosError
 from pipeline.operations.dry_run import SCRATCH, read_only
 from pipeline.resources import resource, sweep
@@ -21,17 +22,11 @@ if TYPE_CHECKING:
     from pipeline.motions.site import Site
     from pipeline.settings import Settings
 
-CHARTS = "charts"
-"""Folder in it for the response charts."""
-
-HISTORIES = "histories"
-"""Folder in it for the histories of what was worked on together, see `pipeline.analysis.response_charts.histories`."""
-
 IMPORTS = "imports"
 """Folder beside the settings that holds the log of every import that changed something."""
 
 LISTING = "listing.arrow"
-"""File in it for the listing of the inventory's objects, see `pipeline.collection.listing`."""
+"""File, among what is kept, for the listing of the inventory's objects, see `pipeline.collection.listing`."""
 
 
 class LockedError(KourosError):
@@ -167,7 +162,7 @@ def locked(settings: "Settings", *, sweeping: bool = True) -> Iterator[None]:
 def _sweep(settings: "Settings") -> None:
     kept = settings.kept
     folders = [settings.home, settings.path(IMPORTS), settings.path(settings.report.folder)]
-    folders += [kept, kept / CHARTS, kept / HISTORIES]
+    folders += [kept, *(kept / kind for kind in KINDS)]
     if settings.site.folder != "demo":
         folders.append(site_folder(settings.home, settings.site.folder))
     for folder in dict.fromkeys(folders):
@@ -178,7 +173,7 @@ def _sweep(settings: "Settings") -> None:
 def charts_of(
     settings: "Settings | None", using: Collection[str] = (), admitted: Collection[str] | None = None
 ) -> Iterator["Shelf"]:
-    """Lend the shelf of the workspace's response charts, and tidy it up at the end; None: one in memory only.
+    """Lend the shelf of the workspace's response charts, and prune the cache at the end; None: one in memory only.
 
     using    : hashes of motions in use, whose charts stay although perhaps none of them is asked for
     admitted : see `Shelf`
@@ -188,24 +183,20 @@ def charts_of(
     if settings is None:
         yield Shelf()
         return
-    shelf = Shelf(settings.kept / CHARTS, admitted=None if admitted is None else frozenset(admitted))
+    shelf = Shelf(settings.kept, admitted=None if admitted is None else frozenset(admitted))
     try:
         yield shelf
     finally:
-        tidy(settings, shelf, using)
+        tidy(settings, using)
 
 
-def tidy(settings: "Settings", shelf: "Shelf", using: Collection[str]) -> None:
-    """Remove the charts and the histories that the settings do not keep any longer.
+def tidy(settings: "Settings", using: Collection[str]) -> None:
+    """Remove from the cache what the settings do not keep any longer.
 
     using : as in `charts_of`
     """
-    from pipeline.analysis.response_charts import prune_histories
-
     limits = settings.charts
-    most = round(1e6 * limits.megabytes)
-    shelf.tidy(days=limits.unused_days, most_bytes=most, using=using)
-    prune_histories(settings.kept / HISTORIES, days=limits.unused_days, most_bytes=most)
+    Cache(settings.kept).prune(days=limits.unused_days, most_bytes=round(1e6 * limits.megabytes), using=using)
 
 
 def folder_of_site(settings: "Settings | None", site: str | None) -> Path:

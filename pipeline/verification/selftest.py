@@ -12,13 +12,13 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from pipeline import __version__
+from pipeline.cache import SELF_TESTS, Cache, Kept
 from pipeline.quantities import counted
-from pipeline.resources import replacing
 from pipeline.settings import Settings
 from pipeline.verification.outcome import Outcome
 
-KEPT_AS = "numerics.json"
-"""File, among what is kept between nights, in which the last self-test lies for the reports."""
+LAST = "last"
+"""Key under which the last self-test lies for the reports."""
 
 
 @dataclass(frozen=True)
@@ -56,18 +56,15 @@ def self_test(settings: Settings | None) -> Iterator[Outcome]:
         keep(SelfTest(now, __version__, KERNEL_VERSION, machine(), done), settings.kept)
 
 
-def keep(test: SelfTest, folder: Path) -> Path:
-    """Keep a self-test for the next reports, atomically."""
-    folder.mkdir(parents=True, exist_ok=True)
-    file = folder / KEPT_AS
-    with replacing(file) as aside:
-        aside.write_text(json.dumps(test.plain(), indent=2, allow_nan=False), encoding="utf-8")
-    return file
+def keep(test: SelfTest, folder: Path) -> None:
+    """Keep a self-test for the next reports, in place of the last one."""
+    Cache(folder).put(SELF_TESTS, LAST, Kept(test.plain()), lasting=True)
 
 
 def kept(folder: Path) -> SelfTest | None:
-    """Return the last self-test, whatever kernels it ran, or None: never run, or damaged."""
+    """Return the last self-test, whatever kernels it ran, or None: never run, damaged, or of another form."""
+    found = Cache(folder).get(SELF_TESTS, LAST, lasting=True)
     try:
-        return TypeAdapter(SelfTest).validate_json((folder / KEPT_AS).read_bytes(), strict=True)
-    except (OSError, ValueError):
+        return None if found is None else TypeAdapter(SelfTest).validate_json(json.dumps(found.said), strict=True)
+    except ValueError:
         return None

@@ -11,12 +11,14 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import TypeAdapter
 
 from pipeline.analysis.classify import classify
 from pipeline.analysis.faults import sound
 from pipeline.analysis.plan import plan
 from pipeline.analysis.response import AZIMUTH_STEP, REFINE, prepare, run_chart, run_model
 from pipeline.analysis.response_charts import Shelf
+from pipeline.cache import TRADEOFFS, Cache, Kept
 from pipeline.collection.inventory import read_inventory
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.models import MODELS, model_named
@@ -25,7 +27,6 @@ from pipeline.motions.site import read_motion
 from pipeline.operations.workspace import UsageError, charts_of, folder_of_site, open_workspace
 from pipeline.quantities import Array
 from pipeline.records import Axis, Chart, Columns, Curve, Item, Model, Motion, Progress, Scene
-from pipeline.resources import replacing
 from pipeline.settings import Settings
 
 STEPS = (1, 2, 4, 8, 16)
@@ -343,33 +344,23 @@ def picture(found: Tradeoff) -> Chart:
 PICTURE = "tradeoff"
 """How the key of its picture begins."""
 
-KEPT_AS = "tradeoff.json"
-"""File, among what is kept between nights, in which the last measurement lies for the reports."""
+LAST = "last"
+"""Key under which the last measurement lies for the reports."""
 
 
-def keep(found: Tradeoff, folder: Path) -> Path:
-    """Keep a measurement for the next reports."""
-    folder.mkdir(parents=True, exist_ok=True)
-    file = folder / KEPT_AS
-    with replacing(file) as aside:
-        aside.write_text(json.dumps(asdict(found), indent=2), encoding="utf-8")
-    return file
+def keep(found: Tradeoff, folder: Path) -> None:
+    """Keep a measurement for the next reports, in place of the last one."""
+    Cache(folder).put(TRADEOFFS, LAST, Kept(asdict(found)), lasting=True)
 
 
 def kept(folder: Path) -> Tradeoff | None:
-    """Return the last measurement, or None: never measured, measured on other kernels, or damaged."""
+    """Return the last measurement, or None: never measured, measured on other kernels, damaged, or of another form."""
+    found = Cache(folder).get(TRADEOFFS, LAST, lasting=True)
     try:
-        said = json.loads((folder / KEPT_AS).read_text(encoding="utf-8"))
-        found = Tradeoff(
-            said["measured"],
-            said["kernels"],
-            said["motions"],
-            [Sample(**one) for one in said["samples"]],
-            [Setting(**one) for one in said["settings"]],
-        )
-    except (OSError, ValueError, KeyError, TypeError):
+        last = None if found is None else TypeAdapter(Tradeoff).validate_json(json.dumps(found.said), strict=True)
+    except ValueError:
         return None
-    return found if found.kernels == KERNEL_VERSION else None
+    return last if last is not None and last.kernels == KERNEL_VERSION else None
 
 
 def tradeoff_on(settings: Settings | None, site: str | None, progress: Progress, **wishes: Any) -> Tradeoff:

@@ -15,7 +15,6 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.quantities import G
 from pipeline.records import Item, Motion, Support, Verdict
-
 from tests.mitigate.scenes import TOWER, Silent, demo_motion, solve
 
 

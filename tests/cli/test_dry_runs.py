@@ -71,7 +71,7 @@ def museum(tmp_path_factory: pytest.TempPathFactory) -> Path:
     charts.unlink()
     charts.mkdir()
     hashes = {motion.hash[:16] for motion in read_motion(folder / "shaking")}
-    for file in common.glob("[!.]*.npz"):
+    for file in common.glob("*.kept"):
         if any(hash_ in file.name for hash_ in hashes):
             shutil.copyfile(file, charts / file.name)
     settings = folder / "kouros.toml"

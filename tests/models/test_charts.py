@@ -6,13 +6,13 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
-from pipeline.analysis.response_charts.refine import MOST_NODES, UNITS, refine
-from pipeline.analysis.response_charts.response_chart import axis_of
 from shaking import along_x, random_motion
 
 from pipeline import respond
 from pipeline.analysis.response import DECIDES, look_up, prepare, run_chart, run_model
 from pipeline.analysis.response_charts import ResponseChart, Shelf
+from pipeline.analysis.response_charts.refine import MOST_NODES, UNITS, refine
+from pipeline.analysis.response_charts.response_chart import axis_of
 from pipeline.models import MODELS, model_named
 from pipeline.models.common import lift_ratios
 from pipeline.motions import read_motion

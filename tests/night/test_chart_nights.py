@@ -12,14 +12,14 @@ from pipeline.analysis.assess import LevelMotions, assess
 from pipeline.analysis.classify import classify
 from pipeline.analysis.plan import plan
 from pipeline.analysis.response import respond
-from pipeline.analysis.response_charts import ChartWarning, ResponseChart, Shelf
+from pipeline.analysis.response_charts import ResponseChart, Shelf
+from pipeline.cache import CHARTS, CacheWarning
 from pipeline.cli.console import Console
 from pipeline.collection.database import open_database
 from pipeline.execute import Threads
 from pipeline.motions.synthesis import band_limited_random
 from pipeline.night import units as sheets
 from pipeline.night.run import run
-from pipeline.operations.workspace import CHARTS
 from pipeline.quantities import G
 from pipeline.records import Estimate, Finding, Item, Motion, Origin, Scene, Support, Verdict
 from pipeline.settings import Settings, load_settings
@@ -81,14 +81,14 @@ def test_a_night_by_charts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     # A night of other code judges anew, reads the charts that the first one kept, and changes nothing of them.
     with monkeypatch.context() as patch:
         patch.setattr(ResponseChart, "build", refuse)
-        patch.setattr(sheets, "_code", lambda: "other code")
+        patch.setattr(sheets, "code_version", lambda: "other code")
         assert findings(settings) == looked
     assert {file.name: file.read_bytes() for file in charts.iterdir()} == kept
     # A damaged chart is said, and the night goes on as if there were none.
     for file in charts.iterdir():
         file.write_bytes(b"damaged")
-    monkeypatch.setattr(sheets, "_code", lambda: "another code again")
-    with pytest.warns(ChartWarning, match="is built again"):
+    monkeypatch.setattr(sheets, "code_version", lambda: "another code again")
+    with pytest.warns(CacheWarning, match="it is made again"):
         assert findings(settings) == looked
     assert "the response chart" in "".join(
         page.read_text(encoding="utf-8") for page in (tmp_path / "reports" / "latest").glob("*.html")
@@ -100,7 +100,7 @@ def test_charts_of_motions_that_nobody_uses_go(tmp_path: Path) -> None:
     settings = museum(tmp_path, "history")
     folder = settings.kept / CHARTS
     other = Motion(0.02, np.ones((3, 20)), "another")
-    respond("sliding", other, fidelity="chart", charts=Shelf(folder), tolerance=0.1, friction_static=0.1)
+    respond("sliding", other, fidelity="chart", charts=Shelf(settings.kept), tolerance=0.1, friction_static=0.1)
     (stranger,) = folder.iterdir()
     run(settings, SILENT)
     assert stranger.exists()
@@ -135,7 +135,7 @@ def test_ad_hoc_charts_are_kept_beside_the_settings(tmp_path: Path) -> None:
     kept.write_bytes(b"damaged")
     mended = kouros(*words, folder=tmp_path)
     assert mended.stdout == first.stdout
-    assert f"kouros: {kept}: is no chart" in mended.stderr.replace("\n", " ")
+    assert f"kouros: {kept}: cannot be used" in mended.stderr.replace("\n", " ")
     assert "Warning" not in mended.stderr
     bare = tmp_path / "bare"
     bare.mkdir()

@@ -92,20 +92,20 @@ def test_a_worker_with_several_threads(alone: Settings, tmp_path: Path) -> None:
     assert files(settings) == files(alone)
 
 
-def test_each_thread_remembers_the_histories_of_its_own_work(tmp_path: Path) -> None:
+def test_each_thread_remembers_the_histories_of_its_own_work() -> None:
     """Before: whoever began last was remembered by all, and whoever ended first was forgotten by all."""
     shelf, both = Shelf(), Barrier(2)
 
-    def own(file: Path) -> bool:
-        with shelf.remembering(file):
+    def own(key: str) -> bool:
+        with shelf.remembering(key):
             both.wait(10)
             mine = shelf.histories
             both.wait(10)
         both.wait(10)
-        return mine is not None and shelf.histories is None and mine._file == file
+        return mine is not None and shelf.histories is None and mine._key == key
 
     with ThreadPoolExecutor(2) as pool:
-        assert list(pool.map(own, [tmp_path / "a.npz", tmp_path / "b.npz"])) == [True, True]
+        assert list(pool.map(own, ["a", "b"])) == [True, True]
 
 
 @pytest.mark.usefixtures("shared")

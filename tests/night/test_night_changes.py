@@ -151,8 +151,8 @@ def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.
 
     # Version: another Kouros assumes other room.
     monkeypatch.setattr(briefing, "__version__", "9.9")
-    monkeypatch.setattr(briefing, "code_digest", lambda: "another")
-    monkeypatch.setattr(sheets, "_code", lambda: "another")
+    monkeypatch.setattr(briefing, "code_version", lambda: "another")
+    monkeypatch.setattr(sheets, "code_version", lambda: "another")
     monkeypatch.setattr(
         classify, "_clearance_of", lambda _: Estimate(1e-9, "m", Origin.ASSUMED, 1e-9, 1e-9, "no room", "")
     )

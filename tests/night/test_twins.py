@@ -8,6 +8,7 @@ import pytest
 
 from pipeline.analysis.classify import classify
 from pipeline.analysis.response_charts import Shelf
+from pipeline.cache import HISTORIES
 from pipeline.collection.catalogue import catalogue
 from pipeline.collection.listing import Listed, Listing
 from pipeline.collection.record import kind_of
@@ -20,7 +21,7 @@ from pipeline.night.deduplication import Twins, as_own, likeness
 from pipeline.night.importing import import_collection
 from pipeline.night.prepare import popular
 from pipeline.night.units import Part
-from pipeline.operations.workspace import HISTORIES, open_workspace
+from pipeline.operations.workspace import open_workspace
 from pipeline.records import Assessment, Item, Problem, Provenance, Support
 from pipeline.records.scene import Origin
 from pipeline.settings import load_settings

@@ -12,11 +12,10 @@ from pathlib import Path
 
 import pytest
 
+from pipeline.cache import KINDS
 from pipeline.operations.report_status import last_good
 from pipeline.operations.retention import Pruned, prune
 from pipeline.operations.workspace import (
-    CHARTS,
-    HISTORIES,
     IMPORTS,
     LockedError,
     Workspace,
@@ -177,7 +176,7 @@ def test_what_the_dead_left_unfinished_goes_and_nothing_else(tmp_path: Path) -> 
         reports, kept = workspace.reports, tmp_path / KEPT
         places = [
             reports / "20310501T030000.000-1", reports / "status.json", reports / "latest", kept / "source.jsonl",
-            kept / CHARTS / "chart.npz", kept / HISTORIES / "sheet.npz", tmp_path / IMPORTS / "00001-2031-05-01.csv",
+            *(kept / kind / "a.kept" for kind in KINDS), tmp_path / IMPORTS / "00001-2031-05-01.csv",
             tmp_path / "kouros.toml",
         ]  # fmt: skip
         dead = [left_by(gone.pid, place) for place in places]

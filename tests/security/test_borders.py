@@ -132,7 +132,7 @@ def everything(folder: Path) -> Iterator[tuple[str, bytes]]:
     for path in folder.rglob("*"):
         if path.is_file():
             yield str(path), path.read_bytes()
-            if path.suffix in (".xlsx", ".npz"):
+            if path.suffix == ".xlsx":
                 with zipfile.ZipFile(path) as packed:
                     yield from ((f"{path}/{name}", packed.read(name)) for name in packed.namelist())
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -169,13 +170,20 @@ def test_nothing_was_written_elsewhere(night: Night) -> None:
 def test_what_is_left_holds_no_objects_of_python(night: Night) -> None:
     """Texts, tables, JSON, SQL and plain arrays: nothing that runs when it is read."""
     kept = [path for path in night.folder.rglob("*") if path.is_file()]
-    kinds = {*(".toml", ".sqlite", ".lock", ".html", ".csv", ".jsonl", ".json", ".parquet", ".xlsx", ".npz", ".arrow")}
+    kinds = {*(".toml", ".sqlite", ".lock", ".html", ".csv", ".jsonl", ".json", ".parquet", ".xlsx", ".kept", ".arrow")}
     assert {path.suffix or path.name for path in kept} - {".kouros.lock"} <= kinds
-    arrays = [path for path in [*kept, *(night.folder / ".kouros-kept" / "charts").rglob("*")] if path.suffix == ".npz"]
-    assert arrays
-    for path in arrays:
-        with np.load(path, allow_pickle=False) as opened:
-            assert not any(opened[name].dtype.hasobject for name in opened.files)
+    sealed = [
+        path for path in [*kept, *(night.folder / ".kouros-kept" / "charts").rglob("*")] if path.suffix == ".kept"
+    ]
+    assert sealed
+    for path in sealed:
+        body = path.read_bytes()[len(b"kouros kept 1\n") + 32 :]
+        length = int.from_bytes(body[:8], "little")
+        arrays = json.loads(body[8 : 8 + length])["arrays"]
+        # JSON, then nothing but numbers and truth values.
+        assert {np.dtype(kind).kind for _, kind, _ in arrays} <= set("biuf")
+        sizes = [np.dtype(kind).itemsize * math.prod(shape) for _, kind, shape in arrays]
+        assert len(body) == 8 + length + sum(sizes)
     (listing,) = (path for path in kept if path.suffix == ".arrow")
     _head, _, stream = listing.read_bytes().partition(b"\n")
     assert {str(kind) for kind in pa.ipc.open_stream(stream).schema.types} == {"large_string", "bool", "int64"}

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from pipeline.analysis.response import respond
+from pipeline.cache import TRADEOFFS, Cache, Kept
 from pipeline.cli.console import Console
+from pipeline.kernels import KERNEL_VERSION
 from pipeline.models import MODELS
 from pipeline.motions.synthesis import band_limited_random
 from pipeline.night.run import run
@@ -118,7 +120,7 @@ def test_what_was_measured_on_other_kernels_is_forgotten(found: tradeoff.Tradeof
     assert list(again.settings) == list(found.settings)
     tradeoff.keep(replace(found, kernels="another"), tmp_path)
     assert tradeoff.kept(tmp_path) is None
-    (tmp_path / tradeoff.KEPT_AS).write_text("{")
+    Cache(tmp_path).put(TRADEOFFS, tradeoff.LAST, Kept({"measured": "", "kernels": KERNEL_VERSION}), lasting=True)
     assert tradeoff.kept(tmp_path) is None
 
 

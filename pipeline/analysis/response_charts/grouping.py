@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.analysis.response_charts.chart_cache import chart_identity
 from pipeline.analysis.response_charts.response_chart import ResponseChart, Run, axis_of
 from pipeline.analysis.response_charts.shelf import Shelf
+from pipeline.cache import key_of
 from pipeline.errors import InputError
 from pipeline.quantities import Array, real_number
 from pipeline.records import Columns, Model, Motion
@@ -168,15 +168,16 @@ def chart_of(
 
 def _identity(model: Model, motion: Motion, fixed: Mapping[str, float], settings: Settings) -> str:
     worst = settings.angle is None and not settings.both
-    return chart_identity(
+    return key_of(
         motion.hash,
-        model=model.name,
-        angle="both" if settings.both else settings.angle,
-        azimuth_step=settings.azimuth_step if worst else None,
-        tail=settings.tail,
-        refine=settings.refine,
-        tolerance=settings.tolerance,
-        low=settings.low,
-        first=settings.first,
-        fixed=dict(fixed),
+        model.name,
+        "both" if settings.both else settings.angle,
+        settings.azimuth_step if worst else None,
+        settings.tail,
+        settings.refine,
+        settings.tolerance,
+        settings.low,
+        settings.first,
+        dict(fixed),
+        group=motion.hash,
     )

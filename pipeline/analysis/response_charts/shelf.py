@@ -1,15 +1,15 @@
 """Where charts are kept: a few in memory, and, where a folder is given, all that were built, from night to night."""
 
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Iterator, Set
+from collections.abc import Callable, Iterator, Set
 from concurrent.futures import Future
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Lock, local
 
-from pipeline.analysis.response_charts.chart_cache import keep, prune, recall
 from pipeline.analysis.response_charts.histories import Histories
 from pipeline.analysis.response_charts.response_chart import ResponseChart
+from pipeline.cache import CHARTS, Cache
 from pipeline.records import ChartAxis
 
 KEPT = 64
@@ -19,13 +19,14 @@ KEPT = 64
 class Shelf:
     """Charts by identity; threads that want the same one at once wait for one of them to build it.
 
-    folder   : where charts are kept from one process to the next; None: in memory only
+    folder   : of the cache that keeps charts and histories from one process to the next; None: in memory only
     admitted : names of the groups of parameters that charts are built for where there is a choice, so that what is
                looked up does not hang on who asked before; None: whatever is there, or pays for those who ask
     """
 
     def __init__(self, folder: Path | None = None, kept: int = KEPT, *, admitted: Set[str] | None = None) -> None:
-        self._folder, self._kept, self._admitted = folder, kept, admitted
+        self._cache = None if folder is None else Cache(folder)
+        self._kept, self._admitted = kept, admitted
         self._remembered = local()
         self._lock = Lock()
         self._charts: OrderedDict[str, Future[ResponseChart]] = OrderedDict()
@@ -48,11 +49,11 @@ class Shelf:
                 self._charts.popitem(last=False)
         if mine:
             try:
-                found = None if self._folder is None else recall(self._folder, key, axis)
+                found = self._recalled(key, axis)
                 if found is None:
                     found = build()
-                    if self._folder is not None:
-                        keep(self._folder, key, found)
+                    if self._cache is not None:
+                        self._cache.put(CHARTS, key, found.kept())
                 chart.set_result(found)
             except BaseException as problem:
                 with self._lock:
@@ -61,13 +62,17 @@ class Shelf:
                 raise
         return chart.result()
 
-    @contextmanager
-    def remembering(self, file: Path | None) -> Iterator[None]:
-        """Take over the histories that are kept in a file, and keep there those that are used until the end.
+    def _recalled(self, key: str, axis: ChartAxis) -> ResponseChart | None:
+        kept = None if self._cache is None else self._cache.get(CHARTS, key)
+        return None if kept is None else ResponseChart.of(axis, kept)
 
-        file : None: until the end only
+    @contextmanager
+    def remembering(self, key: str | None) -> Iterator[None]:
+        """Take over the histories that are kept under a key, and keep there those that are used until the end.
+
+        key : None: until the end only
         """
-        self._remembered.histories = histories = Histories(file)
+        self._remembered.histories = histories = Histories(None if key is None else self._cache, key or "")
         try:
             yield
             histories.keep()
@@ -91,16 +96,11 @@ class Shelf:
             if key in self._charts:
                 return True
         # What is found is kept in memory, so that it is read once.
-        found = None if self._folder is None else recall(self._folder, key, axis)
+        found = self._recalled(key, axis)
         if found is None:
             return False
         self.get(key, axis, lambda: found)
         return True
-
-    def tidy(self, *, days: float, most_bytes: int, using: Collection[str] = ()) -> None:
-        """Remove from the folder what `prune` removes; what is in memory stays."""
-        if self._folder is not None:
-            prune(self._folder, days=days, most_bytes=most_bytes, using=using)
 
 
 SHELF = Shelf()

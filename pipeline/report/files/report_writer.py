@@ -41,7 +41,7 @@ from pipeline.report.pages.since import since_view
 from pipeline.report.pages.views import Entry, Pointer, State
 from pipeline.report.plots.traces import trace
 from pipeline.report.text import clean, short
-from pipeline.resources import aside_of, digest_of, naming, resource
+from pipeline.resources import aside_of, naming, page_version
 
 SHEETS = ".sheets.json"
 """File of a report that says what of it is which sheet's."""
@@ -91,20 +91,10 @@ def _adapter() -> TypeAdapter[list[Placed]]:
     return TypeAdapter(list[Placed])
 
 
-@cache
-def _code() -> str:
-    """Everything that draws a page: the code of the report, the templates."""
-    templates = sha256()
-    for file in sorted(resource("templates").rglob("*")):
-        if file.is_file():
-            templates.update(file.name.encode() + b"\0" + file.read_bytes())
-    return digest_of("report", "records") + templates.hexdigest()
-
-
 def sheet_key(pen: Pen, sheet: Sheet, decisions: Sequence[Standing]) -> str:
     """Return the digest of everything that a sheet's page and rows depend on."""
     own = (sheet.key, sheet.run, sheet.made, sheet.gallery, sheet.on_display, sheet.number, sheet.of, list(decisions))
-    return sha256(repr((_code(), pen.identity, own)).encode("utf-8", "surrogatepass")).hexdigest()
+    return sha256(repr((page_version(), pen.identity, own)).encode("utf-8", "surrogatepass")).hexdigest()
 
 
 class Edition:
@@ -228,7 +218,7 @@ class Edition:
 
     def _read(self, head: RunRecord, doubts: Doubts) -> None:
         """Write the page and the list of what reading refused and doubts, or take those of the earlier report."""
-        own = (_code(), self.pen.identity, sorted(head.settings[READING].items()), head.settings.get(INVENTORY))
+        own = (page_version(), self.pen.identity, sorted(head.settings[READING].items()), head.settings.get(INVENTORY))
         key = sha256(repr(own).encode("utf-8", "surrogatepass")).hexdigest()
         write_key(self._partial, key)
         if has_reading(self._earlier.folder, key):
