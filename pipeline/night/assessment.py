@@ -233,7 +233,9 @@ def left_aside(
     return [Assessed(replace(one, aside=True), {}, asked) for one in assessments], 0.0, faults
 
 
-def each_assessed(context: "RunContext", floor: Storey, objects: Sequence[Placed]) -> list[tuple[Assessment, dict[str, int]] | Exception]:
+def each_assessed(
+    context: "RunContext", floor: Storey, objects: Sequence[Placed]
+) -> list[tuple[Assessment, dict[str, int]] | Exception]:
     """Return what is found of each object, or the error that finding it came to."""
     return apart(
         lambda some: _assessed(context, floor, some),
@@ -248,7 +250,9 @@ def _integrating(context: "RunContext") -> str:
     return "reference" if context.analysis.fidelity == "reference" else "history"
 
 
-def _assessed(context: "RunContext", floor: Storey, objects: Sequence[Placed]) -> list[tuple[Assessment, dict[str, int]]]:
+def _assessed(
+    context: "RunContext", floor: Storey, objects: Sequence[Placed]
+) -> list[tuple[Assessment, dict[str, int]]]:
     """Run everything that objects require, judge it and advise."""
     if not objects:
         return []

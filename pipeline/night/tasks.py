@@ -123,7 +123,7 @@ def assess_units(context: RunContext, task: UnitTask) -> Assessments:
     for key, size in zip(task.keys, task.sizes, strict=True):
         mine = every[start : start + size]
         stored.append(_encoded(key, mine, items[start : start + size], faults))
-        if any(one.assessment.fault for one in mine) or len(faults) and _names(faults, items[start : start + size]):
+        if any(one.assessment.fault for one in mine) or (len(faults) and _names(faults, items[start : start + size])):
             failed.add(key)
         start += size
     del every, items

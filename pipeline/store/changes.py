@@ -1,6 +1,6 @@
 """What changed between two stored runs: objects, inputs, motions, decisions, settings and versions, and verdicts."""
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Mapping, Set
 from functools import cached_property
 from typing import Any, get_type_hints
 
@@ -26,7 +26,6 @@ from pipeline.store.pages import Members, found_of, load_members
 from pipeline.store.results import fetch, outline_of, outlines
 from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES
 from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_PAGE
-
 
 _Place = tuple[Members, int, str, str, str, int]
 """An object of a run: its page and its place on it, gallery, digest of its record, key of its result and place there."""
