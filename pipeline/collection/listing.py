@@ -35,6 +35,7 @@ class Listed(NamedTuple):
 
     @property
     def assessment_digest(self) -> str:
+        """Of the record, without what tells one object from others of its kind."""
         return self.digest if self.kind is None else f"{self.kind & (2**64 - 1):016x}"
 
 

@@ -1,4 +1,4 @@
-"""What everything that is done in a run shares, made ready: motions and their pictures, rules, measures, and what is asked for."""
+"""What all of a run shares, made ready: motions and their pictures, rules, measures, and what is asked for."""
 
 import os
 from collections.abc import Sequence
@@ -149,8 +149,8 @@ def popular(
 ) -> dict[str, Group]:
     """Return the groups of parameters whose charts pay for a collection, as a sample of its objects says, by name.
 
-    What an object is found to do must not hang on which others happen to be worked on with it, or on who asked first.  Of
-    the measures only rubber pads make something of many objects that one chart could serve.
+    What an object is found to do must not hang on which others happen to be worked on with it, or on who asked first.
+    Of the measures only rubber pads make something of many objects that one chart could serve.
     """
     every = max(1, len(chosen) // SAMPLE)
     sample = catalogue.items([one.object_number for one in chosen[::every]])

@@ -23,7 +23,7 @@ from pipeline.operations.report_status import Status, last_good, mark_good, mark
 from pipeline.operations.run_summary import SUMMARY, Stores, Summary, summary_text
 from pipeline.operations.stopping import uninterrupted
 from pipeline.operations.workspace import UsageError, Workspace, locked, near, open_workspace, tidy
-from pipeline.records import Progress, RunRecord, Tally, Urgent
+from pipeline.records import Page, Progress, RunRecord, Tally, Urgent
 from pipeline.report import lasting_name, publish
 from pipeline.report.pages.decided import by_object
 from pipeline.report.pages.reading import READING

@@ -4,6 +4,7 @@ import logging
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import groupby
 from math import ceil
 from time import monotonic
@@ -244,7 +245,7 @@ class NightRun:
         # A few among many would take the place of what is kept of all.
         whole = 2 * len(work.units) > work.every
         return [
-            lambda some=some, at=at: self._task(work, some, ("units", work.floor, at, parts) if whole else None)
+            partial(self._task, work, some, ("units", work.floor, at, parts) if whole else None)
             for at, some in enumerate(shared)
             if some
         ]

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from hashlib import blake2b
+from itertools import pairwise
 
 from pipeline.collection.listing import Listed
 from pipeline.night.context import RunContext
@@ -81,7 +82,7 @@ class UnitKeys:
         if not (part.on_display or self._stores):
             return [Unit(_key(basis, [one], decisions), (one,)) for one in objects]
         ends = [*part.objects.companies().tolist(), len(objects)]
-        companies = (tuple(objects[start:end]) for start, end in zip(ends, ends[1:], strict=False))
+        companies = (tuple(objects[start:end]) for start, end in pairwise(ends))
         return [Unit(_key(basis, members, decisions), members) for members in companies]
 
     def neighbours(self, part: Part, units: Iterable[Unit]) -> str:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from pipeline.records.result import Assessment, Finding, Fragility, Recommendation, Spacing
+from pipeline.records.fragility import Fragility
+from pipeline.records.result import Assessment, Finding, Recommendation, Spacing
 from pipeline.records.scene import Estimate, Support
 from pipeline.records.wish import Wish
 

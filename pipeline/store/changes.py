@@ -28,7 +28,7 @@ from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES
 from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_PAGE
 
 _Place = tuple[Members, int, str, str, str, int]
-"""An object of a run: its page and its place on it, gallery, digest of its record, key of its result and place there."""
+"""An object of a run: page, place on it, gallery, digest of its record, key of its result, place in that."""
 
 
 def changes(connection: Connection, old: str, new: str) -> RunChanges:
