@@ -17,7 +17,7 @@ from pipeline.records import (
     Motion,
     RunRecord,
 )
-from pipeline.report.files.page_renderer import Pen
+from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.language import language
 from pipeline.report.units import Units
 from pipeline.settings import Analysis
@@ -53,7 +53,7 @@ class RunContext:
 
     def __getstate__(self) -> dict[str, Any]:
         # What was made on the way is made again where it is needed.
-        made = {"shelf", "carriage", "pen", "executor"}
+        made = {"shelf", "carriage", "renderer", "executor"}
         return {name: value for name, value in self.__dict__.items() if name not in made}
 
     @property
@@ -84,12 +84,12 @@ class RunContext:
         return Threads(self.threads)
 
     @cached_property
-    def pen(self) -> Pen:
+    def renderer(self) -> PageRenderer:
         """What draws the pages.
 
         raises : ReportError for a language without a catalogue
         """
-        return Pen(self.head, self.units, language(self.tongue, self.catalogues))
+        return PageRenderer(self.head, self.units, language(self.tongue, self.catalogues))
 
 
 def motions_of(storeys: Mapping[str, Storey]) -> dict[str, Motion]:

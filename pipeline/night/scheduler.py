@@ -37,7 +37,8 @@ from pipeline.night.units import Decisions, Unit, UnitKeys
 from pipeline.operations.event_log import note
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Found, Page, Progress, RunChanges, Standing, Tally
-from pipeline.report.files.report_writer import PreviousReport, ReportWriter, link_to, page_key
+from pipeline.report.files.manifest import PreviousReport
+from pipeline.report.files.report_writer import ReportWriter, link_to, page_key
 from pipeline.report.pages.since import mentioned
 from pipeline.report.pages.tallies import total
 from pipeline.report.pages.views import Pointer
@@ -397,13 +398,13 @@ class NightRun:
         """Return the report that the pages go into; it is entered before `publish`, and finished after it."""
         reports = self.workspace.reports
         return ReportWriter(
-            reports / self.context.head.run_id, self.context.pen, PreviousReport.read(reports / "latest")
+            reports / self.context.head.run_id, self.context.renderer, PreviousReport.read(reports / "latest")
         )
 
     def publish(self, writer: ReportWriter, progress: Progress) -> Tally:
         """Put every page into the report, and return the totals."""
         keys = [
-            page_key(self.context.pen, page, one.standing) for page, one in zip(self.pages, self._pages, strict=True)
+            page_key(self.context.renderer, page, one.standing) for page, one in zip(self.pages, self._pages, strict=True)
         ]
         reused = [writer.has(key) for key in keys]
         left = [page for page, there in zip(self._pages, reused, strict=True) if not there]

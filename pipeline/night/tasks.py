@@ -221,7 +221,7 @@ def render_page(context: RunContext, task: PageTask) -> Rendered:
         return Rendered(tally(found))
     faults: list[Fault] = []
     # What renders is made outside of any object's guard: a language without a catalogue is nobody's fault here.
-    shown, page = fitting(found, partial(_drawn, context.pen, task.page, task.decisions), faults)
+    shown, page = fitting(found, partial(_drawn, context.renderer, task.page, task.decisions), faults)
     return Rendered(page.tally if shown is found else tally(shown), page, tuple(faults))
 
 
