@@ -19,7 +19,7 @@ from pipeline.records import (
     Motion,
     RunRecord,
 )
-from pipeline.report.files.page_renderer import Pen
+from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.language import language
 from pipeline.report.units import Units
 from pipeline.settings import Analysis
@@ -94,12 +94,12 @@ class Brief:
         return Threads(self.threads)
 
     @cached_property
-    def pen(self) -> Pen:
+    def pen(self) -> PageRenderer:
         """What draws the sheets.
 
         raises : ReportError for a language without a catalogue
         """
-        return Pen(self.head, self.units, language(self.tongue, self.catalogues))
+        return PageRenderer(self.head, self.units, language(self.tongue, self.catalogues))
 
 
 def motions_of(storeys: Mapping[str, Storey]) -> dict[str, Motion]:

@@ -19,13 +19,14 @@ from pipeline.execute.memory import give_back
 from pipeline.night.context import Brief
 from pipeline.night.decision_review import now, standing
 from pipeline.night.floors import floor_name
-from pipeline.night.tasks import Batch, ChartErrand, Done, Errand, KindErrand, build, find_kinds, stand, work
+from pipeline.night.tasks import Batch, ChartErrand, Done, Errand, KindErrand, build, find_kinds, page_of, stand, work
 from pipeline.night.units import Keys, Part, cut
 from pipeline.night.versions import rules_digest
 from pipeline.operations.event_log import note
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Decision, Progress, RunChanges, Sheet, Standing, Tally
-from pipeline.report.files.report_writer import Edition, Shelved, link_to, sheet_key
+from pipeline.report.files.manifest import PreviousReport
+from pipeline.report.files.report_writer import ReportWriter, link_to, page_key
 from pipeline.report.pages.since import mentioned
 from pipeline.report.pages.tallies import total
 from pipeline.report.pages.views import Pointer
@@ -162,22 +163,22 @@ class Round:
         progress.step("sheets", len(self._pieces), len(self._pieces))
         return total(self._tallies)
 
-    def edition(self) -> Edition:
+    def edition(self) -> ReportWriter:
         """Return the report that the sheets go into; it is entered before `publish`, and finished after it."""
         reports = self.workspace.reports
-        return Edition(reports / self.brief.head.run_id, self.brief.pen, Shelved.read(reports / "latest"))
+        return ReportWriter(reports / self.brief.head.run_id, self.brief.pen, PreviousReport.read(reports / "latest"))
 
-    def publish(self, edition: Edition, progress: Progress) -> Tally:
+    def publish(self, edition: ReportWriter, progress: Progress) -> Tally:
         """Find what is not known, store it as it comes, put every sheet into the report, and return the totals."""
         for piece in self._pieces:
             if piece.kept is not None and piece.decisions:
                 found = load_found(self.workspace.engine, piece.key)
                 piece.there = stand(self.brief.head, found, self._told(piece))
-        keys = [sheet_key(edition.pen, self._sheet(piece), piece.there) for piece in self._pieces]
+        keys = [page_key(edition.renderer, page_of(self._sheet(piece)), piece.there) for piece in self._pieces]
         taken = {at for at, piece in enumerate(self._pieces) if piece.kept is not None and edition.has(keys[at])}
         left = [piece for at, piece in enumerate(self._pieces) if at not in taken]
-        repeated = not left and edition.repeat(keys)
         waiting: list[Encoded] = []
+        tallies: list[Tally] = []
         since = monotonic()
         todo = sum(len(piece.part.objects) for piece in left)
         with self._crew(todo) as hands, closing(self._each(hands, left, progress, draw=True)) as done:
@@ -186,11 +187,11 @@ class Round:
                 came = None if at in taken else next(done)
                 sheet = self._note(piece, came)
                 if came is None:
-                    if not repeated:
-                        edition.reuse(keys[at])
+                    tallies.append(edition.reuse(keys[at]))
                 elif came.drawn is not None:
                     # How the decisions stand is only known now, where there was no result.
-                    edition.add(sheet_key(edition.pen, sheet, piece.there), came.drawn)
+                    key = page_key(edition.renderer, page_of(sheet), piece.there)
+                    tallies.append(edition.add(key, came.drawn))
                 if came is not None and came.result is not None:
                     waiting.append(came.result)
                 if waiting and monotonic() - since > _SECONDS:
@@ -198,7 +199,7 @@ class Round:
                     since = monotonic()
             self._keep(waiting)
         progress.step("sheets", len(self._pieces), len(self._pieces))
-        return total(self._tallies)
+        return total(tallies)
 
     def _each(self, hands: Crew, todo: Sequence[_Piece], progress: Progress, *, draw: bool) -> Generator[Done]:
         """Yield what comes of each sheet; charts that many ask for are built before, each by one."""
@@ -346,7 +347,7 @@ class Round:
             for outline in outlines_of(self.workspace.engine, [key])
         }
         found = ((number, *titles[number]) for number in where if number in titles)
-        return {number: link_to(sheets[key], number, title) for number, key, title in found}
+        return {number: link_to(page_of(sheets[key]), number, title) for number, key, title in found}
 
 
 def _batches(pieces: Iterable[_Piece], most: int) -> Iterator[list[_Piece]]:

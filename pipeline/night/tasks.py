@@ -23,11 +23,12 @@ from pipeline.records import (
     Decision,
     Found,
     Motion,
+    Page,
     RunRecord,
     Sheet,
     Standing,
 )
-from pipeline.report.files.page_renderer import Drawn, Pen
+from pipeline.report.files.page_renderer import PageRenderer, RenderedPage
 from pipeline.report.pages.tallies import tally
 from pipeline.store.parcels import Parcel
 from pipeline.store.results import Encoded, encode, unpacked
@@ -149,7 +150,7 @@ class Done:
     """
 
     result: Encoded | None
-    drawn: Drawn | None
+    drawn: RenderedPage | None
     standing: tuple[Standing, ...]
     seconds: float = 0.0
     faults: tuple[Fault, ...] = ()
@@ -196,7 +197,7 @@ def work(brief: Brief, batch: Batch) -> tuple[Done, ...]:
         there = stand(brief.head, found, errand)
         drawn = None
         if pen is not None and errand.draw:
-            shown, drawn = fitting(found, partial(_drawn, pen, errand.sheet, there), faults)
+            shown, drawn = fitting(found, partial(_drawn, pen, page_of(errand.sheet), there), faults)
             if shown is not found and result is not None:
                 result = _encoded(brief, errand, shown)
         done.append(Done(result, drawn, there, seconds, tuple(faults)))
@@ -212,8 +213,13 @@ def _encoded(brief: Brief, errand: Errand, found: Found) -> Encoded:
     return encode(key, errand.basis, found, tally)
 
 
-def _drawn(pen: Pen, sheet: Sheet, decisions: Sequence[Standing], found: Found) -> Drawn:
-    return pen.draw(sheet, found, decisions)
+def _drawn(pen: PageRenderer, page: Page, decisions: Sequence[Standing], found: Found) -> RenderedPage:
+    return pen.draw(page, found, decisions)
+
+
+def page_of(sheet: Sheet) -> Page:
+    """Return the page that shows a sheet."""
+    return Page(sheet.key, sheet.gallery, sheet.on_display, sheet.number, sheet.of, sheet.run, sheet.made)
 
 
 def parted(whole: Found, sizes: Sequence[int]) -> list[Found]:

@@ -16,7 +16,7 @@ from pipeline.records.decision import Basis, Decision, DecisionKind, Standing, i
 from pipeline.records.fragility import Fragility
 from pipeline.records.model import Bounds, ChartAxis, Columns, Model
 from pipeline.records.motion import Excitation, Motion, MotionSummary
-from pipeline.records.part import Errors, Found, Outline, Sheet, Tally, Urgent
+from pipeline.records.part import Errors, Found, Outline, Page, Sheet, Tally, Urgent
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress, Silent
 from pipeline.records.reading import Account, Doubt
@@ -73,6 +73,7 @@ __all__ = [
     "ObjectPlace",
     "Origin",
     "Outline",
+    "Page",
     "Problem",
     "Progress",
     "Provenance",

@@ -52,7 +52,7 @@ class Errors:
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """What a sheet adds to the totals of a run.
+    """What a page adds to the totals of a run.
 
     states   : objects on display by state: act, open, unknown (cannot be assessed), safe
     measures : recommendations for them by title
@@ -63,6 +63,7 @@ class Tally:
     faults   : objects that Kouros itself failed on
     stored   : objects that are not on display by state, "aside" for those that were not assessed
     stored_measures : recommendations for them by title
+    findings, stored_findings : of objects on display, and of the others
     """
 
     states: Mapping[str, int]
@@ -79,6 +80,8 @@ class Tally:
     faults: int = 0
     stored: Mapping[str, int] = field(default_factory=dict)
     stored_measures: Mapping[str, int] = field(default_factory=dict)
+    findings: int = 0
+    stored_findings: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,3 +119,22 @@ class Sheet:
     run: str
     made: str
     counts: Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """A page of a report: some objects in the order of the catalogue, all on display in one gallery or all not.
+
+    key          : digest of its members: their numbers, records and results
+    gallery      : "" for objects that are not on display
+    number, of   : which of its gallery's pages it is, from 1, and how many there are
+    run, made    : the run that found the newest result on it, perhaps an earlier one, and when (ISO 8601, UTC)
+    """
+
+    key: str
+    gallery: str
+    on_display: bool
+    number: int
+    of: int
+    run: str
+    made: str

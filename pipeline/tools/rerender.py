@@ -8,10 +8,10 @@ from pipeline.operations.report_status import renew
 from pipeline.operations.run_summary import SUMMARY
 from pipeline.operations.workspace import UsageError, locked, open_workspace
 from pipeline.quantities import counted
-from pipeline.records import RunChanges
+from pipeline.records import Page, RunChanges, Sheet
 from pipeline.report import publish
-from pipeline.report.files.page_renderer import Pen
-from pipeline.report.files.report_writer import Edition
+from pipeline.report.files.page_renderer import PageRenderer
+from pipeline.report.files.report_writer import ReportWriter
 from pipeline.report.render import draw_all
 from pipeline.settings import Settings
 from pipeline.store.results import load_found
@@ -22,7 +22,7 @@ from pipeline.store.runs import compare_runs, load_head
 def render_again(settings: Settings, run_id: str | None) -> Path:
     """Render a run from the store into a new folder; the newest of the whole collection becomes the latest report.
 
-    Nothing is computed again, and one sheet at a time is in memory.
+    Nothing is computed again, and one page at a time is in memory.
     returns : the report's index
     """
     with locked(settings):
@@ -33,15 +33,20 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
         at = whole.index(head.run_id) if head.run_id in whole else len(whole)
         before = whole[at + 1 : at + 2]
         changes = compare_runs(engine, before[0], head.run_id) if before else None
-        found = ((sheet, load_found(engine, sheet.key)) for sheet in sheets)
+        found = ((_page_of(sheet), load_found(engine, sheet.key)) for sheet in sheets)
         told = workspace.reports / head.run_id / SUMMARY
         beside = {SUMMARY: told.read_text(encoding="utf-8")} if told.is_file() else {}
-        with Edition(_free(workspace.reports / head.run_id), Pen(head, **presentation(settings))) as edition:
-            index = draw_all(edition, head, found, changes, beside, doubts_of(workspace, head))
+        renderer = PageRenderer(head, **presentation(settings))
+        with ReportWriter(_free(workspace.reports / head.run_id), renderer) as writer:
+            index = draw_all(writer, head, found, changes, beside, doubts_of(workspace, head))
         if [head.run_id] == whole[:1]:
             publish(index.parent, workspace.reports)
             renew(settings)
         return index
+
+
+def _page_of(sheet: Sheet) -> Page:
+    return Page(sheet.key, sheet.gallery, sheet.on_display, sheet.number, sheet.of, sheet.run, sheet.made)
 
 
 def _free(folder: Path) -> Path:
