@@ -404,7 +404,8 @@ class NightRun:
     def publish(self, writer: ReportWriter, progress: Progress) -> Tally:
         """Put every page into the report, and return the totals."""
         keys = [
-            page_key(self.context.renderer, page, one.standing) for page, one in zip(self.pages, self._pages, strict=True)
+            page_key(self.context.renderer, page, one.standing)
+            for page, one in zip(self.pages, self._pages, strict=True)
         ]
         reused = [writer.has(key) for key in keys]
         left = [page for page, there in zip(self._pages, reused, strict=True) if not there]

@@ -1,6 +1,4 @@
-"""The one error that the report raises."""
-
-from pathlib import Path
+"""The one error that the report raises, and what it warns of."""
 
 from pipeline.errors import InputError
 
@@ -9,6 +7,5 @@ class ReportError(InputError):
     """A run that cannot be shown; the message names the object, the field and the remedy."""
 
 
-def cut_short(file: Path) -> ReportError:
-    """Return the error for a file of an earlier report that does not hold all that the report says."""
-    return ReportError(f"{file} is shorter than its report says; remove that report, and run again")
+class ReportWarning(UserWarning):
+    """A file of an earlier report, or a page of another package, cannot be used; the report is whole without it."""

@@ -4,14 +4,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from pipeline.records import Assessment, Found, RunChanges, RunRecord, Sheet, Spacing
-from pipeline.report.files.page_renderer import Pen
-from pipeline.report.files.report_writer import Edition, link_to, sheet_key
+from pipeline.records import Assessment, Found, Page, RunChanges, RunRecord, Spacing
+from pipeline.report.files.page_renderer import PageRenderer
+from pipeline.report.files.report_writer import ReportWriter, link_to, page_key
 from pipeline.report.language import Language
 from pipeline.report.pages.decided import by_object
 from pipeline.report.pages.reading import Doubts
 from pipeline.report.pages.since import mentioned
-from pipeline.report.pages.tallies import tally, total
+from pipeline.report.pages.tallies import total
 from pipeline.report.pages.views import Pointer
 from pipeline.report.units import Units
 
@@ -31,45 +31,45 @@ def render(
     units   : the reader's units; centimetres where None
     language: of the pages; English where None.  The exports keep the words of the run, for programs read them.
     changes : since the run before, for the index; None where there was none
-    doubts  : see `Edition.finish`
+    doubts  : see `ReportWriter.finish`
     returns : the path of index.html
     raises  : ReportError if the folder exists, or if the record cannot be shown (see `compose`)
     """
     head = replace(record, assessments=(), wishes=None, spacings=())
-    with Edition(Path(folder), Pen(head, units or Units(), language or Language())) as edition:
-        return draw_all(edition, head, sheets_of(record), changes, doubts=doubts)
+    with ReportWriter(Path(folder), PageRenderer(head, units or Units(), language or Language())) as writer:
+        return draw_all(writer, head, pages_of(record), changes, doubts=doubts)
 
 
 def draw_all(
-    edition: Edition,
+    writer: ReportWriter,
     head: RunRecord,
-    sheets: Iterable[tuple[Sheet, Found]],
+    pages: Iterable[tuple[Page, Found]],
     changes: RunChanges | None,
     beside: Mapping[str, str] | None = None,
     doubts: Doubts | None = None,
 ) -> Path:
-    """Draw every sheet of a run that is over into a report, one at a time, and finish it.
+    """Draw every page of a run that is over into a report, one at a time, and finish it.
 
     head    : the run without its objects, with all decisions as they stood
     beside  : further files of the report, by name
-    doubts  : see `Edition.finish`
+    doubts  : see `ReportWriter.finish`
     returns : the path of index.html
     """
     decisions = by_object(head.decisions)
     named = set() if changes is None else mentioned(changes)
     links: dict[str, Pointer] = {}
     tallies = []
-    for sheet, found in sheets:
+    for page, found in pages:
         titles = {a.scene.item.object_number: a.scene.item.title for a in found.assessments}
         mine = [standing for number in titles for standing in decisions.pop(number, ())]
-        edition.add(sheet_key(edition.pen, sheet, mine), edition.pen.draw(sheet, found, mine))
-        tallies.append(tally(found))
-        links |= {number: link_to(sheet, number, title) for number, title in titles.items() if number in named}
+        rendered = writer.renderer.draw(page, found, mine)
+        tallies.append(writer.add(page_key(writer.renderer, page, mine), rendered))
+        links |= {number: link_to(page, number, title) for number, title in titles.items() if number in named}
     strangers = tuple(standing for left in decisions.values() for standing in left)
-    return edition.finish(replace(head, decisions=strangers), total(tallies), changes, links, beside, doubts)
+    return writer.finish(replace(head, decisions=strangers), total(tallies), changes, links, beside, doubts)
 
 
-def sheets_of(record: RunRecord) -> list[tuple[Sheet, Found]]:
+def pages_of(record: RunRecord) -> list[tuple[Page, Found]]:
     """Return the objects of a run in memory by the page that they are on, one for each gallery."""
     members: dict[tuple[bool, str], list[Assessment]] = {}
     for assessment in record.assessments:
@@ -83,6 +83,6 @@ def sheets_of(record: RunRecord) -> list[tuple[Sheet, Found]]:
         numbers = {a.scene.item.object_number for a in those}
         wishes = None if record.wishes is None else tuple(w for w in record.wishes if w.object_number in numbers)
         spacings = tuple(between.get(gallery, ())) if on_display else ()
-        sheet = Sheet("", gallery, on_display, 1, 1, record.run_id, record.finished, {})
-        found.append((sheet, Found(tuple(those), wishes, spacings)))
+        page = Page("", gallery, on_display, 1, 1, record.run_id, record.finished)
+        found.append((page, Found(tuple(those), wishes, spacings)))
     return found

@@ -47,7 +47,7 @@ SETTINGS = {"runs = 30": "runs = 1", "reports = 30": "reports = 1", 'file = ""':
 LONGEST = 60.0
 """Seconds after which a night hangs."""
 
-_OURS = frozenset({".kouros-kept", ".kouros.lock", ".sheets.json", ".reading.json"})
+_OURS = frozenset({".kouros-kept", ".kouros.lock", ".pages.json"})
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from pipeline.report.pages.compose import compose, museum_view
 from pipeline.report.pages.museum_views import GalleryView, MuseumView
 from pipeline.report.pages.tallies import tally, total
 from pipeline.report.pages.views import Counts, DecisionsView, MotionView, Pointer
-from pipeline.report.render import sheets_of
+from pipeline.report.render import pages_of
 from pipeline.report.units import Units
 
 
@@ -45,7 +45,7 @@ def shown(record: RunRecord, units: Units | None = None) -> Shown:
     levels = {f.level for a in record.assessments for f in a.findings}
     pages, entries, tallies = {}, [], []
     left = list(record.decisions)
-    for sheet, found in sheets_of(record):
+    for sheet, found in pages_of(record):
         numbers = {a.scene.item.object_number for a in found.assessments}
         mine = tuple(s for s in left if s.decision.object_number in numbers)
         left = [s for s in left if s not in mine]

@@ -8,8 +8,8 @@ from lxml import html
 
 from pipeline.analysis.refinement import Effort
 from pipeline.report import Language, Units
-from pipeline.report.files.page_renderer import Pen
-from pipeline.report.files.report_writer import Edition
+from pipeline.report.files.page_renderer import PageRenderer
+from pipeline.report.files.report_writer import ReportWriter
 from pipeline.report.pages.tallies import total
 
 from . import builder
@@ -18,8 +18,8 @@ from . import builder
 def rows(folder: Path, efforts: Mapping[str, Mapping[str, int]]) -> list[list[str]]:
     """Return the rows of the table on the method page of a run with these efforts; none without the table."""
     head = replace(builder.record(), assessments=(), wishes=None, spacings=())
-    with Edition(folder / "report", Pen(head, Units(), Language())) as edition:
-        page = edition.finish(head, replace(total(()), efforts=efforts), None, {}).parent / "method.html"
+    with ReportWriter(folder / "report", PageRenderer(head, Units(), Language())) as writer:
+        page = writer.finish(head, replace(total(()), efforts=efforts), None, {}).parent / "method.html"
     table = html.parse(str(page)).xpath("//h3[@id='effort']/following-sibling::table[1]/tbody/tr")
     return [["".join(cell.itertext()).strip() for cell in row] for row in table]
 

@@ -10,7 +10,7 @@ import openpyxl
 import pyarrow.parquet as pq
 import pytest
 
-from pipeline.report.render import sheets_of
+from pipeline.report.render import pages_of
 from pipeline.report.text import safe_cell
 
 from . import builder
@@ -19,7 +19,7 @@ CONTRACT = {
     *("run", "object_number", "gallery", "level", "model", "demand", "unit", "low", "high", "capacity", "utilisation"),
     *("verdict", "fidelity", "error", "decided_by", "motion", "motion_hash", "assumptions", "version"),
 }
-FINDINGS = [f for _sheet, found in sheets_of(builder.record()) for a in found.assessments for f in a.findings]
+FINDINGS = [f for _sheet, found in pages_of(builder.record()) for a in found.assessments for f in a.findings]
 """In the order of the sheets, which is that of the files."""
 
 

@@ -137,8 +137,11 @@ def test_three_hundred_objects_stay_below_one_and_a_half_megabytes(tmp_path: Pat
 
 def test_the_same_record_gives_the_same_bytes(report: Path, tmp_path: Path) -> None:
     again = render(builder.record(), tmp_path / "r", doubts=builder.doubts).parent
-    first = {p.name: p.read_bytes() for p in report.iterdir()}
-    assert {p.name: p.read_bytes() for p in again.iterdir()} == first
+    assert _files(again) == _files(report)
+
+
+def _files(folder: Path) -> dict[str, bytes]:
+    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
 def test_a_report_never_overwrites_and_a_failed_one_leaves_nothing(tmp_path: Path) -> None:

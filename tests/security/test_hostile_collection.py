@@ -35,14 +35,14 @@ STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u20
 """What may reach no terminal: control characters but tabs and line ends, and marks of direction."""
 
 PAGE = re.compile(r"(index|motion|method)\.html|[a-z0-9-]{1,60}-[0-9a-f]{8}\.html")
+PART = re.compile(r"parts|parts/[a-z0-9-]{1,60}-[0-9a-f]{8}\.(findings|recommendations|objects)\.(csv|jsonl|parquet)")
 EXPORTS = {
     *("findings.csv", "findings.jsonl", "findings.parquet", "findings.xlsx", "objects.csv", "objects.parquet"),
     *(
         "recommendations.csv",
         "recommendations.parquet",
-        ".sheets.json",
+        ".pages.json",
         "summary.json",
-        ".reading.json",
         "reading.csv",
         "reading.html",
     ),
@@ -163,8 +163,8 @@ def test_nothing_was_written_elsewhere(night: Night) -> None:
     }
     for folder in (night.folder / "reports").iterdir():
         if folder.is_dir() and not folder.is_symlink():
-            names = {path.name for path in folder.iterdir()} - EXPORTS
-            assert [name for name in names if not PAGE.fullmatch(name)] == []
+            names = {path.relative_to(folder).as_posix() for path in folder.rglob("*")} - EXPORTS
+            assert [name for name in names if not (PAGE.fullmatch(name) or PART.fullmatch(name))] == []
 
 
 def test_what_is_left_holds_no_objects_of_python(night: Night) -> None:

@@ -4,7 +4,6 @@ import csv
 import io
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
 from math import isfinite, isnan
@@ -83,31 +82,23 @@ OBJECT_COLUMNS = (
 TABLES = {"findings": FINDING_COLUMNS, "recommendations": RECOMMENDATION_COLUMNS, "objects": OBJECT_COLUMNS}
 """The exported tables, each as CSV and Parquet; findings as JSON Lines too, and all of them as one workbook."""
 
-TEXT_FILES = ("findings.csv", "findings.jsonl", "recommendations.csv", "objects.csv")
+HEADERS = {f"{name}.csv": (",".join(columns) + "\n").encode() for name, columns in TABLES.items()}
+"""What the CSV files begin with."""
+
+TEXTS = ("findings.csv", "findings.jsonl", "recommendations.csv", "objects.csv")
+EXPORTS = (*TEXTS, *(f"{name}.parquet" for name in TABLES))
+"""The exports of a report; of every page there is a part of each, a whole file of the same kind."""
 
 WORKBOOK = "findings.xlsx"
 
 WORKBOOK_ROWS = 10_000
 """Rows of a table up to which there is a workbook; a spreadsheet holds more, but writing them takes minutes."""
 
-HEADERS = {f"{name}.csv": (",".join(columns) + "\n").encode() for name, columns in TABLES.items()}
-"""What the text files begin with."""
 
-
-@dataclass(frozen=True)
-class Fragment:
-    """What a sheet adds to the exports.
-
-    texts  : by the name of the file, the bytes that are added to it
-    tables : by the name of the table, its rows in Arrow's own format
-    """
-
-    texts: Mapping[str, bytes]
-    tables: Mapping[str, bytes]
-
-
-def fragment(record: RunRecord, run: str, page: str, anchors: Callable[[Assessment], str], units: Units) -> Fragment:
-    """Return what the objects of a sheet add to the exports.
+def page_exports(
+    record: RunRecord, run: str, page: str, anchors: Callable[[Assessment], str], units: Units
+) -> dict[str, bytes]:
+    """Return the part of every export that holds the objects of one page.
 
     Numbers are in SI; ``unit`` names the unit of demand, low, high, capacity and error, 1 for a ratio.  ``range_is``
     says whether low and high are demands, or bounds around them.  CSV files are UTF-8 with a header row; an unknown
@@ -117,28 +108,62 @@ def fragment(record: RunRecord, run: str, page: str, anchors: Callable[[Assessme
     recommendations are in the reader's units.  objects.csv has one row for every object, so that what could not be
     assessed is not lost.
 
-    record : the sheet's objects
-    run    : the run that found it
+    Parameters
+    ----------
+    record : RunRecord
+        The run with the objects of this page only.
+    run : str
+        Identity of the run that found them.
+    page : str
+        File of the page.
+    anchors : callable
+        Gives the id of an object on it.
+    units : Units
+        The reader's, for sentences.
+
+    Returns
+    -------
+    dict of str to bytes
+        By name of the export, see `EXPORTS`.
     """
     rows: dict[str, Sequence[Mapping[str, Any]]] = {
         "findings": [_finding(run, f) for a in record.assessments for f in a.findings],
         "recommendations": [_recommendation(run, r, units) for a in record.assessments for r in a.recommendations],
         "objects": [_object(run, a, f"{page}#{anchors(a)}") for a in record.assessments],
     }
-    texts = {f"{name}.csv": _csv(TABLES[name], rows[name]) for name in TABLES}
     lines = (json.dumps({k: _json(row[k]) for k in FINDING_COLUMNS}, allow_nan=False) for row in rows["findings"])
-    texts["findings.jsonl"] = "".join(line + "\n" for line in lines).encode()
-    return Fragment(texts, {name: _arrow(name, rows[name]) for name in TABLES})
+    parts = {f"{name}.csv": HEADERS[f"{name}.csv"] + _csv(TABLES[name], rows[name]) for name in TABLES}
+    parts["findings.jsonl"] = "".join(line + "\n" for line in lines).encode()
+    return parts | {f"{name}.parquet": _parquet(name, rows[name]) for name in TABLES}
 
 
-def workbook(folder: Path, started: str) -> None:
-    """Write findings.xlsx from the Parquet files of a folder; in it a text is a text whatever it begins with."""
+def write_exports_workbook(folder: Path, started: str) -> bool:
+    """Write findings.xlsx from the Parquet files of a folder, unless one has more than WORKBOOK_ROWS rows.
+
+    In it a text is a text whatever it begins with.
+
+    Parameters
+    ----------
+    folder : Path
+        The report's.
+    started : str
+        When the run began (ISO 8601), as the workbook's own date.
+
+    Returns
+    -------
+    bool
+        Whether it was written.
+    """
     import pyarrow.parquet as pq
 
+    files = {name: folder / f"{name}.parquet" for name in TABLES}
+    if any(pq.read_metadata(file).num_rows > WORKBOOK_ROWS for file in files.values()):
+        return False
     tables: dict[str, tuple[Sequence[str], Iterable[Mapping[str, Any]]]] = {
-        name: (TABLES[name], pq.read_table(folder / f"{name}.parquet").to_pylist()) for name in TABLES
+        name: (TABLES[name], pq.read_table(file, partitioning=None).to_pylist()) for name, file in files.items()
     }
     write_workbook(folder / WORKBOOK, tables, _began(started))
+    return True
 
 
 ONE = "1"
@@ -249,14 +274,14 @@ def schema_of(name: str) -> Any:
     return pa.schema([(column, kinds.get(column, pa.string())) for column in TABLES[name]])
 
 
-def _arrow(name: str, rows: Sequence[Mapping[str, Any]]) -> bytes:
+def _parquet(name: str, rows: Sequence[Mapping[str, Any]]) -> bytes:
     import pyarrow as pa
+    import pyarrow.parquet as pq
 
     schema = schema_of(name)
     columns = [pa.array(_writable([row[field.name] for row in rows], field.type), field.type) for field in schema]
     sink = pa.BufferOutputStream()
-    with pa.ipc.new_stream(sink, schema) as stream:
-        stream.write_table(pa.Table.from_arrays(columns, schema=schema))
+    pq.write_table(pa.Table.from_arrays(columns, schema=schema), sink, compression="zstd")
     return bytes(sink.getvalue().to_pybytes())
 
 

@@ -1,4 +1,4 @@
-"""One sheet drawn: its page, what it adds to the exports, and what the index says of it."""
+"""One page drawn: its HTML, its part of the exports, what the index says of it and what it adds to the totals."""
 
 import hashlib
 from base64 import b64encode
@@ -10,12 +10,13 @@ from typing import Any
 from jinja2 import Environment
 from markupsafe import Markup
 
-from pipeline.records import Found, RunRecord, Sheet, Standing
-from pipeline.report.files.exports import Fragment, fragment
+from pipeline.records import Found, Page, RunRecord, Standing, Tally
+from pipeline.report.files.exports import page_exports
 from pipeline.report.language import Language, speaking
 from pipeline.report.pages.compose import compose, page_head
 from pipeline.report.pages.environment import environment, fill
 from pipeline.report.pages.notes import page_notes
+from pipeline.report.pages.tallies import tally
 from pipeline.report.pages.views import Entry, FigureView, State
 from pipeline.report.plots.svg import PATTERNS, Drawing
 from pipeline.report.units import Units
@@ -23,17 +24,24 @@ from pipeline.resources import resource
 
 
 @dataclass(frozen=True)
-class Drawn:
-    """A sheet as a report holds it."""
+class RenderedPage:
+    """A page as a report holds it; it can be pickled.
+
+    page  : its HTML
+    entry : what the index says of it
+    tally : what it adds to the totals of the run
+    parts : its part of each export, by the export's name
+    """
 
     page: bytes
-    fragment: Fragment
     entry: Entry
+    tally: Tally
+    parts: Mapping[str, bytes]
 
 
 @dataclass(frozen=True)
-class Pen:
-    """What draws the sheets of one run: what they share is made once.
+class PageRenderer:
+    """What draws the pages of one run: what they share is made once.
 
     head : the run without its objects, with all its charts and motions
     """
@@ -42,11 +50,27 @@ class Pen:
     units: Units
     language: Language
 
-    def draw(self, sheet: Sheet, found: Found, decisions: Sequence[Standing]) -> Drawn:
-        """Return a sheet's page and what it adds to the report; the same results give the same bytes.
+    def draw(self, page: Page, found: Found, decisions: Sequence[Standing]) -> RenderedPage:
+        """Return a page and what it adds to the report; the same results give the same bytes.
 
-        decisions : those about the sheet's objects
-        raises    : ReportError where the results cannot be shown (see `compose`)
+        Parameters
+        ----------
+        page : Page
+            Which page it is.
+        found : Found
+            What was found about its objects.
+        decisions : sequence of Standing
+            Those about its objects.
+
+        Returns
+        -------
+        RenderedPage
+            Page, entry, tally and parts of the exports.
+
+        Raises
+        ------
+        ReportError
+            Where the results cannot be shown (see `compose`).
         """
         record = replace(
             self.head,
@@ -56,17 +80,17 @@ class Pen:
             decisions=tuple(decisions),
         )
         with speaking(self.language):
-            made = compose(record, sheet, self.units, several=len({m.level for m in self.head.motions}) > 1)
+            made = compose(record, page, self.units, several=len({m.level for m in self.head.motions}) > 1)
             gallery = made.gallery
-            context: dict[str, Any] = {"museum": page_head(self.head, sheet), "units": self.units, "State": State}
+            context: dict[str, Any] = {"museum": page_head(self.head, page), "units": self.units, "State": State}
             context |= {"here": "gallery", "gallery": gallery}
             if gallery.counts.aside:
-                page = fill(self._environment, "aside.html", context)
+                text = fill(self._environment, "aside.html", context)
             else:
                 context |= drawn(gallery.charts, self.drawings) | self._script
-                page = fill(self._environment, "gallery.html", context | {"notes": page_notes(gallery.objects)})
-            exported = fragment(record, sheet.run, gallery.page, made.anchor, self.units)
-        return Drawn(page.encode(), exported, made.entry)
+                text = fill(self._environment, "gallery.html", context | {"notes": page_notes(gallery.objects)})
+            parts = page_exports(record, page.run, gallery.page, made.anchor, self.units)
+        return RenderedPage(text.encode(), made.entry, tally(found), parts)
 
     @cached_property
     def identity(self) -> str:

@@ -1,135 +1,99 @@
-"""A report put together from its sheets: pages, exports and index, built aside and named when it is whole.
+"""A report put together from its pages: exports and index, built aside and named when it is whole.
 
-What an earlier report holds of a sheet that has not changed is taken from there: its page by a link to the same file,
-its rows of the exports by copying their bytes.  A report remembers in ``.sheets.json`` what of it is which sheet's.
+What an earlier report holds of a page that has not changed is taken from there by a link to the same files, after their
+checksums were compared; the exports of the whole are put together from the parts of its pages.
 """
 
 import os
 import shutil
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass, field
-from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 from markupsafe import Markup
-from pydantic import TypeAdapter, ValidationError
 
-from pipeline.records import RunChanges, RunRecord, Sheet, Standing, Tally
+from pipeline.records import Page, RunChanges, RunRecord, Standing, Tally
 from pipeline.report.errors import ReportError
-from pipeline.report.files.exports import HEADERS, TABLES, TEXT_FILES, WORKBOOK, WORKBOOK_ROWS, schema_of, workbook
-from pipeline.report.files.page_renderer import Drawn, Pen, drawn
-from pipeline.report.files.table_files import TableFile
-from pipeline.report.files.text_files import TextFile
+from pipeline.report.files.concatenation import concatenate
+from pipeline.report.files.exports import EXPORTS, WORKBOOK, write_exports_workbook
+from pipeline.report.files.manifest import (
+    PARTS,
+    FileSum,
+    KeptPage,
+    Manifest,
+    PreviousReport,
+    part_files,
+    sum_of,
+    write_manifest,
+)
+from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, drawn
 from pipeline.report.language import speaking
 from pipeline.report.pages.compose import anchor_of, museum_view, page_head, page_name
 from pipeline.report.pages.environment import environment, fill
-from pipeline.report.pages.reading import (
-    FILES,
-    INVENTORY,
-    READING,
-    Doubts,
-    has_reading,
-    reading_view,
-    write_doubts,
-    write_key,
-)
+from pipeline.report.pages.reading import FILES, INVENTORY, READING, Doubts, reading_view, write_doubts
 from pipeline.report.pages.since import since_view
-from pipeline.report.pages.views import Entry, Pointer, State
+from pipeline.report.pages.views import Pointer, State
 from pipeline.report.plots.traces import trace
 from pipeline.report.text import clean, short
 from pipeline.resources import aside_of, naming, page_version
 
-SHEETS = ".sheets.json"
-"""File of a report that says what of it is which sheet's."""
 
+def page_key(renderer: PageRenderer, page: Page, decisions: Sequence[Standing]) -> str:
+    """Return the digest of everything that a page and its parts of the exports depend on.
 
-@dataclass(frozen=True, slots=True)
-class Placed:
-    """Where a report holds a sheet.
-
-    key    : of everything that its page and its rows depend on
-    texts  : by file, where its bytes begin and how many they are
-    tables : by table, where its rows begin and how many they are
+    Parameters
+    ----------
+    renderer : PageRenderer
+        What draws it, see `PageRenderer.identity`.
+    page : Page
+        All its fields count.
+    decisions : sequence of Standing
+        Those about its objects, as they stand.
     """
-
-    key: str
-    entry: Entry
-    texts: Mapping[str, tuple[int, int]]
-    tables: Mapping[str, tuple[int, int]]
+    return _key(renderer, page, list(decisions))
 
 
-@dataclass(frozen=True)
-class Shelved:
-    """An earlier report, as far as its sheets can be used again."""
-
-    folder: Path
-    sheets: Mapping[str, Placed] = field(default_factory=dict)
-
-    @classmethod
-    def read(cls, folder: Path) -> "Shelved":
-        """Return what a report holds; nothing where it holds none, or says so in a way that is not understood."""
-        try:
-            listed = _adapter().validate_json((folder / SHEETS).read_bytes())
-            if all(folder.joinpath(name).is_file() for name in (*TEXT_FILES, *(f"{name}.parquet" for name in TABLES))):
-                return cls(folder, {placed.key: placed for placed in listed})
-        except (OSError, ValidationError):
-            pass
-        return cls(folder)
-
-    def get(self, key: str) -> Placed | None:
-        """Return where a sheet is, if its page is there."""
-        placed = self.sheets.get(key)
-        return placed if placed is not None and (self.folder / placed.entry.sheet.page).is_file() else None
+def _key(renderer: PageRenderer, *own: object) -> str:
+    return sha256(repr((page_version(), renderer.identity, *own)).encode("utf-8", "surrogatepass")).hexdigest()
 
 
-@cache
-def _adapter() -> TypeAdapter[list[Placed]]:
-    return TypeAdapter(list[Placed])
-
-
-def sheet_key(pen: Pen, sheet: Sheet, decisions: Sequence[Standing]) -> str:
-    """Return the digest of everything that a sheet's page and rows depend on."""
-    own = (sheet.key, sheet.run, sheet.made, sheet.gallery, sheet.on_display, sheet.number, sheet.of, list(decisions))
-    return sha256(repr((page_version(), pen.identity, own)).encode("utf-8", "surrogatepass")).hexdigest()
-
-
-class Edition:
+class ReportWriter:
     """A report that is being put together; leaving the block without `finish` removes all of it.
 
-    folder  : a new folder; it appears only when everything in it is written
-    earlier : reports whose sheets may be used again
-    raises  : ReportError if the folder exists
+    Parameters
+    ----------
+    folder : Path
+        A new folder; it appears only when everything in it is written.
+    renderer : PageRenderer
+        What draws the pages of the run.
+    previous : PreviousReport, optional
+        Whose pages may be used again.
+
+    Raises
+    ------
+    ReportError
+        If the folder exists.
     """
 
-    def __init__(self, folder: Path, pen: Pen, earlier: Shelved | None = None) -> None:
+    def __init__(self, folder: Path, renderer: PageRenderer, previous: PreviousReport | None = None) -> None:
         if folder.exists():
             raise ReportError(f"{folder} exists already; a report never overwrites another: name a new folder")
-        self.folder, self.pen = folder, pen
-        self._earlier = earlier or Shelved(folder)
+        self.folder, self.renderer = folder, renderer
+        self._previous = previous or PreviousReport(folder)
         self._partial = aside_of(folder)
-        self._placed: list[Placed] = []
-        self._repeated = False
+        self._pages: list[KeptPage] = []
+        self._reused = 0
+        self._files: dict[str, FileSum] = {}
         self._stack = ExitStack()
-        self._texts: dict[str, TextFile] = {}
-        self._tables: dict[str, TableFile] = {}
 
     def __enter__(self) -> Self:
         with ExitStack() as stack:
             stack.enter_context(naming(self.folder))
-            self._partial.mkdir(parents=True)
             stack.callback(shutil.rmtree, self._partial, ignore_errors=True)
-            earlier = self._earlier.folder
-            for name in TEXT_FILES:
-                self._texts[name] = TextFile(self._partial / name, HEADERS.get(name, b""), earlier / name)
-                stack.callback(self._texts[name].close)
-            for name in TABLES:
-                file = f"{name}.parquet"
-                self._tables[name] = TableFile(self._partial / file, schema_of(name), earlier / file)
-                stack.callback(self._tables[name].close)
+            (self._partial / PARTS).mkdir(parents=True)
             self._stack = stack.pop_all()
         return self
 
@@ -138,48 +102,28 @@ class Edition:
     ) -> None:
         self._stack.__exit__(kind, error, trace)
 
-    def _close(self) -> None:
-        files: list[TextFile | TableFile] = [*self._texts.values(), *self._tables.values()]
-        for file in files:
-            file.close()
-
     def has(self, key: str) -> bool:
-        """Say whether the earlier report has a sheet."""
-        return self._earlier.get(key) is not None
+        """Say whether the earlier report has a page, all its files as they were written."""
+        return self._previous.get(key) is not None
 
-    def repeat(self, keys: Sequence[str]) -> bool:
-        """Take everything from the earlier report, if these are all of its sheets; say whether they are."""
-        earlier = self._earlier
-        if not keys or list(earlier.sheets) != list(keys) or not all(self.has(key) for key in keys):
-            return False
-        self._close()
-        for name in (*TEXT_FILES, *(f"{name}.parquet" for name in TABLES)):
-            (self._partial / name).unlink()
-            _same(earlier.folder / name, self._partial / name)
-        if (earlier.folder / WORKBOOK).is_file():
-            _same(earlier.folder / WORKBOOK, self._partial / WORKBOOK)
-        for placed in earlier.sheets.values():
-            page = placed.entry.sheet.page
-            _same(earlier.folder / page, self._partial / page)
-        self._placed = list(earlier.sheets.values())
-        self._repeated = True
-        return True
+    def reuse(self, key: str) -> Tally:
+        """Take a page from the earlier report, which has it, and return what it adds to the totals."""
+        page = self._previous.get(key)
+        if page is None:
+            raise KeyError(key)
+        self._link(*page.files)
+        self._pages.append(page)
+        self._reused += 1
+        return page.tally
 
-    def reuse(self, key: str) -> None:
-        """Take a sheet from the earlier report, which has it."""
-        placed = self._earlier.sheets[key]
-        page = placed.entry.sheet.page
-        _same(self._earlier.folder / page, self._partial / page)
-        texts = {name: self._texts[name].take(*where) for name, where in placed.texts.items()}
-        tables = {name: self._tables[name].take(*where) for name, where in placed.tables.items()}
-        self._placed.append(Placed(key, placed.entry, texts, tables))
-
-    def add(self, key: str, made: Drawn) -> None:
-        """Add a sheet that was drawn for this report."""
-        (self._partial / made.entry.sheet.page).write_bytes(made.page)
-        texts = {name: self._texts[name].add(content) for name, content in made.fragment.texts.items()}
-        tables = {name: self._tables[name].add(content) for name, content in made.fragment.tables.items()}
-        self._placed.append(Placed(key, made.entry, texts, tables))
+    def add(self, key: str, rendered: RenderedPage) -> Tally:
+        """Add a page that was drawn for this report, and return what it adds to the totals."""
+        page = rendered.entry.sheet.page
+        self._write(page, rendered.page)
+        for name, export in zip(part_files(page), EXPORTS, strict=True):
+            self._write(name, rendered.parts[export])
+        self._pages.append(KeptPage(key, rendered.entry, rendered.tally))
+        return rendered.tally
 
     def finish(
         self,
@@ -190,72 +134,97 @@ class Edition:
         beside: Mapping[str, str] | None = None,
         doubts: Doubts | None = None,
     ) -> Path:
-        """Write the index and the pages that all share, and give the report its name.
+        """Write the exports, the index and the pages that all share, and give the report its name.
 
-        head    : the run as it ended, without its objects; its decisions are those about objects that it does not have
-        tally   : of all sheets together
-        changes : since the run before, for the index; None where there was none
-        links   : the objects that the index names as changed, by number
-        beside  : further files of the report, by name
-        doubts  : gives what reading refused and doubts, if that is known
-        returns : the path of index.html
-        raises  : ReportError where two galleries' files would have one name
+        Parameters
+        ----------
+        head : RunRecord
+            The run as it ended, without its objects; its decisions are those about objects that it does not have.
+        tally : Tally
+            Of all pages together.
+        changes : RunChanges or None
+            Since the run before, for the index; None where there was none.
+        links : mapping of str to Pointer
+            The objects that the index names as changed, by number.
+        beside : mapping of str to str, optional
+            Further files of the report, by name.
+        doubts : callable, optional
+            Gives what reading refused and doubts, if that is known.
+
+        Returns
+        -------
+        Path
+            Of index.html.
+
+        Raises
+        ------
+        ReportError
+            Where two galleries' files would have one name.
         """
-        fits = all(table.rows <= WORKBOOK_ROWS for table in self._tables.values())
-        has_book = (self._partial / WORKBOOK).is_file() if self._repeated else fits
-        # The exports are still being written meanwhile.
-        shared = self._shared(head, tally, changes, links, has_book=has_book)
-        for name, text in [*shared, *(beside or {}).items()]:
-            (self._partial / name).write_text(text, encoding="utf-8", newline="\n")
-        if doubts is not None:
-            self._read(head, doubts)
-        self._close()
-        if fits and not self._repeated:
-            workbook(self._partial, head.started)
-        (self._partial / SHEETS).write_bytes(_adapter().dump_json(self._placed))
+        self._export(head.started)
+        for name, text in [*self._shared(head, tally, changes, links), *(beside or {}).items()]:
+            self._write(name, text.encode())
+        reading = "" if doubts is None else self._read(head, doubts)
+        write_manifest(self._partial, Manifest(tuple(self._pages), reading, self._files))
         self._partial.rename(self.folder)
         return self.folder / "index.html"
 
-    def _read(self, head: RunRecord, doubts: Doubts) -> None:
+    def _write(self, name: str, content: bytes) -> None:
+        (self._partial / name).write_bytes(content)
+        self._files[name] = FileSum(len(content), sha256(content).hexdigest())
+
+    def _link(self, *names: str) -> None:
+        """Take files over from the earlier report, whose checksums were compared."""
+        for name in names:
+            _link_or_copy(self._previous.folder / name, self._partial / name)
+            self._files[name] = self._previous.manifest.files[name]
+
+    def _export(self, started: str) -> None:
+        """Write the exports of the whole report, or take those of the earlier one if it has the same pages."""
+        same = self._reused == len(self._pages) and [page.key for page in self._pages] == self._previous.pages
+        parts = [part_files(page.entry.sheet.page) for page in self._pages]
+        taken = {name for name in (*EXPORTS, WORKBOOK) if same and self._previous.has(name)}
+        self._link(*taken)
+        for at, name in enumerate(EXPORTS):
+            if name not in taken:
+                self._files[name] = concatenate(self._partial / name, [self._partial / part[at] for part in parts])
+        if WORKBOOK not in taken and write_exports_workbook(self._partial, started):
+            self._files[WORKBOOK] = sum_of(self._partial / WORKBOOK)
+
+    def _read(self, head: RunRecord, doubts: Doubts) -> str:
         """Write the page and the list of what reading refused and doubts, or take those of the earlier report."""
-        own = (page_version(), self.pen.identity, sorted(head.settings[READING].items()), head.settings.get(INVENTORY))
-        key = sha256(repr(own).encode("utf-8", "surrogatepass")).hexdigest()
-        write_key(self._partial, key)
-        if has_reading(self._earlier.folder, key):
-            for name in FILES:
-                _same(self._earlier.folder / name, self._partial / name)
-            return
+        key = _key(self.renderer, sorted(head.settings[READING].items()), head.settings.get(INVENTORY))
+        if key == self._previous.manifest.reading and self._previous.has(*FILES):
+            self._link(*FILES)
+            return key
         page, table = FILES
-        with speaking(self.pen.language):
+        language = self.renderer.language
+        with speaking(language):
             listed = write_doubts(self._partial / table, doubts())
-            sheet = Sheet("", "", True, 1, 1, head.run_id, head.finished, {})
-            context = {"museum": page_head(head, sheet), "reading": reading_view(head.settings), "listed": listed}
-            text = fill(environment(self.pen.language), page, context | {"here": "reading", "units": self.pen.units})
-        (self._partial / page).write_text(text, encoding="utf-8", newline="\n")
+            self._files[table] = sum_of(self._partial / table)
+            shown = page_head(head, Page("", "", True, 1, 1, head.run_id, head.finished))
+            context = {"museum": shown, "reading": reading_view(head.settings), "listed": listed}
+            text = fill(environment(language), page, context | {"here": "reading", "units": self.renderer.units})
+        self._write(page, text.encode())
+        return key
 
     def _shared(
-        self,
-        head: RunRecord,
-        tally: Tally,
-        changes: RunChanges | None,
-        links: Mapping[str, Pointer],
-        *,
-        has_book: bool,
+        self, head: RunRecord, tally: Tally, changes: RunChanges | None, links: Mapping[str, Pointer]
     ) -> list[tuple[str, str]]:
-        pen = self.pen
-        with speaking(pen.language):
-            since = None if changes is None else since_view(changes, links, pen.units)
-            entries = [placed.entry for placed in self._placed]
-            museum = museum_view(head, entries, tally, pen.units, since, workbook=has_book)
-            env = environment(pen.language)
-            shared: dict[str, Any] = {"museum": museum, "units": pen.units, "State": State}
+        units, drawings = self.renderer.units, self.renderer.drawings
+        with speaking(self.renderer.language):
+            since = None if changes is None else since_view(changes, links, units)
+            entries = [page.entry for page in self._pages]
+            museum = museum_view(head, entries, tally, units, since, workbook=WORKBOOK in self._files)
+            env = environment(self.renderer.language)
+            shared: dict[str, Any] = {"museum": museum, "units": units, "State": State}
             traces = {
-                view.anchor: Markup(trace(motion, pen.units, view.anchor))  # noqa: S704 - svg.py escapes all text itself
+                view.anchor: Markup(trace(motion, units, view.anchor))  # noqa: S704 - svg.py escapes all text itself
                 for view, motion in zip(museum.motions, head.motions, strict=True)
             }
-            shaken = drawn([key for motion in museum.motions for key in motion.charts], pen.drawings)
+            shaken = drawn([key for motion in museum.motions for key in motion.charts], drawings)
             hashes = [motion.hash[:16] for motion in head.motions]
-            measured = drawn([key for key in pen.drawings if not any(h in key for h in hashes)], pen.drawings)
+            measured = drawn([key for key in drawings if not any(h in key for h in hashes)], drawings)
             return [
                 ("index.html", fill(env, "index.html", shared | {"here": "index"})),
                 ("method.html", fill(env, "method.html", shared | measured | {"here": "method"})),
@@ -263,15 +232,15 @@ class Edition:
             ]
 
 
-def _same(source: Path, target: Path) -> None:
-    # A link costs nothing, and pages are never changed; a file system without links gets a copy.
+def _link_or_copy(source: Path, target: Path) -> None:
+    # A link costs nothing, and files of a report are never changed; a file system without links gets a copy.
     with suppress(OSError):
         os.link(source, target)
         return
     shutil.copyfile(source, target)
 
 
-def link_to(sheet: Sheet, object_number: str, title: str) -> Pointer:
-    """Return an object of a sheet as the index names it, of which only number and title are known."""
-    page = page_name(sheet.gallery, sheet.number, on_display=sheet.on_display)
-    return Pointer(clean(object_number), short(title, 80), page, anchor_of(object_number), "", State.ACT)
+def link_to(page: Page, object_number: str, title: str) -> Pointer:
+    """Return an object of a page as the index names it, of which only number and title are known."""
+    file = page_name(page.gallery, page.number, on_display=page.on_display)
+    return Pointer(clean(object_number), short(title, 80), file, anchor_of(object_number), "", State.ACT)

@@ -1,11 +1,11 @@
-"""What was found about a sheet's objects becomes the view of its page, and all pages' entries become the index."""
+"""What was found about a page's objects becomes the view of it, and all pages' entries become the index."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isnan
 
-from pipeline.records import Assessment, Recommendation, RunRecord, Sheet, Tally, Verdict
+from pipeline.records import Assessment, Page, Recommendation, RunRecord, Tally, Verdict
 from pipeline.report.errors import ReportError
 from pipeline.report.language import ngettext, said
 from pipeline.report.pages.decided import Decided, decisions_view, merged
@@ -67,12 +67,12 @@ class PageHead:
     started: str = ""
 
 
-def page_head(head: RunRecord, sheet: Sheet) -> PageHead:
-    """Return what the page of a sheet says of the run that found it."""
+def page_head(head: RunRecord, page: Page) -> PageHead:
+    """Return what a page says of the run that found it."""
     return PageHead(
         museum=clean(head.museum),
-        run_id=clean(sheet.run),
-        finished=clean(sheet.made),
+        run_id=clean(page.run),
+        finished=clean(page.made),
         version=clean(head.version),
         credit=clean(str(head.settings.get("credit") or "")),
         demonstration=head.demonstration,
@@ -88,25 +88,25 @@ class Composed:
     anchor: Callable[[Assessment], str]
 
 
-def compose(record: RunRecord, sheet: Sheet, units: Units, *, several: bool) -> Composed:
-    """Return everything that the page of a sheet shows, in the order in which it shows it.
+def compose(record: RunRecord, page: Page, units: Units, *, several: bool) -> Composed:
+    """Return everything that a page shows, in the order in which it shows it.
 
-    record  : the run with the objects, wishes, spacings and decisions of this sheet only
+    record  : the run with the objects, wishes, spacings and decisions of this page only
     several : whether the run has several levels of shaking
     raises  : ReportError for a sentence with an unknown placeholder or a mark on a chart that the run does not hold
     """
     describer = Describer(record, units)
     members = sorted(record.assessments, key=urgency)
-    page = page_name(sheet.gallery, sheet.number, on_display=sheet.on_display)
-    views = [describer.object(a, page) for a in members]
+    file = page_name(page.gallery, page.number, on_display=page.on_display)
+    views = [describer.object(a, file) for a in members]
     pairs = list(zip(members, views, strict=True))
     by_state = Counter(v.state for v in views)
     numbers = sorted(v.number for v in views)
     gallery = GalleryView(
-        name=clean(sheet.gallery) if sheet.on_display else "",
-        page=page,
-        on_display=sheet.on_display,
-        sheet=SheetView(page, sheet.number, sheet.of, *(numbers[:1] + numbers[-1:])),
+        name=clean(page.gallery) if page.on_display else "",
+        page=file,
+        on_display=page.on_display,
+        sheet=SheetView(file, page.number, page.of, *(numbers[:1] + numbers[-1:])),
         counts=Counts(**{state.value: by_state[state] for state in State}),
         tasks=_tasks(pairs, describer, units),
         objects=tuple(views),
@@ -116,9 +116,9 @@ def compose(record: RunRecord, sheet: Sheet, units: Units, *, several: bool) -> 
         survey=errands(pairs, describer.wishes),
         surveyed=describer.surveyed,
         plan=plan_view(pairs, units),
-        spacings=spacing_views(record.spacings, units) if sheet.on_display else (),
-        rooms=room_views(members, units) if sheet.on_display else (),
-        shaking=shaking_view(members) if sheet.on_display else None,
+        spacings=spacing_views(record.spacings, units) if page.on_display else (),
+        rooms=room_views(members, units) if page.on_display else (),
+        shaking=shaking_view(members) if page.on_display else None,
         decisions=decisions_view([(v.decisions, v.settled, pointer(v)) for v in views if v.decisions]),
     )
     return Composed(gallery, _entry(gallery, pairs), describer.anchor)
@@ -174,7 +174,7 @@ def museum_view(
 
     head    : the run without its objects; the decisions about objects that the run does not have are told besides
     entries : of all pages
-    tally   : of all sheets together
+    tally   : of all pages together
     raises  : ReportError where two galleries' files would have one name
     """
     pages = Counter(entry.sheet.page for entry in entries)

@@ -4,6 +4,7 @@ from math import inf, isnan
 
 from pipeline.records import Assessment, Finding, Verdict
 from pipeline.report.pages.views import State
+from pipeline.report.text import encodable
 
 _GRAVE = ("overturn", "break")
 _ORDER = tuple(State)
@@ -54,10 +55,10 @@ def urgency(assessment: Assessment) -> tuple[int, bool, bool, str, float, str, s
         _ORDER.index(state_of(assessment)),
         not any(grave(f) for f in decisive),
         not item.value_class,
-        item.value_class,
+        encodable(item.value_class),
         -max((_size(f.utilisation) for f in decisive), default=0.0),
-        item.object_number,
-        item.gallery,
+        encodable(item.object_number),
+        encodable(item.gallery),
     )
 
 

@@ -1,7 +1,6 @@
 """What was refused or is doubted of the museum's records: a line of the index, a page, and the list for programs."""
 
 import csv
-import json
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -128,20 +127,4 @@ def _view(one: Doubt) -> DoubtView:
     )
 
 
-def write_key(folder: Path, key: str) -> None:
-    """Note of which reading a report's page and list are."""
-    (folder / _KEY).write_text(json.dumps(key), encoding="utf-8")
-
-
-def has_reading(folder: Path, key: str) -> bool:
-    """Say whether a report has the page and the list of a reading."""
-    try:
-        same = json.loads((folder / _KEY).read_text(encoding="utf-8")) == key
-    except (OSError, ValueError):
-        return False
-    return same and all((folder / name).is_file() for name in FILES)
-
-
 FILES = (f"{READING}.html", f"{READING}.csv")
-
-_KEY = f".{READING}.json"

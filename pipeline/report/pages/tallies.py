@@ -1,4 +1,4 @@
-"""What a sheet adds to the totals of a run, and the totals."""
+"""The totals of a run, and what each page adds to them."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -7,13 +7,14 @@ from math import isfinite
 from pipeline.records import Assessment, Errors, Finding, Found, Tally, Urgent, Verdict
 from pipeline.report.pages.ranking import finding_order, state_of, urgency
 from pipeline.report.pages.views import STATES, State
+from pipeline.report.text import encodable
 
 MOST = 50
 """Objects that are kept as the worst: more than a list names, for some of them may be settled by people."""
 
 
 def tally(found: Found) -> Tally:
-    """Count what was found about the objects of a sheet."""
+    """Count what was found about the objects of a page."""
     findings = [f for a in found.assessments for f in a.findings]
     shown = [a for a in found.assessments if a.scene.item.on_display]
     stored = [a for a in found.assessments if not a.scene.item.on_display]
@@ -35,11 +36,14 @@ def tally(found: Found) -> Tally:
         faults=sum(bool(a.fault) for a in found.assessments),
         stored=dict(Counter(state_of(a).value for a in stored)),
         stored_measures=dict(Counter(r.title for a in stored for r in a.recommendations)),
+        findings=sum(len(a.findings) for a in shown),
+        stored_findings=sum(len(a.findings) for a in stored),
+        verdicts=dict(Counter(f.verdict.value for f in findings)),
     )
 
 
 def total(tallies: Iterable[Tally]) -> Tally:
-    """Return the tally of several sheets together."""
+    """Return the tally of several pages together."""
     listed = list(tallies)
     return Tally(
         states=_sum(t.states for t in listed),
@@ -56,14 +60,33 @@ def total(tallies: Iterable[Tally]) -> Tally:
         faults=sum(t.faults for t in listed),
         stored=_sum(t.stored for t in listed),
         stored_measures=_sum(t.stored_measures for t in listed),
+        findings=sum(t.findings for t in listed),
+        stored_findings=sum(t.stored_findings for t in listed),
+        verdicts=_sum(t.verdicts for t in listed),
     )
+
+
+def counts(found: Tally) -> dict[str, int]:
+    """Return how many objects, findings and so on a run has, as the list of runs shows them."""
+    objects = sum(found.states.values()) + sum(found.stored.values())
+    wishes = {"wishes": found.worth + found.waste} if found.surveyed else {}
+    unknown = found.states.get(State.UNKNOWN, 0) + found.stored.get(State.UNKNOWN, 0)
+    return {
+        "objects": objects,
+        "assessed": objects - unknown - found.stored.get(State.ASIDE, 0),
+        "findings": found.findings + found.stored_findings,
+        **{verdict.value: found.verdicts.get(verdict.value, 0) for verdict in Verdict},
+        "recommendations": sum(found.measures.values()) + sum(found.stored_measures.values()),
+        **wishes,
+    }
 
 
 def _urgent(assessment: Assessment) -> Urgent:
     item = assessment.scene.item
     worst = min((f for f in assessment.findings if f.verdict is Verdict.FAIL), key=finding_order)
     bad = dict.fromkeys((f.model, f.level) for f in assessment.findings if f.verdict is not Verdict.PASS)
-    return Urgent(urgency(assessment), item.object_number, item.title, item.gallery, worst.outcome, tuple(bad))
+    number, title, gallery, outcome = map(encodable, (item.object_number, item.title, item.gallery, worst.outcome))
+    return Urgent(urgency(assessment), number, title, gallery, outcome, tuple(bad))
 
 
 def _worst(urgent: Iterable[Urgent]) -> tuple[Urgent, ...]:

@@ -1,0 +1,215 @@
+"""The manifest of a report: its pages and the checksum of every file, so that none can change unnoticed.
+
+``.pages.json`` is written last and sealed by a digest of its own content.  Of an earlier report only what is still as
+it was written is used again; `verify_report` looks at all of it.
+"""
+
+import hashlib
+import warnings
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+
+from pipeline.records import Tally
+from pipeline.report.errors import ReportWarning
+from pipeline.report.files.exports import EXPORTS
+from pipeline.report.pages.views import Entry
+
+MANIFEST = ".pages.json"
+PARTS = "parts"
+"""Folder of a report with the exports of each page."""
+
+_REMEDY = (
+    "it is made again; `kouros check --deep` names every damaged file: look after the disk, and at who writes there"
+)
+
+
+class FileSum(NamedTuple):
+    """What a file was when it was written: its bytes, and their SHA-256."""
+
+    size: int
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class KeptPage:
+    """A page of a report: the key of all that it depends on, what the index says of it, what it adds to the totals."""
+
+    key: str
+    entry: Entry
+    tally: Tally
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """The page and its parts of the exports."""
+        page = self.entry.sheet.page
+        return page, *part_files(page)
+
+
+@dataclass(frozen=True, slots=True)
+class Manifest:
+    """What a report consists of.
+
+    pages   : in their order
+    reading : key of all that the page and the list of what reading refused depend on, "" where there are none
+    files   : every file of the report but the manifest, by name
+    """
+
+    pages: tuple[KeptPage, ...] = ()
+    reading: str = ""
+    files: Mapping[str, FileSum] = field(default_factory=dict)
+
+
+class ReportDamage(NamedTuple):
+    """A file of a report that is not as it was written: damaged, missing or additional."""
+
+    file: Path
+    why: str
+
+
+def part_files(page: str) -> tuple[str, ...]:
+    """Return the files with a page's part of each export, in the order of `EXPORTS`."""
+    return tuple(f"{PARTS}/{page.removesuffix('.html')}.{name}" for name in EXPORTS)
+
+
+def sum_of(file: Path) -> FileSum:
+    """Return size and checksum of a file.
+
+    raises : OSError
+    """
+    with file.open("rb") as stream:
+        digest = hashlib.file_digest(stream, "sha256")
+        return FileSum(stream.tell(), digest.hexdigest())
+
+
+@cache
+def _adapter() -> TypeAdapter[Manifest | None]:
+    # The union is what makes room for a configuration: pydantic takes none for a bare dataclass.
+    return TypeAdapter(Manifest | None, config=ConfigDict(ser_json_inf_nan="strings"))
+
+
+_SEALED = b'{"sha256":"%b","report":%b}\n'
+_AT = len(_SEALED % (b"0" * 64, b"")) - 2
+"""Where the content of a sealed manifest begins."""
+
+
+def write_manifest(folder: Path, manifest: Manifest) -> None:
+    """Seal the manifest of a report and write it."""
+    content = _adapter().dump_json(manifest)
+    (folder / MANIFEST).write_bytes(_sealed(content))
+
+
+def _sealed(content: bytes) -> bytes:
+    return _SEALED % (hashlib.sha256(content).hexdigest().encode(), content)
+
+
+def read_manifest(folder: Path) -> Manifest:
+    """Return the manifest of a report.
+
+    raises : OSError where it cannot be read; ValueError where it is damaged, or is not understood
+    """
+    whole = (folder / MANIFEST).read_bytes()
+    content = whole[_AT:-2]
+    if whole != _sealed(content):
+        raise ValueError("is damaged: it is not what was written")
+    try:
+        return _adapter().validate_json(content) or Manifest()
+    except ValidationError as error:
+        raise ValueError("was written by another version of Kouros") from error
+
+
+class PreviousReport:
+    """An earlier report, as far as it can be used again; what is not as it was written is said, and is not there.
+
+    folder : the report's
+    pages  : the keys of its pages, in their order
+    """
+
+    def __init__(self, folder: Path, manifest: Manifest | None = None) -> None:
+        self.folder = folder
+        self.manifest = manifest or Manifest()
+        self.pages = [page.key for page in self.manifest.pages]
+        self._by_key = {page.key: page for page in self.manifest.pages}
+        self._sound: dict[str, bool] = {}
+
+    @classmethod
+    def read(cls, folder: Path) -> "PreviousReport":
+        """Return a report; one without pages where there is none, or none that can be understood, which is said."""
+        folder = folder.resolve()
+        if not (folder / MANIFEST).exists():
+            return cls(folder)
+        try:
+            found = cls(folder, read_manifest(folder))
+        except (OSError, ValueError) as problem:
+            _say(folder / MANIFEST, f"{problem}; nothing of this report is used again")
+            return cls(folder)
+        # The manifest of one report in the folder of another knows another index.
+        return found if found.has("index.html") else cls(folder)
+
+    def get(self, key: str) -> KeptPage | None:
+        """Return a page, if all its files are as they were written."""
+        page = self._by_key.get(key)
+        return page if page is not None and self.has(*page.files) else None
+
+    def has(self, *names: str) -> bool:
+        """Say whether the report has files, all as they were written; each that was changed is said."""
+        sound = [self._is_sound(name) for name in names]
+        return all(sound)
+
+    def _is_sound(self, name: str) -> bool:
+        if name not in self._sound:
+            written = self.manifest.files.get(name)
+            why = "" if written is None else _damage(self.folder / name, written)
+            if why:
+                _say(self.folder / name, why)
+            self._sound[name] = written is not None and not why
+        return self._sound[name]
+
+
+def _say(file: Path, why: str) -> None:
+    warnings.warn(f"{file}: {why}; {_REMEDY}", ReportWarning, stacklevel=3)
+
+
+def _damage(file: Path, written: FileSum) -> str:
+    """Say what is wrong with a file, "" for nothing."""
+    try:
+        found = sum_of(file)
+    except FileNotFoundError:
+        return "is missing"
+    except OSError as problem:
+        return f"cannot be read ({problem.strerror})"
+    if found.size != written.size:
+        return f"has {found.size:,} bytes instead of {written.size:,}"
+    return "" if found == written else "is damaged: its checksum is not that of what was written"
+
+
+def verify_report(folder: Path) -> Iterator[ReportDamage]:
+    """Compare every file of a report with what was written.
+
+    Parameters
+    ----------
+    folder : Path
+        The report's.
+
+    Yields
+    ------
+    ReportDamage
+        For every file that is damaged, missing or additional; where the manifest itself cannot be used, for it alone.
+    """
+    try:
+        manifest = read_manifest(folder)
+    except (OSError, ValueError) as problem:
+        yield ReportDamage(folder / MANIFEST, str(problem))
+        return
+    for name, written in manifest.files.items():
+        why = _damage(folder / name, written)
+        if why:
+            yield ReportDamage(folder / name, why)
+    known = {folder / MANIFEST, *(folder / name for name in manifest.files)}
+    for file in sorted(folder.rglob("*")):
+        if file not in known and not file.is_dir():
+            yield ReportDamage(file, "is not of this report")
