@@ -10,9 +10,11 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from pipeline.analysis.assess import assess
+from pipeline.analysis.context import Context
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.models import model_named
-from pipeline.records import Estimate, Executor, Finding, Origin, Progress, Scene, Silent, Verdict, Wish
+from pipeline.records import Estimate, Finding, Numerics, Origin, Scene, Verdict, Wish
+from pipeline.records.numerics import HISTORIES
 from pipeline.tables import number, table
 
 BATCH = 1000
@@ -72,30 +74,41 @@ def wishes(
     scenes: Sequence[Scene],
     findings: Sequence[Sequence[Finding]],
     levels: Sequence[LevelMotions],
-    executor: Executor,
-    progress: Progress,
-    *,
-    fidelity: str = "history",
-    azimuth_step: float = 10.0,
+    context: Context,
+    numerics: Numerics = HISTORIES,
 ) -> list[Wish]:
-    """Return what is worth measuring on the objects on display, what settles most first.
+    """Return what is worth measuring on the objects on display.
 
-    findings : of each scene, as `assess` returned them under the same levels
+    Parameters
+    ----------
+    scenes
+        The objects as they stand.
+    findings
+        Of each scene, as `assess` returned them under the same levels.
+    levels
+        The motions.
+    context
+        Where it runs, and who is told.
+    numerics
+        How finely.  Each trial is asked once, so that a chart of its own would not pay.
+
+    Returns
+    -------
+    list of Wish
+        What settles most first.
     """
     out: list[Wish] = []
     shown = [at for at, scene in enumerate(scenes) if scene.item.on_display]
     for start in range(0, len(shown), BATCH):
-        progress.step("survey", start, len(shown))
+        context.progress.step("survey", start, len(shown))
         chosen = shown[start : start + BATCH]
         trials = [trial for at in chosen for trial in (_missing(scenes[at]) or _trials(scenes[at], findings[at]))]
         tried = [(trial, end) for trial in trials for end in (ENDS if trial.models else ())]
         _, answers = assess(
             [_measured(trial, end) for trial, end in tried],
             levels,
-            executor,
-            Silent(),
-            fidelity=fidelity,
-            azimuth_step=azimuth_step,
+            context.silent,
+            numerics,
             outcomes=False,
         )
         settled: dict[int, int] = {}
@@ -103,7 +116,7 @@ def wishes(
             decided = sum((f.model, f.level) in trial.open and f.verdict is not Verdict.UNDETERMINED for f in answer)
             settled[id(trial)] = settled.get(id(trial), 0) + decided
         out += [_wish(trial, settled.get(id(trial), 0) / len(ENDS)) for trial in trials]
-    progress.step("survey", len(shown), len(shown))
+    context.progress.step("survey", len(shown), len(shown))
     return in_order(out)
 
 

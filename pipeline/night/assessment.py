@@ -9,6 +9,7 @@ from time import perf_counter
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify, object_classes
+from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, each_apart, fault, unassessed
 from pipeline.analysis.fragility.objects import fragilities
 from pipeline.analysis.neighbours import neighbours
@@ -29,7 +30,6 @@ from pipeline.records import (
     Fragility,
     Item,
     Scene,
-    Silent,
     Support,
     Wish,
 )
@@ -47,12 +47,18 @@ def place(item: Item, rules: Table | None, decisions: Sequence[Decision]) -> Pla
 
 
 def find(
-    brief: Brief, storey: Storey, items: Sequence[Item], decisions: Sequence[Decision], twins: Twins
+    brief: Brief,
+    storey: Storey,
+    items: Sequence[Item],
+    decisions: Sequence[Decision],
+    twins: Twins,
+    context: Context,
 ) -> tuple[Found, float, list[Fault]]:
     """Run everything that objects on one floor require under its motions, judge it and advise.
 
     decisions : those in force: classes and installed measures change what is run
     twins     : what is known of objects that these may be like
+    context   : where it runs, with the histories that were run before of what is worked on together
     returns   : what was found, the seconds that finding out what is worth measuring cost, and what Kouros failed on
     """
     about = by_object(decisions)
@@ -60,7 +66,7 @@ def find(
     objects = placed_each(brief, storey, items, about)
     sound = [one for one in objects if isinstance(one, Placed)]
     decided = [one.scene.item.object_number in about for one in sound]
-    known = iter(_known(brief, storey, sound, decided, twins, faults))
+    known = iter(_known(brief, storey, sound, decided, twins, context, faults))
     every = [
         next(known) if isinstance(one, Placed) else failed_on(item, one, faults)
         for item, one in zip(items, objects, strict=True)
@@ -69,12 +75,11 @@ def find(
     began = perf_counter()
     wished: tuple[Wish, ...] | None = None
     if brief.surveyed:
-        fidelity, step = _integrating(brief), brief.analysis.azimuth_step
         # Each trial is asked once: a chart would not pay.
         assessments, asked = each_apart(
             assessments,
             lambda scenes, found: wishes(
-                scenes, found, storey.shaking, brief.executor, Silent(), fidelity=fidelity, azimuth_step=step
+                scenes, found, storey.shaking, Context(context.executor), brief.analysis.numerics.integrated
             ),
             "what is worth measuring on it is not known",
             faults,
@@ -118,10 +123,10 @@ def failed_on(item: Item | Scene, problem: Exception, faults: list[Fault]) -> Kn
     return unassessed(item, told), {}
 
 
-def each_assessed(brief: Brief, storey: Storey, objects: Sequence[Placed]) -> list[Known | Exception]:
+def each_assessed(brief: Brief, storey: Storey, objects: Sequence[Placed], context: Context) -> list[Known | Exception]:
     """Return what is found of each object, or the error that finding it came to."""
     return apart(
-        lambda some: _assessed(brief, storey, some),
+        lambda some: _assessed(brief, storey, some, context),
         objects,
         lambda one: (one.scene.object_class, one.scene.support),
         # What is advised for a case depends on all that stand in it.
@@ -129,12 +134,14 @@ def each_assessed(brief: Brief, storey: Storey, objects: Sequence[Placed]) -> li
     )
 
 
-def _integrating(brief: Brief) -> str:
-    return "reference" if brief.analysis.fidelity == "reference" else "history"
-
-
 def _known(
-    brief: Brief, storey: Storey, objects: Sequence[Placed], decided: Sequence[bool], twins: Twins, faults: list[Fault]
+    brief: Brief,
+    storey: Storey,
+    objects: Sequence[Placed],
+    decided: Sequence[bool],
+    twins: Twins,
+    context: Context,
+    faults: list[Fault],
 ) -> list[Known]:
     """Return what is found of each object, where several are alike that of the first."""
     likes: list[Hashable] = []
@@ -147,7 +154,7 @@ def _known(
     for at, like in enumerate(likes):
         if like not in known:
             fresh.setdefault(like, at)
-    own = each_assessed(brief, storey, [objects[at] for at in fresh.values()])
+    own = each_assessed(brief, storey, [objects[at] for at in fresh.values()], context)
     for (like, at), came in zip(fresh.items(), own, strict=True):
         if isinstance(came, Exception):
             known[like] = failed_on(objects[at].scene, came, faults)
@@ -162,42 +169,27 @@ def _known(
     return out
 
 
-def _assessed(brief: Brief, storey: Storey, objects: Sequence[Placed]) -> list[Known]:
+def _assessed(brief: Brief, storey: Storey, objects: Sequence[Placed], context: Context) -> list[Known]:
     """Run everything that objects require, judge it and advise."""
     if not objects:
         return []
-    told = Silent()
     scenes = [one.scene for one in objects]
-    levels, executor = storey.shaking, brief.executor
-    fidelity, step = brief.analysis.fidelity, brief.analysis.azimuth_step
+    levels, numerics = storey.shaking, brief.analysis.numerics
     needing: list[dict[str, int]] = [{} for _ in scenes]
-    plan, findings = assess(
-        scenes, levels, executor, told, fidelity=fidelity, azimuth_step=step, charts=brief.shelf, needing=needing
-    )
+    plan, findings = assess(scenes, levels, context, numerics, needing=needing)
     # Few objects stand on isolators, each on its own: neither charts nor bounds of what these pass on would pay.
-    above = assess_above(objects, levels, executor, told, fidelity=_integrating(brief), azimuth_step=step)
+    above = assess_above(objects, levels, Context(context.executor), numerics.integrated)
     for at, (on_top, left_out) in enumerate(above):
         findings[at] += on_top
         done = {finding.title for finding in findings[at]}
         skipped = {title: why for title, why in {**plan.skipped[at], **left_out}.items() if title not in done}
         scenes[at] = replace(scenes[at], skipped=skipped)
-    advice = advise(
-        scenes,
-        findings,
-        levels,
-        executor,
-        told,
-        means=brief.means,
-        fidelity=fidelity,
-        azimuth_step=step,
-        charts=brief.shelf,
-        carriage=brief.carriage,
-    )
+    advice = advise(scenes, findings, levels, context, numerics, means=brief.means, carriage=brief.carriage)
     curves: Sequence[tuple[Fragility, ...]] = [()] * len(scenes)
     if brief.fragile:
         # What an isolator passes on would have to be scaled too.
         shown = [s.item.on_display and s.support is not Support.ISOLATED for s in scenes]
-        curves = fragilities(scenes, plan.work, storey.stripes, executor, told, chosen=shown)
+        curves = fragilities(scenes, plan.work, storey.stripes, Context(context.executor), chosen=shown)
     scenes = [_needing(scene, those) for scene, those in zip(scenes, findings, strict=True)]
     return [
         (Assessment(scene, tuple(those), tuple(advised), curve), counts)

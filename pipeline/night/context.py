@@ -7,7 +7,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.context import Context
+from pipeline.analysis.response_charts import ChartCache
+from pipeline.analysis.response_charts.histories import Histories
 from pipeline.analysis.rules import Table
 from pipeline.execute import Threads
 from pipeline.mitigate import Means
@@ -33,7 +35,7 @@ class Brief:
     storeys   : the floors by name
     surveyed, fragile : whether to find out what is worth measuring, and from what shaking objects fail
     stores    : whether what is not on display is assessed too
-    admitted  : which response charts are built (see `response_charts.Shelf`); None: those that pay for a sheet
+    admitted  : which response charts are built (see `response_charts.ChartCache`); None: those that pay for a sheet
     kept      : folder in which charts are kept; None: in memory only
     threads   : of one who works
     """
@@ -55,7 +57,7 @@ class Brief:
 
     def __getstate__(self) -> dict[str, Any]:
         # What was made on the way is made again where it is needed.
-        made = {"shelf", "carriage", "pen", "executor", "twins"}
+        made = {"charts", "carriage", "pen", "executor", "twins"}
         return {name: value for name, value in self.__dict__.items() if name not in made}
 
     @property
@@ -64,9 +66,9 @@ class Brief:
         return motions_of(self.storeys)
 
     @cached_property
-    def shelf(self) -> Shelf:
+    def charts(self) -> ChartCache:
         """The response charts."""
-        return Shelf(self.kept, admitted=self.admitted)
+        return ChartCache(self.kept, admitted=self.admitted)
 
     def memory(self, *batch: object) -> Path | None:
         """Return the file in which the histories of what is worked on together are kept from night to night.
@@ -92,6 +94,13 @@ class Brief:
     def executor(self) -> Threads:
         """Where the parts of a sheet's work run."""
         return Threads(self.threads)
+
+    def working(self, histories: Histories) -> Context:
+        """Return what an analysis of some objects works with; nobody is told how far a part of a night is.
+
+        histories : of what is worked on together, which are taken over and noted
+        """
+        return Context(self.executor, charts=self.charts, histories=histories)
 
     @cached_property
     def pen(self) -> Pen:

@@ -60,7 +60,7 @@ def brief_for(
     started: datetime,
     progress: Progress,
 ) -> Brief:
-    """Make ready what all sheets of a run share; its shelf is to be tidied at the end.
+    """Make ready what all sheets of a run share; its charts are to be tidied at the end.
 
     catalogue : all objects of the inventory;  chosen : those that the run is of
     pictures  : where those of the motions are had

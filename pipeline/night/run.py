@@ -94,7 +94,7 @@ def _run(
                 night.charts = admit(brief, everything, objects, site.manifest.site.x_azimuth)
             return _hold(night, progress, chosen, dry_run=dry_run, strict=strict)
         finally:
-            tidy(settings, brief.shelf, brief.motions)
+            tidy(settings, brief.charts, brief.motions)
 
 
 def _hold(night: Round, progress: Progress, chosen: Selection, *, dry_run: bool, strict: bool) -> Summary:

@@ -9,8 +9,9 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
+from pipeline.analysis.chart_runs import deciding, response_chart
+from pipeline.analysis.context import remembered
 from pipeline.analysis.faults import Fault, fitting
-from pipeline.analysis.response import deciding, response_chart
 from pipeline.collection.catalogue import read_packed
 from pipeline.execute.memory import give_back
 from pipeline.mitigate.installed import Placed
@@ -75,15 +76,14 @@ class ChartErrand:
 
 
 def build(brief: Brief, errand: ChartErrand) -> None:
-    """Put a chart on the shelf, where it is not there yet, so that all who work find it."""
+    """Put a chart into the cache, where it is not there yet, so that all who work find it."""
     given: dict[str, Any] = {name: value for name, value in errand.alike.items() if value == value}  # noqa: PLR0124 - NaN: not given
     response_chart(
         errand.model,
         errand.motion,
         angle=errand.angle,
-        azimuth_step=brief.analysis.azimuth_step,
-        charts=brief.shelf,
-        **deciding(errand.model),
+        numerics=deciding(errand.model, brief.analysis.numerics),
+        charts=brief.charts,
         **given,
     )
 
@@ -115,8 +115,8 @@ def find_kinds(brief: Brief, errand: KindErrand) -> Parcel:
             chosen[kind] = one
         else:
             same[kind] = first[like]
-    with brief.shelf.remembering(brief.memory("kinds", errand.floor, errand.part)):
-        known = each_assessed(brief, storey, list(chosen.values()))
+    with remembered(brief.memory("kinds", errand.floor, errand.part)) as histories:
+        known = each_assessed(brief, storey, list(chosen.values()), brief.working(histories))
     # What Kouros failed on is told by the sheet that it is on.
     sound = {kind: one for kind, one in zip(chosen, known, strict=True) if not isinstance(one, Exception)}
     found = Parcel.of(Known, sound, {kind: of for kind, of in same.items() if of in sound})
@@ -181,8 +181,9 @@ def work(brief: Brief, batch: Batch) -> tuple[Done, ...]:
             for earlier in errand.before:
                 twins.learn(unpacked(earlier))
         sheets = ((e.sheet.gallery, e.sheet.on_display, e.sheet.number, e.floor) for e in fresh)
-        with brief.shelf.remembering(brief.memory(*sheets)):
-            whole, seconds, failed = find(brief, brief.storeys[floor], everything, decisions, twins)
+        with remembered(brief.memory(*sheets)) as histories:
+            context = brief.working(histories)
+            whole, seconds, failed = find(brief, brief.storeys[floor], everything, decisions, twins, context)
         faults += failed
         for errand, found in zip(fresh, parted(whole, [len(some) for some in items]), strict=True):
             results[errand.sheet.key] = fitting(found, partial(_encoded, brief, errand), faults)

@@ -13,7 +13,7 @@ from pipeline.operations.dry_run import SCRATCH, read_only
 from pipeline.resources import resource, sweep
 
 if TYPE_CHECKING:
-    from pipeline.analysis.response_charts import Shelf
+    from pipeline.analysis.response_charts import ChartCache
     from pipeline.analysis.rules import Table
     from pipeline.collection.catalogue import Catalogue
     from pipeline.collection.database import Database
@@ -177,25 +177,25 @@ def _sweep(settings: "Settings") -> None:
 @contextmanager
 def charts_of(
     settings: "Settings | None", using: Collection[str] = (), admitted: Collection[str] | None = None
-) -> Iterator["Shelf"]:
-    """Lend the shelf of the workspace's response charts, and tidy it up at the end; None: one in memory only.
+) -> Iterator["ChartCache"]:
+    """Lend the cache of the workspace's response charts, and tidy it up at the end; None: one in memory only.
 
     using    : hashes of motions in use, whose charts stay although perhaps none of them is asked for
-    admitted : see `Shelf`
+    admitted : see `ChartCache`
     """
-    from pipeline.analysis.response_charts import Shelf
+    from pipeline.analysis.response_charts import ChartCache
 
     if settings is None:
-        yield Shelf()
+        yield ChartCache()
         return
-    shelf = Shelf(settings.kept / CHARTS, admitted=None if admitted is None else frozenset(admitted))
+    charts = ChartCache(settings.kept / CHARTS, admitted=None if admitted is None else frozenset(admitted))
     try:
-        yield shelf
+        yield charts
     finally:
-        tidy(settings, shelf, using)
+        tidy(settings, charts, using)
 
 
-def tidy(settings: "Settings", shelf: "Shelf", using: Collection[str]) -> None:
+def tidy(settings: "Settings", charts: "ChartCache", using: Collection[str]) -> None:
     """Remove the charts and the histories that the settings do not keep any longer.
 
     using : as in `charts_of`
@@ -204,7 +204,7 @@ def tidy(settings: "Settings", shelf: "Shelf", using: Collection[str]) -> None:
 
     limits = settings.charts
     most = round(1e6 * limits.megabytes)
-    shelf.tidy(days=limits.unused_days, most_bytes=most, using=using)
+    charts.tidy(days=limits.unused_days, most_bytes=most, using=using)
     prune_histories(settings.kept / HISTORIES, days=limits.unused_days, most_bytes=most)
 
 

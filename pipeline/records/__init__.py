@@ -16,6 +16,7 @@ from pipeline.records.decision import Basis, Decision, DecisionKind, Standing, i
 from pipeline.records.fragility import Fragility
 from pipeline.records.model import Bounds, ChartAxis, Columns, Model
 from pipeline.records.motion import Excitation, Motion, MotionSummary
+from pipeline.records.numerics import Numerics
 from pipeline.records.part import Errors, Found, Outline, Sheet, Tally, Urgent
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress, Silent
@@ -70,6 +71,7 @@ __all__ = [
     "MotionChange",
     "MotionSummary",
     "Move",
+    "Numerics",
     "ObjectPlace",
     "Origin",
     "Outline",

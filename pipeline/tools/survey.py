@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from pipeline.analysis.assess import assess
+from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, fault
 from pipeline.analysis.survey import in_order, measurables, wishes
 from pipeline.analysis.verdicts import LevelMotions
@@ -19,6 +20,7 @@ from pipeline.night.assessment import place
 from pipeline.night.floors import storeys
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Item, Progress, Wish
+from pipeline.records.numerics import AUTO, CHART
 from pipeline.report.files.survey_sheet import HEADER_ROW, column_name, sheet_title, write_survey
 from pipeline.store.decisions import decisions_in_force
 
@@ -55,20 +57,19 @@ def survey(
     if not items:
         raise CollectionError("nothing on display to survey: import the collection, or name another gallery")
     site = workspace.site()
-    executor = Threads(settings.analysis.workers or None)
-    fidelity, step = settings.analysis.fidelity, settings.analysis.azimuth_step
-    if fidelity == "chart":
+    context, numerics = Context(Threads(settings.analysis.workers or None), progress), settings.analysis.numerics
+    if numerics.fidelity == CHART:
         # Each trial is asked once: a chart that is not there would not pay.
-        fidelity = "auto"
+        numerics = numerics.at(AUTO)
     found: list[Wish] = []
     decisions = decisions_in_force(workspace.engine)
     faults: list[Fault] = []
 
     def asked(shaking: Sequence[LevelMotions], some: Sequence[Item]) -> list[list[Wish]]:
         scenes = [place(item, workspace.rules, decisions.get(item.object_number, ())).scene for item in some]
-        _, findings = assess(scenes, shaking, executor, progress, fidelity=fidelity, azimuth_step=step, outcomes=False)
+        _, findings = assess(scenes, shaking, context, numerics, outcomes=False)
         by_object: dict[str, list[Wish]] = {item.object_number: [] for item in some}
-        for wish in wishes(scenes, findings, shaking, executor, progress, fidelity=fidelity, azimuth_step=step):
+        for wish in wishes(scenes, findings, shaking, context, numerics):
             by_object[wish.object_number].append(wish)
         return list(by_object.values())
 

@@ -14,10 +14,10 @@ import pytest
 from shaking import along_x, random_motion
 
 from pipeline import respond
-from pipeline.analysis.response import response_chart
-from pipeline.analysis.response_charts import ChartWarning, ResponseChart, Shelf
+from pipeline.analysis.chart_runs import response_chart
+from pipeline.analysis.response_charts import ChartCache, ChartWarning, ResponseChart
 from pipeline.analysis.response_charts import chart_cache as keeping
-from pipeline.records import Motion
+from pipeline.records import Motion, Numerics
 from pipeline.resources import arrays
 
 DAY = 86_400.0
@@ -32,7 +32,9 @@ def refuse(*_: object, **__: object) -> ResponseChart:
 
 
 def ask(motion: Motion, folder: Path, friction: float = 0.1234, **settings: float) -> float:
-    table = respond("sliding", motion, fidelity="chart", charts=Shelf(folder), friction_static=friction, **settings)
+    table = respond(
+        "sliding", motion, fidelity="chart", charts=ChartCache(folder), friction_static=friction, **settings
+    )
     return float(table["displacement"].iloc[0])
 
 
@@ -60,9 +62,9 @@ def test_charts_are_found_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         ask(motion, tmp_path, tolerance=2e-2)
     with pytest.raises(RebuiltError):
         ask(motion, tmp_path, tolerance=1e-2, directions=1.0)
-    response_chart("sliding", motion, tolerance=1e-2, charts=Shelf(tmp_path))
+    response_chart("sliding", motion, numerics=Numerics(tolerance=1e-2), charts=ChartCache(tmp_path))
     with pytest.raises(RebuiltError):
-        response_chart("sliding", motion, tolerance=1e-2, first=True, charts=Shelf(tmp_path))
+        response_chart("sliding", motion, numerics=Numerics(tolerance=1e-2, first=True), charts=ChartCache(tmp_path))
     with pytest.raises(RebuiltError):
         ask(motion.scaled(1.01, "another"), tmp_path, tolerance=1e-2)
     for name, another in (("KERNEL_VERSION", "another"), ("_code", lambda: "another")):
@@ -75,7 +77,9 @@ def test_charts_are_found_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 def test_every_number_of_a_chart_is_found_again(tmp_path: Path) -> None:
     """All columns, bounds, notes and marks of what is unresolved, at 1,000 values, and nothing is left aside."""
     given = {"length": np.geomspace(0.1, 20.0, 1000), "damping": 0.0, "tolerance": 1e-2}
-    tables = [respond("swing", random_motion(5), fidelity="chart", charts=Shelf(tmp_path), **given) for _ in range(2)]
+    tables = [
+        respond("swing", random_motion(5), fidelity="chart", charts=ChartCache(tmp_path), **given) for _ in range(2)
+    ]
     assert tables[0].equals(tables[1])
     assert not any(name.startswith(".") for name in files(tmp_path))
 
@@ -136,9 +140,9 @@ def test_a_folder_that_cannot_be_written_costs_nothing_but_time(tmp_path: Path) 
     with pytest.warns(ChartWarning, match="Not a directory"):
         assert ask(random_motion(3), file, tolerance=1e-2) == ask(random_motion(3), tmp_path, tolerance=1e-2)
     assert file.read_text() == "a file"
-    Shelf(file).tidy(days=1.0, most_bytes=0)
-    Shelf(tmp_path / "absent").tidy(days=1.0, most_bytes=0)
-    Shelf().tidy(days=1.0, most_bytes=0)
+    ChartCache(file).tidy(days=1.0, most_bytes=0)
+    ChartCache(tmp_path / "absent").tidy(days=1.0, most_bytes=0)
+    ChartCache().tidy(days=1.0, most_bytes=0)
 
 
 def test_what_nobody_asks_for_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -161,13 +165,13 @@ def test_what_nobody_asks_for_is_removed(tmp_path: Path, monkeypatch: pytest.Mon
     aged(tmp_path, files(tmp_path), 40.0)
     # To ask for one chart is to use its motion.
     ask(used, tmp_path, tolerance=1e-1)
-    Shelf(tmp_path).tidy(days=50.0, most_bytes=10**9)
+    ChartCache(tmp_path).tidy(days=50.0, most_bytes=10**9)
     assert files(tmp_path) == names["used"] | names["unused"] | names["running"] | others
     assert old not in files(tmp_path)
-    Shelf(tmp_path).tidy(days=30.0, most_bytes=10**9, using=[running.hash])
+    ChartCache(tmp_path).tidy(days=30.0, most_bytes=10**9, using=[running.hash])
     assert files(tmp_path) == names["used"] | names["running"] | others
     # It counts as used now.
-    Shelf(tmp_path).tidy(days=30.0, most_bytes=10**9)
+    ChartCache(tmp_path).tidy(days=30.0, most_bytes=10**9)
     assert names["running"] <= files(tmp_path)
 
 
@@ -182,13 +186,13 @@ def test_all_charts_together_are_bounded(tmp_path: Path) -> None:
         aged(tmp_path, {name}, age)
         order.append(name)
     size = {name: (tmp_path / name).stat().st_size for name in order}
-    Shelf(tmp_path).tidy(days=30.0, most_bytes=sum(size.values()))
+    ChartCache(tmp_path).tidy(days=30.0, most_bytes=sum(size.values()))
     assert files(tmp_path) == set(order)
-    Shelf(tmp_path).tidy(days=30.0, most_bytes=sum(size.values()) - 1)
+    ChartCache(tmp_path).tidy(days=30.0, most_bytes=sum(size.values()) - 1)
     assert files(tmp_path) == set(order[1:])
-    Shelf(tmp_path).tidy(days=30.0, most_bytes=max(size.values()), using=[motions[1].hash])
+    ChartCache(tmp_path).tidy(days=30.0, most_bytes=max(size.values()), using=[motions[1].hash])
     assert files(tmp_path) == {order[1]}
-    Shelf(tmp_path).tidy(days=30.0, most_bytes=0)
+    ChartCache(tmp_path).tidy(days=30.0, most_bytes=0)
     assert files(tmp_path) == set()
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from pipeline.analysis.classify import classify
-from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.response_charts import ChartCache
 from pipeline.collection.catalogue import catalogue
 from pipeline.collection.listing import Listed, Listing
 from pipeline.collection.record import kind_of
@@ -246,9 +246,9 @@ def test_pads_have_a_chart_where_many_works_hang_on_walls(tmp_path: Path) -> Non
     assert names(5_000) == {0.02, 0.06, 0.13}
 
 
-def test_a_shelf_that_was_told_what_pays_asks_nobody_else() -> None:
+def test_a_cache_that_was_told_what_pays_asks_nobody_else() -> None:
     swing = model_named("swing").chart
     assert swing is not None
-    assert Shelf(admitted=frozenset({"a"})).pays("a", "key", swing, 1, 400)
-    assert not Shelf(admitted=frozenset({"a"})).pays("b", "key", swing, 10_000, 400)
-    assert Shelf().pays("b", "key", swing, 10_000, 400)
+    assert ChartCache(admitted=frozenset({"a"})).pays("a", "key", swing, 1, 400)
+    assert not ChartCache(admitted=frozenset({"a"})).pays("b", "key", swing, 10_000, 400)
+    assert ChartCache().pays("b", "key", swing, 10_000, 400)

@@ -11,6 +11,7 @@ import pytest
 
 from pipeline.analysis.assess import LevelMotions, assess
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.survey import by_gallery, measurables, wishes
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.inventory import add_sheet, read_inventory, replace_inventory, return_to, versions
@@ -42,12 +43,12 @@ BOX = Item("1", "East", "Box", height_m=0.2, base_width_m=0.6, base_depth_m=0.6,
 
 def surveyed(*items: Item) -> list[Wish]:
     scenes = [classify(item) for item in items]
-    _, findings = assess(scenes, LEVELS, Threads(1), Silent())
-    return wishes(scenes, findings, LEVELS, Threads(1), Silent())
+    _, findings = assess(scenes, LEVELS, Context(Threads(1)))
+    return wishes(scenes, findings, LEVELS, Context(Threads(1)))
 
 
 def verdicts(item: Item) -> set[tuple[str, Verdict]]:
-    _, (findings,) = assess([classify(item)], LEVELS, Threads(1), Silent())
+    _, (findings,) = assess([classify(item)], LEVELS, Context(Threads(1)))
     return {(finding.model, finding.verdict) for finding in findings}
 
 
@@ -69,7 +70,7 @@ def test_a_friction_that_decides_is_asked_for_and_settles_what_it_says() -> None
 def test_what_would_settle_nothing_is_a_waste() -> None:
     """Friction and room are both open, and so wide that neither settles anything without the other."""
     found = {wish.field: wish for wish in surveyed(replace(BOX, clearance_m=None))}
-    _, (findings,) = assess([classify(replace(BOX, clearance_m=None))], LEVELS, Threads(1), Silent())
+    _, (findings,) = assess([classify(replace(BOX, clearance_m=None))], LEVELS, Context(Threads(1)))
     (sliding,) = [f for f in findings if f.model == "sliding"]
     for wish in found.values():
         assert wish.waste == (wish.settles == 0.0)
@@ -187,8 +188,8 @@ def test_what_is_open_on_an_isolator_is_not_tried_without_it() -> None:
         "horizontal_isolator", {"frequency": 0.5, "damping": 0.02, "friction": 0.05, "stroke": 0.3}, "Ann"
     )
     stands = placed(classify(BOX), [springs])
-    _, (own,) = assess([stands.scene], LEVELS, Threads(1), Silent())
-    _, (free,) = assess([classify(BOX)], LEVELS, Threads(1), Silent())
+    _, (own,) = assess([stands.scene], LEVELS, Context(Threads(1)))
+    _, (free,) = assess([classify(BOX)], LEVELS, Context(Threads(1)))
     above = [f for f in free if f.verdict is Verdict.UNDETERMINED]
     assert above
-    assert wishes([stands.scene], [[*own, *above]], LEVELS, Threads(1), Silent()) == []
+    assert wishes([stands.scene], [[*own, *above]], LEVELS, Context(Threads(1))) == []
