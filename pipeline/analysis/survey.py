@@ -2,7 +2,7 @@
 
 A verdict is open because inputs are uncertain.  For each of them in turn, the object is assessed as if that one had
 been measured, as low, best and high; the others stay as uncertain as they are.  If the verdict stays open at all three,
-measuring that alone is taken for a waste.
+measuring that alone is taken to settle nothing.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,7 +13,7 @@ from pipeline.analysis.assess import assess
 from pipeline.analysis.context import Context
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.models import model_named
-from pipeline.records import Estimate, Finding, Numerics, Origin, Scene, Verdict, Wish
+from pipeline.records import Estimate, Finding, MeasurementRequest, Numerics, Origin, Scene, Verdict
 from pipeline.records.numerics import HISTORIES
 from pipeline.tables import number, table
 
@@ -42,9 +42,17 @@ class Measurable:
 
 @cache
 def measurables() -> tuple[Measurable, ...]:
-    """Return what a survey may ask for, in the order of the table.
+    """Return what a survey may ask for.
 
-    raises : TableError for a factor that is no number
+    Returns
+    -------
+    tuple of Measurable
+        In the order of the table.
+
+    Raises
+    ------
+    TableError
+        For a factor that is no number.
     """
     out = []
     for line, row in enumerate(table("survey"), start=2):
@@ -70,13 +78,13 @@ _MISSING = {
 """How a scene's words for what is missing begin, and the field that would mend it."""
 
 
-def wishes(
+def measurement_requests(
     scenes: Sequence[Scene],
     findings: Sequence[Sequence[Finding]],
     levels: Sequence[LevelMotions],
     context: Context,
     numerics: Numerics = HISTORIES,
-) -> list[Wish]:
+) -> list[MeasurementRequest]:
     """Return what is worth measuring on the objects on display.
 
     Parameters
@@ -94,10 +102,10 @@ def wishes(
 
     Returns
     -------
-    list of Wish
+    list of MeasurementRequest
         What settles most first.
     """
-    out: list[Wish] = []
+    out: list[MeasurementRequest] = []
     shown = [at for at, scene in enumerate(scenes) if scene.item.on_display]
     for start in range(0, len(shown), BATCH):
         context.progress.step("survey", start, len(shown))
@@ -115,21 +123,43 @@ def wishes(
         for (trial, _), answer in zip(tried, answers, strict=True):
             decided = sum((f.model, f.level) in trial.open and f.verdict is not Verdict.UNDETERMINED for f in answer)
             settled[id(trial)] = settled.get(id(trial), 0) + decided
-        out += [_wish(trial, settled.get(id(trial), 0) / len(ENDS)) for trial in trials]
+        out += [_request(trial, settled.get(id(trial), 0) / len(ENDS)) for trial in trials]
     context.progress.step("survey", len(shown), len(shown))
     return in_order(out)
 
 
-def in_order(found: Sequence[Wish]) -> list[Wish]:
-    """Return the wishes, what settles most first; ties by gallery, object and field."""
+def in_order(found: Sequence[MeasurementRequest]) -> list[MeasurementRequest]:
+    """Return measurement requests, what settles most first.
+
+    Parameters
+    ----------
+    found
+        In any order.
+
+    Returns
+    -------
+    list of MeasurementRequest
+        Ties by gallery, object and field.
+    """
     return sorted(found, key=lambda w: (-w.gain, -w.unlocks, w.gallery, w.object_number, w.field))
 
 
-def by_gallery(found: Sequence[Wish]) -> Mapping[str, Sequence[Wish]]:
-    """Return the wishes of each gallery, galleries by name, each in the order in which they stand."""
-    out: dict[str, list[Wish]] = {gallery: [] for gallery in sorted({w.gallery for w in found})}
-    for wish in found:
-        out[wish.gallery].append(wish)
+def by_gallery(found: Sequence[MeasurementRequest]) -> Mapping[str, Sequence[MeasurementRequest]]:
+    """Return the measurement requests of each gallery.
+
+    Parameters
+    ----------
+    found
+        In the order in which they are to stand.
+
+    Returns
+    -------
+    mapping of str to sequence of MeasurementRequest
+        Galleries by name.
+    """
+    out: dict[str, list[MeasurementRequest]] = {gallery: [] for gallery in sorted({w.gallery for w in found})}
+    for request in found:
+        out[request.gallery].append(request)
     return out
 
 
@@ -171,7 +201,18 @@ def _inputs(name: str) -> frozenset[str]:
 
 
 def measurable_of(words: str) -> str | None:
-    """Return the field that would mend what a scene says is missing; None where no measurement would."""
+    """Return the field that would mend what a scene says is missing.
+
+    Parameters
+    ----------
+    words
+        One of the scene's `missing`.
+
+    Returns
+    -------
+    str or None
+        A field of the record; None where no measurement would mend it.
+    """
     return next((f for start, f in _MISSING.items() if words == start or words.startswith(f"{start} (")), None)
 
 
@@ -195,13 +236,13 @@ def _measured(trial: _Trial, end: str) -> Scene:
     return replace(trial.scene, parameters=pinned, models=trial.models)
 
 
-def _wish(trial: _Trial, settles: float) -> Wish:
+def _request(trial: _Trial, settles: float) -> MeasurementRequest:
     item, measurable = trial.scene.item, trial.measurable
     first = next((trial.scene.parameters[n] for n in measurable.parameters if n in trial.scene.parameters), None)
     low = best = high = None
     if first is not None and measurable.factor is not None:
         low, best, high = (measurable.factor * end for end in (first.low, first.value, first.high))
-    return Wish(
+    return MeasurementRequest(
         item.object_number,
         item.gallery,
         item.title,

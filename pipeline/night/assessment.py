@@ -14,7 +14,7 @@ from pipeline.analysis.faults import Fault, apart, each_apart, fault, unassessed
 from pipeline.analysis.fragility.objects import fragilities
 from pipeline.analysis.neighbours import neighbours
 from pipeline.analysis.rules import Table
-from pipeline.analysis.survey import in_order, wishes
+from pipeline.analysis.survey import in_order, measurement_requests
 from pipeline.mitigate import advise
 from pipeline.mitigate.installed import Measure, Placed, assess_above, placed
 from pipeline.models import model_named
@@ -29,9 +29,9 @@ from pipeline.records import (
     Found,
     Fragility,
     Item,
+    MeasurementRequest,
     Scene,
     Support,
-    Wish,
 )
 
 
@@ -73,18 +73,18 @@ def find(
     ]
     assessments = tuple(assessment for assessment, _ in every)
     began = perf_counter()
-    wished: tuple[Wish, ...] | None = None
+    requests: tuple[MeasurementRequest, ...] | None = None
     if brief.surveyed:
         # Each trial is asked once: a chart would not pay.
         assessments, asked = each_apart(
             assessments,
-            lambda scenes, found: wishes(
+            lambda scenes, found: measurement_requests(
                 scenes, found, storey.shaking, Context(context.executor), brief.analysis.numerics.integrated
             ),
             "what is worth measuring on it is not known",
             faults,
         )
-        wished = tuple(in_order(asked))
+        requests = tuple(in_order(asked))
     seconds = perf_counter() - began if brief.surveyed else 0.0
     assessments, spacings = each_apart(
         assessments,
@@ -93,7 +93,7 @@ def find(
         faults,
     )
     needing = {a.scene.item.object_number: counts for a, counts in every if counts}
-    return Found(assessments, wished, tuple(spacings), needing), seconds, faults
+    return Found(assessments, requests, tuple(spacings), needing), seconds, faults
 
 
 def by_object(decisions: Iterable[Decision]) -> dict[str, list[Decision]]:

@@ -14,6 +14,7 @@ from pipeline.records.change import (
 )
 from pipeline.records.decision import Basis, Decision, DecisionKind, Standing, in_force
 from pipeline.records.fragility import Fragility
+from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.model import Bounds, ChartAxis, Columns, Model
 from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.numerics import Numerics
@@ -34,7 +35,6 @@ from pipeline.records.scene import (
     Scene,
     Support,
 )
-from pipeline.records.wish import Wish
 
 __all__ = [
     "ITEM_FIELDS",
@@ -66,6 +66,7 @@ __all__ = [
     "InputChange",
     "Item",
     "Mark",
+    "MeasurementRequest",
     "Model",
     "Motion",
     "MotionChange",
@@ -91,7 +92,6 @@ __all__ = [
     "Urgent",
     "Verdict",
     "VerdictChange",
-    "Wish",
     "Zone",
     "in_force",
 ]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.result import Assessment, Spacing
-from pipeline.records.wish import Wish
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +18,7 @@ class Found:
     """
 
     assessments: tuple[Assessment, ...]
-    wishes: tuple[Wish, ...] | None = None
+    wishes: tuple[MeasurementRequest, ...] | None = None
     spacings: tuple[Spacing, ...] = ()
     needing: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
 
