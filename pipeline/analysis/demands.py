@@ -69,7 +69,16 @@ class Demands:
     def settle(self, rows: Indices, columns: Columns, step: Step, errors: Columns | None = None) -> None:
         """Fill in what a chart or histories give for some rows.
 
-        errors : by output, (n,): how far off it may be; None: not at all
+        Parameters
+        ----------
+        rows
+            (n,) rows of the work's values.
+        columns
+            All outputs, "error" and "note", (n,) each, in the units of the model.
+        step
+            What gave them.
+        errors
+            By output, (n,): how far off it may be; None: not at all.
         """
         if rows.size == 0:
             return
@@ -92,13 +101,35 @@ class Demands:
             self._kept.setdefault(name, []).append(column)
 
     def column(self, output: str, rows: Indices) -> Array:
-        """Return an output of rows that were looked up or integrated."""
+        """Return an output of rows that were looked up or integrated.
+
+        Parameters
+        ----------
+        output
+            Its name.
+        rows
+            (n,) rows of the work's values.
+
+        Returns
+        -------
+        ndarray
+            (n,) in the unit of the output.
+        """
         return self._whole(output)[self._slot[rows]]
 
     def told(self, row: int) -> dict[str, float]:
         """Return all outputs of one row, with their errors and "note".
 
-        Zeros where it was neither looked up nor integrated.  Where the certificate is the demand, that is the demand.
+        Parameters
+        ----------
+        row
+            Of the work's values.
+
+        Returns
+        -------
+        dict of str to float
+            By name, in the units of the model.  Zeros where it was neither looked up nor integrated.  Where the
+            certificate is the demand, that is the demand.
         """
         model, at = self.work.model, int(self._slot[row])
         names = (*(q.name for q in model.gives), "error", *model.errors.values(), "note")
@@ -110,7 +141,18 @@ class Demands:
         return out
 
     def points(self, output: str) -> tuple[Array, Array]:
-        """Return the range of what is best known of an output, (k,) each: of what was only bounded both bounds."""
+        """Return the range of what is best known of an output.
+
+        Parameters
+        ----------
+        output
+            Its name.
+
+        Returns
+        -------
+        low, high : ndarray
+            (k,) each, in the unit of the output: of what was only bounded both bounds, else the same twice.
+        """
         low, high = self.low[output], self.high[output]
         charted = np.flatnonzero(self.step == Step.CHART)
         if charted.size:

@@ -113,12 +113,42 @@ def _rounded(value: float) -> float:
 
 
 def sliding_of(motion: Motion, charts: ChartCache, fixed: Mapping[str, Any]) -> ResponseChart:
-    """Return the chart of sliding against friction: the very one that verdicts are found by."""
+    """Return the chart of sliding against friction: the very one that verdicts are found by.
+
+    Parameters
+    ----------
+    motion
+        What shakes it.
+    charts
+        Where response charts are found and kept.
+    fixed
+        The model's parameters besides that of the axis.
+
+    Returns
+    -------
+    ResponseChart
+        Displacement [m] against friction.
+    """
     return response_chart("sliding", motion, numerics=deciding("sliding"), charts=charts, **fixed)
 
 
 def swing_of(motion: Motion, charts: ChartCache, fixed: Mapping[str, Any]) -> ResponseChart:
-    """Return the chart of a swing against its length."""
+    """Return the chart of a swing against its length.
+
+    Parameters
+    ----------
+    motion
+        What shakes it.
+    charts
+        Where response charts are found and kept.
+    fixed
+        The model's parameters besides that of the axis.
+
+    Returns
+    -------
+    ResponseChart
+        Displacement [m] against length [m].
+    """
     return response_chart(
         "swing",
         motion,
@@ -130,7 +160,22 @@ def swing_of(motion: Motion, charts: ChartCache, fixed: Mapping[str, Any]) -> Re
 
 
 def isolator_of(motion: Motion, charts: ChartCache, fixed: Mapping[str, Any]) -> ResponseChart:
-    """Return the chart of what a horizontal isolator passes on against its frequency."""
+    """Return the chart of what a horizontal isolator passes on against its frequency.
+
+    Parameters
+    ----------
+    motion
+        What shakes it.
+    charts
+        Where response charts are found and kept.
+    fixed
+        The model's parameters besides that of the axis.
+
+    Returns
+    -------
+    ResponseChart
+        Acceleration [m/s2] against frequency [Hz].
+    """
     numerics = Numerics(tolerance=PICTURED, first=True)
     return response_chart("horizontal_isolator", motion, numerics=numerics, charts=charts, **fixed)
 
@@ -206,7 +251,24 @@ def stability_chart(motion: Motion) -> Chart:
 
 
 def sliding_chart(motion: Motion, charts: ChartCache) -> Chart:
-    """Return the largest sliding displacement against friction (Figure 4)."""
+    """Return the largest sliding displacement against friction (Figure 4).
+
+    Parameters
+    ----------
+    motion
+        What it is of.
+    charts
+        Where response charts are found and kept.
+
+    Returns
+    -------
+    Chart
+        Largest displacement [m] against friction.
+
+    References
+    ----------
+    Agbabian et al. (1991), Figure 4.
+    """
     made = {label: sliding_of(motion, charts, fixed) for label, fixed in SLIDING.items()}
     return Chart(
         chart_key("sliding", motion),
@@ -239,7 +301,24 @@ def path_chart(motion: Motion) -> Chart:
 
 
 def swing_chart(motion: Motion, charts: ChartCache) -> Chart:
-    """Return the swing of a hung object against its suspension length, for four dampings (Figure 5)."""
+    """Return the swing of a hung object against its suspension length, for four dampings (Figure 5).
+
+    Parameters
+    ----------
+    motion
+        What it is of.
+    charts
+        Where response charts are found and kept.
+
+    Returns
+    -------
+    Chart
+        Largest displacement [m] against suspension length [m].
+
+    References
+    ----------
+    Agbabian et al. (1991), Figure 5.
+    """
     made = {label: swing_of(motion, charts, fixed) for label, fixed in SWINGS.items()}
     return Chart(
         chart_key("swing", motion),
@@ -254,7 +333,24 @@ def swing_chart(motion: Motion, charts: ChartCache) -> Chart:
 
 
 def isolator_chart(motion: Motion, charts: ChartCache) -> Chart:
-    """Return the peak acceleration on a horizontal isolator against its frequency, for four frictions (Figure 6)."""
+    """Return the peak acceleration on a horizontal isolator against its frequency, for four frictions (Figure 6).
+
+    Parameters
+    ----------
+    motion
+        What it is of.
+    charts
+        Where response charts are found and kept.
+
+    Returns
+    -------
+    Chart
+        Peak acceleration [m/s2] against frequency [Hz].
+
+    References
+    ----------
+    Agbabian et al. (1991), Figure 6.
+    """
     made = {label: isolator_of(motion, charts, fixed) for label, fixed in ISOLATORS.items()}
     return Chart(
         chart_key("isolator", motion),

@@ -40,13 +40,41 @@ class Case:
 
     @classmethod
     def of(cls, work: Work, output: str, analyses: Indices, capacities: Sequence[Estimate]) -> "Case":
-        """Return the case of some analyses with their capacities."""
+        """Return the case of some analyses with their capacities.
+
+        Parameters
+        ----------
+        work
+            That the analyses belong to.
+        output
+            Of the work's model, that counts for them.
+        analyses
+            (m,) places in the work's list.
+        capacities
+            Of each of them, in the unit of the output.
+
+        Returns
+        -------
+        Case
+            With their parameter sets.
+        """
         spans = work.spans if analyses.size == work.scenes.size else work.spans.take(analyses)
         ends = tuple(np.array([getattr(c, end) for c in capacities]) for end in ("low", "value", "high"))
         return cls(output, analyses, spans, (ends[0], ends[1], ends[2]), capacities)
 
     def take(self, chosen: Indices) -> "Case":
-        """Return a part of the analyses."""
+        """Return a part of the analyses.
+
+        Parameters
+        ----------
+        chosen
+            (p,) places in the case.
+
+        Returns
+        -------
+        Case
+            Of these, in their order.
+        """
         low, best, high = self.capacity
         capacity = (low[chosen], best[chosen], high[chosen])
         estimates = [self.estimates[at] for at in chosen]
@@ -129,7 +157,26 @@ class FidelitySearch:
     def begin(
         cls, work: Work, level: LevelMotions, outputs: Sequence[str], context: Context, numerics: Numerics
     ) -> "FidelitySearch":
-        """Bound everything."""
+        """Bound everything.
+
+        Parameters
+        ----------
+        work
+            Analyses (m,) of one model.
+        level
+            The motions.
+        outputs
+            Names of the model's outputs that count.
+        context
+            Where it runs, and what was computed before.
+        numerics
+            How finely.
+
+        Returns
+        -------
+        FidelitySearch
+            At its first step; no verdict is looked for yet.
+        """
         auto = numerics.fidelity == AUTO
         found = [bounded(work, motion, outputs, context.executor, whole=auto) for motion in level.motions]
         effort = Effort(analyses=work.scenes.size, sets=work.size * len(found))
@@ -137,7 +184,18 @@ class FidelitySearch:
         return cls(work, level, context, numerics, found, decided, effort)
 
     def decide(self, case: Case) -> Known:
-        """Go on until the verdict of every analysis of the case stands."""
+        """Go on until the verdict of every analysis of the case stands.
+
+        Parameters
+        ----------
+        case
+            The analyses (m,).
+
+        Returns
+        -------
+        Known
+            Their verdicts.
+        """
         if self.numerics.fidelity == CHART:
             self._up(Step.CHART, [self._unknown(case, found) for found in self.found])
         if self.numerics.fidelity != AUTO:
@@ -155,6 +213,11 @@ class FidelitySearch:
         """Find the numbers of what does not pass: the highest demand, that of the best estimates, what the object does.
 
         Nobody needs more of what passes than that it stays below its capacity.
+
+        Parameters
+        ----------
+        case, known
+            The analyses (m,), and their verdicts as `decide` returned them.
         """
         chosen = np.flatnonzero(~known.passes)
         if chosen.size == 0:
@@ -173,7 +236,20 @@ class FidelitySearch:
             self.effort.numbers += self._up(Step.HISTORY, moving)
 
     def governing(self, case: Case) -> tuple[Indices, Indices]:
-        """Return under which motion the best estimates of each analysis demand most, and their row, (m,) each."""
+        """Return under which motion the best estimates of each analysis demand most.
+
+        Parameters
+        ----------
+        case
+            The analyses (m,).
+
+        Returns
+        -------
+        motion : ndarray of int
+            (m,) places in the level's motions.
+        row : ndarray of int
+            (m,) rows of the work's values.
+        """
         bests = case.spans.rows[case.spans.starts]
         most = np.full(bests.shape[0], -np.inf)
         motion, row = np.zeros(bests.shape[0], dtype=np.intp), bests[:, 0].copy()
@@ -185,13 +261,30 @@ class FidelitySearch:
         return motion, row
 
     def count(self, case: Case) -> None:
-        """Add up by what the analyses of a case were decided, and how many needed any history."""
+        """Add to the effort by what the analyses of a case were decided, and how many needed any history.
+
+        Parameters
+        ----------
+        case
+            The analyses (m,), decided.
+        """
         for step in Step:
             self.effort.decided[step] += int(np.count_nonzero(self.decided[case.analyses] == step))
         self.effort.needing += int(np.count_nonzero(self.needed(case)))
 
     def needed(self, case: Case) -> Mask:
-        """Return for which analyses of a case any history was run."""
+        """Return for which analyses of a case any history was run.
+
+        Parameters
+        ----------
+        case
+            The analyses (m,), decided.
+
+        Returns
+        -------
+        ndarray of bool
+            (m,).
+        """
         steps = [case.spans.furthest(found.step) for found in self.found]
         return np.asarray(np.max(steps, axis=0) == Step.HISTORY)
 

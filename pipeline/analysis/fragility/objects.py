@@ -39,7 +39,20 @@ class Stripe:
 def hazard_of(stripes: Sequence[Stripe]) -> Hazard:
     """Return the hazard curve through the levels that have a return period, at the geometric mean of their intensities.
 
-    raises : NoHazardError (see `Hazard.of`)
+    Parameters
+    ----------
+    stripes
+        Levels of shaking; those without a return period have no say.
+
+    Returns
+    -------
+    Hazard
+        Annual rate of exceedance against peak horizontal acceleration [m/s2].
+
+    Raises
+    ------
+    NoHazardError
+        See `Hazard.of`.
     """
     told = [s for s in stripes if s.return_period_years is not None and s.motions]
     with np.errstate(divide="ignore"):
