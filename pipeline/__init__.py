@@ -9,7 +9,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from pipeline.analysis.response import respond, trace, transmit
+    from pipeline.analysis.response import respond, trace
+    from pipeline.analysis.transmission import transmit
     from pipeline.motions import read_motion
     from pipeline.records import Motion
 
@@ -21,7 +22,7 @@ _HOMES = {
     "read_motion": "pipeline.motions",
     "respond": "pipeline.analysis.response",
     "trace": "pipeline.analysis.response",
-    "transmit": "pipeline.analysis.response",
+    "transmit": "pipeline.analysis.transmission",
 }
 
 

@@ -99,4 +99,4 @@ def test_the_place_of_a_fault_is_the_innermost_of_ours() -> None:
     with pytest.raises(AttributeError) as met:
         pipeline.respond("sliding", object(), friction_static=0.2)  # type: ignore[arg-type]
     assert fault_words(met.value).startswith("AttributeError: 'object' object has no attribute")
-    assert "(analysis/response.py, line " in fault_words(met.value)
+    assert "(analysis/model_runs.py, line " in fault_words(met.value)

@@ -2,42 +2,57 @@
 
 from collections.abc import MutableMapping, Sequence
 
+from pipeline.analysis.context import Context
 from pipeline.analysis.findings import findings
 from pipeline.analysis.plan import Plan, plan
-from pipeline.analysis.refinement import AUTO, Effort, examine
-from pipeline.analysis.response_charts import SHELF, Shelf
+from pipeline.analysis.refinement import Effort, examine
 from pipeline.analysis.verdicts import Judgement, LevelMotions, capacity_of, judge
-from pipeline.records import Executor, Finding, Progress, Scene
+from pipeline.records import Finding, Numerics, Scene
+from pipeline.records.numerics import AUTO, CHART, VERDICTS
 
 __all__ = ["FIDELITIES", "Judgement", "LevelMotions", "assess", "capacity_of", "judge"]
 
-FIDELITIES = (AUTO, "chart", "history", "reference")
-"""How finely verdicts can be found; `auto` climbs only until each of them stands."""
+FIDELITIES = (AUTO, CHART, "history", "reference")
+"""How finely verdicts can be found; `auto` goes only as far as each of them needs."""
 
 
 def assess(
     scenes: Sequence[Scene],
     levels: Sequence[LevelMotions],
-    executor: Executor,
-    progress: Progress,
+    context: Context,
+    numerics: Numerics = VERDICTS,
     *,
-    fidelity: str = AUTO,
-    azimuth_step: float = 10.0,
-    charts: Shelf = SHELF,
     outcomes: bool = True,
     efforts: MutableMapping[str, Effort] | None = None,
     needing: Sequence[MutableMapping[str, int]] | None = None,
 ) -> tuple[Plan, list[list[Finding]]]:
     """Run everything the scenes require under every motion and judge it.
 
-    levels    : of one site, at least one
-    fidelity  : one of FIDELITIES; `auto` gives the verdicts of `history`
-    charts    : where charts are found and kept
-    outcomes  : whether to find numbers beyond the verdict: what fails, by how much, and what it does then
-    efforts   : what the verdicts took is added here, by the name of the model
-    needing   : for how many of each scene's analyses any history was run is added here, by the name of the model
-    returns   : the plan (with the reasons for models not run) and the findings of each scene, in their order
+    Parameters
+    ----------
+    scenes
+        The objects as they stand.
+    levels
+        Of one site, at least one.
+    context
+        Where it runs, who is told, and what was computed before.
+    numerics
+        How finely: one of `FIDELITIES`; "auto" gives the verdicts of "history".
+    outcomes
+        Whether to find numbers beyond the verdict: what fails, by how much, and what it does then.
+    efforts
+        What the verdicts took is added here, by the name of the model.
+    needing
+        For how many of each scene's analyses any history was run is added here, by the name of the model.
+
+    Returns
+    -------
+    plan : Plan
+        What was run, with the reasons for models not run.
+    findings : list of list of Finding
+        Of each scene, in their order.
     """
+    progress = context.progress
     todo = plan(scenes, levels[0].x_azimuth)
     found: list[list[Finding]] = [[] for _ in scenes]
     total = len(todo.work) * sum(len(level.motions) for level in levels)
@@ -45,26 +60,17 @@ def assess(
     progress.step("analyses", done, total)
     for level in levels:
         for work in todo.work:
-            examined = examine(
-                work,
-                scenes,
-                level,
-                executor,
-                fidelity=fidelity,
-                azimuth_step=azimuth_step,
-                charts=charts,
-                outcomes=outcomes,
-            )
+            examined = examine(work, scenes, level, context, numerics, outcomes=outcomes)
             for case, known in examined.cases:
-                made = findings(examined.climb, case, known, scenes)
+                made = findings(examined.search, case, known, scenes)
                 where = work.scenes[case.analyses]
                 for index, finding in zip(where.tolist(), made, strict=True):
                     found[index].append(finding)
                 if needing is not None:
-                    for index in where[examined.climb.needed(case)].tolist():
+                    for index in where[examined.search.needed(case)].tolist():
                         needing[index][work.model.name] = needing[index].get(work.model.name, 0) + 1
             if efforts is not None:
-                efforts.setdefault(work.model.name, Effort()).add(examined.climb.effort)
+                efforts.setdefault(work.model.name, Effort()).add(examined.search.effort)
             done += len(level.motions)
             progress.step("analyses", done, total)
     return todo, found

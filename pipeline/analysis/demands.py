@@ -7,13 +7,15 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.analysis.chart_runs import deciding, look_up
+from pipeline.analysis.context import Context
+from pipeline.analysis.model_runs import run_model
 from pipeline.analysis.plan import Indices, Work
-from pipeline.analysis.response import deciding, look_up, run_model
-from pipeline.analysis.response_charts import Shelf
-from pipeline.analysis.response_charts.histories import Histories
+from pipeline.analysis.response_charts import ChartCache
 from pipeline.cache import key_of
 from pipeline.quantities import Array
-from pipeline.records import Columns, Executor, Model, Motion
+from pipeline.records import Columns, Executor, Model, Motion, Numerics
+from pipeline.records.numerics import AUTO
 
 CHUNK = 96
 """Parameter sets in one task: small enough to share between workers, large enough to make the task worth its call."""
@@ -67,7 +69,16 @@ class Demands:
     def settle(self, rows: Indices, columns: Columns, step: Step, errors: Columns | None = None) -> None:
         """Fill in what a chart or histories give for some rows.
 
-        errors : by output, (n,): how far off it may be; None: not at all
+        Parameters
+        ----------
+        rows
+            (n,) rows of the work's values.
+        columns
+            All outputs, "error" and "note", (n,) each, in the units of the model.
+        step
+            What gave them.
+        errors
+            By output, (n,): how far off it may be; None: not at all.
         """
         if rows.size == 0:
             return
@@ -90,13 +101,35 @@ class Demands:
             self._kept.setdefault(name, []).append(column)
 
     def column(self, output: str, rows: Indices) -> Array:
-        """Return an output of rows that were looked up or integrated."""
+        """Return an output of rows that were looked up or integrated.
+
+        Parameters
+        ----------
+        output
+            Its name.
+        rows
+            (n,) rows of the work's values.
+
+        Returns
+        -------
+        ndarray
+            (n,) in the unit of the output.
+        """
         return self._whole(output)[self._slot[rows]]
 
     def told(self, row: int) -> dict[str, float]:
         """Return all outputs of one row, with their errors and "note".
 
-        Zeros where it was neither looked up nor integrated.  Where the certificate is the demand, that is the demand.
+        Parameters
+        ----------
+        row
+            Of the work's values.
+
+        Returns
+        -------
+        dict of str to float
+            By name, in the units of the model.  Zeros where it was neither looked up nor integrated.  Where the
+            certificate is the demand, that is the demand.
         """
         model, at = self.work.model, int(self._slot[row])
         names = (*(q.name for q in model.gives), "error", *model.errors.values(), "note")
@@ -108,7 +141,18 @@ class Demands:
         return out
 
     def points(self, output: str) -> tuple[Array, Array]:
-        """Return the range of what is best known of an output, (k,) each: of what was only bounded both bounds."""
+        """Return the range of what is best known of an output.
+
+        Parameters
+        ----------
+        output
+            Its name.
+
+        Returns
+        -------
+        low, high : ndarray
+            (k,) each, in the unit of the output: of what was only bounded both bounds, else the same twice.
+        """
         low, high = self.low[output], self.high[output]
         charted = np.flatnonzero(self.step == Step.CHART)
         if charted.size:
@@ -144,7 +188,23 @@ def _bound(task: _BoundTask) -> _Bounded:
 def bounded(work: Work, motion: Motion, outputs: Sequence[str], executor: Executor, *, whole: bool = True) -> Demands:
     """Return what is known of the outputs that count without any integration.
 
-    whole : by the model's bounds too; else only by its certificate
+    Parameters
+    ----------
+    work
+        Parameter sets (k,) of one model.
+    motion
+        What shakes them.
+    outputs
+        Names of the outputs that count.
+    executor
+        Where the sets are bounded.
+    whole
+        By the model's bounds too; else only by its certificate.
+
+    Returns
+    -------
+    Demands
+        Ranges of the outputs, row for row of the work's values.
     """
     model, size = work.model, work.size
     low = {output: np.zeros(size) for output in outputs}
@@ -181,43 +241,50 @@ def bounded(work: Work, motion: Motion, outputs: Sequence[str], executor: Execut
     return Demands(work, motion, np.zeros(size, dtype=np.int8), low, high, note, np.full(size, -1, dtype=np.int32))
 
 
-_RunTask = tuple[Model, Motion, float | None, Mapping[str, Array], str, float]
+_RunTask = tuple[Model, Motion, float | None, Mapping[str, Array], Numerics]
 
 
 def _run(task: _RunTask) -> Columns:
-    model, motion, angle, values, fidelity, azimuth_step = task
-    return run_model(model, motion, values, fidelity, angle, None, azimuth_step)[0]
+    model, motion, angle, values, numerics = task
+    return run_model(model, motion, values, numerics, angle)[0]
 
 
-def integrate(
-    found: Demands,
-    rows: Indices,
-    executor: Executor,
-    fidelity: str,
-    azimuth_step: float,
-    histories: Histories | None = None,
-) -> int:
-    """Integrate some rows, in chunks on the executor; return how many there were.
+def integrate(found: Demands, rows: Indices, context: Context, numerics: Numerics) -> int:
+    """Integrate some rows, in chunks on the executor; what the context remembers is taken over.
 
-    histories : those that were run before, which are taken over; None: all are run
+    Parameters
+    ----------
+    found
+        What is known so far; filled in.
+    rows
+        (n,) rows of the work's values.
+    context
+        Where they are run, and the histories that were run before.
+    numerics
+        How finely: at "reference" where that is its fidelity, else at "history".
+
+    Returns
+    -------
+    int
+        How many rows there were.
     """
-    work = found.work
+    work, histories, numerics = found.work, context.histories, numerics.integrated
     # What a motion is made ready for is worth as many sets as there are, where nobody else waits for some.
-    most = WHOLE if executor.workers == 1 else CHUNK
+    most = WHOLE if context.executor.workers == 1 else CHUNK
     groups: list[_Group] = []
     tasks: list[_RunTask] = []
     for angle, group in work.by_angle(rows):
         each, place = np.unique(work.first[group], return_inverse=True)
-        key = key_of(work.model.name, found.motion.hash, angle, fidelity, azimuth_step)
+        key = key_of(work.model.name, found.motion.hash, angle, numerics.fidelity, numerics.azimuth_step)
         there = np.zeros(each.size, dtype=bool)
         known: Columns = {}
         if histories is not None:
             there, known = histories.recall(key, work.some(each))
         left = each[~there]
         chunks = [left[i : i + most] for i in range(0, left.size, most)]
-        tasks += [(work.model, found.motion, angle, work.some(some), fidelity, azimuth_step) for some in chunks]
+        tasks += [(work.model, found.motion, angle, work.some(some), numerics) for some in chunks]
         groups.append(_Group(key, group, place, each, there, known, len(chunks)))
-    ran = iter(executor.map(_run, tasks))
+    ran = iter(context.executor.map(_run, tasks))
     for one in groups:
         columns = dict(one.known)
         parts = [next(ran) for _ in range(one.chunks)]
@@ -255,19 +322,27 @@ def _merged(there: NDArray[np.bool_], known: Array | None, fresh: Array) -> Arra
     return out
 
 
-def chart(found: Demands, rows: Indices, charts: Shelf, azimuth_step: float, *, thrifty: bool) -> None:
+def chart(found: Demands, rows: Indices, charts: ChartCache, numerics: Numerics) -> None:
     """Look some rows up in charts; those that are on none stay as they are.
 
-    thrifty : build a chart only where that costs less than the histories that it takes the place of
+    Parameters
+    ----------
+    found
+        What is known so far; filled in.
+    rows
+        (n,) rows of the work's values.
+    charts
+        Where charts are found and kept.
+    numerics
+        How verdicts are found.  At "auto" a chart is built only where that costs less than the histories that it takes
+        the place of.
     """
     model, work = found.work.model, found.work
     if model.chart is None or rows.size == 0:
         return
-    least, made = model.chart.nodes if thrifty else 0, deciding(model.name)
+    least, finely = model.chart.nodes if numerics.fidelity == AUTO else 0, deciding(model.name, numerics)
     for angle, group in work.by_angle(rows):
-        looked = look_up(
-            model, found.motion, work.some(group), angle, None, azimuth_step, charts=charts, least=least, **made
-        )
+        looked = look_up(model, found.motion, work.some(group), finely, angle, charts, least)
         there = looked.found
         columns = {name: column[there] for name, column in looked.columns.items()}
         columns |= {model.error_of(o): looked.bounds[o][there] for o in (model.gives[0].name, model.demand)}

@@ -6,12 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.analysis.response import deciding, respond, response_chart, trace
-from pipeline.analysis.response_charts import ResponseChart, Shelf
+from pipeline.analysis.chart_runs import deciding, response_chart
+from pipeline.analysis.context import Context
+from pipeline.analysis.response import respond, trace
+from pipeline.analysis.response_charts import ChartCache, ResponseChart
 from pipeline.models.common import largest_push, largest_speed
 from pipeline.models.rocking import VELOCITY_SCREEN
 from pipeline.quantities import Array, G
-from pipeline.records import Axis, Chart, Curve, Executor, Motion, Zone
+from pipeline.records import Axis, Chart, Curve, Motion, Numerics, Zone
 
 SPECTRUM_FREQUENCIES = tuple(float(v) for v in np.round(np.geomspace(0.2, 50.0, 96), 4))
 PATH_FRICTION = 0.05
@@ -55,24 +57,39 @@ def chart_keys(motion: Motion) -> list[str]:
     return [chart_key(kind, motion) for kind in KINDS]
 
 
-def charts(motion: Motion, executor: Executor, shelf: Shelf) -> dict[str, Chart]:
-    """Return all charts of a motion, by key.
+def draw(motion: Motion, context: Context) -> dict[str, Chart]:
+    """Return all pictures of a motion.
 
-    shelf : where the response charts are found and kept that Figures 4, 5 and 6 are pictures of
+    Parameters
+    ----------
+    motion
+        What they are of.
+    context
+        Where they are made, and where the response charts are found and kept that Figures 4, 5 and 6 are pictures of.
+
+    Returns
+    -------
+    dict of str to Chart
+        By key, see `chart_keys`.
+
+    References
+    ----------
+    Agbabian, Masri, Nigbor and Ginell (1991), Figures 2 to 6.
     """
+    cached, executor = context.charts, context.executor
     curves = [
         *((sliding_of, fixed) for fixed in SLIDING.values()),
         *((swing_of, fixed) for fixed in SWINGS.values()),
         *((isolator_of, fixed) for fixed in ISOLATORS.values()),
     ]
     # Each chart is a piece of work of its own: a picture of four would leave the other cores waiting.
-    executor.map(lambda curve: curve[0](motion, shelf, curve[1]), curves)
+    executor.map(lambda curve: curve[0](motion, cached, curve[1]), curves)
     makers: Sequence[Callable[[Motion], Chart]] = (
         stability_chart,
-        partial(sliding_chart, shelf=shelf),
+        partial(sliding_chart, charts=cached),
         path_chart,
-        partial(swing_chart, shelf=shelf),
-        partial(isolator_chart, shelf=shelf),
+        partial(swing_chart, charts=cached),
+        partial(isolator_chart, charts=cached),
         spectrum_chart,
     )
     made = executor.map(lambda make: make(motion), makers)
@@ -87,28 +104,72 @@ def _rounded(value: float) -> float:
     return float(f"{value:.5g}")
 
 
-def sliding_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, Any]) -> ResponseChart:
-    """Return the chart of sliding against friction: the very one that verdicts are found by."""
-    return response_chart("sliding", motion, charts=shelf, **deciding("sliding"), **fixed)
+def sliding_of(motion: Motion, charts: ChartCache, fixed: Mapping[str, Any]) -> ResponseChart:
+    """Return the chart of sliding against friction: the very one that verdicts are found by.
+
+    Parameters
+    ----------
+    motion
+        What shakes it.
+    charts
+        Where response charts are found and kept.
+    fixed
+        The model's parameters besides that of the axis.
+
+    Returns
+    -------
+    ResponseChart
+        Displacement [m] against friction.
+    """
+    return response_chart("sliding", motion, numerics=deciding("sliding"), charts=charts, **fixed)
 
 
-def swing_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, Any]) -> ResponseChart:
-    """Return the chart of a swing against its length."""
+def swing_of(motion: Motion, charts: ChartCache, fixed: Mapping[str, Any]) -> ResponseChart:
+    """Return the chart of a swing against its length.
+
+    Parameters
+    ----------
+    motion
+        What shakes it.
+    charts
+        Where response charts are found and kept.
+    fixed
+        The model's parameters besides that of the axis.
+
+    Returns
+    -------
+    ResponseChart
+        Displacement [m] against length [m].
+    """
     return response_chart(
         "swing",
         motion,
-        azimuth_step=SWING_DIRECTIONS,
-        tolerance=PICTURED,
+        numerics=Numerics(azimuth_step=SWING_DIRECTIONS, tolerance=PICTURED, first=True),
         low=SHORTEST,
-        first=True,
-        charts=shelf,
+        charts=charts,
         **fixed,
     )
 
 
-def isolator_of(motion: Motion, shelf: Shelf, fixed: Mapping[str, Any]) -> ResponseChart:
-    """Return the chart of what a horizontal isolator passes on against its frequency."""
-    return response_chart("horizontal_isolator", motion, tolerance=PICTURED, first=True, charts=shelf, **fixed)
+def isolator_of(motion: Motion, charts: ChartCache, fixed: Mapping[str, Any]) -> ResponseChart:
+    """Return the chart of what a horizontal isolator passes on against its frequency.
+
+    Parameters
+    ----------
+    motion
+        What shakes it.
+    charts
+        Where response charts are found and kept.
+    fixed
+        The model's parameters besides that of the axis.
+
+    Returns
+    -------
+    ResponseChart
+        Acceleration [m/s2] against frequency [Hz].
+    """
+    numerics = Numerics(tolerance=PICTURED, first=True)
+    return response_chart("horizontal_isolator", motion, numerics=numerics, charts=charts, **fixed)
 
 
 def _pictured(made: ResponseChart, label: str) -> Curve:
@@ -181,9 +242,26 @@ def stability_chart(motion: Motion) -> Chart:
     )
 
 
-def sliding_chart(motion: Motion, shelf: Shelf) -> Chart:
-    """Return the largest sliding displacement against friction (Figure 4)."""
-    made = {label: sliding_of(motion, shelf, fixed) for label, fixed in SLIDING.items()}
+def sliding_chart(motion: Motion, charts: ChartCache) -> Chart:
+    """Return the largest sliding displacement against friction (Figure 4).
+
+    Parameters
+    ----------
+    motion
+        What it is of.
+    charts
+        Where response charts are found and kept.
+
+    Returns
+    -------
+    Chart
+        Largest displacement [m] against friction.
+
+    References
+    ----------
+    Agbabian et al. (1991), Figure 4.
+    """
+    made = {label: sliding_of(motion, charts, fixed) for label, fixed in SLIDING.items()}
     return Chart(
         chart_key("sliding", motion),
         "Sliding against friction",
@@ -214,9 +292,26 @@ def path_chart(motion: Motion) -> Chart:
     )
 
 
-def swing_chart(motion: Motion, shelf: Shelf) -> Chart:
-    """Return the swing of a hung object against its suspension length, for four dampings (Figure 5)."""
-    made = {label: swing_of(motion, shelf, fixed) for label, fixed in SWINGS.items()}
+def swing_chart(motion: Motion, charts: ChartCache) -> Chart:
+    """Return the swing of a hung object against its suspension length, for four dampings (Figure 5).
+
+    Parameters
+    ----------
+    motion
+        What it is of.
+    charts
+        Where response charts are found and kept.
+
+    Returns
+    -------
+    Chart
+        Largest displacement [m] against suspension length [m].
+
+    References
+    ----------
+    Agbabian et al. (1991), Figure 5.
+    """
+    made = {label: swing_of(motion, charts, fixed) for label, fixed in SWINGS.items()}
     return Chart(
         chart_key("swing", motion),
         "Swing of a hung object",
@@ -229,9 +324,26 @@ def swing_chart(motion: Motion, shelf: Shelf) -> Chart:
     )
 
 
-def isolator_chart(motion: Motion, shelf: Shelf) -> Chart:
-    """Return the peak acceleration on a horizontal isolator against its frequency, for four frictions (Figure 6)."""
-    made = {label: isolator_of(motion, shelf, fixed) for label, fixed in ISOLATORS.items()}
+def isolator_chart(motion: Motion, charts: ChartCache) -> Chart:
+    """Return the peak acceleration on a horizontal isolator against its frequency, for four frictions (Figure 6).
+
+    Parameters
+    ----------
+    motion
+        What it is of.
+    charts
+        Where response charts are found and kept.
+
+    Returns
+    -------
+    Chart
+        Peak acceleration [m/s2] against frequency [Hz].
+
+    References
+    ----------
+    Agbabian et al. (1991), Figure 6.
+    """
+    made = {label: isolator_of(motion, charts, fixed) for label, fixed in ISOLATORS.items()}
     return Chart(
         chart_key("isolator", motion),
         "Horizontal isolator",

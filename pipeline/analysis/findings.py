@@ -7,14 +7,16 @@ import numpy as np
 
 from pipeline import __version__
 from pipeline.analysis.demands import Step
+from pipeline.analysis.model_runs import run_model
 from pipeline.analysis.plan import Indices, Work
-from pipeline.analysis.refinement import Case, Climb, Known
-from pipeline.analysis.response import run_model
+from pipeline.analysis.refinement import Case, FidelitySearch, Known
 from pipeline.analysis.verdicts import LevelMotions, Mask, utilisation
 from pipeline.models.common import words
 from pipeline.quantities import Array
-from pipeline.records import Columns, Estimate, Finding, Mark, Model, Origin, Scene, Verdict
+from pipeline.records import Columns, Estimate, Finding, Mark, Model, Numerics, Origin, Scene, Verdict
 from pipeline.records.result import BOUNDS, DEMANDS
+
+_SCREEN = Numerics("screen")
 
 _DECIDED = {Step.BOUND: "certificate", Step.CHART: "chart", Step.HISTORY: "history"}
 
@@ -39,12 +41,12 @@ class _Numbers:
     enclosed: Mask
 
 
-def _numbers(climb: Climb, case: Case) -> _Numbers:
-    level, spans = climb.level, case.spans
-    points = [found.points(case.output) for found in climb.found]
+def _numbers(search: FidelitySearch, case: Case) -> _Numbers:
+    level, spans = search.level, case.spans
+    points = [found.points(case.output) for found in search.found]
     demand = level.over([spans.best(high) for _, high in points])
     slack = _gap(level.over([spans.best(low) for low, _ in points]), demand)
-    motion, row = climb.governing(case)
+    motion, row = search.governing(case)
     if level.combine == "max":
         # Under the other motions it may be less by more.
         slack = np.array([_gap(low[row], high[row]) for low, high in points])[motion, np.arange(row.size)]
@@ -68,17 +70,34 @@ def _gap(low: Array, high: Array) -> Array:
     return np.subtract(high, low, out=np.zeros_like(high), where=high > low)
 
 
-def findings(climb: Climb, case: Case, known: Known, scenes: Sequence[Scene]) -> list[Finding]:
-    """Return the findings of a case, in the order of its analyses."""
-    work, level = climb.work, climb.level
+def findings(search: FidelitySearch, case: Case, known: Known, scenes: Sequence[Scene]) -> list[Finding]:
+    """Return the findings of a case.
+
+    Parameters
+    ----------
+    search
+        What is known of the demands under each motion of the level.
+    case
+        The analyses (m,).
+    known
+        Their verdicts.
+    scenes
+        Those that the analyses are of.
+
+    Returns
+    -------
+    list of Finding
+        In the order of the analyses.
+    """
+    work, level = search.work, search.level
     model = work.model
     unit = model.output(case.output).unit
-    numbers = _numbers(climb, case)
-    rows = _Rows(climb, case, numbers)
+    numbers = _numbers(search, case)
+    rows = _Rows(search, case, numbers)
     out = []
     columns = (numbers.demand, numbers.low, numbers.high, numbers.used, numbers.motion, numbers.row, numbers.at_most)
     lists = [column.tolist() for column in (*columns, numbers.slack, numbers.enclosed, work.scenes[case.analyses])]
-    steps = climb.decided[case.analyses].tolist()
+    steps = search.decided[case.analyses].tolist()
     verdicts = _verdicts(known)
     for demand, low, high, used, at, row, at_most, slack, enclosed, index, step, verdict, capacity in zip(
         *lists, steps, verdicts, case.estimates, strict=True
@@ -146,12 +165,12 @@ class _Said:
 class _Rows:
     """Says of each parameter set under each motion what objects have in common, once."""
 
-    def __init__(self, climb: Climb, case: Case, numbers: _Numbers) -> None:
-        self._climb, self._output = climb, case.output
+    def __init__(self, search: FidelitySearch, case: Case, numbers: _Numbers) -> None:
+        self._search, self._output = search, case.output
         self._known: dict[tuple[int, int], _Said] = {}
         self._screens = [
-            _screens(climb.work, climb.level, at, np.unique(numbers.row[numbers.motion == at]))
-            for at in range(len(climb.found))
+            _screens(search.work, search.level, at, np.unique(numbers.row[numbers.motion == at]))
+            for at in range(len(search.found))
         ]
 
     def said(self, row: int, at: int) -> _Said:
@@ -161,15 +180,15 @@ class _Rows:
         return self._known[row, at]
 
     def _say(self, row: int, at: int) -> _Said:
-        found, model = self._climb.found[at], self._climb.work.model
-        parameters = {name: float(column[row]) for name, column in self._climb.work.values.items()}
+        found, model = self._search.found[at], self._search.work.model
+        parameters = {name: float(column[row]) for name, column in self._search.work.values.items()}
         told = found.told(row)
         outcome, sentence = model.outcome(told, parameters)
         step = Step(found.step[row])
         certain = step is Step.BOUND or (model.exact and self._output == model.demand)
         # A yes or no is off by nothing, or sensitive, which its note says.
         exactly = certain or model.output(self._output).unit == "bool"
-        fidelity = self._climb.integrated if step is Step.HISTORY else step.name.lower()
+        fidelity = self._search.numerics.integrated.fidelity if step is Step.HISTORY else step.name.lower()
         rows, columns = self._screens[at]
         place = int(np.searchsorted(rows, row))
         screened = {name: float(column[place]) for name, column in columns.items()}
@@ -191,7 +210,7 @@ def _screens(work: Work, level: LevelMotions, at: int, rows: Indices) -> tuple[I
         return rows, {}
     out: Columns = {}
     for angle, some in work.by_angle(rows):
-        columns = run_model(model, level.motions[at], work.some(some), "screen", angle, None)[0]
+        columns = run_model(model, level.motions[at], work.some(some), _SCREEN, angle)[0]
         for name, column in columns.items():
             out.setdefault(name, np.empty(rows.size))[np.searchsorted(rows, some)] = column
     return rows, out

@@ -1,9 +1,9 @@
-"""From bounds over charts to histories, as far up as the verdicts of a level need: the fidelity `auto`.
+"""The search for the least fidelity that decides: from bounds over charts to histories, as verdicts need (`auto`).
 
 Each analysis asks whether its highest demand, over its parameter sets, is within the capacity (it passes) and whether
 its lowest is above it (it fails).  Every parameter set has an interval in which its history lies for certain, or
 within the error that a chart states; both questions are answered as soon as the intervals answer them, and only the
-sets of analyses that are still open, and of those only the ones that the answer hangs on, climb to the next step.
+sets of analyses that are still open, and of those only the ones that the answer hangs on, are taken a step further.
 """
 
 from collections.abc import Callable, Sequence
@@ -12,15 +12,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.analysis.context import Context
 from pipeline.analysis.demands import Demands, Step, bounded, chart, integrate
 from pipeline.analysis.plan import Indices, Spans, Work
-from pipeline.analysis.response_charts import Shelf
 from pipeline.analysis.verdicts import LevelMotions, Mask, capacity_of, exceeds
 from pipeline.models.common import largest_push
 from pipeline.quantities import Array
-from pipeline.records import Estimate, Executor, Scene
-
-AUTO, CHART = "auto", "chart"
+from pipeline.records import Estimate, Numerics, Scene
+from pipeline.records.numerics import AUTO, CHART
 
 
 @dataclass(frozen=True)
@@ -41,13 +40,41 @@ class Case:
 
     @classmethod
     def of(cls, work: Work, output: str, analyses: Indices, capacities: Sequence[Estimate]) -> "Case":
-        """Return the case of some analyses with their capacities."""
+        """Return the case of some analyses with their capacities.
+
+        Parameters
+        ----------
+        work
+            That the analyses belong to.
+        output
+            Of the work's model, that counts for them.
+        analyses
+            (m,) places in the work's list.
+        capacities
+            Of each of them, in the unit of the output.
+
+        Returns
+        -------
+        Case
+            With their parameter sets.
+        """
         spans = work.spans if analyses.size == work.scenes.size else work.spans.take(analyses)
         ends = tuple(np.array([getattr(c, end) for c in capacities]) for end in ("low", "value", "high"))
         return cls(output, analyses, spans, (ends[0], ends[1], ends[2]), capacities)
 
     def take(self, chosen: Indices) -> "Case":
-        """Return a part of the analyses."""
+        """Return a part of the analyses.
+
+        Parameters
+        ----------
+        chosen
+            (p,) places in the case.
+
+        Returns
+        -------
+        Case
+            Of these, in their order.
+        """
         low, best, high = self.capacity
         capacity = (low[chosen], best[chosen], high[chosen])
         estimates = [self.estimates[at] for at in chosen]
@@ -111,7 +138,7 @@ class Effort:
 
 
 @dataclass
-class Climb:
+class FidelitySearch:
     """One work under the motions of one level.
 
     found   : what is known under each motion
@@ -120,42 +147,58 @@ class Climb:
 
     work: Work
     level: LevelMotions
-    executor: Executor
-    fidelity: str
-    azimuth_step: float
-    charts: Shelf
+    context: Context
+    numerics: Numerics
     found: list[Demands]
     decided: NDArray[np.int8]
     effort: Effort
 
     @classmethod
     def begin(
-        cls,
-        work: Work,
-        level: LevelMotions,
-        outputs: Sequence[str],
-        executor: Executor,
-        fidelity: str,
-        azimuth_step: float,
-        charts: Shelf,
-    ) -> "Climb":
-        """Bound everything."""
-        auto = fidelity == AUTO
-        found = [bounded(work, motion, outputs, executor, whole=auto) for motion in level.motions]
+        cls, work: Work, level: LevelMotions, outputs: Sequence[str], context: Context, numerics: Numerics
+    ) -> "FidelitySearch":
+        """Bound everything.
+
+        Parameters
+        ----------
+        work
+            Analyses (m,) of one model.
+        level
+            The motions.
+        outputs
+            Names of the model's outputs that count.
+        context
+            Where it runs, and what was computed before.
+        numerics
+            How finely.
+
+        Returns
+        -------
+        FidelitySearch
+            At its first step; no verdict is looked for yet.
+        """
+        auto = numerics.fidelity == AUTO
+        found = [bounded(work, motion, outputs, context.executor, whole=auto) for motion in level.motions]
         effort = Effort(analyses=work.scenes.size, sets=work.size * len(found))
         decided = np.zeros(work.scenes.size, dtype=np.int8)
-        return cls(work, level, executor, fidelity, azimuth_step, charts, found, decided, effort)
-
-    @property
-    def integrated(self) -> str:
-        """The fidelity at which histories are run."""
-        return self.fidelity if self.fidelity == "reference" else "history"
+        return cls(work, level, context, numerics, found, decided, effort)
 
     def decide(self, case: Case) -> Known:
-        """Climb until the verdict of every analysis of the case stands."""
-        if self.fidelity == CHART:
+        """Go on until the verdict of every analysis of the case stands.
+
+        Parameters
+        ----------
+        case
+            The analyses (m,).
+
+        Returns
+        -------
+        Known
+            Their verdicts.
+        """
+        if self.numerics.fidelity == CHART:
             self._up(Step.CHART, [self._unknown(case, found) for found in self.found])
-        if self.fidelity != AUTO:
+        if self.numerics.fidelity != AUTO:
             rows = [self._unknown(case, found) for found in self.found]
             self.effort.verdicts += self._up(Step.HISTORY, [r[f.step[r] == Step.BOUND] for r, f in self._with(rows)])
             # Without `auto` nothing is decided before the last step.
@@ -170,12 +213,17 @@ class Climb:
         """Find the numbers of what does not pass: the highest demand, that of the best estimates, what the object does.
 
         Nobody needs more of what passes than that it stays below its capacity.
+
+        Parameters
+        ----------
+        case, known
+            The analyses (m,), and their verdicts as `decide` returned them.
         """
         chosen = np.flatnonzero(~known.passes)
         if chosen.size == 0:
             return
         part = case.take(chosen)
-        if self.fidelity == AUTO:
+        if self.numerics.fidelity == AUTO:
             self._up(Step.CHART, self._numbers(part))
             self.effort.numbers += self._up(Step.HISTORY, self._numbers(part))
         model = self.work.model
@@ -188,7 +236,20 @@ class Climb:
             self.effort.numbers += self._up(Step.HISTORY, moving)
 
     def governing(self, case: Case) -> tuple[Indices, Indices]:
-        """Return under which motion the best estimates of each analysis demand most, and their row, (m,) each."""
+        """Return under which motion the best estimates of each analysis demand most.
+
+        Parameters
+        ----------
+        case
+            The analyses (m,).
+
+        Returns
+        -------
+        motion : ndarray of int
+            (m,) places in the level's motions.
+        row : ndarray of int
+            (m,) rows of the work's values.
+        """
         bests = case.spans.rows[case.spans.starts]
         most = np.full(bests.shape[0], -np.inf)
         motion, row = np.zeros(bests.shape[0], dtype=np.intp), bests[:, 0].copy()
@@ -200,13 +261,30 @@ class Climb:
         return motion, row
 
     def count(self, case: Case) -> None:
-        """Add up by what the analyses of a case were decided, and how many needed any history."""
+        """Add to the effort by what the analyses of a case were decided, and how many needed any history.
+
+        Parameters
+        ----------
+        case
+            The analyses (m,), decided.
+        """
         for step in Step:
             self.effort.decided[step] += int(np.count_nonzero(self.decided[case.analyses] == step))
         self.effort.needing += int(np.count_nonzero(self.needed(case)))
 
     def needed(self, case: Case) -> Mask:
-        """Return for which analyses of a case any history was run."""
+        """Return for which analyses of a case any history was run.
+
+        Parameters
+        ----------
+        case
+            The analyses (m,), decided.
+
+        Returns
+        -------
+        ndarray of bool
+            (m,).
+        """
         steps = [case.spans.furthest(found.step) for found in self.found]
         return np.asarray(np.max(steps, axis=0) == Step.HISTORY)
 
@@ -284,19 +362,17 @@ class Climb:
         """Take rows under each motion to a step; return how many were integrated."""
         fresh = [(r[f.step[r] < step], f) for r, f in self._with(rows)]
         if step is Step.CHART:
-            thrifty = self.fidelity == AUTO
-            self.executor.map(lambda one: chart(one[1], one[0], self.charts, self.azimuth_step, thrifty=thrifty), fresh)
+            charts = self.context.charts
+            self.context.executor.map(lambda one: chart(one[1], one[0], charts, self.numerics), fresh)
             return 0
-        how = self.integrated
-        before = self.charts.histories
-        return sum(integrate(found, some, self.executor, how, self.azimuth_step, before) for some, found in fresh)
+        return sum(integrate(found, some, self.context, self.numerics) for some, found in fresh)
 
 
 @dataclass(frozen=True)
 class Examined:
     """A work under a level with its verdicts."""
 
-    climb: Climb
+    search: FidelitySearch
     cases: tuple[tuple[Case, Known], ...]
 
 
@@ -304,32 +380,49 @@ def examine(
     work: Work,
     scenes: Sequence[Scene],
     level: LevelMotions,
-    executor: Executor,
+    context: Context,
+    numerics: Numerics,
     *,
-    fidelity: str,
-    azimuth_step: float,
-    charts: Shelf,
     outcomes: bool = True,
-    watch: Callable[[Climb], None] = lambda _: None,
+    watch: Callable[[FidelitySearch], None] = lambda _: None,
 ) -> Examined:
     """Find the verdicts of all analyses of a work under the motions of a level, and the numbers that go with them.
 
-    outcomes : whether to find the numbers of what does not pass, too
-    watch    : called when everything is bounded, before anything climbs
+    Parameters
+    ----------
+    work
+        Analyses (m,) of one model.
+    scenes
+        Those that the work refers to.
+    level
+        The motions.
+    context
+        Where it runs, and what was computed before.
+    numerics
+        How finely.
+    outcomes
+        Whether to find the numbers of what does not pass, too.
+    watch
+        Called when everything is bounded, before anything is looked up or integrated.
+
+    Returns
+    -------
+    Examined
+        The verdicts by output that counts, and the search that found them.
     """
     capacities = [capacity_of(work.model, scenes[index]) for index in work.scenes]
     outputs: dict[str, list[int]] = {}
     for at, (output, _) in enumerate(capacities):
         outputs.setdefault(output, []).append(at)
-    climb = Climb.begin(work, level, tuple(outputs), executor, fidelity, azimuth_step, charts)
-    watch(climb)
+    search = FidelitySearch.begin(work, level, tuple(outputs), context, numerics)
+    watch(search)
     cases = []
     for output, members in outputs.items():
         case = Case.of(work, output, np.array(members, dtype=np.intp), [capacities[at][1] for at in members])
-        known = climb.decide(case)
+        known = search.decide(case)
         if outcomes:
-            climb.tell(case, known)
+            search.tell(case, known)
         cases.append((case, known))
     for case, _ in cases:
-        climb.count(case)
-    return Examined(climb, tuple(cases))
+        search.count(case)
+    return Examined(search, tuple(cases))

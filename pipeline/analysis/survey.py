@@ -2,7 +2,7 @@
 
 A verdict is open because inputs are uncertain.  For each of them in turn, the object is assessed as if that one had
 been measured, as low, best and high; the others stay as uncertain as they are.  If the verdict stays open at all three,
-measuring that alone is taken for a waste.
+measuring that alone is taken to settle nothing.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,9 +10,11 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from pipeline.analysis.assess import assess
+from pipeline.analysis.context import Context
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.models import model_named
-from pipeline.records import Estimate, Executor, Finding, Origin, Progress, Scene, Silent, Verdict, Wish
+from pipeline.records import Estimate, Finding, MeasurementRequest, Numerics, Origin, Scene, Verdict
+from pipeline.records.numerics import HISTORIES
 from pipeline.tables import number, table
 
 BATCH = 1000
@@ -40,9 +42,17 @@ class Measurable:
 
 @cache
 def measurables() -> tuple[Measurable, ...]:
-    """Return what a survey may ask for, in the order of the table.
+    """Return what a survey may ask for.
 
-    raises : TableError for a factor that is no number
+    Returns
+    -------
+    tuple of Measurable
+        In the order of the table.
+
+    Raises
+    ------
+    TableError
+        For a factor that is no number.
     """
     out = []
     for line, row in enumerate(table("survey"), start=2):
@@ -68,55 +78,88 @@ _MISSING = {
 """How a scene's words for what is missing begin, and the field that would mend it."""
 
 
-def wishes(
+def measurement_requests(
     scenes: Sequence[Scene],
     findings: Sequence[Sequence[Finding]],
     levels: Sequence[LevelMotions],
-    executor: Executor,
-    progress: Progress,
-    *,
-    fidelity: str = "history",
-    azimuth_step: float = 10.0,
-) -> list[Wish]:
-    """Return what is worth measuring on the objects on display, what settles most first.
+    context: Context,
+    numerics: Numerics = HISTORIES,
+) -> list[MeasurementRequest]:
+    """Return what is worth measuring on the objects on display.
 
-    findings : of each scene, as `assess` returned them under the same levels
+    Parameters
+    ----------
+    scenes
+        The objects as they stand.
+    findings
+        Of each scene, as `assess` returned them under the same levels.
+    levels
+        The motions.
+    context
+        Where it runs, and who is told.
+    numerics
+        How finely.  Each trial is asked once, so that a chart of its own would not pay.
+
+    Returns
+    -------
+    list of MeasurementRequest
+        What settles most first.
     """
-    out: list[Wish] = []
+    out: list[MeasurementRequest] = []
     shown = [at for at, scene in enumerate(scenes) if scene.item.on_display]
     for start in range(0, len(shown), BATCH):
-        progress.step("survey", start, len(shown))
+        context.progress.step("survey", start, len(shown))
         chosen = shown[start : start + BATCH]
         trials = [trial for at in chosen for trial in (_missing(scenes[at]) or _trials(scenes[at], findings[at]))]
         tried = [(trial, end) for trial in trials for end in (ENDS if trial.models else ())]
         _, answers = assess(
             [_measured(trial, end) for trial, end in tried],
             levels,
-            executor,
-            Silent(),
-            fidelity=fidelity,
-            azimuth_step=azimuth_step,
+            context.silent,
+            numerics,
             outcomes=False,
         )
         settled: dict[int, int] = {}
         for (trial, _), answer in zip(tried, answers, strict=True):
             decided = sum((f.model, f.level) in trial.open and f.verdict is not Verdict.UNDETERMINED for f in answer)
             settled[id(trial)] = settled.get(id(trial), 0) + decided
-        out += [_wish(trial, settled.get(id(trial), 0) / len(ENDS)) for trial in trials]
-    progress.step("survey", len(shown), len(shown))
+        out += [_request(trial, settled.get(id(trial), 0) / len(ENDS)) for trial in trials]
+    context.progress.step("survey", len(shown), len(shown))
     return in_order(out)
 
 
-def in_order(found: Sequence[Wish]) -> list[Wish]:
-    """Return the wishes, what settles most first; ties by gallery, object and field."""
+def in_order(found: Sequence[MeasurementRequest]) -> list[MeasurementRequest]:
+    """Return measurement requests, what settles most first.
+
+    Parameters
+    ----------
+    found
+        In any order.
+
+    Returns
+    -------
+    list of MeasurementRequest
+        Ties by gallery, object and field.
+    """
     return sorted(found, key=lambda w: (-w.gain, -w.unlocks, w.gallery, w.object_number, w.field))
 
 
-def by_gallery(found: Sequence[Wish]) -> Mapping[str, Sequence[Wish]]:
-    """Return the wishes of each gallery, galleries by name, each in the order in which they stand."""
-    out: dict[str, list[Wish]] = {gallery: [] for gallery in sorted({w.gallery for w in found})}
-    for wish in found:
-        out[wish.gallery].append(wish)
+def by_gallery(found: Sequence[MeasurementRequest]) -> Mapping[str, Sequence[MeasurementRequest]]:
+    """Return the measurement requests of each gallery.
+
+    Parameters
+    ----------
+    found
+        In the order in which they are to stand.
+
+    Returns
+    -------
+    mapping of str to sequence of MeasurementRequest
+        Galleries by name.
+    """
+    out: dict[str, list[MeasurementRequest]] = {gallery: [] for gallery in sorted({w.gallery for w in found})}
+    for request in found:
+        out[request.gallery].append(request)
     return out
 
 
@@ -158,7 +201,18 @@ def _inputs(name: str) -> frozenset[str]:
 
 
 def measurable_of(words: str) -> str | None:
-    """Return the field that would mend what a scene says is missing; None where no measurement would."""
+    """Return the field that would mend what a scene says is missing.
+
+    Parameters
+    ----------
+    words
+        One of the scene's `missing`.
+
+    Returns
+    -------
+    str or None
+        A field of the record; None where no measurement would mend it.
+    """
     return next((f for start, f in _MISSING.items() if words == start or words.startswith(f"{start} (")), None)
 
 
@@ -182,13 +236,13 @@ def _measured(trial: _Trial, end: str) -> Scene:
     return replace(trial.scene, parameters=pinned, models=trial.models)
 
 
-def _wish(trial: _Trial, settles: float) -> Wish:
+def _request(trial: _Trial, settles: float) -> MeasurementRequest:
     item, measurable = trial.scene.item, trial.measurable
     first = next((trial.scene.parameters[n] for n in measurable.parameters if n in trial.scene.parameters), None)
     low = best = high = None
     if first is not None and measurable.factor is not None:
         low, best, high = (measurable.factor * end for end in (first.low, first.value, first.high))
-    return Wish(
+    return MeasurementRequest(
         item.object_number,
         item.gallery,
         item.title,

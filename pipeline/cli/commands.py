@@ -104,7 +104,9 @@ def survey(options: Options, galleries: tuple[str, ...], out: Path | None, dry_r
         others = "1 other would settle nothing wherever in its range it falls, and is left out"
         many = f"{found.waste:,} others would settle nothing wherever in their range they fall, and are left out"
         click.echo(others if found.waste == 1 else many)
-        first = [f"{w.object_number} ({w.gallery}): {w.field}: {w.reason}" for w in found.wishes if not w.waste]
+        first = [
+            f"{w.object_number} ({w.gallery}): {w.field}: {w.reason}" for w in found.wishes if not w.settles_nothing
+        ]
         listed("first", first)
         failed = [f"{one.object_number}: {one.words}; please tell its makers" for one in found.faults]
         listed("Kouros failed on", failed)

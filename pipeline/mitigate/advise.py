@@ -4,16 +4,16 @@ import re
 from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from pipeline.analysis.context import Context
 from pipeline.analysis.figures import chart_key
-from pipeline.analysis.refinement import AUTO
-from pipeline.analysis.response_charts import SHELF, Shelf
 from pipeline.analysis.verdicts import LevelMotions
-from pipeline.mitigate.bench import Bench, Carriage, Fineness, Trial, checks, passes, why_not
+from pipeline.mitigate.bench import Bench, Carriage, Trial, checks, passes, why_not
 from pipeline.mitigate.means import LAST, STORED, STORED_SENTENCE, STORED_TITLE, Means, Measure, own_means
 from pipeline.mitigate.measures import DISPLACEMENTS, MEASURES, TOGETHER
 from pipeline.mitigate.offers import Need, Offer, Proposal, Way
 from pipeline.mitigate.shared import SHARED, case_of, company
-from pipeline.records import Check, Executor, Finding, Mark, Progress, Recommendation, Scene, Verdict
+from pipeline.records import Check, Finding, Mark, Numerics, Recommendation, Scene, Verdict
+from pipeline.records.numerics import VERDICTS
 from pipeline.tables import TableError
 
 ROOM = ("clearance", "rubber_pads", "restrain")
@@ -30,13 +30,10 @@ def advise(
     scenes: Sequence[Scene],
     findings: Sequence[Sequence[Finding]],
     levels: Sequence[LevelMotions],
-    executor: Executor,
-    progress: Progress,
+    context: Context,
+    numerics: Numerics = VERDICTS,
     *,
     means: Means | None = None,
-    fidelity: str = AUTO,
-    azimuth_step: float = 10.0,
-    charts: Shelf = SHELF,
     carriage: Carriage | None = None,
 ) -> list[list[Recommendation]]:
     """Recommend a measure for each object and level at which something fails, or is open for want of room alone.
@@ -50,7 +47,7 @@ def advise(
 
     levels   : of shaking, with the motions that the findings were made under
     means    : the measures and isolators that there are; None: Kouros's own tables
-    fidelity, azimuth_step, charts : as the findings were made
+    context, numerics : as the findings were made
     carriage : what isolators pass on, kept from one call to the next; None: for this call only
     returns  : the recommendations of each scene, in the order of the scenes and of the levels
     raises   : TableError where the last measure of the table is not removal
@@ -58,7 +55,6 @@ def advise(
     have = means or own_means()
     if not have.measures or have.measures[-1].name != LAST:
         raise TableError("measures.csv: the last measure must always be possible (remove)")
-    fineness = Fineness(fidelity, azimuth_step, charts)
     carriage = carriage or Carriage()
     unassessed = _unassessed(scenes, findings)
     rounds = [tuple(levels), *((level,) for level in levels if len(levels) > 1)]
@@ -66,11 +62,11 @@ def advise(
     for at, some in enumerate(rounds):
         # What holds at all levels stands; the others are looked at level by level.
         stands = {key for key, found in advised.items() if found.measure not in (LAST, STORED)}
-        bench = Bench(some, have, executor, fineness, carriage)
+        bench = Bench(some, have, context, numerics, carriage)
         search = _Search(bench, _needs(scenes, findings, some, stands), unassessed)
         for done, measure in enumerate(have.measures, start=1):
             search.tries(measure)
-            progress.step("recommendations", at * len(have.measures) + done, len(rounds) * len(have.measures))
+            context.progress.step("recommendations", at * len(have.measures) + done, len(rounds) * len(have.measures))
         alone = len(some) < len(levels)
         advised |= {key: _alone(found) if alone else found for key, found in search.recommended.items()}
     return [

@@ -9,14 +9,17 @@ from typing import Any
 import numpy as np
 
 from pipeline.analysis.assess import assess
-from pipeline.analysis.response import answer, prepare, transmit
-from pipeline.analysis.response_charts import SHELF, Shelf
+from pipeline.analysis.context import Context
+from pipeline.analysis.model_runs import prepare
+from pipeline.analysis.response import answer
+from pipeline.analysis.transmission import transmit
 from pipeline.analysis.verdicts import LevelMotions, capacity_of
 from pipeline.mitigate.means import Isolator, Means
 from pipeline.models import model_named
 from pipeline.models.common import largest_push, lift_ratios
 from pipeline.quantities import Array, G
-from pipeline.records import Check, Executor, Finding, Motion, Scene, Silent, Verdict
+from pipeline.records import Check, Finding, Motion, Numerics, Scene, Verdict
+from pipeline.records.numerics import CHART
 
 PASSED = 0.03
 """Error that the sampling of what an isolator passes on may bring to an oscillator of 20 Hz on it.
@@ -59,15 +62,6 @@ class Trial:
 
     scene: Scene
     on: Carried | None = None
-
-
-@dataclass(frozen=True)
-class Fineness:
-    """How finely trials are run: as the findings were."""
-
-    fidelity: str
-    azimuth_step: float
-    charts: Shelf = SHELF
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,18 +118,20 @@ class Bench:
 
     What is said of a level is combined from its motions as its findings are: the largest, or the mean.  Of several
     levels the largest counts.
+
+    context, numerics : where trials are run, and how finely: as the findings were
     """
 
     def __init__(
         self,
         levels: Sequence[LevelMotions],
         means: Means,
-        executor: Executor,
-        fineness: Fineness,
+        context: Context,
+        numerics: Numerics,
         carriage: Carriage | None = None,
     ) -> None:
         self.levels, self.means = tuple(levels), means
-        self._executor, self._fineness = executor, fineness
+        self._context, self._numerics = context, numerics
         carriage = carriage or Carriage()
         self._grounds = [carriage.ground(level) for level in self.levels]
         self._carried: dict[Isolator, Carried] = {}
@@ -171,17 +167,15 @@ class Bench:
             groups.setdefault(id(trial.on), []).append(at)
         for members in groups.values():
             on = trials[members[0]].on
-            fidelity = self._fineness.fidelity
-            # A chart of what one isolator passes on would be looked at once.
-            fidelity = "history" if on is not None and fidelity == "chart" else fidelity
+            numerics = self._numerics
+            if on is not None and numerics.fidelity == CHART:
+                # A chart of what one isolator passes on would be looked at once.
+                numerics = numerics.integrated
             _, found = assess(
                 [trials[at].scene for at in members],
                 self.levels if on is None else on.shaking,
-                self._executor,
-                Silent(),
-                fidelity=fidelity,
-                azimuth_step=self._fineness.azimuth_step,
-                charts=self._fineness.charts,
+                self._context.silent,
+                numerics,
                 outcomes=False,
             )
             for at, findings in zip(members, found, strict=True):
@@ -192,7 +186,7 @@ class Bench:
         """Return the isolators of a kind that stand on the floor, by the length of their stroke."""
         listed = self.means.of(kind)
         fresh = [(g, isolator) for g in self._grounds for isolator in listed if isolator not in g.passed]
-        for (ground, isolator), one in zip(fresh, self._executor.map(_carry, fresh), strict=True):
+        for (ground, isolator), one in zip(fresh, self._context.executor.map(_carry, fresh), strict=True):
             ground.passed[isolator] = one
         for isolator in listed:
             if isolator not in self._carried:
@@ -222,24 +216,19 @@ class Bench:
         fresh = list(dict.fromkeys(objects))
         if not fresh:
             return
-        heights = [height for bodies in fresh for height, _ in bodies]
-        ratios = [ratio for bodies in fresh for _, ratio in bodies]
+        given = {
+            "frequency": pad.frequency,
+            "damping": pad.damping,
+            "cg_height": [height for bodies in fresh for height, _ in bodies],
+            "inertia_ratio": [ratio for bodies in fresh for _, ratio in bodies],
+        }
         starts = np.cumsum([0, *map(len, fresh)])[:-1]
         turns = np.zeros((len(self.levels), len(fresh)))
         shares = np.zeros(len(fresh))
         for at, level in enumerate(self.levels):
             rotations = []
             for motion in level.motions:
-                rows = answer(
-                    "rotational_isolator",
-                    motion,
-                    angle=None,
-                    azimuth_step=self._fineness.azimuth_step,
-                    frequency=pad.frequency,
-                    damping=pad.damping,
-                    cg_height=heights,
-                    inertia_ratio=ratios,
-                )
+                rows = answer("rotational_isolator", motion, given, self._numerics.at("history"), angle=None)
                 rotations.append(np.maximum.reduceat(np.asarray(rows["rotation"]), starts))
                 most = np.maximum.reduceat(np.asarray(rows["acceleration"]), starts)
                 shares = np.maximum(shares, most / _push(motion))

@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from pipeline.analysis.assess import LevelMotions, assess
-from pipeline.analysis.response import transmit
+from pipeline.analysis.context import Context
+from pipeline.analysis.transmission import transmit
 from pipeline.mitigate.changes import CHANGES, changed, held
 from pipeline.models import model_named
 from pipeline.quantities import Quantity
-from pipeline.records import Executor, Finding, Progress, Scene
+from pipeline.records import Finding, Numerics, Scene
 from pipeline.tables import table
 
 _FRICTION = Quantity("friction", "-", "friction of the surface", 0.0, 2.0, exclusive=True)
@@ -132,11 +133,8 @@ def _told(before: Scene, after: Scene, words: str) -> Scene:
 def assess_above(
     objects: Sequence[Placed],
     levels: Sequence[LevelMotions],
-    executor: Executor,
-    progress: Progress,
-    *,
-    fidelity: str,
-    azimuth_step: float,
+    context: Context,
+    numerics: Numerics,
 ) -> list[tuple[list[Finding], Mapping[str, str]]]:
     """Run what stands on isolators on what these pass on; each isolator is run once, however many stand on it.
 
@@ -154,7 +152,7 @@ def assess_above(
             found: list[Finding] = []
             skipped: dict[str, str] = {}
             for scene, under in _shaken(above, transfer[0], levels, passed):
-                plan, judged = assess([scene], under, executor, progress, fidelity=fidelity, azimuth_step=azimuth_step)
+                plan, judged = assess([scene], under, context, numerics)
                 found += [_of_site(finding, levels, under) for finding in judged[0]]
                 skipped |= plan.skipped[0]
             out[index] = found, skipped

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify, object_classes
+from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, each_apart, fault, unassessed
 from pipeline.analysis.fragility.objects import fragilities
 from pipeline.analysis.rules import Table
-from pipeline.analysis.survey import wishes
+from pipeline.analysis.survey import measurement_requests
 from pipeline.collection.record import INDIVIDUAL
 from pipeline.mitigate import advise
 from pipeline.mitigate.installed import Measure, Placed, assess_above, placed
@@ -28,10 +29,9 @@ from pipeline.records import (
     Finding,
     Fragility,
     Item,
+    MeasurementRequest,
     Scene,
-    Silent,
     Support,
-    Wish,
 )
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class Assessed:
 
     assessment: Assessment
     needing: Mapping[str, int]
-    wishes: tuple[Wish, ...] | None = None
+    wishes: tuple[MeasurementRequest, ...] | None = None
 
 
 def place(item: Item, rules: Table | None, decisions: Sequence[Decision]) -> Placed:
@@ -72,7 +72,7 @@ def place(item: Item, rules: Table | None, decisions: Sequence[Decision]) -> Pla
 
 
 def assess_objects(
-    context: "RunContext", floor: Storey, items: Sequence[Item], decisions: Sequence[Decision]
+    context: "RunContext", floor: Storey, items: Sequence[Item], decisions: Sequence[Decision], working: Context
 ) -> tuple[list[Assessed], float, list[Fault]]:
     """Run everything that objects on one floor require under its motions, judge it and advise.
 
@@ -86,6 +86,8 @@ def assess_objects(
         Their records.
     decisions
         Those in force: classes and installed measures change what is run.
+    working
+        Where it runs, with the histories that were run before of what is worked on together.
 
     Returns
     -------
@@ -104,7 +106,7 @@ def assess_objects(
     first: dict[Hashable, Placed] = {}
     for like, one in zip(likes, sound, strict=True):
         first.setdefault(like, one)
-    known, seconds = _found(context, floor, first, faults)
+    known, seconds = _found(context, floor, first, working, faults)
     pairs = iter(zip(likes, sound, strict=True))
     out = []
     for item, placed_one in zip(items, objects, strict=True):
@@ -117,23 +119,28 @@ def assess_objects(
 
 
 def _found(
-    context: "RunContext", floor: Storey, objects: Mapping[Hashable, Placed], faults: list[Fault]
+    context: "RunContext",
+    floor: Storey,
+    objects: Mapping[Hashable, Placed],
+    working: Context,
+    faults: list[Fault],
 ) -> tuple[dict[Hashable, Assessed], float]:
     """Return what is found of some objects of which none is like another, and the seconds that the survey cost."""
     every = [
         (failed_on(one.scene, came, faults), {}) if isinstance(came, Exception) else came
-        for one, came in zip(objects.values(), each_assessed(context, floor, list(objects.values())), strict=True)
+        for one, came in zip(
+            objects.values(), each_assessed(context, floor, list(objects.values()), working), strict=True
+        )
     ]
     assessments = tuple(assessment for assessment, _ in every)
-    asked: dict[str, list[Wish]] = {}
+    asked: dict[str, list[MeasurementRequest]] = {}
     began = perf_counter()
     if context.surveyed:
-        fidelity, step = _integrating(context), context.analysis.azimuth_step
         # Each trial is asked once: a chart would not pay.
         assessments, several = each_apart(
             assessments,
-            lambda scenes, found: wishes(
-                scenes, found, floor.shaking, context.executor, Silent(), fidelity=fidelity, azimuth_step=step
+            lambda scenes, found: measurement_requests(
+                scenes, found, floor.shaking, Context(working.executor), context.analysis.numerics.integrated
             ),
             "what is worth measuring on it is not known",
             faults,
@@ -234,11 +241,11 @@ def left_aside(
 
 
 def each_assessed(
-    context: "RunContext", floor: Storey, objects: Sequence[Placed]
+    context: "RunContext", floor: Storey, objects: Sequence[Placed], working: Context
 ) -> list[tuple[Assessment, dict[str, int]] | Exception]:
     """Return what is found of each object, or the error that finding it came to."""
     return apart(
-        lambda some: _assessed(context, floor, some),
+        lambda some: _assessed(context, floor, some, working),
         objects,
         lambda one: (one.scene.object_class, one.scene.support),
         # What is advised for a case depends on all that stand in it.
@@ -246,48 +253,29 @@ def each_assessed(
     )
 
 
-def _integrating(context: "RunContext") -> str:
-    return "reference" if context.analysis.fidelity == "reference" else "history"
-
-
 def _assessed(
-    context: "RunContext", floor: Storey, objects: Sequence[Placed]
+    context: "RunContext", floor: Storey, objects: Sequence[Placed], working: Context
 ) -> list[tuple[Assessment, dict[str, int]]]:
     """Run everything that objects require, judge it and advise."""
     if not objects:
         return []
-    told = Silent()
     scenes = [one.scene for one in objects]
-    levels, executor = floor.shaking, context.executor
-    fidelity, step = context.analysis.fidelity, context.analysis.azimuth_step
+    levels, numerics = floor.shaking, context.analysis.numerics
     needing: list[dict[str, int]] = [{} for _ in scenes]
-    plan, findings = assess(
-        scenes, levels, executor, told, fidelity=fidelity, azimuth_step=step, charts=context.shelf, needing=needing
-    )
+    plan, findings = assess(scenes, levels, working, numerics, needing=needing)
     # Few objects stand on isolators, each on its own: neither charts nor bounds of what these pass on would pay.
-    above = assess_above(objects, levels, executor, told, fidelity=_integrating(context), azimuth_step=step)
+    above = assess_above(objects, levels, Context(working.executor), numerics.integrated)
     for at, (on_top, left_out) in enumerate(above):
         findings[at] += on_top
         done = {finding.title for finding in findings[at]}
         skipped = {title: why for title, why in {**plan.skipped[at], **left_out}.items() if title not in done}
         scenes[at] = replace(scenes[at], skipped=skipped)
-    advice = advise(
-        scenes,
-        findings,
-        levels,
-        executor,
-        told,
-        means=context.means,
-        fidelity=fidelity,
-        azimuth_step=step,
-        charts=context.shelf,
-        carriage=context.carriage,
-    )
+    advice = advise(scenes, findings, levels, working, numerics, means=context.means, carriage=context.carriage)
     curves: Sequence[tuple[Fragility, ...]] = [()] * len(scenes)
     if context.fragile:
         # What an isolator passes on would have to be scaled too.
         shown = [s.item.on_display and s.support is not Support.ISOLATED for s in scenes]
-        curves = fragilities(scenes, plan.work, floor.stripes, executor, told, chosen=shown)
+        curves = fragilities(scenes, plan.work, floor.stripes, Context(working.executor), chosen=shown)
     scenes = [_needing(scene, those) for scene, those in zip(scenes, findings, strict=True)]
     return [
         (Assessment(scene, tuple(those), tuple(advised), curve), counts)

@@ -1,14 +1,17 @@
 """What everything that is done in a run shares: it goes once to each worker."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.context import Context
+from pipeline.analysis.response_charts import ChartCache
+from pipeline.analysis.response_charts.histories import Histories
 from pipeline.analysis.rules import Table
-from pipeline.cache import key_of
+from pipeline.cache import Cache, key_of
 from pipeline.execute import Threads
 from pipeline.mitigate import Means
 from pipeline.mitigate.bench import Carriage
@@ -31,7 +34,7 @@ class RunContext:
     storeys   : the floors by name
     surveyed, fragile : whether to find out what is worth measuring, and from what shaking objects fail
     stores    : whether what is not on display is assessed too
-    admitted  : which response charts are built (see `response_charts.Shelf`); None: those that pay
+    admitted  : which response charts are built (see `response_charts.ChartCache`); None: those that pay
     kept      : folder of the cache; None: in memory only
     threads   : of one who works
     """
@@ -53,7 +56,7 @@ class RunContext:
 
     def __getstate__(self) -> dict[str, Any]:
         # What was made on the way is made again where it is needed.
-        made = {"shelf", "carriage", "renderer", "executor"}
+        made = {"charts", "carriage", "renderer", "executor"}
         return {name: value for name, value in self.__dict__.items() if name not in made}
 
     @property
@@ -62,16 +65,24 @@ class RunContext:
         return motions_of(self.storeys)
 
     @cached_property
-    def shelf(self) -> Shelf:
+    def charts(self) -> ChartCache:
         """The response charts."""
-        return Shelf(self.kept, admitted=self.admitted)
+        return ChartCache(self.kept, admitted=self.admitted)
 
-    def memory(self, *batch: object) -> str | None:
-        """Return the key under which the histories of what is worked on together are kept from night to night.
+    @contextmanager
+    def working(self, batch: tuple[object, ...] | None) -> Iterator[Context]:
+        """Lend what an analysis of some objects works with; nobody is told how far a part of a night is.
 
-        batch : what is the same every night
+        Parameters
+        ----------
+        batch
+            What the histories of what is worked on together are kept under from night to night; None: they are not.
         """
-        return None if self.kept is None else key_of(*batch)
+        kept = None if self.kept is None or batch is None else Cache(self.kept)
+        histories = Histories(kept, key_of(*batch or ()))
+        yield Context(self.executor, charts=self.charts, histories=histories)
+        # Nothing is kept where the work failed.
+        histories.keep()
 
     @cached_property
     def carriage(self) -> Carriage:

@@ -4,8 +4,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 
-from pipeline.analysis.figures import chart_keys, charts
-from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.context import Context
+from pipeline.analysis.figures import chart_keys, draw
+from pipeline.analysis.response_charts import ChartCache
 from pipeline.execute import Threads
 from pipeline.motions.site import Site
 from pipeline.operations.workspace import Workspace
@@ -20,8 +21,8 @@ class Pictures:
     def __init__(self, workspace: Workspace) -> None:
         settings = workspace.settings
         self._workspace = workspace
-        # Not the shelf of the verdicts, which is made once it is decided what it holds.
-        self._shelf, self._executor = Shelf(settings.kept), Threads(settings.analysis.workers)
+        # Not the charts of the verdicts, which are chosen once it is known what pays.
+        self._context = Context(Threads(settings.analysis.workers), charts=ChartCache(settings.kept))
         self._hand = ThreadPoolExecutor(1)
         self._stored: dict[str, Mapping[str, Chart]] = {}
         self._begun: dict[str, Future[dict[str, Chart]]] = {}
@@ -36,7 +37,7 @@ class Pictures:
             if there.keys() >= set(keys):
                 self._stored[motion.hash] = {key: there[key] for key in keys}
             else:
-                self._begun[motion.hash] = self._hand.submit(charts, motion, self._executor, self._shelf)
+                self._begun[motion.hash] = self._hand.submit(draw, motion, self._context)
 
     def of(self, motions: Sequence[Motion], progress: Progress) -> dict[str, Chart]:
         """Return the pictures of motions, by key."""

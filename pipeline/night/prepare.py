@@ -60,7 +60,7 @@ def run_context(
     started: datetime,
     progress: Progress,
 ) -> RunContext:
-    """Make ready what everything that is done in a run shares; its shelf is to be tidied at the end.
+    """Make ready what everything that is done in a run shares; its charts are to be tidied at the end.
 
     catalogue : all objects of the inventory;  chosen : those that the run is of
     pictures  : where those of the motions are had

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
+from pipeline.analysis.chart_runs import deciding, response_chart
 from pipeline.analysis.faults import Fault, each_apart, fault, fitting, unassessed
 from pipeline.analysis.neighbours import neighbours
-from pipeline.analysis.response import deciding, response_chart
 from pipeline.collection.catalogue import read_packed
 from pipeline.execute.memory import give_back
 from pipeline.night.assessment import Assessed, assess_objects, left_aside
@@ -53,9 +53,8 @@ def build_chart(context: RunContext, task: ChartTask) -> None:
         task.model,
         task.motion,
         angle=task.angle,
-        azimuth_step=context.analysis.azimuth_step,
-        charts=context.shelf,
-        **deciding(task.model),
+        numerics=deciding(task.model, context.analysis.numerics),
+        charts=context.charts,
         **given,
     )
 
@@ -117,8 +116,8 @@ def assess_units(context: RunContext, task: UnitTask) -> Assessments:
     if not task.assessed:
         every, seconds, faults = left_aside(context, floor, items, task.decisions)
     else:
-        with context.shelf.remembering(None if task.batch is None else context.memory(*task.batch)):
-            every, seconds, faults = assess_objects(context, floor, items, task.decisions)
+        with context.working(task.batch) as working:
+            every, seconds, faults = assess_objects(context, floor, items, task.decisions, working)
     stored, start, failed = [], 0, set()
     for key, size in zip(task.keys, task.sizes, strict=True):
         mine = every[start : start + size]

@@ -14,7 +14,7 @@ from pipeline.operations.dry_run import SCRATCH, read_only
 from pipeline.resources import resource, sweep
 
 if TYPE_CHECKING:
-    from pipeline.analysis.response_charts import Shelf
+    from pipeline.analysis.response_charts import ChartCache
     from pipeline.analysis.rules import Table
     from pipeline.collection.catalogue import Catalogue
     from pipeline.collection.database import Database
@@ -172,20 +172,20 @@ def _sweep(settings: "Settings") -> None:
 @contextmanager
 def charts_of(
     settings: "Settings | None", using: Collection[str] = (), admitted: Collection[str] | None = None
-) -> Iterator["Shelf"]:
-    """Lend the shelf of the workspace's response charts, and prune the cache at the end; None: one in memory only.
+) -> Iterator["ChartCache"]:
+    """Lend the cache of the workspace's response charts, and prune the cache at the end; None: one in memory only.
 
     using    : hashes of motions in use, whose charts stay although perhaps none of them is asked for
-    admitted : see `Shelf`
+    admitted : see `ChartCache`
     """
-    from pipeline.analysis.response_charts import Shelf
+    from pipeline.analysis.response_charts import ChartCache
 
     if settings is None:
-        yield Shelf()
+        yield ChartCache()
         return
-    shelf = Shelf(settings.kept, admitted=None if admitted is None else frozenset(admitted))
+    charts = ChartCache(settings.kept, admitted=None if admitted is None else frozenset(admitted))
     try:
-        yield shelf
+        yield charts
     finally:
         tidy(settings, using)
 

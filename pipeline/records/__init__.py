@@ -14,8 +14,10 @@ from pipeline.records.change import (
 )
 from pipeline.records.decision import Basis, Decision, DecisionKind, Standing, in_force
 from pipeline.records.fragility import Fragility
+from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.model import Bounds, ChartAxis, Columns, Model
 from pipeline.records.motion import Excitation, Motion, MotionSummary
+from pipeline.records.numerics import Numerics
 from pipeline.records.part import Errors, Found, Outline, Page, Result, Tally, Urgent
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress, Silent
@@ -33,7 +35,6 @@ from pipeline.records.scene import (
     Scene,
     Support,
 )
-from pipeline.records.wish import Wish
 
 __all__ = [
     "ITEM_FIELDS",
@@ -65,11 +66,13 @@ __all__ = [
     "InputChange",
     "Item",
     "Mark",
+    "MeasurementRequest",
     "Model",
     "Motion",
     "MotionChange",
     "MotionSummary",
     "Move",
+    "Numerics",
     "ObjectPlace",
     "Origin",
     "Outline",
@@ -90,7 +93,6 @@ __all__ = [
     "Urgent",
     "Verdict",
     "VerdictChange",
-    "Wish",
     "Zone",
     "in_force",
 ]

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from pipeline.records.fragility import Fragility
+from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.result import Assessment, Finding, Recommendation, Spacing
 from pipeline.records.scene import Estimate, Support
-from pipeline.records.wish import Wish
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,7 @@ class Found:
     """
 
     assessments: tuple[Assessment, ...]
-    wishes: tuple[Wish, ...] | None = None
+    wishes: tuple[MeasurementRequest, ...] | None = None
     spacings: tuple[Spacing, ...] = ()
     needing: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
 
@@ -48,7 +48,7 @@ class Result:
     recommendations: tuple[Recommendation, ...] = ()
     fragilities: tuple[Fragility, ...] = ()
     needing: Mapping[str, int] = field(default_factory=dict)
-    wishes: tuple[Wish, ...] | None = None
+    wishes: tuple[MeasurementRequest, ...] | None = None
     fault: str = ""
     aside: bool = False
 

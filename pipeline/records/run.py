@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from pipeline.records.decision import Standing
+from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.motion import MotionSummary
 from pipeline.records.picture import Chart
 from pipeline.records.result import Assessment, Spacing
-from pipeline.records.wish import Wish
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,5 +35,5 @@ class RunRecord:
     motions: tuple[MotionSummary, ...]
     demonstration: bool = False
     decisions: tuple[Standing, ...] = ()
-    wishes: tuple[Wish, ...] | None = None
+    wishes: tuple[MeasurementRequest, ...] | None = None
     spacings: tuple[Spacing, ...] = ()

@@ -9,6 +9,7 @@ from typing import Literal
 from pydantic import ConfigDict, Field, RootModel, ValidationError, field_validator, model_validator
 
 from pipeline.errors import InputError
+from pipeline.records import Numerics
 from pipeline.resources import small_text
 from pipeline.settings.operations import OPERATIONS, Hooks, Limits, Logs, Retention
 from pipeline.settings.operations import Part as _Part
@@ -105,6 +106,11 @@ class Analysis(_Part):
         default="auto", description="from what shaking each object on display fails; auto: unless that takes minutes"
     )
     workers: int = Field(default=0, ge=0, le=256, description="threads; 0: as many as there are cores")
+
+    @property
+    def numerics(self) -> Numerics:
+        """How finely demands are found."""
+        return Numerics(self.fidelity, self.azimuth_step)
 
 
 class Display(_Part):

@@ -12,7 +12,7 @@ from typing import Any
 
 from sqlalchemy import Connection, Engine, delete, insert, select
 
-from pipeline.records import Assessment, Item, Outline, Result, Scene, Spacing, Verdict
+from pipeline.records import Assessment, Item, MeasurementRequest, Outline, Result, Scene, Spacing, Verdict
 from pipeline.store import codec
 from pipeline.store.codec import StoreError
 from pipeline.store.sealing import seal
@@ -62,7 +62,7 @@ _RESULTS = tuple[Result, ...]
 _SPACINGS = tuple[tuple[Spacing, ...], dict[str, str]]
 
 
-def anonymous(assessment: Assessment, needing: dict[str, int], wishes: tuple[Any, ...] | None) -> Result:
+def anonymous(assessment: Assessment, needing: dict[str, int], wishes: tuple[MeasurementRequest, ...] | None) -> Result:
     """Return what was found about an object without its number, its place and its title.
 
     Parameters

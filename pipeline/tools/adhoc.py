@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pipeline.operations.workspace import UsageError, charts_of, site_folder
-from pipeline.records import Motion
+from pipeline.records import Motion, Numerics
 
 if TYPE_CHECKING:
     from pipeline.settings import Settings
@@ -34,7 +34,8 @@ def respond_on_site(
     returns    : the rows of `respond`'s table with the motion and the parameters in front, for each motion
     raises     : UsageError for words that are not name=value, ValueError as `respond`
     """
-    from pipeline.analysis.response import answer, cascade
+    from pipeline.analysis.response import answer
+    from pipeline.analysis.transmission import cascade
 
     given: dict[str, Any] = dict(_parsed(word) for word in parameters)
     direction = None if angle == "worst" else _number("angle", angle)
@@ -43,7 +44,7 @@ def respond_on_site(
     with charts_of(settings) as charts:
         for ground in _motions(site, settings):
             motion = cascade(chain, ground)
-            found = answer(model, motion, fidelity=fidelity, angle=direction, tail=tail, charts=charts, **given)
+            found = answer(model, motion, given, Numerics(fidelity), angle=direction, tail=tail, charts=charts)
             size = len(found["note"])
             columns = {"motion": [motion.name] * size}
             columns |= {name: values * size if len(values) == 1 else values for name, values in given.items()}

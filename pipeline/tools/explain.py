@@ -3,13 +3,12 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isnan
-from typing import Any
 
 from pipeline.analysis.assess import assess
+from pipeline.analysis.context import Context
 from pipeline.analysis.findings import findings
 from pipeline.analysis.plan import Work, plan
-from pipeline.analysis.refinement import AUTO, Climb, examine
-from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.refinement import FidelitySearch, examine
 from pipeline.analysis.verdicts import LevelMotions, capacity_of
 from pipeline.collection.inventory import read_inventory
 from pipeline.execute import Threads
@@ -22,8 +21,8 @@ from pipeline.night.prepare import assessed, popular
 from pipeline.night.run import named
 from pipeline.operations.workspace import Workspace, charts_of
 from pipeline.quantities import Array
-from pipeline.records import Estimate, Executor, Finding, Item, Progress, Recommendation, Scene
-from pipeline.settings import Settings
+from pipeline.records import Estimate, Finding, Item, Numerics, Progress, Recommendation, Scene
+from pipeline.records.numerics import AUTO
 from pipeline.store.decisions import InForce, decisions_in_force
 
 
@@ -84,13 +83,14 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
         # The charts that a night uses, so that the reasons are those of the night.
         asked = assessed(everything.objects, settings.display.stores)
         charted = popular(everything, asked, workspace.rules, workspace.means, storey.x_azimuth)
-        with charts_of(settings, [m.hash for level in levels for m in level.motions], charted) as shelf:
+        with charts_of(settings, [m.hash for level in levels for m in level.motions], charted) as charts:
+            context = Context(executor, progress, charts)
             for index in storey.members:
                 one = _placed(workspace, items[index], decisions)
                 one = replace(one, scene=replace(one.scene, floor=storey.name))
                 # What is advised for a case depends on all that stand in it.
                 others = [_placed(workspace, other, decisions) for other in _neighbours(items[index], inventory)]
-                out.append(_explain(one, others, levels, workspace, executor, progress, shelf))
+                out.append(_explain(one, others, levels, workspace, context))
     return out
 
 
@@ -110,20 +110,12 @@ def _explain(
     others: Sequence[Placed],
     levels: Sequence[LevelMotions],
     workspace: Workspace,
-    executor: Executor,
-    progress: Progress,
-    shelf: Shelf,
+    context: Context,
 ) -> Explanation:
-    settings = workspace.settings
+    numerics = workspace.settings.analysis.numerics
     todo = plan([one.scene], levels[0].x_azimuth)
-    reasonings = [_reason(work, one.scene, level, settings, executor, shelf) for level in levels for work in todo.work]
-    how = settings.analysis
-    fineness: dict[str, Any] = {"fidelity": how.fidelity, "azimuth_step": how.azimuth_step, "charts": shelf}
-    integrated = {"fidelity": "reference" if how.fidelity == "reference" else "history"}
-    on_top = [
-        assess_above([each], levels, executor, progress, azimuth_step=how.azimuth_step, **integrated)[0]
-        for each in (one, *others)
-    ]
+    reasonings = [_reason(work, one.scene, level, context, numerics) for level in levels for work in todo.work]
+    on_top = [assess_above([each], levels, context, numerics.integrated)[0] for each in (one, *others)]
     if one.above is not None:
         above = one.above
         reasonings += [Reasoning(f, capacity_of(model_named(f.model), above)[1], ()) for f in on_top[0][0]]
@@ -131,50 +123,38 @@ def _explain(
     left_out = {title: why for title, why in {**todo.skipped[0], **on_top[0][1]}.items() if title not in done}
     scene = replace(one.scene, skipped=left_out)
     scenes = [scene, *(other.scene for other in others)]
-    around = assess(scenes[1:], levels, executor, progress, **fineness)[1] if others else []
+    around = assess(scenes[1:], levels, context, numerics)[1] if others else []
     found = [
         [r.finding for r in reasonings],
         *([*own, *above_it] for own, (above_it, _) in zip(around, on_top[1:], strict=True)),
     ]
-    advice = advise(scenes, found, levels, executor, progress, means=workspace.means, **fineness)
+    advice = advise(scenes, found, levels, context, numerics, means=workspace.means)
     return Explanation(scene, tuple(reasonings), tuple(advice[0]))
 
 
-def _reason(
-    work: Work, scene: Scene, level: LevelMotions, settings: Settings, executor: Executor, shelf: Shelf
-) -> Reasoning:
+def _reason(work: Work, scene: Scene, level: LevelMotions, context: Context, numerics: Numerics) -> Reasoning:
     bounds: list[Mapping[str, tuple[Array, Array]]] = []
 
-    def watch(climb: Climb) -> None:
-        for found in climb.found:
+    def watch(search: FidelitySearch) -> None:
+        for found in search.found:
             found.trail = []
             bounds.append({output: (low.copy(), found.high[output].copy()) for output, low in found.low.items()})
 
-    analysis = settings.analysis
-    examined = examine(
-        work,
-        [scene],
-        level,
-        executor,
-        fidelity=analysis.fidelity,
-        azimuth_step=analysis.azimuth_step,
-        charts=shelf,
-        watch=watch,
-    )
+    examined = examine(work, [scene], level, context, numerics, watch=watch)
     ((case, known),) = examined.cases
-    (finding,) = findings(examined.climb, case, known, [scene])
+    (finding,) = findings(examined.search, case, known, [scene])
     names = _named(work)
     taken = []
-    for found, bound in zip(examined.climb.found, bounds, strict=True):
+    for found, bound in zip(examined.search.found, bounds, strict=True):
         low, high = bound[case.output]
         exact = work.model.exact and case.output == work.model.demand
         no_error = exact or work.model.output(case.output).unit == "bool"
         for row in dict.fromkeys(work.spans.rows.ravel().tolist()):
             # Only `auto` asks for bounds besides certificates.
-            if analysis.fidelity == AUTO or low[row] == high[row]:
+            if numerics.fidelity == AUTO or low[row] == high[row]:
                 taken.append(Taken(found.motion.name, names[row], "bound", float(low[row]), float(high[row])))
         for step, rows, columns in found.trail or ():
-            fidelity = "chart" if step.name == "CHART" else examined.climb.integrated
+            fidelity = "chart" if step.name == "CHART" else numerics.integrated.fidelity
             for at, row in enumerate(rows.tolist()):
                 # Where the certificate is the demand, a history only tells what happens after.
                 value = float(low[row]) if exact else float(columns[case.output][at])

@@ -7,8 +7,9 @@ from functools import partial
 from pathlib import Path
 
 from pipeline.analysis.assess import assess
+from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, fault
-from pipeline.analysis.survey import in_order, measurables, wishes
+from pipeline.analysis.survey import in_order, measurables, measurement_requests
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.inventory import Difference, add_sheet, read_inventory
@@ -18,7 +19,8 @@ from pipeline.execute import Threads
 from pipeline.night.assessment import place
 from pipeline.night.floors import storeys
 from pipeline.operations.workspace import Workspace
-from pipeline.records import Item, Progress, Wish
+from pipeline.records import Item, MeasurementRequest, Progress
+from pipeline.records.numerics import AUTO, CHART
 from pipeline.report.files.survey_sheet import HEADER_ROW, column_name, sheet_title, write_survey
 from pipeline.store.decisions import decisions_in_force
 
@@ -30,7 +32,7 @@ class Surveyed:
     """What a survey asks for, where its workbook is, and the objects that Kouros failed on."""
 
     path: Path
-    wishes: tuple[Wish, ...]
+    wishes: tuple[MeasurementRequest, ...]
     objects: int
     quantities: int
     waste: int
@@ -55,21 +57,20 @@ def survey(
     if not items:
         raise CollectionError("nothing on display to survey: import the collection, or name another gallery")
     site = workspace.site()
-    executor = Threads(settings.analysis.workers or None)
-    fidelity, step = settings.analysis.fidelity, settings.analysis.azimuth_step
-    if fidelity == "chart":
+    context, numerics = Context(Threads(settings.analysis.workers or None), progress), settings.analysis.numerics
+    if numerics.fidelity == CHART:
         # Each trial is asked once: a chart that is not there would not pay.
-        fidelity = "auto"
-    found: list[Wish] = []
+        numerics = numerics.at(AUTO)
+    found: list[MeasurementRequest] = []
     decisions = decisions_in_force(workspace.engine)
     faults: list[Fault] = []
 
-    def asked(shaking: Sequence[LevelMotions], some: Sequence[Item]) -> list[list[Wish]]:
+    def asked(shaking: Sequence[LevelMotions], some: Sequence[Item]) -> list[list[MeasurementRequest]]:
         scenes = [place(item, workspace.rules, decisions.get(item.object_number, ())).scene for item in some]
-        _, findings = assess(scenes, shaking, executor, progress, fidelity=fidelity, azimuth_step=step, outcomes=False)
-        by_object: dict[str, list[Wish]] = {item.object_number: [] for item in some}
-        for wish in wishes(scenes, findings, shaking, executor, progress, fidelity=fidelity, azimuth_step=step):
-            by_object[wish.object_number].append(wish)
+        _, findings = assess(scenes, shaking, context, numerics, outcomes=False)
+        by_object: dict[str, list[MeasurementRequest]] = {item.object_number: [] for item in some}
+        for request in measurement_requests(scenes, findings, shaking, context, numerics):
+            by_object[request.object_number].append(request)
         return list(by_object.values())
 
     for storey in storeys(settings, site, items):

@@ -3,7 +3,7 @@
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import TypeAdapter
 
+from pipeline.analysis.chart_runs import run_chart
 from pipeline.analysis.classify import classify
 from pipeline.analysis.faults import sound
+from pipeline.analysis.model_runs import prepare, run_model
 from pipeline.analysis.plan import plan
-from pipeline.analysis.response import AZIMUTH_STEP, REFINE, prepare, run_chart, run_model
-from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.response_charts import ChartCache
 from pipeline.cache import TRADEOFFS, Cache, Kept
 from pipeline.collection.inventory import read_inventory
 from pipeline.kernels import KERNEL_VERSION
@@ -26,7 +27,8 @@ from pipeline.models.common import SENSITIVE
 from pipeline.motions.site import read_motion
 from pipeline.operations.workspace import UsageError, charts_of, folder_of_site, open_workspace
 from pipeline.quantities import Array
-from pipeline.records import Axis, Chart, Columns, Curve, Item, Model, Motion, Progress, Scene
+from pipeline.records import Axis, Chart, Columns, Curve, Item, Model, Motion, Numerics, Progress, Scene
+from pipeline.records.numerics import AZIMUTH_STEP, HISTORIES, REFINE
 from pipeline.settings import Settings
 
 STEPS = (1, 2, 4, 8, 16)
@@ -148,7 +150,7 @@ def measure(
     models: Sequence[str] = (),
     objects: int = 128,
     seed: int = 1991,
-    charts: Shelf | None = None,
+    charts: ChartCache | None = None,
 ) -> Tradeoff:
     """Measure error against cost for each model at every setting.
 
@@ -162,14 +164,14 @@ def measure(
     chosen = [model_named(name) for name in models] or list(MODELS)
     scenes = sound(lambda some: [classify(item) for item in some], items)
     samples, settings = [], []
-    shelf = Shelf() if charts is None else charts
+    cache = ChartCache() if charts is None else charts
     for done, model in enumerate(chosen):
         progress.step("models", done, len(chosen))
         values, source = _drawn(model, scenes, objects, np.random.default_rng(seed))
         size = next(iter(values.values())).size
         # A few objects would not fill the lanes that the kernels work in, and each would seem dear.
         full = {name: np.resize(column, max(size, objects)) for name, column in values.items()}
-        rows, moved, sensitive = _of_model(model, motions, full, shelf)
+        rows, moved, sensitive = _of_model(model, motions, full, cache)
         settings += rows
         counted, doubtful = (int(one[:, :size].sum()) for one in (moved, sensitive))
         samples.append(Sample(model.name, size, counted, doubtful, source))
@@ -196,7 +198,7 @@ def _drawn(
 
 
 def _of_model(
-    model: Model, motions: Sequence[Motion], values: Mapping[str, Array], shelf: Shelf
+    model: Model, motions: Sequence[Motion], values: Mapping[str, Array], charts: ChartCache
 ) -> tuple[list[Setting], NDArray[np.bool_], NDArray[np.bool_]]:
     two = model.directions == 2 or (model.directions == 0 and values["directions"][0] == 2.0)
     angle = None if two else 0.0
@@ -213,7 +215,7 @@ def _of_model(
         # One chart serves the objects that differ along its axis only: the others are those of the first.
         along = {n: v if n == model.chart.name else np.full_like(v, v[0]) for n, v in values.items()}
         charted = [_stepped(model, motion, along, angle, TRUTH) for motion in motions]
-        looked = partial(_looked_up, model, angle=angle, shelf=shelf)
+        looked = partial(_looked_up, model, angle=angle, charts=charts)
         runs = [_timed(partial(looked, motion, along)) for motion in motions]
         rows.append(_setting(model, "chart", f"chart to {CHARTED:g}", "chart", motions, runs, charted))
     for refine in STEPS:
@@ -235,7 +237,7 @@ def _stepped(model: Model, motion: Motion, values: Mapping[str, Array], angle: f
 
 
 def _bounded(model: Model, motion: Motion, values: Mapping[str, Array], angle: float | None) -> Columns:
-    return run_model(model, motion, values, "bound", angle, None)[0]
+    return run_model(model, motion, values, Numerics("bound"), angle)[0]
 
 
 def _looked_up(
@@ -244,13 +246,13 @@ def _looked_up(
     values: Mapping[str, Array],
     *,
     angle: float | None,
-    shelf: Shelf,
+    charts: ChartCache,
 ) -> Columns:
-    return run_chart(model, motion, values, angle, None, tolerance=CHARTED, charts=shelf)[0]
+    return run_chart(model, motion, values, Numerics(tolerance=CHARTED), angle, charts=charts)[0]
 
 
 def _turned(model: Model, motion: Motion, values: Mapping[str, Array], step: float) -> Columns:
-    return run_model(model, motion, values, "history", None, None, step)[0]
+    return run_model(model, motion, values, replace(HISTORIES, azimuth_step=step), None)[0]
 
 
 def _timed(work: Callable[[], Columns], repeats: int = REPEATS) -> tuple[Columns, float]:

@@ -7,15 +7,16 @@ import pytest
 
 from pipeline.analysis.assess import LevelMotions, assess, judge
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.plan import plan
 from pipeline.analysis.response import respond
-from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.response_charts import ChartCache
 from pipeline.execute import Threads
 from pipeline.mitigate import changed
 from pipeline.models import MODELS
 from pipeline.motions import read_motion
 from pipeline.quantities import G
-from pipeline.records import Estimate, Finding, Item, Motion, Origin, Scene, Support, Verdict
+from pipeline.records import Estimate, Finding, Item, Motion, Numerics, Origin, Scene, Support, Verdict
 from pipeline.resources import resource
 
 VASE = Item("1", "G", title="Covered vase", classification="Ceramics", medium="porcelain",
@@ -37,7 +38,7 @@ def motion() -> Motion:
 
 def run(scenes: list[Scene], *motions: Motion, combine: str = "max", x_azimuth: float = 90.0) -> list[list[Finding]]:
     level = LevelMotions("design", combine, motions, x_azimuth)
-    return assess(scenes, [level], Threads(2), Silent(), fidelity="history")[1]
+    return assess(scenes, [level], Context(Threads(2)), Numerics("history"))[1]
 
 
 def span(value: float, low: float, high: float) -> Estimate:
@@ -105,7 +106,7 @@ def test_what_is_found_of_an_object_does_not_hang_on_which_others_are_looked_at_
     level = LevelMotions("design", "max", (motion, weaker), 90.0)
 
     def found(some: list[Scene]) -> list[list[Finding]]:
-        return assess(some, [level], Threads(1), Silent(), fidelity="auto", charts=Shelf())[1]
+        return assess(some, [level], Context(Threads(1), charts=ChartCache()))[1]
 
     together = found(scenes)
     assert {f.fidelity for findings in together for f in findings} >= {"bound", "history"}
@@ -241,7 +242,7 @@ def test_what_cannot_be_assessed_has_no_findings(motion: Motion) -> None:
 def test_the_number_of_workers_changes_nothing(motion: Motion) -> None:
     scenes = [classify(replace(VASE, object_number=str(i), height_m=0.1 + 0.01 * i)) for i in range(40)]
     level = [LevelMotions("design", "max", (motion,))]
-    assert assess(scenes, level, Threads(1), Silent())[1] == assess(scenes, level, Threads(2), Silent())[1]
+    assert assess(scenes, level, Context(Threads(1)))[1] == assess(scenes, level, Context(Threads(2)))[1]
 
 
 @pytest.mark.parametrize(
@@ -264,8 +265,8 @@ def test_the_error_of_a_finding_is_that_of_its_demand(
     """
     scene = changed(classify(VASE), measure, parameters)
     level = LevelMotions("design", "max", (motion,))
-    _, (fine,) = assess([scene], [level], Threads(1), Silent(), fidelity="reference")
-    _, (found,) = assess([scene], [level], Threads(1), Silent(), fidelity="history")
+    _, (fine,) = assess([scene], [level], Context(Threads(1)), Numerics("reference"))
+    _, (found,) = assess([scene], [level], Context(Threads(1)), Numerics("history"))
     (history,), (reference,) = (f for f in found if f.unit == "m"), (f for f in fine if f.unit == "m")
     assert history.demand is not None
     assert reference.demand is not None

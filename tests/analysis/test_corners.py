@@ -7,15 +7,15 @@ import pytest
 
 from pipeline.analysis.assess import LevelMotions, assess
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.plan import corners, plan
 from pipeline.analysis.response import respond
 from pipeline.execute import Threads
 from pipeline.models import MODELS
 from pipeline.motions import read_motion
 from pipeline.quantities import Array, G
-from pipeline.records import Finding, Item, Motion, Scene, Support, Verdict
+from pipeline.records import Finding, Item, Motion, Numerics, Scene, Support, Verdict
 from pipeline.resources import resource
-from tests.analysis.test_assess import Silent
 
 COUNT = 400
 
@@ -38,7 +38,7 @@ def judged(motion: Motion) -> list[tuple[Scene, Finding]]:
         item = Item(str(at), "G", title=kind, object_name=kind, medium=("bronze", "porcelain", "marble")[at % 3],
                     support=support, height_m=height, width_m=across, depth_m=across)  # fmt: skip
         scenes.append(classify(item))
-    found = assess(scenes, [LevelMotions("design", "max", (motion,))], Threads(1), Silent())[1]
+    found = assess(scenes, [LevelMotions("design", "max", (motion,))], Context(Threads(1)))[1]
     return [(s, f) for s, each in zip(scenes, found, strict=True) for f in each if f.model in ("rocking", "stress")]
 
 
@@ -123,7 +123,7 @@ def test_falling_is_looked_for_at_every_corner(motion: Motion) -> None:
     scenes = [classify(item) for item in items]
     strong = Motion(motion.dt, motion.acceleration[:, 1500:3500], "strong")
     level = LevelMotions("design", "max", (strong,))
-    found = assess(scenes, [level], Threads(2), Silent(), azimuth_step=45.0)[1]
+    found = assess(scenes, [level], Context(Threads(2)), Numerics(azimuth_step=45.0))[1]
     rocking = [f for each in found for f in each if f.model == "rocking"]
     assert len({f.verdict for f in rocking}) > 1
     for scene, one in zip(scenes, rocking, strict=True):

@@ -9,6 +9,7 @@ import pytest
 
 from pipeline.analysis.assess import LevelMotions, assess
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.response import respond
 from pipeline.collection.database import open_database
 from pipeline.execute import Threads
@@ -19,7 +20,6 @@ from pipeline.report.pages.judging import most, spanned
 from pipeline.report.units import Units
 from pipeline.resources import resource
 from pipeline.store.runs import load_run
-from tests.analysis.test_assess import Silent
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +69,7 @@ def bounded(**fields: float | None) -> Finding:
                 width_m=0.3, depth_m=0.3, cg_height_m=0.15, clearance_m=5.0, **fields)  # type: ignore[arg-type] # fmt: skip
     x, y, z = read_motion(resource("site_motions", "demo"))[0].acceleration[:, 1500:3500]
     shaking = Motion(0.01, [x, y, z], "strong")
-    found = assess([classify(item)], [LevelMotions("design", "max", (shaking,))], Threads(1), Silent())[1][0]
+    found = assess([classify(item)], [LevelMotions("design", "max", (shaking,))], Context(Threads(1)))[1][0]
     return next(f for f in found if f.model == "sliding")
 
 

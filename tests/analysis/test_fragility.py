@@ -11,6 +11,7 @@ from scipy.integrate import quad
 from scipy.stats import CensoredData, norm
 
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.fragility.curve import NINETY, fit, stated
 from pipeline.analysis.fragility.hazard import Hazard, NoHazardError
 from pipeline.analysis.fragility.objects import Stripe, fragilities, hazard_of
@@ -48,7 +49,7 @@ def stripe(*motions: Motion, years: float | None = None) -> Stripe:
 
 def curves(*items: Item, stripes: list[Stripe]) -> list[dict[str, Fragility]]:
     scenes = [classify(item) for item in items]
-    found = fragilities(scenes, plan(scenes).work, stripes, Threads(1), SILENT)
+    found = fragilities(scenes, plan(scenes).work, stripes, Context(Threads(1)))
     return [{f.model: f for f in one} for one in found]
 
 
@@ -236,7 +237,7 @@ def test_uncertain_inputs_add_their_squares() -> None:
     scene = replace(scene, parameters=known)
     ((found, *_),) = fragilities(
         [scene], [w for w in plan([scene]).work if w.model.name == "rocking"], [stripe(half_sine_pulse(2.0, 0.5))],
-        Threads(1), SILENT,
+        Context(Threads(1)),
     )  # fmt: skip
     truth = sqrt(sum((log(high / low) / (2.0 * NINETY)) ** 2 for low, high in wide.values()))
     assert found.inputs == pytest.approx(truth, rel=1e-9)

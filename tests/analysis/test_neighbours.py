@@ -9,12 +9,13 @@ from scipy.integrate import solve_ivp
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.neighbours import neighbours
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.cli.console import Console
 from pipeline.execute import Threads
 from pipeline.quantities import G
-from pipeline.records import Item, Motion, Spacing, Support, Verdict
+from pipeline.records import Item, Motion, Numerics, Spacing, Support, Verdict
 
 SILENT = Console(quiet=True)
 
@@ -42,7 +43,7 @@ def spaced(
 ) -> list[Spacing]:
     levels = [LevelMotions("design", combine, motions or (pulse(),), x_azimuth)]
     scenes = [classify(item) for item in items]
-    _, findings = assess(scenes, levels, Threads(1), SILENT, fidelity="history")
+    _, findings = assess(scenes, levels, Context(Threads(1)), Numerics("history"))
     return neighbours(scenes, findings, levels)
 
 

@@ -9,13 +9,14 @@ import pytest
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.figures import stability_chart
 from pipeline.analysis.response import respond
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.quantities import G
 from pipeline.records import Item, Motion, Support, Verdict
-from tests.mitigate.scenes import TOWER, Silent, demo_motion, solve
+from tests.mitigate.scenes import TOWER, demo_motion, solve
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +60,7 @@ def test_a_teflon_pad_does_not_excuse_a_tall_object(motion: Motion) -> None:
     level = LevelMotions("design", "max", (motion,))
     uplift = []
     for friction in (0.02, 0.10, 0.5):
-        _, (found,) = assess([classify(replace(TOWER, friction=friction))], [level], Threads(1), Silent())
+        _, (found,) = assess([classify(replace(TOWER, friction=friction))], [level], Context(Threads(1)))
         rocking = next(f for f in found if f.model == "rocking")
         assert rocking.verdict is Verdict.FAIL
         uplift.append(rocking.demand)
@@ -80,7 +81,7 @@ GLASS = Item(
 def test_a_tall_stemmed_glass_fails_by_stress_when_it_is_clamped(motion: Motion) -> None:
     """Section 2.3: by hand m A l / (pi d^3 / 32) - m g / (pi d^2 / 4), beyond the strongest glass of the table."""
     clamped = replace(GLASS, support=Support.FASTENED)
-    _, (found,) = assess([classify(clamped)], [LevelMotions("design", "max", (motion,))], Threads(1), Silent())
+    _, (found,) = assess([classify(clamped)], [LevelMotions("design", "max", (motion,))], Context(Threads(1)))
     (stress,) = found
     push = float(np.hypot(*motion.acceleration[:2]).max())
     by_hand = 0.4 * push * 0.21 * 32.0 / (np.pi * 0.005**3) - 0.4 * G * 4.0 / (np.pi * 0.005**2)

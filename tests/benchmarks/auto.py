@@ -17,16 +17,17 @@ from pathlib import Path
 import numpy as np
 
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.plan import Work, plan
 from pipeline.analysis.refinement import Effort, examine
-from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.execute import Threads
 from pipeline.motions import read_motion
 from pipeline.night.importing import bundled_collection
-from pipeline.records import Item, Scene
+from pipeline.records import Item, Numerics, Scene
 from pipeline.resources import resource
 from tests.benchmarks.common import SEED
 
@@ -43,18 +44,18 @@ def auto() -> None:
     assumed, measured = ([classify(i) for i in those] for those in (items, _measured(items)))
     for work in plan(measured[:300]).work:
         # Compiles the kernels.
-        _seconds(work, measured, level, "auto", Shelf())
+        _seconds(work, measured, level, "auto", ChartCache())
     print(
         f"{file.name}, {len(items):,} objects, one motion, one thread; seconds, of a first night and of one that finds"
     )
-    print("the charts on the shelf; sets: parameter sets that differ; histories: share of them that are integrated")
+    print("the charts in the cache; sets: parameter sets that differ; histories: share of them that are integrated")
     print(
         f"{'model':<18}{'parameters':<10}{'analyses':>9}{'sets':>8}{'history':>9}{'auto':>8}{'ratio':>7}{'again':>8}"
         f"{'ratio':>7}{'histories':>11}"
     )
     for words, scenes in (("assumed", assumed), ("measured", measured)):
         for work in plan(scenes).work:
-            charts = Shelf()
+            charts = ChartCache()
             slow, _ = _seconds(work, scenes, level, "history", charts)
             quick, effort = _seconds(work, scenes, level, "auto", charts)
             again, _ = _seconds(work, scenes, level, "auto", charts)
@@ -77,11 +78,11 @@ def _read(file: Path) -> list[Item]:
 
 
 def _seconds(
-    work: Work, scenes: Sequence[Scene], level: LevelMotions, fidelity: str, charts: Shelf
+    work: Work, scenes: Sequence[Scene], level: LevelMotions, fidelity: str, charts: ChartCache
 ) -> tuple[float, Effort]:
     start = time.perf_counter()
-    done = examine(work, scenes, level, Threads(1), fidelity=fidelity, azimuth_step=10.0, charts=charts)
-    return time.perf_counter() - start, done.climb.effort
+    done = examine(work, scenes, level, Context(Threads(1), charts=charts), Numerics(fidelity))
+    return time.perf_counter() - start, done.search.effort
 
 
 def _why(work: Work, effort: Effort) -> str:

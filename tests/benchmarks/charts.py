@@ -2,12 +2,13 @@
 
 import numpy as np
 
-from pipeline.analysis.response import prepare, run_chart, run_model
-from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.chart_runs import run_chart
+from pipeline.analysis.model_runs import prepare, run_model
+from pipeline.analysis.response_charts import ChartCache
 from pipeline.models import MODELS
 from pipeline.motions import read_motion
 from pipeline.quantities import Array
-from pipeline.records import Model, Motion
+from pipeline.records import Model, Motion, Numerics
 from pipeline.resources import resource
 from tests.benchmarks.common import SEED, clocked, fastest, least
 
@@ -48,15 +49,15 @@ def _model(model: Model, motion: Motion) -> None:
         return prepare(model, {axis.name: along, **FIXED.get(model.name, {})})
 
     few = sets(np.exp(rng.uniform(np.log(axis.low), np.log(axis.high), ANALYSES)))
-    true = run_model(model, motion, few, "history", None, None)[0]
+    true = run_model(model, motion, few, Numerics("history"), None)[0]
     first = model.gives[0].name
     size = np.maximum(true[first], 0.01 * true[first].max())
-    analysis = fastest(lambda: run_model(model, motion, few, "history", None, None), 2) / ANALYSES
+    analysis = fastest(lambda: run_model(model, motion, few, Numerics("history"), None), 2) / ANALYSES
     for tolerance in (1e-2, 1e-3):
-        charts = Shelf()
+        charts = ChartCache()
 
-        def look(values: dict[str, Array], tolerance: float = tolerance, charts: Shelf = charts):  # type: ignore[no-untyped-def]
-            return run_chart(model, motion, values, None, None, tolerance=tolerance, charts=charts)
+        def look(values: dict[str, Array], tolerance: float = tolerance, charts: ChartCache = charts):  # type: ignore[no-untyped-def]
+            return run_chart(model, motion, values, Numerics(tolerance=tolerance), None, charts=charts)
 
         (columns, _, looked), build = clocked(lambda: look(few))
         build -= analysis * np.count_nonzero(~looked)

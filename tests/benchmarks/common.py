@@ -9,11 +9,12 @@ from typing import TypeVar
 
 import numpy as np
 
-from pipeline.analysis.response import REFINE, prepare
+from pipeline.analysis.model_runs import prepare
 from pipeline.models import model_named
 from pipeline.motions import read_motion
 from pipeline.quantities import Array
 from pipeline.records import Columns, Excitation, Motion
+from pipeline.records.numerics import REFINE
 from pipeline.resources import resource
 
 Result = TypeVar("Result")

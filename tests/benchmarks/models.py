@@ -12,11 +12,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from pipeline.analysis.response import REFINE, prepare
+from pipeline.analysis.model_runs import prepare
 from pipeline.execute import Threads
 from pipeline.models import model_named
 from pipeline.quantities import Array, G
 from pipeline.records import Columns, Excitation, Model
+from pipeline.records.numerics import REFINE
 from tests.benchmarks.common import OBJECTS, SEED, fastest, shaking, strongest
 
 ROUNDS, ALONE = 5, 3

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from pipeline.analysis.response import prepare
+from pipeline.analysis.model_runs import prepare
 from pipeline.kernels.pendulum import substeps
 from pipeline.models import model_named
 from pipeline.models.common import Quiet, shaken

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import Means, advise
@@ -29,8 +30,8 @@ def solve_all(
 ) -> list[list[Recommendation]]:
     scenes = [classify(item) for item in items]
     levels = [LevelMotions("design", combine, tuple(motions))]
-    _, findings = assess(scenes, levels, Threads(1), Silent())
-    return advise(scenes, findings, levels, Threads(1), Silent(), means=means)
+    _, findings = assess(scenes, levels, Context(Threads(1)))
+    return advise(scenes, findings, levels, Context(Threads(1)), means=means)
 
 
 def solve(item: Item, motion: Motion, means: Means | None = None) -> Recommendation:

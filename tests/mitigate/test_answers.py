@@ -9,6 +9,7 @@ import pytest
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.response import respond
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
@@ -17,10 +18,10 @@ from pipeline.mitigate.holding import strengths
 from pipeline.mitigate.means import Means, own_means
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import G
-from pipeline.records import Motion, Support, Verdict
+from pipeline.records import Motion, Numerics, Support, Verdict
 from pipeline.tables import table
 
-from .scenes import BLOCK, PICTURE, STUMP, TOWER, Silent, demo_motion, rejected, solve, solve_all
+from .scenes import BLOCK, PICTURE, STUMP, TOWER, demo_motion, rejected, solve, solve_all
 
 
 @pytest.fixture(scope="module")
@@ -221,7 +222,7 @@ def test_removal_is_the_last_answer(motion: Motion) -> None:
 def test_open_rocking_is_not_answered_by_room(motion: Motion) -> None:
     """Sliding fails and rocking is open: what is advised passes for both.  Nothing fails: nothing is advised."""
     open_ = replace(BLOCK, base_width_m=None, base_depth_m=None, width_m=0.2, depth_m=0.2)
-    _, (found,) = assess([classify(open_)], [LevelMotions("design", "max", (motion,))], Threads(1), Silent())
+    _, (found,) = assess([classify(open_)], [LevelMotions("design", "max", (motion,))], Context(Threads(1)))
     verdicts = {f.model: f.verdict for f in found}
     assert verdicts == {"rocking": Verdict.UNDETERMINED, "sliding": Verdict.FAIL}
     advice = solve(open_, motion)
@@ -247,7 +248,7 @@ def test_a_change_is_what_its_recommendation_says(motion: Motion) -> None:
     for item in (BLOCK, TOWER, STUMP, replace(STUMP, object_name="Vase")):
         advice = solve(item, motion)
         scene = changed(classify(item), advice.measure, advice.parameters)
-        _, (found,) = assess([scene], [level], Threads(1), Silent(), fidelity="history")
+        _, (found,) = assess([scene], [level], Context(Threads(1)), Numerics("history"))
         assert found
         assert all(f.verdict is Verdict.PASS for f in found)
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pipeline.analysis.response import respond, transmit
+from pipeline.analysis.response import respond
+from pipeline.analysis.transmission import transmit
 from pipeline.mitigate.shared import listed
 from pipeline.quantities import G
 from pipeline.records import Motion

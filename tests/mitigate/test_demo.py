@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.analysis.response import respond, transmit
+from pipeline.analysis.response import respond
+from pipeline.analysis.transmission import transmit
 from pipeline.collection.database import open_database
 from pipeline.mitigate.holding import WAX, strengths
 from pipeline.motions import read_motion

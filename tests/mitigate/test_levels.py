@@ -10,6 +10,7 @@ import pytest
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.response import respond
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
@@ -20,7 +21,7 @@ from pipeline.motions.synthesis import sine
 from pipeline.quantities import G
 from pipeline.records import Item, Motion, Recommendation, Verdict
 
-from .scenes import BLOCK, PICTURE, TOWER, Silent, demo_motion
+from .scenes import BLOCK, PICTURE, TOWER, demo_motion
 
 
 @pytest.fixture(scope="module")
@@ -34,8 +35,8 @@ def two(weak: Motion, strong: Motion) -> list[LevelMotions]:
 
 def solve(item: Item, levels: Sequence[LevelMotions], means: Means | None = None) -> dict[str, Recommendation]:
     scenes = [classify(item)]
-    _, findings = assess(scenes, levels, Threads(1), Silent())
-    ((*found,),) = advise(scenes, findings, levels, Threads(1), Silent(), means=means)
+    _, findings = assess(scenes, levels, Context(Threads(1)))
+    ((*found,),) = advise(scenes, findings, levels, Context(Threads(1)), means=means)
     return {one.level: one for one in found}
 
 
@@ -66,7 +67,7 @@ def test_what_is_advised_for_one_level_passes_at_all(motion: Motion) -> None:
     push = float(np.hypot(*motion.acceleration[:2]).max())
     assert advice["weak"].parameters["force"] == pytest.approx(20.0 * push)
     for one in advice.values():
-        _, (found,) = assess([changed(classify(tower), one.measure, one.parameters)], levels, Threads(1), Silent())
+        _, (found,) = assess([changed(classify(tower), one.measure, one.parameters)], levels, Context(Threads(1)))
         assert {f.level for f in found} == {"weak", "strong"}
         assert all(f.verdict is Verdict.PASS for f in found)
 

@@ -14,12 +14,13 @@ import pytest
 from shaking import random_motion, times
 
 from pipeline import Motion, respond, trace, transmit
-from pipeline.analysis.response import response_chart
+from pipeline.analysis.chart_runs import response_chart
 from pipeline.errors import InputError
 from pipeline.kernels.friction_line import MOST_PIECES
 from pipeline.kernels.pendulum import MOST_STEPS, substeps
 from pipeline.models import MODELS
 from pipeline.quantities import G
+from pipeline.records import Numerics
 from pipeline.verification.extremes import complaint
 
 LIMIT = 60.0
@@ -169,7 +170,7 @@ def test_supports_and_charts_end_too() -> None:
     strong = times(random_motion(3, n=30, dt=0.02), 1e6, 1e6)
     passed = transmit("horizontal_isolator", strong, frequency=20.0, damping=0.05, friction=0.05, refine=1)
     assert np.isfinite(passed.acceleration).all()
-    chart = response_chart("swing", strong, angle=0.0, damping=0.02, tolerance=0.1, first=True)
+    chart = response_chart("swing", strong, angle=0.0, damping=0.02, numerics=Numerics(tolerance=0.1, first=True))
     looked = chart.look(np.array([0.01, 1.0]))
     # No pendulum is out by more than it is long; the chart may be off by a tenth.
     assert (looked.columns["displacement"] <= [0.011, 1.1]).all()

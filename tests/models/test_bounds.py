@@ -12,7 +12,8 @@ from shaking import along_x, random_motion, times, turned
 from test_response import VALID
 
 from pipeline import Motion, read_motion, respond
-from pipeline.analysis.response import FIDELITIES, prepare
+from pipeline.analysis.model_runs import prepare
+from pipeline.analysis.response import FIDELITIES
 from pipeline.cli.commands import FIDELITIES as OFFERED
 from pipeline.models import MODELS, model_named
 from pipeline.quantities import G

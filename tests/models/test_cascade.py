@@ -10,7 +10,7 @@ import pytest
 from shaking import along_x, random_motion, turned
 
 from pipeline import Motion, respond, transmit
-from pipeline.analysis.response import cascade
+from pipeline.analysis.transmission import cascade
 from pipeline.quantities import G
 from pipeline.supports.refining import difference
 

@@ -9,15 +9,16 @@ import pytest
 from shaking import along_x, random_motion
 
 from pipeline import respond
-from pipeline.analysis.response import DECIDES, look_up, prepare, run_chart, run_model
-from pipeline.analysis.response_charts import ResponseChart, Shelf
+from pipeline.analysis.chart_runs import DECIDES, look_up, run_chart
+from pipeline.analysis.model_runs import prepare, run_model
+from pipeline.analysis.response_charts import ChartCache, ResponseChart
 from pipeline.analysis.response_charts.refine import MOST_NODES, UNITS, refine
 from pipeline.analysis.response_charts.response_chart import axis_of
 from pipeline.models import MODELS, model_named
 from pipeline.models.common import lift_ratios
 from pipeline.motions import read_motion
 from pipeline.quantities import Array
-from pipeline.records import Columns, Motion
+from pipeline.records import Columns, Motion, Numerics
 from pipeline.resources import resource
 
 CASES = {
@@ -55,7 +56,7 @@ def test_the_error_reported_covers_the_true_one(case: str, motion: Motion) -> No
     model = model_named(name)
     assert model.chart is not None
     given = {model.chart.name: fresh(name, 1000, 1), **fixed}
-    looked = respond(name, motion, fidelity="chart", angle=angle, azimuth_step=30.0, charts=Shelf(), **given)
+    looked = respond(name, motion, fidelity="chart", angle=angle, azimuth_step=30.0, charts=ChartCache(), **given)
     true = respond(name, motion, angle=angle, azimuth_step=30.0, **given)
     # A short string whipped over the top is chaotic, and jumps of the worst direction are left to the integration.
     tame = true["rotation"] < 0.5 * np.pi if "rotation" in true else np.ones(1000, dtype=bool)
@@ -72,7 +73,7 @@ def test_the_error_reported_covers_the_true_one(case: str, motion: Motion) -> No
 def test_the_demonstration_against_the_reference() -> None:
     """Two-directional sliding: the reported error holds that of the nodes as well, so it covers the true one."""
     given = {"friction_static": fresh("sliding", 1000, 2)}
-    looked = respond("sliding", demo(), fidelity="chart", charts=Shelf(), **given)
+    looked = respond("sliding", demo(), fidelity="chart", charts=ChartCache(), **given)
     true = respond("sliding", demo(), fidelity="reference", **given)
     assert (np.abs(looked["displacement"] - true["displacement"]) <= looked["error"]).mean() >= 0.99
 
@@ -81,7 +82,7 @@ def chart(name: str, motion: Motion, tolerance: float, most: int = MOST_NODES, *
     model = model_named(name)
 
     def run(values: Mapping[str, Array]) -> Columns:
-        return run_model(model, motion, values, "history", 0.0, None)[0]
+        return run_model(model, motion, values, Numerics("history"), 0.0)[0]
 
     left_out = {q.name: np.nan if q.default is None else q.default for q in model.needs}
     excitation = motion.excitation(None)
@@ -107,7 +108,7 @@ def test_a_chart_that_may_not_grow_says_which_error_it_has() -> None:
     along = fresh("swing", 1000, 4)
     looked = made.look(along)
     model = model_named("swing")
-    true = run_model(model, motion, {"length": along, "damping": np.zeros(1000)}, "history", 0.0, None)[0]
+    true = run_model(model, motion, {"length": along, "damping": np.zeros(1000)}, Numerics("history"), 0.0)[0]
     # Cells this wide hide whole peaks between their held-out points: a claim for nine in ten is all that can be made.
     assert (np.abs(looked.columns["displacement"] - true["displacement"]) <= looked.bounds["displacement"]).mean() > 0.9
 
@@ -159,9 +160,9 @@ def test_a_verdicts_chart_follows_what_the_verdict_rests_on(name: str) -> None:
     assert model.demand == model.gives[0].name
     values = prepare(model, {model.chart.name: fresh(name, 1000, 2), "damping": 0.02})
     angle = None if model.directions == 2 else 0.0
-    looked = look_up(model, motion, values, angle, None, tolerance=DECIDES, charts=Shelf(), first=True)
+    looked = look_up(model, motion, values, Numerics(tolerance=DECIDES, first=True), angle, ChartCache())
     assert looked.found.mean() > 0.98
-    true = run_model(model, motion, values, "history", angle, None)[0][model.demand]
+    true = run_model(model, motion, values, Numerics("history"), angle)[0][model.demand]
     wrong = np.abs(looked.columns[model.demand] - true)[looked.found]
     assert (wrong <= looked.bounds[model.demand][looked.found]).mean() >= 0.99
     # What it does not follow it does not tell.
@@ -173,20 +174,22 @@ def test_nothing_moves_beyond_the_certificate() -> None:
     motion = random_motion(3)
     rests = max(lift_ratios(motion.excitation(None)))
     given = np.array([np.nextafter(rests, 0.0), rests, np.nextafter(rests, 9.0), 2.0 * rests, 1.5, 40.0])
-    table = respond("sliding", motion, fidelity="chart", charts=Shelf(), friction_static=given)
+    table = respond("sliding", motion, fidelity="chart", charts=ChartCache(), friction_static=given)
     assert (table["fidelity"] == "chart").all()
     assert (table["displacement"][1:] == 0.0).all()
     assert table["displacement"][0] <= table["error"][0]
-    assert respond("friction_isolator", motion, fidelity="chart", charts=Shelf(), friction_static=given)[
+    assert respond("friction_isolator", motion, fidelity="chart", charts=ChartCache(), friction_static=given)[
         "acceleration"
     ].iloc[1:].to_numpy() == pytest.approx(np.hypot(*motion.acceleration[:2]).max(), rel=1e-12)
 
 
 def test_a_motion_of_nothing() -> None:
     still = along_x(np.zeros(50), 0.01)
-    table = respond("sliding", still, fidelity="chart", charts=Shelf(), friction_static=[0.0, 0.01, 0.3])
+    table = respond("sliding", still, fidelity="chart", charts=ChartCache(), friction_static=[0.0, 0.01, 0.3])
     assert (table["displacement"] == 0.0).all()
-    assert (respond("swing", still, fidelity="chart", charts=Shelf(), length=1.0, damping=0.0)["error"] == 0.0).all()
+    assert (
+        respond("swing", still, fidelity="chart", charts=ChartCache(), length=1.0, damping=0.0)["error"] == 0.0
+    ).all()
 
 
 def test_what_is_on_no_chart_is_integrated_and_says_so() -> None:
@@ -195,18 +198,18 @@ def test_what_is_on_no_chart_is_integrated_and_says_so() -> None:
     given["friction_kinetic"][2] = 0.15
     values = {**given, "directions": np.full(4, 2.0)}
     model = model_named("sliding")
-    columns, _, looked = run_chart(model, motion, values, 0.0, None, charts=Shelf())
+    columns, _, looked = run_chart(model, motion, values, Numerics(), 0.0, charts=ChartCache())
     assert looked.tolist() == [True, False, False, True]
-    true = run_model(model, motion, values, "history", 0.0, None)[0]
+    true = run_model(model, motion, values, Numerics("history"), 0.0)[0]
     assert columns["displacement"][1:3].tolist() == true["displacement"][1:3].tolist()
-    table = respond("sliding", motion, fidelity="chart", charts=Shelf(), friction_static=[0.1, 0.005])
+    table = respond("sliding", motion, fidelity="chart", charts=ChartCache(), friction_static=[0.1, 0.005])
     assert table["fidelity"].tolist() == ["chart", "history"]
 
 
 def test_each_combination_of_fixed_parameters_has_its_chart_up_to_a_number(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("pipeline.analysis.response_charts.grouping.MOST_CHARTS", 2)
     dampings = np.array([0.1, 0.3, 0.2, 0.1, 0.2, 0.1])
-    charts = Shelf()
+    charts = ChartCache()
     table = respond(
         "swing", random_motion(3), fidelity="chart", charts=charts, tolerance=1e-2, length=1.0, damping=dampings
     )
@@ -242,12 +245,12 @@ def test_the_nodes_are_where_the_model_was_run() -> None:
     assert (made.nodes[0], made.nodes[-1]) == (made.low, made.high)
     looked = made.look(made.nodes).columns["displacement"]
     fixed = {"length": made.nodes, "damping": np.full_like(made.nodes, 0.05)}
-    true = run_model(model_named("swing"), motion, fixed, "history", 0.0, None)[0]["displacement"]
+    true = run_model(model_named("swing"), motion, fixed, Numerics("history"), 0.0)[0]["displacement"]
     np.testing.assert_allclose(looked, true, rtol=1e-9)
 
 
-def test_a_shelf_forgets_what_was_not_asked_for_and_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
-    charts, axis, built = Shelf(kept=2), model_named("sliding").chart, []
+def test_a_cache_forgets_what_was_not_asked_for_and_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+    charts, axis, built = ChartCache(kept=2), model_named("sliding").chart, []
     assert axis is not None
     made = chart("sliding", along_x(np.zeros(9), 0.01), 1e-2)
 

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from shaking import along_x, random_motion, resampled
 
 from pipeline import Motion, respond
-from pipeline.analysis.response import prepare
+from pipeline.analysis.model_runs import prepare
 from pipeline.models import MODELS, model_named
 from pipeline.models.flips import RATIO, integrate
 from pipeline.models.rocking import bodies

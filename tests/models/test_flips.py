@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 from shaking import random_motion, times
 
 from pipeline import Motion, respond
-from pipeline.analysis.response import prepare, run_model
+from pipeline.analysis.model_runs import prepare, run_model
 from pipeline.models import model_named
 from pipeline.models.common import SENSITIVE
 from pipeline.quantities import Array, G
+from pipeline.records import Numerics
 
 AMPLITUDES = np.linspace(-0.01, 0.01, 41)
 """Relative changes of the dense scan."""
@@ -35,7 +36,7 @@ def outcomes(motion: Motion, values: dict[str, Array], angle: float, change: flo
 
 
 def told_of(motion: Motion, values: dict[str, Array], angle: float | None) -> tuple[NDArray[np.bool_], Array]:
-    columns, _ = run_model(model_named("rocking"), motion, values, "history", angle, None)
+    columns, _ = run_model(model_named("rocking"), motion, values, Numerics("history"), angle)
     return (columns["note"].astype(np.int64) & SENSITIVE) > 0, columns["overturned"] > 0.0
 
 

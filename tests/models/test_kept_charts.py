@@ -9,8 +9,8 @@ import pytest
 from shaking import along_x, random_motion
 
 from pipeline import cache, respond
-from pipeline.analysis.response import response_chart
-from pipeline.analysis.response_charts import ResponseChart, Shelf
+from pipeline.analysis.chart_runs import response_chart
+from pipeline.analysis.response_charts import ChartCache, ResponseChart
 from pipeline.cache import CHARTS, CacheWarning
 from pipeline.records import Motion
 
@@ -24,7 +24,9 @@ def refuse(*_: object, **__: object) -> ResponseChart:
 
 
 def ask(motion: Motion, folder: Path, friction: float = 0.1234, **settings: float) -> float:
-    table = respond("sliding", motion, fidelity="chart", charts=Shelf(folder), friction_static=friction, **settings)
+    table = respond(
+        "sliding", motion, fidelity="chart", charts=ChartCache(folder), friction_static=friction, **settings
+    )
     return float(table["displacement"].iloc[0])
 
 
@@ -40,9 +42,9 @@ def test_charts_are_found_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         ask(motion, tmp_path, tolerance=2e-2)
     with pytest.raises(RebuiltError):
         ask(motion, tmp_path, tolerance=1e-2, directions=1.0)
-    response_chart("sliding", motion, tolerance=1e-2, charts=Shelf(tmp_path))
+    response_chart("sliding", motion, tolerance=1e-2, charts=ChartCache(tmp_path))
     with pytest.raises(RebuiltError):
-        response_chart("sliding", motion, tolerance=1e-2, first=True, charts=Shelf(tmp_path))
+        response_chart("sliding", motion, tolerance=1e-2, first=True, charts=ChartCache(tmp_path))
     with pytest.raises(RebuiltError):
         ask(motion.scaled(1.01, "another"), tmp_path, tolerance=1e-2)
     monkeypatch.setattr(cache, "code_version", lambda: 64 * "0")
@@ -53,7 +55,9 @@ def test_charts_are_found_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 def test_every_number_of_a_chart_is_found_again(tmp_path: Path) -> None:
     """All columns, bounds, notes and marks of what is unresolved, at 1,000 values, and nothing is left aside."""
     given = {"length": np.geomspace(0.1, 20.0, 1000), "damping": 0.0, "tolerance": 1e-2}
-    tables = [respond("swing", random_motion(5), fidelity="chart", charts=Shelf(tmp_path), **given) for _ in range(2)]
+    tables = [
+        respond("swing", random_motion(5), fidelity="chart", charts=ChartCache(tmp_path), **given) for _ in range(2)
+    ]
     assert tables[0].equals(tables[1])
     assert len(list((tmp_path / CHARTS).iterdir())) == 1
 

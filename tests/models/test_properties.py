@@ -13,7 +13,7 @@ from shaking import along_x, random_motion, resampled, times, turned
 from test_response import VALID
 
 from pipeline import Motion, respond, trace
-from pipeline.analysis.response import prepare
+from pipeline.analysis.model_runs import prepare
 from pipeline.models import MODELS, model_named
 from pipeline.quantities import Array, G
 

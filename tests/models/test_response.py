@@ -10,7 +10,7 @@ import pytest
 from shaking import along_x, random_motion
 
 from pipeline import respond, trace
-from pipeline.analysis.response import prepare
+from pipeline.analysis.model_runs import prepare
 from pipeline.models import MODELS, model_named
 from pipeline.quantities import G
 

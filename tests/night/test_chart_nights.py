@@ -12,7 +12,7 @@ from pipeline.analysis.assess import LevelMotions, assess
 from pipeline.analysis.classify import classify
 from pipeline.analysis.plan import plan
 from pipeline.analysis.response import respond
-from pipeline.analysis.response_charts import ResponseChart, Shelf
+from pipeline.analysis.response_charts import ChartCache, ResponseChart
 from pipeline.cache import CHARTS, CacheWarning
 from pipeline.cli.console import Console
 from pipeline.collection.database import open_database
@@ -100,7 +100,7 @@ def test_charts_of_motions_that_nobody_uses_go(tmp_path: Path) -> None:
     settings = museum(tmp_path, "history")
     folder = settings.kept / CHARTS
     other = Motion(0.02, np.ones((3, 20)), "another")
-    respond("sliding", other, fidelity="chart", charts=Shelf(settings.kept), tolerance=0.1, friction_static=0.1)
+    respond("sliding", other, fidelity="chart", charts=ChartCache(settings.kept), tolerance=0.1, friction_static=0.1)
     (stranger,) = folder.iterdir()
     run(settings, SILENT)
     assert stranger.exists()
@@ -154,7 +154,7 @@ def noise(seed: int) -> Motion:
 
 
 def judged(
-    scenes: list[Scene], motions: tuple[Motion, ...], fidelity: str, charts: Shelf, combine: str = "max"
+    scenes: list[Scene], motions: tuple[Motion, ...], fidelity: str, charts: ChartCache, combine: str = "max"
 ) -> list[list[Finding]]:
     levels = [LevelMotions("design", combine, motions)]
     return assess(scenes, levels, Threads(2), Silent(), fidelity=fidelity, charts=charts)[1]
@@ -163,7 +163,7 @@ def judged(
 @pytest.mark.parametrize("combine", ["max", "mean"])
 def test_what_a_chart_leaves_undecided_is_integrated(combine: str) -> None:
     """Clearances a hair above and below the demand itself: within a chart's error, so histories must decide."""
-    motions, charts = (noise(1), noise(11)), Shelf()
+    motions, charts = (noise(1), noise(11)), ChartCache()
     scene = classify(replace(VASE, friction=0.1234))
     each = [float(respond("sliding", m, friction_static=0.1234)["displacement"].iloc[0]) for m in motions]
     demand = max(each) if combine == "max" else float(np.mean(each))
@@ -195,7 +195,7 @@ def test_many_objects_by_charts_have_the_verdicts_of_histories() -> None:
           for n in range(60)),
     ]  # fmt: skip
     scenes = [classify(item) for item in items]
-    looked, true = (judged(scenes, (motion,), fidelity, Shelf()) for fidelity in ("chart", "history"))
+    looked, true = (judged(scenes, (motion,), fidelity, ChartCache()) for fidelity in ("chart", "history"))
     by = []
     for one, other in zip((f for found in looked for f in found), (f for found in true for f in found), strict=True):
         assert (one.object_number, one.model, one.verdict) == (other.object_number, other.model, other.verdict)

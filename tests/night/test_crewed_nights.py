@@ -3,14 +3,11 @@
 import os
 import signal
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from threading import Barrier
 
 import pytest
 from distributed import LocalCluster
 
-from pipeline.analysis.response_charts import Shelf
 from pipeline.night import scheduler as rounds
 from pipeline.settings import Settings
 
@@ -90,22 +87,6 @@ def test_a_worker_with_several_threads(alone: Settings, tmp_path: Path) -> None:
         settings = of_a_cluster(tmp_path / "threads", made)
     assert found(settings).assessments == found(alone).assessments
     assert files(settings) == files(alone)
-
-
-def test_each_thread_remembers_the_histories_of_its_own_work() -> None:
-    """Before: whoever began last was remembered by all, and whoever ended first was forgotten by all."""
-    shelf, both = Shelf(), Barrier(2)
-
-    def own(key: str) -> bool:
-        with shelf.remembering(key):
-            both.wait(10)
-            mine = shelf.histories
-            both.wait(10)
-        both.wait(10)
-        return mine is not None and shelf.histories is None and mine._key == key
-
-    with ThreadPoolExecutor(2) as pool:
-        assert list(pool.map(own, ["a", "b"])) == [True, True]
 
 
 @pytest.mark.usefixtures("shared")

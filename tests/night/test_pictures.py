@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.analysis.figures import ISOLATORS, SWING_DIRECTIONS, SWINGS, chart_keys, charts
+from pipeline.analysis.context import Context
+from pipeline.analysis.figures import ISOLATORS, SWING_DIRECTIONS, SWINGS, chart_keys, draw
 from pipeline.analysis.response import respond
-from pipeline.analysis.response_charts import ResponseChart, Shelf
+from pipeline.analysis.response_charts import ChartCache, ResponseChart
 from pipeline.execute import Threads
 from pipeline.models.common import lift_ratios
 from pipeline.motions.synthesis import band_limited_random
@@ -30,7 +31,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def drawn(motion: Motion, folder: Path) -> dict[str, Chart]:
-    return charts(motion, Threads(2), Shelf(folder))
+    return draw(motion, Context(Threads(2), charts=ChartCache(folder)))
 
 
 def kind(drawn: dict[str, Chart], name: str) -> Chart:
@@ -99,7 +100,7 @@ def test_read_back_it_is_the_same_picture(
         raise AssertionError("built again")
 
     monkeypatch.setattr(ResponseChart, "build", refuse)
-    assert charts(motion, Threads(1), Shelf(folder)) == drawn
+    assert draw(motion, Context(Threads(1), charts=ChartCache(folder))) == drawn
     names = [file.name for file in folder.iterdir()]
     assert len(names) == 1 + len(SWINGS) + len(ISOLATORS)
     assert all(motion.hash[:16] in name for name in names)

@@ -5,9 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from pipeline.night.deduplication import Twins, as_own, likeness
 
 from pipeline.analysis.classify import classify
-from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.response_charts import ChartCache
 from pipeline.cache import HISTORIES
 from pipeline.collection.catalogue import catalogue
 from pipeline.collection.listing import Listed, Listing
@@ -17,7 +18,6 @@ from pipeline.mitigate.installed import Placed
 from pipeline.models import model_named
 from pipeline.night import assessment as assessing
 from pipeline.night import scheduler as rounds
-from pipeline.night.deduplication import Twins, as_own, likeness
 from pipeline.night.importing import import_collection
 from pipeline.night.prepare import popular
 from pipeline.night.units import Part
@@ -250,6 +250,6 @@ def test_pads_have_a_chart_where_many_works_hang_on_walls(tmp_path: Path) -> Non
 def test_a_shelf_that_was_told_what_pays_asks_nobody_else() -> None:
     swing = model_named("swing").chart
     assert swing is not None
-    assert Shelf(admitted=frozenset({"a"})).pays("a", "key", swing, 1, 400)
-    assert not Shelf(admitted=frozenset({"a"})).pays("b", "key", swing, 10_000, 400)
-    assert Shelf().pays("b", "key", swing, 10_000, 400)
+    assert ChartCache(admitted=frozenset({"a"})).pays("a", "key", swing, 1, 400)
+    assert not ChartCache(admitted=frozenset({"a"})).pays("b", "key", swing, 10_000, 400)
+    assert ChartCache().pays("b", "key", swing, 10_000, 400)

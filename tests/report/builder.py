@@ -11,6 +11,7 @@ from pipeline.records import (
     Finding,
     Item,
     Mark,
+    MeasurementRequest,
     Origin,
     Problem,
     Recommendation,
@@ -19,7 +20,6 @@ from pipeline.records import (
     Spacing,
     Support,
     Verdict,
-    Wish,
 )
 from pipeline.records.reading import DOUBTFUL, REFUSED, SHEET, SOURCE
 
@@ -370,19 +370,19 @@ def gap(first: str, second: str, verdict: Verdict, level: str = "design") -> Spa
     return Spacing(GREEK, level, first, second, 0.05, 0.06, 0.02, 0.08, 0.06, 0.2, verdict, "history", "quake")
 
 
-def wish(number: str, gallery: str, field: str, **values: object) -> Wish:
-    base = Wish(number, gallery, "", field, "-", 0.1, 0.15, 0.2, "marble on terrazzo", 1, 2 / 3, 0)
+def request(number: str, gallery: str, field: str, **values: object) -> MeasurementRequest:
+    base = MeasurementRequest(number, gallery, "", field, "-", 0.1, 0.15, 0.2, "marble on terrazzo", 1, 2 / 3, 0)
     return replace(base, **values)  # type: ignore[arg-type]
 
 
-def wishes() -> tuple[Wish, ...]:
-    """Return what each kind of wish asks for: one that unlocks, one that settles, one that is a waste."""
+def wishes() -> tuple[MeasurementRequest, ...]:
+    """Return one measurement request of each kind: one that unlocks, one that settles, one that settles nothing."""
     span = {"unit": "m", "low": 0.38, "best": 0.44, "high": 0.50}
     return (
-        wish("96.AC.77", GREEK, "base_width_m", low=None, best=None, high=None, open=0, settles=0.0, unlocks=2),
-        wish("73.AA.33", GREEK, "cg_height_m", **span),
-        wish("79.AA.143", GREEK, "friction", open=2, settles=1.5),
-        wish("73.AA.33", GREEK, "friction", settles=0.0),
+        request("96.AC.77", GREEK, "base_width_m", low=None, best=None, high=None, open=0, settles=0.0, unlocks=2),
+        request("73.AA.33", GREEK, "cg_height_m", **span),
+        request("79.AA.143", GREEK, "friction", open=2, settles=1.5),
+        request("73.AA.33", GREEK, "friction", settles=0.0),
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from random import Random
 
-from pipeline.records import Assessment, Item, RunRecord, Wish
+from pipeline.records import Assessment, Item, MeasurementRequest, RunRecord
 
 COUNT = 300
 
@@ -19,9 +19,9 @@ def resampled(record: RunRecord, count: int = COUNT, *, seed: int = 1) -> RunRec
     draw = Random(seed)
     shown = [a for a in record.assessments if a.scene.item.on_display]
     chosen = draw.choices(shown, k=count)
-    asked: dict[str, list[Wish]] = {}
-    for wish in record.wishes or ():
-        asked.setdefault(wish.object_number, []).append(wish)
+    asked: dict[str, list[MeasurementRequest]] = {}
+    for request in record.wishes or ():
+        asked.setdefault(request.object_number, []).append(request)
     drawn = [_renamed(a, f"{a.scene.item.object_number}/{i}", i, draw) for i, a in enumerate(chosen)]
     wishes = tuple(
         replace(w, object_number=new.scene.item.object_number, gallery="Sample")

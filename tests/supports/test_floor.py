@@ -7,7 +7,8 @@ import pytest
 from scipy.linalg import eigh
 from scipy.signal import cont2discrete, dlsim
 
-from pipeline.analysis.response import trace, transmit
+from pipeline.analysis.response import trace
+from pipeline.analysis.transmission import transmit
 from pipeline.motions.synthesis import ricker
 from pipeline.records import Motion
 from pipeline.supports.floor import beam_modes, carried, floor_factor, floor_motion, scale_to_floor

@@ -11,7 +11,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 from pipeline.analysis.classify import classify
-from pipeline.analysis.response import respond, transmit
+from pipeline.analysis.response import respond
+from pipeline.analysis.transmission import transmit
 from pipeline.cli import kouros
 from pipeline.collection.database import open_database
 from pipeline.mitigate.installed import Measure, installable, placed

@@ -11,7 +11,8 @@ import pytest
 
 from pipeline.analysis.assess import LevelMotions, assess
 from pipeline.analysis.classify import classify
-from pipeline.analysis.survey import by_gallery, measurables, wishes
+from pipeline.analysis.context import Context
+from pipeline.analysis.survey import by_gallery, measurables, measurement_requests
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.inventory import add_sheet, read_inventory, replace_inventory, return_to, versions
 from pipeline.collection.reading import Reading
@@ -19,7 +20,7 @@ from pipeline.execute import Threads
 from pipeline.mitigate.installed import Measure, placed
 from pipeline.operations.workspace import open_workspace
 from pipeline.quantities import G
-from pipeline.records import ITEM_FIELDS, Item, Motion, Origin, Support, Verdict, Wish
+from pipeline.records import ITEM_FIELDS, Item, MeasurementRequest, Motion, Origin, Support, Verdict
 from pipeline.report.files.survey_sheet import HEADER_ROW, column_name, sheet_title, write_survey
 from pipeline.settings import load_settings
 from pipeline.tools.survey import LENGTH_UNITS, read_sheet
@@ -40,39 +41,39 @@ BOX = Item("1", "East", "Box", height_m=0.2, base_width_m=0.6, base_depth_m=0.6,
            support=Support.FREESTANDING, clearance_m=0.05, susceptible=False)  # fmt: skip
 
 
-def surveyed(*items: Item) -> list[Wish]:
+def surveyed(*items: Item) -> list[MeasurementRequest]:
     scenes = [classify(item) for item in items]
-    _, findings = assess(scenes, LEVELS, Threads(1), Silent())
-    return wishes(scenes, findings, LEVELS, Threads(1), Silent())
+    _, findings = assess(scenes, LEVELS, Context(Threads(1)))
+    return measurement_requests(scenes, findings, LEVELS, Context(Threads(1)))
 
 
 def verdicts(item: Item) -> set[tuple[str, Verdict]]:
-    _, (findings,) = assess([classify(item)], LEVELS, Threads(1), Silent())
+    _, (findings,) = assess([classify(item)], LEVELS, Context(Threads(1)))
     return {(finding.model, finding.verdict) for finding in findings}
 
 
 def test_a_friction_that_decides_is_asked_for_and_settles_what_it_says() -> None:
     """The truth is the assessment of the record with the number filled in, low, best and high."""
     assert ("sliding", Verdict.UNDETERMINED) in verdicts(BOX)
-    (wish,) = surveyed(BOX)
-    assert (wish.field, wish.open, wish.unlocks) == ("friction", 1, 0)
-    assert wish.low is not None
-    assert wish.high is not None
-    assert wish.best is not None
-    assert wish.low < wish.best < wish.high
-    filled = [verdicts(replace(BOX, friction=value)) for value in (wish.low, wish.best, wish.high)]
+    (request,) = surveyed(BOX)
+    assert (request.field, request.open, request.unlocks) == ("friction", 1, 0)
+    assert request.low is not None
+    assert request.high is not None
+    assert request.best is not None
+    assert request.low < request.best < request.high
+    filled = [verdicts(replace(BOX, friction=value)) for value in (request.low, request.best, request.high)]
     settled = sum(("sliding", Verdict.UNDETERMINED) not in found for found in filled)
-    assert wish.settles == pytest.approx(settled / 3)
+    assert request.settles == pytest.approx(settled / 3)
     assert settled > 0
 
 
-def test_what_would_settle_nothing_is_a_waste() -> None:
+def test_what_would_settle_nothing_says_so() -> None:
     """Friction and room are both open, and so wide that neither settles anything without the other."""
-    found = {wish.field: wish for wish in surveyed(replace(BOX, clearance_m=None))}
-    _, (findings,) = assess([classify(replace(BOX, clearance_m=None))], LEVELS, Threads(1), Silent())
+    found = {request.field: request for request in surveyed(replace(BOX, clearance_m=None))}
+    _, (findings,) = assess([classify(replace(BOX, clearance_m=None))], LEVELS, Context(Threads(1)))
     (sliding,) = [f for f in findings if f.model == "sliding"]
-    for wish in found.values():
-        assert wish.waste == (wish.settles == 0.0)
+    for request in found.values():
+        assert request.settles_nothing == (request.settles == 0.0)
     assert sliding.verdict is Verdict.UNDETERMINED
     assert {"friction", "clearance_m"} <= set(found)
 
@@ -84,9 +85,9 @@ def test_what_is_settled_already_is_not_asked_for() -> None:
 def test_what_is_missing_comes_first_and_what_is_not_on_display_never() -> None:
     lost = Item("2", "West", height_m=0.2, support=Support.FREESTANDING)
     first, *_ = found = surveyed(BOX, lost, replace(lost, object_number="3", on_display=False))
-    assert (first.object_number, first.field, first.waste) == ("2", "width_m", False)
+    assert (first.object_number, first.field, first.settles_nothing) == ("2", "width_m", False)
     assert first.unlocks > 0
-    assert {wish.object_number for wish in found} == {"1", "2"}
+    assert {request.object_number for request in found} == {"1", "2"}
     assert list(by_gallery(found)) == ["East", "West"]
 
 
@@ -103,8 +104,8 @@ HOSTILE = '=HYPERLINK("http://x";"y")'
 def test_a_sheet_comes_back_as_it_was_filled_in(length: str, tmp_path: Path) -> None:
     named = replace(BOX, object_number=HOSTILE, title="+1-1", gallery="=East")
     path = tmp_path / "survey.xlsx"
-    wish = surveyed(named)
-    assert write_survey(path, wish, measurables(), length=length) == {"objects": 1, "quantities": 1, "waste": 0}
+    request = surveyed(named)
+    assert write_survey(path, request, measurables(), length=length) == {"objects": 1, "quantities": 1, "waste": 0}
     book = openpyxl.load_workbook(path)
     sheet = book[sheet_title(length)]
     keys = [cell.value for cell in sheet[HEADER_ROW]]
@@ -182,13 +183,13 @@ def test_a_filled_in_number_says_which_sheet_it_is_from(tmp_path: Path) -> None:
 
 
 def test_what_is_open_on_an_isolator_is_not_tried_without_it() -> None:
-    """Its models run on what the isolator passes on; tried on the floor, nothing would come of it but a wrong waste."""
+    """Its models run on what the isolator passes on; tried on the floor, it would wrongly settle nothing."""
     springs = Measure(
         "horizontal_isolator", {"frequency": 0.5, "damping": 0.02, "friction": 0.05, "stroke": 0.3}, "Ann"
     )
     stands = placed(classify(BOX), [springs])
-    _, (own,) = assess([stands.scene], LEVELS, Threads(1), Silent())
-    _, (free,) = assess([classify(BOX)], LEVELS, Threads(1), Silent())
+    _, (own,) = assess([stands.scene], LEVELS, Context(Threads(1)))
+    _, (free,) = assess([classify(BOX)], LEVELS, Context(Threads(1)))
     above = [f for f in free if f.verdict is Verdict.UNDETERMINED]
     assert above
-    assert wishes([stands.scene], [[*own, *above]], LEVELS, Threads(1), Silent()) == []
+    assert measurement_requests([stands.scene], [[*own, *above]], LEVELS, Context(Threads(1))) == []

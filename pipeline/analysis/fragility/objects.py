@@ -6,6 +6,7 @@ from math import exp, hypot
 
 import numpy as np
 
+from pipeline.analysis.context import Context
 from pipeline.analysis.fragility.curve import ENOUGH, NINETY, fit, from_span, stated
 from pipeline.analysis.fragility.hazard import Hazard, NoHazardError
 from pipeline.analysis.fragility.published import published
@@ -13,11 +14,14 @@ from pipeline.analysis.fragility.scaling import FACTORS, Questions, first_failur
 from pipeline.analysis.plan import Indices, Work
 from pipeline.analysis.verdicts import capacity_of
 from pipeline.quantities import Array
-from pipeline.records import Executor, Fragility, Motion, Progress, Scene
+from pipeline.records import Fragility, Motion, Numerics, Scene
 from pipeline.records.fragility import ABOVE
 
 DIRECTIONS = 30.0
 """Degrees between the directions tried at least: a worst one missed by half of that is 3 % of the demand."""
+
+FINELY = Numerics("history", DIRECTIONS)
+"""How each scaled motion is integrated unless said otherwise."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +39,20 @@ class Stripe:
 def hazard_of(stripes: Sequence[Stripe]) -> Hazard:
     """Return the hazard curve through the levels that have a return period, at the geometric mean of their intensities.
 
-    raises : NoHazardError (see `Hazard.of`)
+    Parameters
+    ----------
+    stripes
+        Levels of shaking; those without a return period have no say.
+
+    Returns
+    -------
+    Hazard
+        Annual rate of exceedance against peak horizontal acceleration [m/s2].
+
+    Raises
+    ------
+    NoHazardError
+        See `Hazard.of`.
     """
     told = [s for s in stripes if s.return_period_years is not None and s.motions]
     with np.errstate(divide="ignore"):
@@ -47,19 +64,41 @@ def fragilities(
     scenes: Sequence[Scene],
     work: Sequence[Work],
     stripes: Sequence[Stripe],
-    executor: Executor,
-    progress: Progress,
+    context: Context,
+    numerics: Numerics = FINELY,
     *,
-    azimuth_step: float = DIRECTIONS,
     chosen: Sequence[bool] | None = None,
 ) -> list[tuple[Fragility, ...]]:
     """Scale every motion of every level until each object fails, in each of its ways, and fit fragility curves.
 
     How a level combines its motions plays no part: a curve is about single earthquakes.
-    work     : of the plan of these scenes
-    chosen   : which scenes are asked for; None: all
-    returns  : of each scene one curve for each model, the way that fails first to begin with
+
+    Parameters
+    ----------
+    scenes
+        The objects as they stand.
+    work
+        Of the plan of these scenes.
+    stripes
+        The levels, with the intensity [m/s2] of each motion.
+    context
+        Where it runs, and who is told.
+    numerics
+        How finely; directions are no closer than every `DIRECTIONS` degrees.
+    chosen
+        Which scenes are asked for; None: all.
+
+    Returns
+    -------
+    list of tuple of Fragility
+        Of each scene one curve for each model, the way that fails first to begin with; medians in m/s2.
+
+    References
+    ----------
+    Vamvatsikos, D. and Cornell, C. A. (2002), "Incremental dynamic analysis", Earthquake Engineering & Structural
+    Dynamics 31(3), 491-514.
     """
+    numerics = replace(numerics, azimuth_step=max(numerics.azimuth_step, DIRECTIONS))
     motions, intensities = _scaled(stripes)
     out: list[list[Fragility]] = [[] for _ in scenes]
     if not motions:
@@ -69,11 +108,11 @@ def fragilities(
     except NoHazardError as problem:
         hazard, why = None, str(problem)
     for done, one in enumerate(work):
-        progress.step("fragilities", done, len(work))
+        context.progress.step("fragilities", done, len(work))
         for output, members in _by_output(one, scenes, chosen).items():
-            for index, found in _curves(one, output, members, scenes, motions, intensities, executor, azimuth_step):
+            for index, found in _curves(one, output, members, scenes, motions, intensities, context, numerics):
                 out[index].append(_with_rate(found, hazard, why))
-    progress.step("fragilities", len(work), len(work))
+    context.progress.step("fragilities", len(work), len(work))
     return [tuple(sorted(found, key=lambda f: (f.bound == ABOVE, f.median))) for found in out]
 
 
@@ -98,13 +137,13 @@ def _curves(
     scenes: Sequence[Scene],
     motions: Sequence[Motion],
     intensities: Array,
-    executor: Executor,
-    azimuth_step: float,
+    context: Context,
+    numerics: Numerics,
 ) -> list[tuple[int, Fragility]]:
     """Return the fragility of some analyses of a work, with the scene of each."""
     which = work.scenes[members].tolist()
     questions = Questions.of(work, output, members, [capacity_of(work.model, scenes[i])[1] for i in which])
-    found = [first_failures(questions, motion, executor, max(azimuth_step, DIRECTIONS)) for motion in motions]
+    found = [first_failures(questions, motion, context, numerics) for motion in motions]
     factors = np.column_stack([one.factor for one in found])
     returns = np.any([one.returns for one in found], axis=0).tolist()
     spans = work.spans.take(members)

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.analysis.context import Context
 from pipeline.analysis.demands import bounded, integrate
 from pipeline.analysis.plan import Indices, Work
 from pipeline.analysis.verdicts import utilisation
 from pipeline.quantities import Array
-from pipeline.records import Estimate, Executor, Motion
+from pipeline.records import Estimate, Motion, Numerics
 
 FACTORS = tuple(float(f) for f in np.geomspace(0.1, 3.0, 8))
 """What a motion is multiplied by; the first of these at which something fails counts."""
@@ -48,13 +49,28 @@ class Questions:
         rows = np.concatenate([spans.rows, own, own])
         return cls(work, output, rows, np.concatenate([spans.spread(best), low, high]))
 
-    def used(self, motion: Motion, which: Indices, executor: Executor, azimuth_step: float) -> Array:
-        """Return demand / capacity of some questions under a motion, (n,)."""
+    def used(self, motion: Motion, which: Indices, context: Context, numerics: Numerics) -> Array:
+        """Return demand / capacity of some questions under a motion.
+
+        Parameters
+        ----------
+        motion
+            What shakes the objects.
+        which
+            (n,) places of the questions.
+        context, numerics
+            Where they are integrated, and how finely.
+
+        Returns
+        -------
+        ndarray
+            (n,) of each question the larger of its parameter sets.
+        """
         rows = self.rows[which]
         wanted = np.unique(rows)
-        found = bounded(self.work, motion, (self.output,), executor, whole=False)
+        found = bounded(self.work, motion, (self.output,), context.executor, whole=False)
         low, high = found.low[self.output], found.high[self.output]
-        integrate(found, wanted[low[wanted] < high[wanted]], executor, "history", azimuth_step)
+        integrate(found, wanted[low[wanted] < high[wanted]], context, numerics)
         demand = low[rows].max(axis=1)
         return utilisation(demand, self.capacity[which])
 
@@ -70,12 +86,31 @@ class Found:
     returns: NDArray[np.bool_]
 
 
-def first_failures(questions: Questions, motion: Motion, executor: Executor, azimuth_step: float) -> Found:
+def first_failures(questions: Questions, motion: Motion, context: Context, numerics: Numerics) -> Found:
     """Scale a motion and return the least factor at which each question fails.
 
     Demands need not grow with the factor: the least of those tried that fails counts, whatever larger ones do.
-    error : between two factors a demand is interpolated, straight in logarithms; where it begins between them, the
-            factor is the middle of what is left after halving, within 7 %
+    Between two factors a demand is interpolated, straight in logarithms; where it begins between them, the factor is
+    the middle of what is left after halving, within 7 %.
+
+    Parameters
+    ----------
+    questions
+        Demands against capacities, (v,) of them.
+    motion
+        What is scaled.
+    context, numerics
+        Where histories are run, and how finely.
+
+    Returns
+    -------
+    Found
+        The factors (v,).
+
+    References
+    ----------
+    Vamvatsikos, D. and Cornell, C. A. (2002), "Incremental dynamic analysis", Earthquake Engineering & Structural
+    Dynamics 31(3), 491-514.
     """
     size = questions.capacity.size
     follow = questions.work.model.output(questions.output).unit == "bool"
@@ -86,7 +121,7 @@ def first_failures(questions: Questions, motion: Motion, executor: Executor, azi
         asked = np.arange(size) if follow else np.flatnonzero(~failed)
         if asked.size == 0:
             break
-        used[at, asked] = questions.used(_times(motion, factor), asked, executor, azimuth_step)
+        used[at, asked] = questions.used(_times(motion, factor), asked, context, numerics)
         returns |= failed & (used[at] <= 1.0)
         failed |= used[at] > 1.0
     fails = used > 1.0
@@ -101,7 +136,7 @@ def first_failures(questions: Questions, motion: Motion, executor: Executor, azi
             asked = np.flatnonzero((0.5 * (below + above) == step) & ~_smooth(below, above, least, most))
             if asked.size == 0:
                 continue
-            middle = questions.used(_times(motion, float(np.exp(step))), between[asked], executor, azimuth_step)
+            middle = questions.used(_times(motion, float(np.exp(step))), between[asked], context, numerics)
             failed = middle > 1.0
             above[asked[failed]], most[asked[failed]] = step, middle[failed]
             below[asked[~failed]], least[asked[~failed]] = step, middle[~failed]

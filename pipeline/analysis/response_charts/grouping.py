@@ -7,12 +7,13 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.analysis.response_charts.charts import ChartCache
 from pipeline.analysis.response_charts.response_chart import ResponseChart, Run, axis_of
-from pipeline.analysis.response_charts.shelf import Shelf
 from pipeline.cache import key_of
 from pipeline.errors import InputError
 from pipeline.quantities import Array, real_number
-from pipeline.records import Columns, Model, Motion
+from pipeline.records import Columns, Model, Motion, Numerics
+from pipeline.records.numerics import REFINE
 
 MOST_CHARTS = 16
 """Charts built for one call: where the fixed parameters take more combinations, the rarer ones are integrated.
@@ -26,29 +27,24 @@ one direction and more than 40,000 for 0.1 %, because kinks run slantwise throug
 class Settings:
     """What a chart depends on besides its model, its motion and the parameters.
 
-    angle        : degrees, None for the worst direction or for a model that is shaken in two
-    both         : whether the model is shaken in both directions
-    tail         : s after the record; None: until rest
-    azimuth_step : degrees between the directions of which the worst counts
-    refine       : how finely the nodes are integrated
-    tolerance    : of the interpolation, relative to max(value, 1 % of the largest value on the chart)
-    low          : where the axis begins; None: as the model says
-    first        : whether the tolerance is that of the first output alone, as for a picture of it
-    raises       : ValueError for a tolerance that makes no sense
+    angle    : degrees, None for the worst direction or for a model that is shaken in two
+    both     : whether the model is shaken in both directions
+    tail     : s after the record; None: until rest
+    numerics : how finely the nodes are integrated, the step between directions, and the tolerance
+    low      : where the axis begins; None: as the model says
+    raises   : InputError for a tolerance that makes no sense
     """
 
     angle: float | None
     both: bool
     tail: float | None
-    azimuth_step: float
-    refine: int
-    tolerance: float
+    numerics: Numerics
     low: float | None = None
-    first: bool = False
 
     def __post_init__(self) -> None:
-        if not 1e-6 <= real_number(self.tolerance) <= 1.0:
-            raise InputError(f"tolerance must be from 1e-6 to 1 of the value, not {self.tolerance!r}")
+        tolerance = self.numerics.tolerance
+        if not 1e-6 <= real_number(tolerance) <= 1.0:
+            raise InputError(f"tolerance must be from 1e-6 to 1 of the value, not {tolerance!r}")
 
 
 @dataclass(frozen=True)
@@ -72,15 +68,35 @@ def tabulate(
     values: Mapping[str, Array],
     run: Run,
     settings: Settings,
-    shelf: Shelf,
+    charts: ChartCache,
     least: int = 0,
 ) -> Tabulated:
-    """Look rows up in the charts of a model under a motion, building those that the shelf does not have.
+    """Look rows up in the charts of a model under a motion, building those that are missing.
 
-    values : the model's parameters, (n,) each
-    run    : the model under the motion, with the settings, for parameters of its own
-    least  : how many sets must ask for a chart that the shelf does not have before it is built
-    raises : ValueError for a model that is never tabulated
+    Parameters
+    ----------
+    model, motion
+        The model, and what shakes it.
+    values
+        The model's parameters, (n,) each.
+    run
+        The model under the motion, with the settings, for parameters of its own.
+    settings
+        What the charts depend on besides.
+    charts
+        Where charts are found and kept.
+    least
+        How many sets must ask for a chart that is not there yet before it is built.
+
+    Returns
+    -------
+    Tabulated
+        Row for row of the values.
+
+    Raises
+    ------
+    InputError
+        For a model that is never tabulated.
     """
     axis = axis_of(model)
     along = values[axis.name]
@@ -91,15 +107,15 @@ def tabulate(
     for alike, rows in groups(model, values):
         if least:
             key = _identity(model, motion, alike, settings)
-            if not shelf.pays(group_name(model, settings.angle, alike), key, axis, rows.size, least):
+            if not charts.pays(group_name(model, settings.angle, alike), key, axis, rows.size, least):
                 continue
-        chart = chart_of(model, motion, alike, run, settings, shelf)
+        chart = chart_of(model, motion, alike, run, settings, charts)
         inside = rows[chart.covers(along[rows])]
         looked = chart.look(along[inside])
         good = looked.resolved
         at = inside[good]
         found[at] = True
-        for name in chart.outputs[: 1 if settings.first else None]:
+        for name in chart.outputs[: 1 if settings.numerics.first else None]:
             columns[name][at] = looked.columns[name][good]
             bounds[name][at] = looked.bounds[name][good]
         bounds[chart.outputs[0]][at] += looked.own[good]
@@ -111,7 +127,22 @@ def tabulate(
 def groups(model: Model, values: Mapping[str, Array]) -> list[tuple[dict[str, float], NDArray[np.intp]]]:
     """Return the rows that one chart could serve, with the parameters that they share, the largest groups first.
 
-    raises : ValueError for a model that is never tabulated
+    Parameters
+    ----------
+    model
+        The model.
+    values
+        Its parameters, (n,) each.
+
+    Returns
+    -------
+    list of (dict of str to float, ndarray of int)
+        At most MOST_CHARTS groups: the fixed parameters, and the places (m,) of the rows.
+
+    Raises
+    ------
+    InputError
+        For a model that is never tabulated.
     """
     axis = axis_of(model)
     possible = np.ones(values[axis.name].size, dtype=bool)
@@ -125,8 +156,19 @@ def groups(model: Model, values: Mapping[str, Array]) -> list[tuple[dict[str, fl
 def group_name(model: Model, angle: float | None, alike: Mapping[str, float]) -> str:
     """Return the name of the rows that one chart could serve, whatever the motion.
 
-    angle : degrees that they are shaken along; None for the worst direction, or for both at once
-    alike : the parameters that they share
+    Parameters
+    ----------
+    model
+        The model.
+    angle
+        Degrees that they are shaken along; None for the worst direction, or for both at once.
+    alike
+        The parameters that they share.
+
+    Returns
+    -------
+    str
+        The same for the same rows in every process.
     """
     return f"{model.name} {angle} {sorted(alike.items())}"
 
@@ -149,35 +191,49 @@ def _groups(fixed: Mapping[str, Array], rows: NDArray[np.intp]) -> list[NDArray[
 
 
 def chart_of(
-    model: Model, motion: Motion, fixed: Mapping[str, float], run: Run, settings: Settings, shelf: Shelf
+    model: Model, motion: Motion, fixed: Mapping[str, float], run: Run, settings: Settings, charts: ChartCache
 ) -> ResponseChart:
-    """Return the chart of a model under a motion, from the shelf or built.
+    """Return the chart of a model under a motion, found or built.
 
-    fixed  : the model's parameters besides that of the axis (NaN: left out)
-    run    : as in `tabulate`
-    raises : as `tabulate`
+    Parameters
+    ----------
+    model, motion, run, settings, charts
+        As in `tabulate`.
+    fixed
+        The model's parameters besides that of the axis (NaN: left out).
+
+    Returns
+    -------
+    ResponseChart
+        Along the model's axis, or the stretch of it that the settings name.
+
+    Raises
+    ------
+    InputError
+        As `tabulate`.
     """
     axis = axis_of(model)
     if settings.low is not None:
         axis = replace(axis, low=settings.low)
     key = _identity(model, motion, fixed, settings)
     excitation = motion.excitation(None if settings.both else settings.angle, settings.tail)
-    build = partial(ResponseChart.build, model, axis, excitation, fixed, run, settings.tolerance, first=settings.first)
-    return shelf.get(key, axis, build)
+    tolerance, first = settings.numerics.tolerance, settings.numerics.first
+    build = partial(ResponseChart.build, model, axis, excitation, fixed, run, tolerance, first=first)
+    return charts.get(key, axis, build)
 
 
 def _identity(model: Model, motion: Motion, fixed: Mapping[str, float], settings: Settings) -> str:
-    worst = settings.angle is None and not settings.both
+    worst, numerics = settings.angle is None and not settings.both, settings.numerics
     return key_of(
         motion.hash,
         model.name,
         "both" if settings.both else settings.angle,
-        settings.azimuth_step if worst else None,
+        numerics.azimuth_step if worst else None,
         settings.tail,
-        settings.refine,
-        settings.tolerance,
+        REFINE[numerics.fidelity],
+        numerics.tolerance,
         settings.low,
-        settings.first,
+        numerics.first,
         dict(fixed),
         group=motion.hash,
     )

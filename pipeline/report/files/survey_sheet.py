@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pipeline.quantities import LENGTHS
-from pipeline.records import Wish
+from pipeline.records import MeasurementRequest
 from pipeline.report.files.workbook import saved, write_text
 from pipeline.report.text import safe_cell
 from pipeline.resources import replacing
@@ -42,20 +42,20 @@ def column_name(field: str, length: str) -> str:
 
 
 def write_survey(
-    path: Path, found: Sequence[Wish], fields: Sequence[Measurable], *, length: str = "cm"
+    path: Path, found: Sequence[MeasurementRequest], fields: Sequence[Measurable], *, length: str = "cm"
 ) -> dict[str, int]:
-    """Write the workbook of what is worth measuring; wishes that would settle nothing are counted and left out.
+    """Write the workbook of what is worth measuring; what would settle nothing is counted and left out.
 
-    found  : wishes, in the order in which they should be done
+    found  : measurements, in the order in which they should be done
     fields : all that a survey may ask for, with words and how to measure it
     length : unit of lengths
-    returns: how many objects and quantities it asks for, and how many would be a waste
+    returns: how many objects and quantities it asks for, and how many would settle nothing
     """
     from openpyxl import Workbook
 
-    asked = [wish for wish in found if not wish.waste]
+    asked = [request for request in found if not request.settles_nothing]
     book = Workbook()
-    names = [m for m in fields if any(wish.field == m.field for wish in asked)]
+    names = [m for m in fields if any(request.field == m.field for request in asked)]
     first = book.active
     if first is None:
         first = book.create_sheet()
@@ -67,13 +67,13 @@ def write_survey(
     with replacing(path) as aside:
         aside.write_bytes(saved(book))
     return {
-        "objects": len({wish.object_number for wish in asked}),
+        "objects": len({request.object_number for request in asked}),
         "quantities": len(asked),
         "waste": len(found) - len(asked),
     }
 
 
-def _fill_in(sheet: Worksheet, asked: Sequence[Wish], fields: Sequence[Measurable], length: str) -> None:
+def _fill_in(sheet: Worksheet, asked: Sequence[MeasurementRequest], fields: Sequence[Measurable], length: str) -> None:
     from openpyxl.styles import Alignment, Border, PatternFill, Side
 
     columns = [*SHOWN, *(m.field for m in fields), WHY]
@@ -81,35 +81,35 @@ def _fill_in(sheet: Worksheet, asked: Sequence[Wish], fields: Sequence[Measurabl
     keys = [*SHOWN, *(column_name(m.field, length) for m in fields), WHY]
     sheet.append(labels)
     sheet.append(keys)
-    objects: dict[str, list[Wish]] = {}
-    for wish in asked:
-        objects.setdefault(wish.object_number, []).append(wish)
+    objects: dict[str, list[MeasurementRequest]] = {}
+    for request in asked:
+        objects.setdefault(request.object_number, []).append(request)
     # By gallery, for a person walks from one to the next; in each the objects that settle most come first.
     order = sorted(objects.values(), key=lambda mine: mine[0].gallery)
     box = Border(*(Side(style="thin", color=_LINE) for _ in range(4)))
     for row, mine in enumerate(order, start=HEADER_ROW + 1):
-        why = "; ".join(_reason(wish, length) for wish in mine)
+        why = "; ".join(_reason(request, length) for request in mine)
         texts = {"object_number": mine[0].object_number, "gallery": mine[0].gallery, "title": mine[0].title, WHY: why}
-        wished = {wish.field for wish in mine}
+        wanted = {request.field for request in mine}
         for at, name in enumerate(columns, start=1):
             cell = sheet.cell(row, at)
             if name in texts:
                 _write_text(cell, texts[name])
                 cell.alignment = Alignment(wrap_text=True, vertical="top")
-            if name in wished:
+            if name in wanted:
                 cell.fill, cell.border = PatternFill("solid", fgColor=_FILL), box
     _headed(sheet, [16, 24, 32, *(14 for _ in fields), 60], rows=HEADER_ROW)
     sheet.freeze_panes = sheet.cell(HEADER_ROW + 1, len(SHOWN) + 1)
 
 
-def _ranking(sheet: Worksheet, asked: Sequence[Wish], labels: Mapping[str, str]) -> None:
+def _ranking(sheet: Worksheet, asked: Sequence[MeasurementRequest], labels: Mapping[str, str]) -> None:
     sheet.append(["Gallery", "Quantity", "Objects", "Verdicts it would settle", "Models it would make possible"])
     totals: dict[tuple[str, str], list[float]] = {}
-    for wish in asked:
-        total = totals.setdefault((wish.gallery, wish.field), [0, 0.0, 0])
+    for request in asked:
+        total = totals.setdefault((request.gallery, request.field), [0, 0.0, 0])
         total[0] += 1
-        total[1] += wish.settles
-        total[2] += wish.unlocks
+        total[1] += request.settles
+        total[2] += request.unlocks
     ranked = sorted(totals.items(), key=lambda entry: (-(entry[1][1] + entry[1][2]), entry[0]))
     for row, ((gallery, field), (objects, settles, unlocks)) in enumerate(ranked, start=2):
         _write_text(sheet.cell(row, 1), gallery)
@@ -135,16 +135,16 @@ def _labelled(m: Measurable, length: str) -> str:
     return m.label if unit in ("", "-") else f"{m.label} ({unit})"
 
 
-def _reason(wish: Wish, length: str) -> str:
-    if wish.unlocks:
-        return f"{column_name(wish.field, length)}: {wish.reason}, without it nothing can be said"
+def _reason(request: MeasurementRequest, length: str) -> str:
+    if request.unlocks:
+        return f"{column_name(request.field, length)}: {request.reason}, without it nothing can be said"
     span = ""
-    if wish.low is not None and wish.high is not None:
-        per = LENGTHS[length] if wish.unit == "m" else 1.0
-        unit = length if wish.unit == "m" else "" if wish.unit == "-" else wish.unit
-        span = f"{wish.low / per:.3g} to {wish.high / per:.3g} {unit}".strip()
+    if request.low is not None and request.high is not None:
+        per = LENGTHS[length] if request.unit == "m" else 1.0
+        unit = length if request.unit == "m" else "" if request.unit == "-" else request.unit
+        span = f"{request.low / per:.3g} to {request.high / per:.3g} {unit}".strip()
         span = f", taken as {span} now"
-    return f"{column_name(wish.field, length)}: settles {wish.settles:.2g} of {wish.open} open verdicts{span}"
+    return f"{column_name(request.field, length)}: settles {request.settles:.2g} of {request.open} open verdicts{span}"
 
 
 def _headed(sheet: Worksheet, widths: Sequence[int], *, rows: int) -> None:

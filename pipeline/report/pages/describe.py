@@ -12,12 +12,12 @@ from pipeline.records import (
     Estimate,
     Finding,
     Mark,
+    MeasurementRequest,
     MotionSummary,
     Origin,
     Recommendation,
     RunRecord,
     Support,
-    Wish,
 )
 from pipeline.records.result import BOUNDS
 from pipeline.report.errors import ReportError
@@ -133,9 +133,9 @@ class Describer:
         self._motions = {m.hash: m for m in record.motions}
         self._links: dict[tuple[str, str], MotionLink] = {}
         self.surveyed = record.wishes is not None
-        self.wishes: dict[str, list[Wish]] = {}
-        for wish in record.wishes or ():
-            self.wishes.setdefault(wish.object_number, []).append(wish)
+        self.wishes: dict[str, list[MeasurementRequest]] = {}
+        for request in record.wishes or ():
+            self.wishes.setdefault(request.object_number, []).append(request)
 
     def anchor(self, assessment: Assessment) -> str:
         """Return the id of the object on its page; it stays the same from run to run."""

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 
 from pipeline.analysis.survey import ENDS, measurables
-from pipeline.records import Assessment, Tally, Wish
+from pipeline.records import Assessment, MeasurementRequest, Tally
 from pipeline.report.language import _, ngettext, said
 from pipeline.report.pages.views import ObjectView, SurveyView, WishView
 from pipeline.report.text import clean, count, words
@@ -13,37 +13,37 @@ SURVEY_SECONDS = "survey_seconds"
 """The setting of a run that says what its survey cost."""
 
 
-def wish_views(wishes: Iterable[Wish], units: Units) -> tuple[WishView, ...]:
+def wish_views(wishes: Iterable[MeasurementRequest], units: Units) -> tuple[WishView, ...]:
     """Return what is worth measuring on one object, what settles most first; what settles nothing comes last."""
     ordered = sorted(wishes, key=lambda w: (-w.gain, w.field))
     return tuple(
         WishView(
-            what=_label(wish.field),
-            effect=_effect(wish),
-            now="" if wish.low is None or wish.high is None else units.pair(wish.low, wish.high, wish.unit),
-            waste=wish.waste,
+            what=_label(one.field),
+            effect=_effect(one),
+            now="" if one.low is None or one.high is None else units.pair(one.low, one.high, one.unit),
+            waste=one.settles_nothing,
         )
-        for wish in ordered
+        for one in ordered
     )
 
 
 def errands(
-    pairs: Sequence[tuple[Assessment, ObjectView]], wishes: Mapping[str, Sequence[Wish]]
+    pairs: Sequence[tuple[Assessment, ObjectView]], wishes: Mapping[str, Sequence[MeasurementRequest]]
 ) -> tuple[SurveyView, ...]:
     """Group what is worth measuring in a gallery by quantity, for one tool serves many objects."""
     how = {m.field: said(m.how) for m in measurables()}
-    found: dict[str, list[tuple[float, Wish, ObjectView]]] = {}
+    found: dict[str, list[tuple[float, MeasurementRequest, ObjectView]]] = {}
     for assessment, view in pairs:
         item = assessment.scene.item
-        for wish in wishes.get(item.object_number, ()):
-            if item.on_display and not wish.waste and wish.gallery == item.gallery:
-                found.setdefault(wish.field, []).append((wish.gain, wish, view))
-    ranked = sorted(found.items(), key=lambda entry: (-sum(gain for gain, _wish, _view in entry[1]), entry[0]))
+        for request in wishes.get(item.object_number, ()):
+            if item.on_display and not request.settles_nothing and request.gallery == item.gallery:
+                found.setdefault(request.field, []).append((request.gain, request, view))
+    ranked = sorted(found.items(), key=lambda entry: (-sum(gain for gain, _request, _view in entry[1]), entry[0]))
     out = []
     for name, entries in ranked:
         entries.sort(key=lambda entry: -entry[0])
         settles, unlocks = sum(w.settles for _g, w, _v in entries), sum(w.unlocks for _g, w, _v in entries)
-        objects = tuple(view for _gain, _wish, view in entries)
+        objects = tuple(view for _gain, _request, view in entries)
         out.append(SurveyView(_label(name), how.get(name, ""), _gain(settles, unlocks), objects))
     return tuple(out)
 
@@ -69,20 +69,20 @@ def _label(field: str) -> str:
     return said(label) if label else words(clean(field))
 
 
-def _effect(wish: Wish) -> str:
-    if wish.unlocks:
+def _effect(request: MeasurementRequest) -> str:
+    if request.unlocks:
         return _("without it nothing can be said")
-    if wish.waste:
+    if request.settles_nothing:
         return _("alone it settles nothing")
-    if wish.open == 1:
+    if request.open == 1:
         # The mean over three trials that either settle the verdict or do not: a whole number of them.
         return _("settles it in %(number)s of %(trials)s trials") % {
-            "number": round(wish.settles * len(ENDS)),
+            "number": round(request.settles * len(ENDS)),
             "trials": len(ENDS),
         }
     return _("settles %(settles)s of %(open)s open verdicts on average") % {
-        "settles": significant(wish.settles, 2),
-        "open": wish.open,
+        "settles": significant(request.settles, 2),
+        "open": request.open,
     }
 
 

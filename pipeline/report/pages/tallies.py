@@ -20,7 +20,7 @@ def tally(found: Found) -> Tally:
     stored = [a for a in found.assessments if not a.scene.item.on_display]
     states = Counter(state_of(a) for a in shown)
     reasons = (reason for a in shown if not a.assessed for reason in a.scene.missing)
-    worth = [w for w in found.wishes or () if not w.waste]
+    useful = [w for w in found.wishes or () if not w.settles_nothing]
     return Tally(
         states={state.value: states[state] for state in STATES},
         measures=dict(Counter(r.title for a in shown for r in a.recommendations)),
@@ -30,9 +30,9 @@ def tally(found: Found) -> Tally:
         fidelities=dict(Counter(f.fidelity for f in findings)),
         efforts=_efforts(found),
         surveyed=found.wishes is not None,
-        worth=len(worth),
-        waste=len(found.wishes or ()) - len(worth),
-        wished=len({w.object_number for w in worth}),
+        worth=len(useful),
+        waste=len(found.wishes or ()) - len(useful),
+        wished=len({w.object_number for w in useful}),
         faults=sum(bool(a.fault) for a in found.assessments),
         stored=dict(Counter(state_of(a).value for a in stored)),
         stored_measures=dict(Counter(r.title for a in stored for r in a.recommendations)),

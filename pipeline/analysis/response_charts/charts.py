@@ -1,13 +1,11 @@
-"""Where charts are kept: a few in memory, and, where a folder is given, all that were built, from night to night."""
+"""The cache of response charts: a few in memory, and, where a folder is given, all that were built, run after run."""
 
 from collections import OrderedDict
-from collections.abc import Callable, Iterator, Set
+from collections.abc import Callable, Set
 from concurrent.futures import Future
-from contextlib import contextmanager
 from pathlib import Path
-from threading import Lock, local
+from threading import Lock
 
-from pipeline.analysis.response_charts.histories import Histories
 from pipeline.analysis.response_charts.response_chart import ResponseChart
 from pipeline.cache import CHARTS, Cache
 from pipeline.records import ChartAxis
@@ -16,7 +14,7 @@ KEPT = 64
 """Charts held in memory, of about 0.2 MB each; the one that was asked for longest ago goes first."""
 
 
-class Shelf:
+class ChartCache:
     """Charts by identity; threads that want the same one at once wait for one of them to build it.
 
     folder   : of the cache that keeps charts and histories from one process to the next; None: in memory only
@@ -27,18 +25,26 @@ class Shelf:
     def __init__(self, folder: Path | None = None, kept: int = KEPT, *, admitted: Set[str] | None = None) -> None:
         self._cache = None if folder is None else Cache(folder)
         self._kept, self._admitted = kept, admitted
-        self._remembered = local()
         self._lock = Lock()
         self._charts: OrderedDict[str, Future[ResponseChart]] = OrderedDict()
 
-    @property
-    def histories(self) -> Histories | None:
-        """Those that this thread takes over and keeps (see `remembering`): others may work on other objects at once."""
-        found: Histories | None = getattr(self._remembered, "histories", None)
-        return found
-
     def get(self, key: str, axis: ChartAxis, build: Callable[[], ResponseChart]) -> ResponseChart:
-        """Return the chart of that identity: from memory, from the folder, or built."""
+        """Return the chart of an identity: from memory, from the folder, or built.
+
+        Parameters
+        ----------
+        key
+            The identity.
+        axis
+            The axis that the chart lies along.
+        build
+            Makes the chart; whoever asks for the same one meanwhile waits for it.
+
+        Returns
+        -------
+        ResponseChart
+            The chart, the same object for all who ask while it is in memory.
+        """
         with self._lock:
             chart = self._charts.get(key)
             mine = chart is None
@@ -66,27 +72,27 @@ class Shelf:
         kept = None if self._cache is None else self._cache.get(CHARTS, key)
         return None if kept is None else ResponseChart.of(axis, kept)
 
-    @contextmanager
-    def remembering(self, key: str | None) -> Iterator[None]:
-        """Take over the histories that are kept under a key, and keep there those that are used until the end.
-
-        key : None: until the end only
-        """
-        self._remembered.histories = histories = Histories(None if key is None else self._cache, key or "")
-        try:
-            yield
-            histories.keep()
-        finally:
-            del self._remembered.histories
-
     def pays(self, group: str, key: str, axis: ChartAxis, asking: int, least: int) -> bool:
-        """Say whether a chart is to be used by some who could be integrated too.
+        """Say whether parameter sets that could be integrated are to be looked up in a chart.
 
-        group  : what they have in common, whatever the motion
-        asking : how many they are;  least : of how many it pays to build one, where nothing else decides
+        Parameters
+        ----------
+        group
+            Name of what the sets have in common, whatever the motion.
+        key, axis
+            Of the chart, as in `get`.
+        asking
+            How many sets there are.
+        least
+            From how many sets on building a chart pays, where nothing else decides.
+
+        Returns
+        -------
+        bool
+            Whether the chart is to be used.
         """
         if self._admitted is not None:
-            # Neither what the shelf holds nor who asks together has a say: who works on what may differ.
+            # Neither what the cache holds nor who asks together has a say: who works on what may differ.
             return group in self._admitted
         return asking >= least or self.has(key, axis)
 
@@ -103,5 +109,5 @@ class Shelf:
         return True
 
 
-SHELF = Shelf()
-"""The charts of this process, for a caller who brings no shelf."""
+PROCESS_CHARTS = ChartCache()
+"""The charts of this process, for a caller who brings no cache."""

@@ -1,4 +1,4 @@
-"""What is worth measuring: a quantity of one object that is missing or assumed."""
+"""A measurement that a survey asks for: a quantity of one object that is missing or assumed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Wish:
+class MeasurementRequest:
     """A quantity of one object that nobody recorded, and what recording it would do.
 
     field   : of the object record, such as friction
@@ -32,10 +32,10 @@ class Wish:
 
     @property
     def gain(self) -> float:
-        """What measuring it is worth: verdicts that it would settle, and models that it would make possible."""
+        """What measuring it brings: verdicts that it would settle, and models that it would make possible."""
         return self.settles + self.unlocks
 
     @property
-    def waste(self) -> bool:
+    def settles_nothing(self) -> bool:
         """Whether measuring it alone would settle nothing, wherever in its range it lies."""
         return not self.gain

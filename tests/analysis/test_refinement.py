@@ -7,16 +7,17 @@ import numpy as np
 import pytest
 
 from pipeline.analysis.assess import LevelMotions, assess
+from pipeline.analysis.chart_runs import DECIDES, deciding, response_chart
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.refinement import Effort
-from pipeline.analysis.response import DECIDES, deciding, respond, response_chart
-from pipeline.analysis.response_charts import Shelf
+from pipeline.analysis.response import respond
+from pipeline.analysis.response_charts import ChartCache
 from pipeline.execute import Threads
 from pipeline.motions import read_motion
 from pipeline.quantities import Array
-from pipeline.records import Estimate, Finding, Item, Motion, Origin, Scene, Support, Verdict
+from pipeline.records import Estimate, Finding, Item, Motion, Numerics, Origin, Scene, Support, Verdict
 from pipeline.resources import resource
-from tests.analysis.test_assess import Silent
 
 BLOCK = Item("1", "G", title="Block", support=Support.FREESTANDING, height_m=0.3, base_width_m=0.3, base_depth_m=0.3,
              width_m=0.3, depth_m=0.3, cg_height_m=0.15, friction=0.3, clearance_m=0.1)  # fmt: skip
@@ -25,6 +26,8 @@ PAINTING = Item("2", "G", title="Landscape", classification="paintings", height_
 LAMP = replace(PAINTING, title="Lamp", support=Support.SUSPENDED)
 NEAR = (-1e-1, -1e-2, -3e-3, -1e-3, -1e-4, -1e-6, 1e-6, 1e-4, 1e-3, 3e-3, 1e-2, 1e-1)
 """By what share capacities lie beside the demands of `history`: a chart cannot tell the inner ones, a bound none."""
+
+EVERY = Numerics(azimuth_step=30.0)
 
 COMBINES = ("max", "mean")
 
@@ -42,27 +45,24 @@ def motions() -> tuple[Motion, ...]:
 
 
 @pytest.fixture(scope="module")
-def shelf(motions: tuple[Motion, ...]) -> Shelf:
+def charts(motions: tuple[Motion, ...]) -> ChartCache:
     """Charts of sliding, and of the swing in every direction, as a night that drew them has them."""
-    charts = Shelf()
+    charts = ChartCache()
     for motion in motions:
-        response_chart("sliding", motion, charts=charts, **deciding("sliding"))
-        response_chart("swing", motion, charts=charts, azimuth_step=30.0, damping=0.02, **deciding("swing"))
+        response_chart("sliding", motion, charts=charts, numerics=deciding("sliding"))
+        response_chart("swing", motion, charts=charts, numerics=deciding("swing", EVERY), damping=0.02)
     return charts
 
 
 def run(
-    scenes: list[Scene], level: LevelMotions, fidelity: str, charts: Shelf | None = None
+    scenes: list[Scene], level: LevelMotions, fidelity: str, charts: ChartCache | None = None
 ) -> tuple[list[list[Finding]], dict[str, Effort]]:
     efforts: dict[str, Effort] = {}
     found = assess(
         scenes,
         [level],
-        Threads(2),
-        Silent(),
-        fidelity=fidelity,
-        azimuth_step=30.0,
-        charts=charts or Shelf(),
+        Context(Threads(2), charts=charts or ChartCache()),
+        EVERY.at(fidelity),
         efforts=efforts,
     )[1]
     return found, efforts
@@ -104,11 +104,11 @@ def blocks(frictions: Array) -> list[Scene]:
 
 
 @pytest.mark.parametrize("combine", COMBINES)
-def test_sliding_right_beside_its_capacity(motions: tuple[Motion, ...], shelf: Shelf, combine: str) -> None:
+def test_sliding_right_beside_its_capacity(motions: tuple[Motion, ...], charts: ChartCache, combine: str) -> None:
     """240 measured frictions: each verdict is that of the history, although most histories are never run."""
     level = LevelMotions("design", combine, motions)
     scenes = beside(blocks(np.geomspace(0.02, 0.7, 240)), level, "sliding")
-    history, auto = run(scenes, level, "history")[0], run(scenes, level, "auto", shelf)
+    history, auto = run(scenes, level, "history")[0], run(scenes, level, "auto", charts)
     same(history, auto[0])
     effort = auto[1]["sliding"]
     # One part in a thousand is always integrated; a part in ten never, and of a hundredth most are not.
@@ -120,7 +120,7 @@ def test_sliding_right_beside_its_capacity(motions: tuple[Motion, ...], shelf: S
 @pytest.mark.parametrize("combine", COMBINES)
 @pytest.mark.parametrize(("item", "model", "count"), [(PAINTING, "swing", 96), (LAMP, "swing_3d", 24)])
 def test_swings_right_beside_their_capacity(
-    motions: tuple[Motion, ...], shelf: Shelf, combine: str, item: Item, model: str, count: int
+    motions: tuple[Motion, ...], charts: ChartCache, combine: str, item: Item, model: str, count: int
 ) -> None:
     level = LevelMotions("design", combine, motions[:2])
     scenes = beside(
@@ -131,11 +131,11 @@ def test_swings_right_beside_their_capacity(
         level,
         model,
     )
-    same(run(scenes, level, "history")[0], run(scenes, level, "auto", shelf)[0])
+    same(run(scenes, level, "history")[0], run(scenes, level, "auto", charts)[0])
 
 
 @pytest.mark.parametrize("combine", COMBINES)
-def test_ranges_of_everything_at_random(motions: tuple[Motion, ...], shelf: Shelf, combine: str) -> None:
+def test_ranges_of_everything_at_random(motions: tuple[Motion, ...], charts: ChartCache, combine: str) -> None:
     """Objects of all kinds with measured and assumed inputs, some harmed only by falling, some of known orientation."""
     rng = np.random.default_rng(20190706)
     kinds = (
@@ -155,23 +155,23 @@ def test_ranges_of_everything_at_random(motions: tuple[Motion, ...], shelf: Shel
         turned = None if i % 3 else float(rng.uniform(0.0, 360.0))
         scenes.append(classify(replace(kind, object_number=str(i), orientation_deg=turned, **sizes)))
     level = LevelMotions("design", combine, motions)
-    history, auto = run(scenes, level, "history")[0], run(scenes, level, "auto", shelf)[0]
+    history, auto = run(scenes, level, "history")[0], run(scenes, level, "auto", charts)[0]
     same(history, auto)
-    same(history, run(scenes, level, "chart", shelf)[0])
+    same(history, run(scenes, level, "chart", charts)[0])
     assert {f.model for found in auto for f in found} >= {
         "rocking", "sliding", "stress", "flexible_stress", "friction_isolator", "swing",
     }  # fmt: skip
     assert len({f.verdict for found in auto for f in found}) == 3
 
 
-def test_who_decides_is_said_and_how_well(motions: tuple[Motion, ...], shelf: Shelf) -> None:
+def test_who_decides_is_said_and_how_well(motions: tuple[Motion, ...], charts: ChartCache) -> None:
     """A bound says at most, and is one; a chart tells its error; what lies beside its capacity is integrated."""
     level = LevelMotions("design", "max", motions[:1])
     table = respond("sliding", motions[0], friction_static=0.2, fidelity="bound")
     truth = float(respond("sliding", motions[0], friction_static=0.2)["displacement"].iloc[0])
     rooms = (2.0 * float(table["high"].iloc[0]), 1.3 * truth, truth * (1.0 + 1e-4))
     scenes = [classify(replace(BLOCK, object_number=str(i), friction=0.2, clearance_m=c)) for i, c in enumerate(rooms)]
-    bound, chart, history = (of_model(run([scene], level, "auto", shelf)[0], "sliding")[0] for scene in scenes)
+    bound, chart, history = (of_model(run([scene], level, "auto", charts)[0], "sliding")[0] for scene in scenes)
     assert (bound.decided_by, bound.fidelity) == ("certificate", "bound")
     assert "at most" in bound.sentence
     # The bound holds for the response; two thousandths more are for the history that might be run instead.
@@ -187,11 +187,11 @@ def test_who_decides_is_said_and_how_well(motions: tuple[Motion, ...], shelf: Sh
     assert (history.decided_by, history.fidelity, history.demand) == ("history", "history", truth)
 
 
-def test_nothing_is_integrated_that_no_verdict_needs(motions: tuple[Motion, ...], shelf: Shelf) -> None:
+def test_nothing_is_integrated_that_no_verdict_needs(motions: tuple[Motion, ...], charts: ChartCache) -> None:
     """What a bound decides costs no history, except one of what fails, to tell what it does."""
     level = LevelMotions("design", "max", motions)
     pillar = replace(BLOCK, height_m=4.0, cg_height_m=2.0, base_width_m=0.5, base_depth_m=0.5, friction=0.9)
-    efforts = run([classify(pillar)], level, "auto", shelf)[1]
+    efforts = run([classify(pillar)], level, "auto", charts)[1]
     assert _counts(efforts["sliding"]) == (1, [1, 0, 0], 0, 0)
     assert _counts(efforts["rocking"]) == (1, [1, 0, 0], 0, 1)
     assert efforts["rocking"].needing == 1

@@ -1,0 +1,31 @@
+"""What an analysis works with and its result does not depend on: where it runs, who is told, what is kept."""
+
+from dataclasses import dataclass, replace
+
+from pipeline.analysis.response_charts import PROCESS_CHARTS, ChartCache
+from pipeline.analysis.response_charts.histories import Histories
+from pipeline.records import Executor, Progress, Silent
+
+_SILENT = Silent()
+
+
+@dataclass(frozen=True)
+class Context:
+    """Where an analysis runs, who is told how far it is, and what was computed before.
+
+    executor  : where independent pieces of work run
+    progress  : who is told
+    charts    : where response charts are found and kept; those of this process where none are given
+    histories : those run before, which are taken over, and where those run now are noted; None: all are run.  It
+                belongs to one batch of objects: other batches at the same time have their own
+    """
+
+    executor: Executor
+    progress: Progress = _SILENT
+    charts: ChartCache = PROCESS_CHARTS
+    histories: Histories | None = None
+
+    @property
+    def silent(self) -> "Context":
+        """The same for a part of the work, of which nobody is told."""
+        return replace(self, progress=_SILENT)

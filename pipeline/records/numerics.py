@@ -1,0 +1,50 @@
+"""How finely demands are found: what a result depends on besides the object, its model and its motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+AUTO, CHART = "auto", "chart"
+"""The fidelities that choose for each verdict, and for each parameter set, what is looked up and what is integrated."""
+
+REFINE = {"history": 2, "reference": 16}
+"""How much finer than the coarsest step, which only ever looks for the worst direction, each fidelity integrates."""
+
+TOLERANCE = 1e-3
+"""Relative error that a chart's interpolation is granted."""
+
+AZIMUTH_STEP = 10.0
+"""Degrees between the directions of which the worst counts when the orientation is unknown (RotD100)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Numerics:
+    """How finely demands are found.
+
+    fidelity     : of one run "screen", "bound", "chart", "history" or "reference"; of verdicts besides the last three
+                   "auto", which goes from bounds over charts to histories as far as each verdict needs
+    azimuth_step : degrees between the directions of which the worst counts, above 0 and at most 90
+    tolerance    : of a chart's interpolation, relative to max(value, 1 % of the largest value on the chart)
+    first        : whether that tolerance is asked of the model's first output alone
+    """
+
+    fidelity: str = AUTO
+    azimuth_step: float = AZIMUTH_STEP
+    tolerance: float = TOLERANCE
+    first: bool = False
+
+    @property
+    def integrated(self) -> Numerics:
+        """The same for what is integrated whatever happens: at "reference" where that was asked, else at "history"."""
+        return replace(self, fidelity="reference" if self.fidelity == "reference" else "history")
+
+    def at(self, fidelity: str) -> Numerics:
+        """Return the same at another fidelity."""
+        return replace(self, fidelity=fidelity)
+
+
+VERDICTS = Numerics()
+"""How verdicts are found unless said otherwise."""
+
+HISTORIES = Numerics("history")
+"""Everything integrated."""
