@@ -16,7 +16,7 @@ from pipeline.cli import commands
 from pipeline.cli.console import Guarded
 from pipeline.cli.options import Options
 from pipeline.cli.shared import with_shared
-from pipeline.execute.crew import RARELY
+from pipeline.execute.memory import RARELY
 from pipeline.operations.event_log import note
 from pipeline.operations.stopping import Stopped, stoppable
 

@@ -14,8 +14,8 @@ from pipeline.collection.catalogue import Catalogue
 from pipeline.collection.inventory import fields_since
 from pipeline.collection.listing import Listing
 from pipeline.collection.record import family_of
-from pipeline.execute.crew import Crew, cores, crew
 from pipeline.execute.memory import give_back
+from pipeline.execute.pool import WorkerPool, cores, pool
 from pipeline.night.context import Brief
 from pipeline.night.decision_review import now, standing
 from pipeline.night.floors import floor_name
@@ -152,7 +152,7 @@ class Round:
         take : is given each new result
         """
         todo = [piece for piece in self._pieces if piece.kept is None]
-        with self._crew(self.fresh) as hands, closing(self._each(hands, todo, progress, draw=False)) as done:
+        with self._pool(self.fresh) as hands, closing(self._each(hands, todo, progress, draw=False)) as done:
             for at, piece in enumerate(self._pieces):
                 progress.step("sheets", at, len(self._pieces))
                 came = None if piece.kept is not None else next(done)
@@ -180,7 +180,7 @@ class Round:
         waiting: list[Encoded] = []
         since = monotonic()
         todo = sum(len(piece.part.objects) for piece in left)
-        with self._crew(todo) as hands, closing(self._each(hands, left, progress, draw=True)) as done:
+        with self._pool(todo) as hands, closing(self._each(hands, left, progress, draw=True)) as done:
             for at, piece in enumerate(self._pieces):
                 progress.step("sheets", at, len(self._pieces))
                 came = None if at in taken else next(done)
@@ -200,7 +200,7 @@ class Round:
         progress.step("sheets", len(self._pieces), len(self._pieces))
         return total(self._tallies)
 
-    def _each(self, hands: Crew, todo: Sequence[_Piece], progress: Progress, *, draw: bool) -> Generator[Done]:
+    def _each(self, hands: WorkerPool, todo: Sequence[_Piece], progress: Progress, *, draw: bool) -> Generator[Done]:
         """Yield what comes of each sheet; charts that many ask for are built before, each by one."""
         # For a few objects not all are read: whoever asks for one finds or builds it.
         if self.charts and self.brief.kept is not None and self.fresh > FEW:
@@ -215,7 +215,7 @@ class Round:
         for done in hands.each(work, self.brief, wanted):
             yield from done
 
-    def _kinds(self, hands: Crew, fresh: Sequence[_Piece], progress: Progress) -> Iterator[tuple[str, Parcel]]:
+    def _kinds(self, hands: WorkerPool, fresh: Sequence[_Piece], progress: Progress) -> Iterator[tuple[str, Parcel]]:
         """Find what holds for many objects before the sheets that they are on: else each worker finds it for itself.
 
         fresh   : sheets of which the last night knew nothing
@@ -248,18 +248,18 @@ class Round:
         keep(self.workspace.engine, head.run_id, head.started, waiting)
         waiting.clear()
 
-    def _crew(self, objects: int) -> AbstractContextManager[Crew]:
+    def _pool(self, objects: int) -> AbstractContextManager[WorkerPool]:
         wanted = self.workspace.settings.execution
         if objects <= FEW:
-            return crew()
+            return pool()
         # What reading the records and drawing the motions took is there for the workers.
         give_back()
         if wanted.cluster:
             # Its workers may not see our folders.
             self.brief = replace(self.brief, kept=None, threads=1)
-            return crew(address=wanted.cluster)
+            return pool(address=wanted.cluster)
         self.brief = replace(self.brief, threads=1)
-        return crew(processes=wanted.processes or cores())
+        return pool(processes=wanted.processes or cores())
 
     def _sheet(self, piece: _Piece) -> Sheet:
         part, kept, head = piece.part, piece.kept, self.brief.head
