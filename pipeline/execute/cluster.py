@@ -11,7 +11,7 @@ import dask
 from distributed import Client, KilledWorker
 
 from pipeline.execute.memory import collecting_rarely
-from pipeline.execute.workers import AHEAD, DEATHS, Pending, PoolError, Result, Shared, Task, in_order
+from pipeline.execute.workers import AHEAD, Pending, PoolError, Result, Shared, Task, in_order
 
 
 class ClusterPool:
@@ -33,7 +33,7 @@ class ClusterPool:
             yield from in_order(submit, tasks, AHEAD * self.workers, waiting)
         except KilledWorker as problem:
             raise PoolError(
-                f"{DEATHS} workers died of one part of the work ({problem}); give them more memory"
+                f"workers of the cluster died of one part of the work ({problem}); give them more memory"
             ) from problem
         finally:
             self._client.cancel([*waiting, everywhere], force=True)
@@ -62,12 +62,8 @@ def cluster_pool(address: str) -> Iterator[ClusterPool]:
     PoolError
         Where it cannot be reached or has no workers.
     """
-    settings: dict[str, Any] = {
-        "distributed.scheduler.allowed-failures": DEATHS,
-        # The tasks are as large as they are meant to be.
-        "distributed.admin.large-graph-warning-threshold": "1GB",
-    }
-    with dask.config.set(settings):
+    # The tasks are as large as they are meant to be.
+    with dask.config.set({"distributed.admin.large-graph-warning-threshold": "1GB"}):
         try:
             client = Client(address, timeout="10s", set_as_default=False)
         except (OSError, TimeoutError, ValueError) as problem:

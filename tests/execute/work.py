@@ -59,6 +59,15 @@ def slow(shared: Shared, task: int) -> int:
     return task
 
 
+def given_up(_shared: Shared, task: int) -> int:
+    """Raise what Dask raises of a task of which workers die, again and again."""
+    from types import SimpleNamespace
+
+    from distributed import KilledWorker
+
+    raise KilledWorker(f"task {task}", SimpleNamespace(address="tcp://127.0.0.1:9", name=0), 3)
+
+
 def calls(_shared: Shared, task: Callable[..., float]) -> float:
     """Call a function of Kouros with nothing that it can read."""
     return task(None, "value", "here")
