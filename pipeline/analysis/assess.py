@@ -1,6 +1,8 @@
 """Scenes x motions -> demands -> findings: each demand against its capacity, with a number for how sure we are."""
 
+import logging
 from collections.abc import MutableMapping, Sequence
+from time import perf_counter
 
 from pipeline.analysis.findings import findings
 from pipeline.analysis.plan import Plan, plan
@@ -8,6 +10,8 @@ from pipeline.analysis.refinement import AUTO, Effort, examine
 from pipeline.analysis.response_charts import SHELF, Shelf
 from pipeline.analysis.verdicts import Judgement, LevelMotions, capacity_of, judge
 from pipeline.records import Executor, Finding, Progress, Scene
+
+logger = logging.getLogger(__name__)
 
 __all__ = ["FIDELITIES", "Judgement", "LevelMotions", "assess", "capacity_of", "judge"]
 
@@ -38,6 +42,7 @@ def assess(
     needing   : for how many of each scene's analyses any history was run is added here, by the name of the model
     returns   : the plan (with the reasons for models not run) and the findings of each scene, in their order
     """
+    began = perf_counter()
     todo = plan(scenes, levels[0].x_azimuth)
     found: list[list[Finding]] = [[] for _ in scenes]
     total = len(todo.work) * sum(len(level.motions) for level in levels)
@@ -45,6 +50,7 @@ def assess(
     progress.step("analyses", done, total)
     for level in levels:
         for work in todo.work:
+            since = perf_counter()
             examined = examine(
                 work,
                 scenes,
@@ -65,6 +71,11 @@ def assess(
                         needing[index][work.model.name] = needing[index].get(work.model.name, 0) + 1
             if efforts is not None:
                 efforts.setdefault(work.model.name, Effort()).add(examined.climb.effort)
+            logger.debug(
+                "%s of %d scenes under level %r (%d motions): %.3f s",
+                work.model.name, len(work.scenes), level.name, len(level.motions), perf_counter() - since,
+            )  # fmt: skip
             done += len(level.motions)
             progress.step("analyses", done, total)
+    logger.info("assessed %d scenes at %d levels in %.2f s", len(scenes), len(levels), perf_counter() - began)
     return todo, found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager
@@ -12,6 +13,8 @@ from distributed import Client, KilledWorker
 
 from pipeline.execute.memory import collecting_rarely
 from pipeline.execute.workers import AHEAD, Pending, PoolError, Result, Shared, Task, in_order
+
+logger = logging.getLogger(__name__)
 
 
 class ClusterPool:
@@ -74,4 +77,5 @@ def cluster_pool(address: str) -> Iterator[ClusterPool]:
             workers = len(client.scheduler_info(n_workers=-1)["workers"])
             if not workers:
                 raise PoolError(f"the Dask cluster at {address} has no workers; start some (`dask worker {address}`)")
+            logger.info("%d workers of the cluster at %s", workers, address)
             yield ClusterPool(client, workers)

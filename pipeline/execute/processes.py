@@ -97,6 +97,7 @@ class ProcessPool:
         except BaseException:
             self.close()
             raise
+        logger.info("%d worker processes started", self.workers)
         return self
 
     def __exit__(self, *_: object) -> None:

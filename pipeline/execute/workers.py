@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import logging
 from collections import deque
 from collections.abc import Callable, Generator, Iterable
+from time import perf_counter
 from typing import Protocol, TypeVar
 
 from pipeline.errors import KourosError
+
+logger = logging.getLogger(__name__)
 
 Shared = TypeVar("Shared")
 Task = TypeVar("Task")
@@ -86,13 +90,18 @@ def in_order(
     waiting : deque
         Holds those tasks, so that the caller can drop them at the end.
     """
+    began, count = perf_counter(), 0
     for task in tasks:
         waiting.append(submit(task))
+        count += 1
         if len(waiting) >= ahead:
-            result = waiting[0].result()
-            waiting.popleft()
-            yield result
+            yield _first(waiting)
     while waiting:
-        result = waiting[0].result()
-        waiting.popleft()
-        yield result
+        yield _first(waiting)
+    logger.info("%d tasks done in %.2f s", count, perf_counter() - began)
+
+
+def _first(waiting: deque[Pending[Result]]) -> Result:
+    result = waiting[0].result()
+    waiting.popleft()
+    return result

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
+from time import perf_counter
 
 import numpy as np
 
@@ -33,6 +35,8 @@ from pipeline.quantities import Array
 from pipeline.records import Motion, MotionSummary
 from pipeline.supports import TRANSMITTED, refined
 from pipeline.supports.floor import carried
+
+logger = logging.getLogger(__name__)
 
 PICTURE_POINTS = 600
 PICTURE_MARGIN = 5.0
@@ -187,7 +191,7 @@ def read_motion(path: str | Path, kept: Path | None = None) -> list[Motion]:
         for j, record in enumerate(level.record):
             # Kept apart from what a night keeps, as it has no measures.
             identity = _identity(record, level.target, manifest.site.x_azimuth, "without measures")
-            known = None if kept is None else recall(kept, identity)
+            known = _recalled(kept, identity, record)
             if known is None:
                 key = f"level[{i}].record[{j}]"
                 known = prepare(file, key, record, level.target, manifest.site.x_azimuth).motion, {}
@@ -277,13 +281,19 @@ def thinned(motion: Motion, points: int = PICTURE_POINTS) -> dict[str, tuple[flo
 
 def _site_motion(site: Site, key: str, record: Record, target: TargetTable | None) -> SiteMotion:
     identity = _identity(record, target, site.manifest.site.x_azimuth)
-    known = None if site.kept is None else recall(site.kept, identity)
+    known = _recalled(site.kept, identity, record)
     if known is None:
         done = prepare(site.file, key, record, target, site.manifest.site.x_azimuth)
         known = done.motion, measured(done.motion, done.velocity)
         if site.kept is not None:
             keep(site.kept, identity, known)
     return SiteMotion(*known, record.licence, record.source)
+
+
+def _recalled(folder: Path | None, identity: str, record: Record) -> tuple[Motion, dict[str, float]] | None:
+    known = None if folder is None else recall(folder, identity)
+    logger.debug("record %r: %s %s", record.name, "not kept as" if known is None else "kept as", identity)
+    return known
 
 
 @one_thread()
@@ -293,6 +303,7 @@ def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_
     file, key : the manifest and the record's place in it, for messages
     raises    : MotionError, also for a record that ends or begins during strong shaking
     """
+    since = perf_counter()
     recording = read_record(file.parent, record)
     try:
         done = process(recording, record, target, x_azimuth)
@@ -300,6 +311,10 @@ def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_
         raise
     except ValueError as error:
         raise refusal(file, key, str(error), "mend that key of the manifest") from error
+    logger.info(
+        "%s, %s, record %r: read and processed in %.2f s, %d samples of %g s",
+        file, key, record.name, perf_counter() - since, done.motion.acceleration.shape[-1], done.motion.dt,
+    )  # fmt: skip
     cut = cut_off(done.motion.acceleration, done.motion.dt, ("x", "y", "z"))
     if cut is None:
         return done

@@ -1,16 +1,20 @@
 """Where charts are kept: a few in memory, and, where a folder is given, all that were built, from night to night."""
 
+import logging
 from collections import OrderedDict
 from collections.abc import Callable, Collection, Iterator, Set
 from concurrent.futures import Future
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Lock, local
+from time import perf_counter
 
 from pipeline.analysis.response_charts.chart_cache import keep, prune, recall
 from pipeline.analysis.response_charts.histories import Histories
 from pipeline.analysis.response_charts.response_chart import ResponseChart
 from pipeline.records import ChartAxis
+
+logger = logging.getLogger(__name__)
 
 KEPT = 64
 """Charts held in memory, of about 0.2 MB each; the one that was asked for longest ago goes first."""
@@ -49,8 +53,15 @@ class Shelf:
         if mine:
             try:
                 found = None if self._folder is None else recall(self._folder, key, axis)
-                if found is None:
+                if found is not None:
+                    logger.debug("response chart %s: read from %s", key, self._folder)
+                else:
+                    since = perf_counter()
                     found = build()
+                    logger.info(
+                        "response chart %s: built of %d analyses in %.2f s",
+                        key, found.cells.nodes, perf_counter() - since,
+                    )  # fmt: skip
                     if self._folder is not None:
                         keep(self._folder, key, found)
                 chart.set_result(found)
