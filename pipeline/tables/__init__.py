@@ -1,6 +1,7 @@
 """Tables are data: CSV files whose rows carry a value, its range and who says so.  Code never repeats their numbers."""
 
 import csv
+import errno
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -50,12 +51,17 @@ def read_table(path: Path) -> tuple[Row, ...]:
     Raises
     ------
     TableError
-        For a row of another length than the header, a column named twice, and what is no CSV file in UTF-8.
+        For a row of another length than the header, a column named twice, what is no CSV file in UTF-8, and a file
+        that is larger.
     OSError
-        For a file that cannot be read, or is larger.
+        For a file that cannot be read.
     """
     try:
         return _read(path)
+    except OSError as problem:
+        if problem.errno != errno.EFBIG:
+            raise
+        raise TableError(f"{path.name}: {problem.strerror}; leave out what is no row of a table") from problem
     except (UnicodeDecodeError, csv.Error) as problem:
         raise TableError(f"{path.name}: no CSV file in UTF-8: {problem}; save it as CSV (UTF-8)") from problem
 
