@@ -3,8 +3,12 @@
 The four public names are handed on lazily, so that ``import pipeline`` costs nothing::
 
     from pipeline import Motion, read_motion, respond, transmit
+
+Its modules tell what they do to loggers below "pipeline", which nobody hears who does not ask: `kouros -v` and
+`kouros --debug` show them.
 """
 
+import logging
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +20,8 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 __all__ = ["Motion", "read_motion", "respond", "trace", "transmit"]
+
+logging.getLogger(__name__).addHandler(logging.NullHandler())
 
 _HOMES = {
     "Motion": "pipeline.records",

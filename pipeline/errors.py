@@ -28,9 +28,21 @@ class InputError(KourosError, ValueError):
     """A value that was given, in a call, a file or a table, and cannot be used."""
 
 
+def raised_at(problem: BaseException) -> str:
+    """Return the place in Kouros that an error came from, "" where there is none.
+
+    An error of another process has no traceback here: it carries the place as an attribute of this name.
+    """
+    there = getattr(problem, "raised_at", None)
+    if isinstance(there, str):
+        return there
+    own = [step for step in traceback.extract_tb(problem.__traceback__) if _PACKAGE in Path(step.filename).parents]
+    return "".join(f"{Path(s.filename).relative_to(_PACKAGE).as_posix()}, line {s.lineno}, {s.name}" for s in own[-1:])
+
+
 def fault_words(problem: BaseException) -> str:
     """Return an unexpected error in words, with the place in Kouros that it came from."""
-    own = [step for step in traceback.extract_tb(problem.__traceback__) if _PACKAGE in Path(step.filename).parents]
-    at = "".join(f" ({Path(s.filename).relative_to(_PACKAGE).as_posix()}, line {s.lineno}, {s.name})" for s in own[-1:])
+    place = raised_at(problem)
+    at = f" ({place})" if place else ""
     said = str(problem) if len(str(problem)) <= _LONGEST else f"{str(problem)[:_LONGEST]}..."
     return f"{type(problem).__name__}{': ' if said else ''}{said}{at}"

@@ -101,6 +101,35 @@ def test_a_warm_response_loads_the_compiler_and_nothing_else_that_is_heavy(tmp_p
     assert again == "[]"
 
 
+OTHER_NAME = """
+import kouros.motions
+from kouros.records import Motion
+import kouros, pipeline, sys
+import pipeline.analysis.response, pipeline.motions, pipeline.records
+assert kouros is pipeline and kouros.respond is pipeline.analysis.response.respond
+assert kouros.motions is pipeline.motions and Motion is pipeline.records.Motion
+assert sys.modules["kouros.motions"].__spec__.name == "pipeline.motions"
+try:
+    import kouros.nothing
+except ModuleNotFoundError as problem:
+    assert "kouros.nothing" in str(problem)
+else:
+    raise AssertionError
+from pathlib import Path
+print(Path(pipeline.__file__).parents[1])
+"""
+
+
+def test_it_is_imported_as_kouros_too_and_nothing_is_there_twice(tmp_path: Path) -> None:
+    """By the two folders that an editable install puts on the path."""
+    both = f"{ROOT}{os.pathsep}{ROOT / 'pipeline' / '_alias'}"
+    assert python(OTHER_NAME, tmp_path, PYTHONPATH=both) == str(ROOT)
+    loaded = python(
+        "import sys, kouros; print([m for m in ('numpy', 'numba') if m in sys.modules])", tmp_path, PYTHONPATH=both
+    )
+    assert loaded == "[]"
+
+
 def test_the_wheel_carries_schemas_templates_and_the_demo_site(tmp_path: Path) -> None:
     """Built by the real back end, unpacked, and asked for its files from outside of the checkout."""
     command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
@@ -121,6 +150,11 @@ def test_the_wheel_carries_schemas_templates_and_the_demo_site(tmp_path: Path) -
     assert found.count(str(unpacked)) == 3
     assert "pipeline/collection/data/carnegie_2000.csv" in names
     assert "pipeline/tables/friction.csv" in names
+    # With types for those who call it, under both of its names, and of the version that it says itself.
+    assert {"pipeline/py.typed", "kouros/py.typed"} < set(names)
+    assert not [n for n in names if "_alias" in n]
+    assert wheel.name.startswith(f"kouros-{pipeline.__version__}-")
+    assert python(f"import sys; sys.path.insert(0, {str(unpacked)!r})\n{OTHER_NAME}", tmp_path) == str(unpacked)
 
 
 def test_a_resource_that_is_not_there_is_named() -> None:
@@ -139,7 +173,7 @@ def test_constraints_pin_versions_and_name_no_index() -> None:
     lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
     pins = [line for line in lines if line and not line.startswith("#")]
     assert all(re.fullmatch(r"[A-Za-z0-9_.-]+==[^ ;]+", pin) for pin in pins)
-    names = {pin.partition("==")[0].lower().replace("_", "-") for pin in pins}
+    names = {pin.partition("==")[0].lower().replace("_", "-") for pin in pins} | {"kouros"}
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     for requirement in [*project["dependencies"], *itertools.chain(*project["optional-dependencies"].values())]:
         assert re.match(r"[A-Za-z0-9_.-]+", requirement)[0].lower().replace("_", "-") in names, requirement  # type: ignore[index]

@@ -1,6 +1,8 @@
 """Scenes x motions -> demands -> findings: each demand against its capacity, with a number for how sure we are."""
 
+import logging
 from collections.abc import MutableMapping, Sequence
+from time import perf_counter
 
 from pipeline.analysis.context import Context
 from pipeline.analysis.findings import findings
@@ -9,6 +11,8 @@ from pipeline.analysis.refinement import Effort, examine
 from pipeline.analysis.verdicts import Judgement, LevelMotions, capacity_of, judge
 from pipeline.records import Finding, Numerics, Scene
 from pipeline.records.numerics import AUTO, CHART, VERDICTS
+
+logger = logging.getLogger(__name__)
 
 __all__ = ["FIDELITIES", "Judgement", "LevelMotions", "assess", "capacity_of", "judge"]
 
@@ -53,6 +57,7 @@ def assess(
         Of each scene, in their order.
     """
     progress = context.progress
+    began = perf_counter()
     todo = plan(scenes, levels[0].x_azimuth)
     found: list[list[Finding]] = [[] for _ in scenes]
     total = len(todo.work) * sum(len(level.motions) for level in levels)
@@ -60,6 +65,7 @@ def assess(
     progress.step("analyses", done, total)
     for level in levels:
         for work in todo.work:
+            since = perf_counter()
             examined = examine(work, scenes, level, context, numerics, outcomes=outcomes)
             for case, known in examined.cases:
                 made = findings(examined.search, case, known, scenes)
@@ -71,6 +77,11 @@ def assess(
                         needing[index][work.model.name] = needing[index].get(work.model.name, 0) + 1
             if efforts is not None:
                 efforts.setdefault(work.model.name, Effort()).add(examined.search.effort)
+            logger.debug(
+                "%s of %d scenes under level %r (%d motions): %.3f s",
+                work.model.name, len(work.scenes), level.name, len(level.motions), perf_counter() - since,
+            )  # fmt: skip
             done += len(level.motions)
             progress.step("analyses", done, total)
+    logger.info("assessed %d scenes at %d levels in %.2f s", len(scenes), len(levels), perf_counter() - began)
     return todo, found

@@ -1,9 +1,12 @@
 """What an analysis works with and its result does not depend on: where it runs, who is told, what is kept."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 from pipeline.analysis.response_charts import PROCESS_CHARTS, ChartCache
 from pipeline.analysis.response_charts.histories import Histories
+from pipeline.cache import Cache
 from pipeline.records import Executor, Progress, Silent
 
 _SILENT = Silent()
@@ -29,3 +32,24 @@ class Context:
     def silent(self) -> "Context":
         """The same for a part of the work, of which nobody is told."""
         return replace(self, progress=_SILENT)
+
+
+@contextmanager
+def remembered(cache: Cache | None, key: str) -> Iterator[Histories]:
+    """Lend the histories that are kept under a key, and keep there those that are used until the end.
+
+    Parameters
+    ----------
+    cache
+        That keeps them; None: nothing is kept, and only what is asked for twice is run once.
+    key
+        Of what is worked on together.
+
+    Yields
+    ------
+    Histories
+        For the `Context` of one batch of objects.  Nothing is kept where the work on it fails.
+    """
+    histories = Histories(cache, key)
+    yield histories
+    histories.keep()

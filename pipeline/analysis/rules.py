@@ -19,10 +19,15 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
+from typing import Annotated
 from unicodedata import combining, normalize
 
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationInfo
+
+from pipeline.errors import InputError
 from pipeline.records import Item
 from pipeline.tables import Row, TableError, read_table, table
+from pipeline.tables.rows import Entries, checked, once
 
 FLAT = 0.12
 """Depth over the larger face dimension below which a thing is a sheet, not a body."""
@@ -89,6 +94,8 @@ _SUPPORT = re.compile(
     r"\b(?:on|in|with|and|recessed in|auf|sur|su|sobre|op)\s[^,;]{0,40}?\b(?:base|plinth|socle|pedestal)\b"
 )
 """What a medium says of the base."""
+_SHOWN = 80
+"""Characters of a cell that a message repeats."""
 _STEM = 2
 """Letters that must precede an ending such as *statuette."""
 
@@ -110,6 +117,54 @@ def _stuff(material: str, medium: str) -> str:
 def identifiers(text: str) -> frozenset[str]:
     """Return the Getty AAT identifiers in a text, as bare numbers: 300132254, aat:300132254 and addresses alike."""
     return frozenset(_IDENTIFIER.findall(text))
+
+
+def _name(name: str) -> str:
+    if not name.strip() or ":" in name:
+        raise InputError("must be a name without a colon")
+    return name
+
+
+def _known_class(name: str, info: ValidationInfo) -> str:
+    classes = (info.context or {})["classes"]
+    if name not in classes:
+        raise InputError(f"classes.csv has no class {name[:_SHOWN]!r}; use one of {', '.join(sorted(classes))}")
+    return name
+
+
+def _identifier(entry: str) -> str:
+    if _IDENTIFIER.fullmatch(entry) is None:
+        raise InputError(f"{entry[:_SHOWN]!r} is no AAT identifier; write nine digits, as 300132254, parted by |")
+    return entry
+
+
+def _word(entry: str) -> str:
+    if not _WORD.search(fold(entry)) or "*" in entry[1:]:
+        raise InputError(f"{entry[:_SHOWN]!r} has no word; write words, or an ending as *vase")
+    return entry
+
+
+def _shape(name: str) -> str:
+    if name not in SHAPES:
+        raise InputError(f"there is no shape {name[:_SHOWN]!r}; use some of {', '.join(SHAPES)}")
+    return name
+
+
+def _each(check: Callable[[str], str]) -> AfterValidator:
+    return AfterValidator(lambda entries: tuple(map(check, entries)))
+
+
+class _Row(BaseModel):
+    """A row of a table of rules, as the opening of this module says."""
+
+    rule: Annotated[str, AfterValidator(_name)]
+    object_class: Annotated[str, Field(alias="class"), AfterValidator(_known_class)]
+    aat: Annotated[Entries, _each(_identifier)]
+    classification: Entries
+    words: Annotated[Entries, _each(_word)]
+    medium: Entries
+    shape: Annotated[tuple[str, ...], _each(_shape), BeforeValidator(str.split)]
+    why: str
 
 
 @dataclass(frozen=True)
@@ -177,16 +232,9 @@ def read_rules(rows: tuple[Row, ...], classes: frozenset[str], file: str = "rule
     """
     if not rows:
         raise TableError(f"{file}: has no rows; the last row must be a rule without conditions")
-    out: list[Rule] = []
-    seen: dict[str, int] = {}
-    for line, row in enumerate(rows, start=2):
-        where = f"{file}, line {line}, rule {row['rule']!r}"
-        if not row["rule"].strip() or ":" in row["rule"]:
-            raise TableError(f"{where}: column 'rule' must be a name without a colon")
-        if row["rule"] in seen:
-            raise TableError(f"{where}: column 'rule': line {seen[row['rule']]} has this name; give each row its own")
-        seen[row["rule"]] = line
-        out.append(_rule(row, len(out), classes, where))
+    written = checked(_Row, rows, file, named="rule", context={"classes": classes})
+    once((row.rule for row in written), "rule", file)
+    out = [_rule(row, at) for at, row in enumerate(written)]
     if any(rows[-1][column].strip() for column in ("aat", "classification", "words", "medium", "shape")):
         raise TableError(
             f"{file}, line {len(rows) + 1}: the last row must have no conditions, so that it takes the rest"
@@ -211,46 +259,21 @@ def read_rules(rows: tuple[Row, ...], classes: frozenset[str], file: str = "rule
     )
 
 
-def _rule(row: Row, position: int, classes: frozenset[str], where: str) -> Rule:
-    if row["class"] not in classes:
-        raise TableError(
-            f"{where}: column 'class': classes.csv has no class {row['class']!r}; "
-            f"use one of {', '.join(sorted(classes))}"
-        )
-    shapes = row["shape"].split()
-    for name in shapes:
-        if name not in SHAPES:
-            raise TableError(f"{where}: column 'shape': there is no shape {name!r}; use some of {', '.join(SHAPES)}")
-    aat = _entries(row["aat"])
-    for entry in aat:
-        if _IDENTIFIER.fullmatch(entry) is None:
-            raise TableError(
-                f"{where}: column 'aat': {entry!r} is no AAT identifier; write nine digits, as 300132254, parted by |"
-            )
-    words: list[str] = []
-    endings: list[str] = []
-    for entry in _entries(row["words"]):
-        word = " ".join(_WORD.findall(fold(entry)))
-        if not word or "*" in entry[1:]:
-            raise TableError(f"{where}: column 'words': {entry!r} has no word; write words, or an ending as *vase")
-        (endings if entry.startswith("*") else words).append(word)
-    medium = [re.escape(fold(entry)) for entry in _entries(row["medium"])]
+def _rule(row: _Row, position: int) -> Rule:
+    words = [(" ".join(_WORD.findall(fold(entry))), entry.startswith("*")) for entry in row.words]
+    medium = [re.escape(fold(entry)) for entry in row.medium]
     return Rule(
         position,
-        row["rule"],
-        row["class"],
-        frozenset(aat),
-        frozenset(_singular(fold(kind)) for kind in _entries(row["classification"])),
-        frozenset(words),
-        tuple(endings),
+        row.rule,
+        row.object_class,
+        frozenset(row.aat),
+        frozenset(_singular(fold(kind)) for kind in row.classification),
+        frozenset(word for word, ends in words if not ends),
+        tuple(word for word, ends in words if ends),
         re.compile(rf"\b(?:{'|'.join(medium)})s?\b") if medium else None,
-        tuple(SHAPES[name] for name in shapes),
-        row["why"],
+        tuple(SHAPES[name] for name in row.shape),
+        row.why,
     )
-
-
-def _entries(cell: str) -> list[str]:
-    return [entry.strip() for entry in cell.split("|") if entry.strip()]
 
 
 @cache

@@ -15,7 +15,8 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.models import model_named
 from pipeline.records import Estimate, Finding, MeasurementRequest, Numerics, Origin, Scene, Verdict
 from pipeline.records.numerics import HISTORIES
-from pipeline.tables import number, table
+from pipeline.tables import table
+from pipeline.tables.rows import Entries, Optional, checked
 
 BATCH = 1000
 """Objects looked at together: bounds the memory."""
@@ -35,8 +36,8 @@ class Measurable:
     field: str
     label: str
     unit: str
-    parameters: tuple[str, ...]
-    factor: float | None
+    parameters: Entries
+    factor: Optional
     how: str
 
 
@@ -54,12 +55,7 @@ def measurables() -> tuple[Measurable, ...]:
     TableError
         For a factor that is no number.
     """
-    out = []
-    for line, row in enumerate(table("survey"), start=2):
-        factor = number(row, "factor", f"survey.csv, line {line}") if row["factor"] else None
-        names = tuple(name for name in row["parameters"].split("|") if name)
-        out.append(Measurable(row["field"], row["label"], row["unit"], names, factor, row["how"]))
-    return tuple(out)
+    return checked(Measurable, table("survey"), "survey.csv", named="field")
 
 
 _MISSING = {

@@ -5,18 +5,20 @@ import gc
 import logging
 import sys
 import warnings
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from typing import TextIO, cast
 
 import click
 
+import pipeline
 from pipeline import __version__
 from pipeline.cli import commands
 from pipeline.cli.console import Guarded
 from pipeline.cli.options import Options
 from pipeline.cli.shared import with_shared
-from pipeline.execute.crew import RARELY
+from pipeline.execute.memory import RARELY
 from pipeline.operations.event_log import note
 from pipeline.operations.stopping import Stopped, stoppable
 
@@ -60,6 +62,7 @@ def main() -> None:
             _log(stack)
         else:
             warnings.formatwarning = _warned
+            _show_modules(sys.argv)
         try:
             with stoppable(lambda _problem: None):
                 code = kouros.main(standalone_mode=False, prog_name="kouros")
@@ -89,6 +92,17 @@ def _log(stack: ExitStack) -> None:
     warnings.showwarning = lambda message, category, *_where: note(
         "warning", level=logging.WARNING, kind=category.__name__, message=str(message)
     )
+
+
+def _show_modules(words: Sequence[str]) -> None:
+    """Write to standard error what the modules say to their loggers: with -v what takes its time, with --debug all."""
+    level = logging.DEBUG if "--debug" in words else logging.INFO if {"-v", "--verbose"} & set(words) else None
+    if level is not None:
+        handler = logging.StreamHandler(sys.stderr)
+        handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s", "%H:%M:%S"))
+        logger = logging.getLogger(pipeline.__name__)
+        logger.addHandler(handler)
+        logger.setLevel(level)
 
 
 def _tell(problem: Exception, *, as_json: bool) -> int:

@@ -10,9 +10,9 @@ from pipeline.cli.options import Options
 
 SAID = {
     ("-q", "--quiet"): "Say nothing but errors and results.",
-    ("-v", "--verbose"): "Plain progress lines even on a terminal.",
+    ("-v", "--verbose"): "Plain progress lines even on a terminal, and what takes its time.",
     ("--log-json",): "Say what happens as JSON on standard error, one object a line.",
-    ("--debug",): "Show the traceback of an error.",
+    ("--debug",): "Show the traceback of an error, and all that Kouros's modules say.",
 }
 """Options of all verbs, with their help."""
 

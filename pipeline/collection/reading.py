@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 from pipeline.collection.blocks import Block, Piece, cut
@@ -22,6 +24,8 @@ from pipeline.collection.sources.rows import Row
 from pipeline.collection.suspicion import Evidence, Suspicion, suspicions
 from pipeline.errors import KourosError, fault_words
 from pipeline.records import Item, Origin, Problem, Provenance
+
+logger = logging.getLogger(__name__)
 
 NOWHERE = "Location not recorded"
 """The gallery of an object whose location is empty."""
@@ -102,6 +106,7 @@ def read_items(
     raises : CollectionError for a source that is missing, unreadable, too large, empty or not in its encoding;
              MappingError where the mapping's columns are not the source's
     """
+    since = perf_counter()
     with open_source(where, mapping, limits) as source:
         header = next(source.rows, None)
         if header is None:
@@ -110,6 +115,9 @@ def read_items(
         for piece in cut(source, header.cells, before or (), desk.holds):
             desk.take(piece)
         digest = source.digest()
+    logger.info(
+        "%s: read %d rows in %.2f s by mapping %r", source.name, desk.rows, perf_counter() - since, mapping.name
+    )
     if not desk.rows:
         raise CollectionError(f"{source.name}: empty collection: a header and no data rows; export it again")
     return Reading(

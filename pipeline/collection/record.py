@@ -12,7 +12,8 @@ from pydantic import TypeAdapter
 
 from pipeline.quantities import LENGTHS, MASSES
 from pipeline.records import ITEM_FIELDS, Item, Problem, Provenance, Support
-from pipeline.tables import number, table
+from pipeline.tables import table
+from pipeline.tables.rows import Number, checked
 
 KINDS: Mapping[str, str] = {
     name: {
@@ -90,8 +91,8 @@ _MEANINGS = {
 class Plausible:
     """The range that a quantity can have in a museum, ends included, in ``unit``; the reason says why."""
 
-    low: float
-    high: float
+    low: Number
+    high: Number
     unit: str
     reason: str
 
@@ -102,11 +103,9 @@ def plausible() -> Mapping[str, Plausible]:
 
     raises : TableError for a row that cannot be read
     """
-    out = {}
-    for line, row in enumerate(table("plausible"), start=2):
-        where = f"plausible.csv, line {line}"
-        out[row["field"]] = Plausible(number(row, "low", where), number(row, "high", where), row["unit"], row["reason"])
-    return out
+    rows = table("plausible")
+    limits = checked(Plausible, rows, "plausible.csv", named="field")
+    return {row["field"]: one for row, one in zip(rows, limits, strict=True)}
 
 
 def units_of(field: str) -> Mapping[str, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import glob
+import logging
 import re
 import warnings
 from collections.abc import Mapping
@@ -16,6 +17,8 @@ from pipeline.motions.errors import Judgement, MotionError, judged, refusal
 from pipeline.motions.quality import clipped
 from pipeline.motions.record import NO_VERTICAL, Component, Record
 from pipeline.quantities import Array, G
+
+logger = logging.getLogger(__name__)
 
 UNITS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "g": G, "mg": 0.001 * G}
 """Metres per second squared in one of each unit that a manifest may name."""
@@ -166,6 +169,7 @@ def open_traces(file: Path, steps: list[str]) -> list[Any]:
         ) from error
     for trace in stream:
         s = trace.stats
+        logger.debug("%s: %s, %s, %d samples at %g Hz", file, s._format, trace.id, s.npts, s.sampling_rate)
         steps.append(
             f"read {file.name} ({s._format}, {trace.id}): {s.npts} samples at {s.sampling_rate:g} Hz from {s.starttime}"
         )

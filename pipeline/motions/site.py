@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
+from time import perf_counter
 
 import numpy as np
 
@@ -33,6 +35,8 @@ from pipeline.quantities import Array
 from pipeline.records import Motion, MotionSummary
 from pipeline.supports import TRANSMITTED, refined
 from pipeline.supports.floor import carried
+
+logger = logging.getLogger(__name__)
 
 PICTURE_POINTS = 600
 PICTURE_MARGIN = 5.0
@@ -313,6 +317,7 @@ def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_
     file, key : the manifest and the record's place in it, for messages
     raises    : MotionError, also for a record that ends or begins during strong shaking
     """
+    since = perf_counter()
     recording = read_record(file.parent, record)
     try:
         done = process(recording, record, target, x_azimuth)
@@ -320,6 +325,10 @@ def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_
         raise
     except ValueError as error:
         raise refusal(file, key, str(error), "mend that key of the manifest") from error
+    logger.info(
+        "%s, %s, record %r: read and processed in %.2f s, %d samples of %g s",
+        file, key, record.name, perf_counter() - since, done.motion.acceleration.shape[-1], done.motion.dt,
+    )  # fmt: skip
     cut = cut_off(done.motion.acceleration, done.motion.dt, ("x", "y", "z"))
     if cut is None:
         return done

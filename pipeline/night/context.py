@@ -7,9 +7,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from pipeline.analysis.context import Context
+from pipeline.analysis.context import Context, remembered
 from pipeline.analysis.response_charts import ChartCache
-from pipeline.analysis.response_charts.histories import Histories
 from pipeline.analysis.rules import Table
 from pipeline.cache import Cache, key_of
 from pipeline.execute import Threads
@@ -79,10 +78,8 @@ class RunContext:
             What the histories of what is worked on together are kept under from night to night; None: they are not.
         """
         kept = None if self.kept is None or batch is None else Cache(self.kept)
-        histories = Histories(kept, key_of(*batch or ()))
-        yield Context(self.executor, charts=self.charts, histories=histories)
-        # Nothing is kept where the work failed.
-        histories.keep()
+        with remembered(kept, key_of(*batch or ())) as histories:
+            yield Context(self.executor, charts=self.charts, histories=histories)
 
     @cached_property
     def carriage(self) -> Carriage:

@@ -15,8 +15,8 @@ from pipeline.collection.catalogue import Catalogue
 from pipeline.collection.database import Database
 from pipeline.collection.inventory import fields_since
 from pipeline.collection.listing import Listing
-from pipeline.execute.crew import Crew, cores, crew
 from pipeline.execute.memory import give_back
+from pipeline.execute.pool import WorkerPool, cores, pool
 from pipeline.night.context import RunContext
 from pipeline.night.decision_review import now, standing
 from pipeline.night.paging import Part, paged
@@ -225,14 +225,14 @@ class NightRun:
         if not store:
             self._memory = {}
         if self._work:
-            with self._pool(self.fresh) as pool:
+            with self._pool(self.fresh) as workers:
                 if self.charts and self.context.kept is not None and self.fresh > FEW:
-                    for at, _ in enumerate(pool.each(build_chart, self.context, self.charts)):
+                    for at, _ in enumerate(workers.each(build_chart, self.context, self.charts)):
                         progress.step("response charts", at + 1, len(self.charts))
-                tasks = [self._batches(work, pool.workers) for work in self._work]
+                tasks = [self._batches(work, workers.workers) for work in self._work]
                 number = sum(len(some) for some in tasks)
                 each = (task() for some in tasks for task in some)
-                self._take(pool, each, number, progress)
+                self._take(workers, each, number, progress)
         self._neighbours()
         for page in self._pages:
             self._settle(page)
@@ -264,10 +264,10 @@ class NightRun:
             batch,
         )
 
-    def _take(self, pool: Crew, tasks: Iterable[UnitTask], number: int, progress: Progress) -> None:
+    def _take(self, workers: WorkerPool, tasks: Iterable[UnitTask], number: int, progress: Progress) -> None:
         waiting: list[Stored] = []
         since = monotonic()
-        with closing(pool.each(assess_units, self.context, tasks)) as done:
+        with closing(workers.each(assess_units, self.context, tasks)) as done:
             for at, came in enumerate(done):
                 waiting += self._told(came)
                 progress.step("objects", at + 1, number)
@@ -439,9 +439,9 @@ class NightRun:
         return closing(self._each_rendered(pages, draw=draw))
 
     def _each_rendered(self, pages: Sequence[_Shown], *, draw: bool) -> Generator[Rendered]:
-        with self._pool(sum(len(page.part.objects) for page in pages)) as pool:
+        with self._pool(sum(len(page.part.objects) for page in pages)) as workers:
             tasks = (self._page_task(page, draw=draw) for page in pages)
-            with closing(pool.each(render_page, self.context, tasks)) as done:
+            with closing(workers.each(render_page, self.context, tasks)) as done:
                 yield from done
 
     def _page_task(self, shown: _Shown, *, draw: bool) -> PageTask:
@@ -465,18 +465,18 @@ class NightRun:
                 out |= {number: link_to(shown.page, number, titles[number]) for number in sorted(mine)}
         return out
 
-    def _pool(self, objects: int) -> AbstractContextManager[Crew]:
+    def _pool(self, objects: int) -> AbstractContextManager[WorkerPool]:
         wanted = self.workspace.settings.execution
         if objects <= FEW:
-            return crew()
+            return pool()
         # What reading the records and drawing the motions took is there for the workers.
         give_back()
         if wanted.cluster:
             # Its workers may not see our folders.
             self.context = replace(self.context, kept=None, threads=1)
-            return crew(address=wanted.cluster)
+            return pool(address=wanted.cluster)
         self.context = replace(self.context, threads=1)
-        return crew(processes=wanted.processes or cores())
+        return pool(processes=wanted.processes or cores())
 
 
 def _shares(units: int, workers: int, most: int) -> int:

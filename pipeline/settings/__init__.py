@@ -11,7 +11,7 @@ from pydantic import ConfigDict, Field, RootModel, ValidationError, field_valida
 from pipeline.errors import InputError
 from pipeline.records import Numerics
 from pipeline.resources import small_text
-from pipeline.settings.operations import OPERATIONS, Hooks, Limits, Logs, Retention
+from pipeline.settings.operations import Hooks, Limits, Logs, Retention
 from pipeline.settings.operations import Part as _Part
 
 DATABASE_VARIABLE = "KOUROS_DATABASE"
@@ -53,18 +53,34 @@ class Museum(_Part):
 class Inventory(_Part):
     """Where Kouros keeps its own tables."""
 
-    database: str = Field(default="kouros.sqlite", description="a file, or postgresql://host/name without a password")
+    database: str = Field(
+        default="kouros.sqlite",
+        description='a file, or an address without a password, such as "postgresql://server/kouros"',
+    )
 
     _open = field_validator("database")(_without_password)
 
 
 class Collection(_Part):
-    """The museum's own records, read again before every run; empty: the inventory as it is."""
+    """The museum's own records, read again before every run."""
 
-    source: str = Field(default="", description="the file to import, or a database's address with ${NAME} for secrets")
-    mapping: str = Field(default="kouros", description="a preset, or the file of a mapping")
-    shrink_limit: float = Field(default=0.2, ge=0.0, le=1.0, description="share of objects that may vanish at once")
-    rules: str = Field(default="", description="a CSV file of your own rules of classification, read before Kouros's")
+    source: str = Field(
+        default="",
+        description="the museum's export, or the address of its database with ${NAME} for secrets; empty: what was "
+        "imported last",
+    )
+    mapping: str = Field(default="kouros", description="a preset (carnegie, kouros), or the file of your own mapping")
+    shrink_limit: float = Field(
+        default=0.2,
+        ge=0.0,
+        le=1.0,
+        description="a night that finds fewer objects than the last one, by more than this share, publishes nothing",
+    )
+    rules: str = Field(
+        default="",
+        description="a CSV file of your own rules of classification, with the columns of Kouros's table; they are read "
+        "before it",
+    )
 
     _open = field_validator("source")(_without_password)
 
@@ -72,7 +88,10 @@ class Collection(_Part):
 class SiteFolder(_Part):
     """The site's motions."""
 
-    folder: str = Field(default="site_motions/site", description="folder with manifest.toml, or 'demo'")
+    folder: str = Field(
+        default="site_motions/site",
+        description='the folder with manifest.toml and the records of your site; "demo" is the bundled record',
+    )
 
 
 class Floors(RootModel[dict[str, tuple[str, ...]]]):
@@ -100,12 +119,24 @@ class Floors(RootModel[dict[str, tuple[str, ...]]]):
 class Analysis(_Part):
     """How finely to look."""
 
-    fidelity: Literal["auto", "chart", "history", "reference"] = "auto"
-    azimuth_step: float = Field(default=10.0, gt=0.0, le=90.0, description="degrees between directions (RotD100)")
-    fragility: bool | Literal["auto"] = Field(
-        default="auto", description="from what shaking each object on display fails; auto: unless that takes minutes"
+    fidelity: Literal["auto", "chart", "history", "reference"] = Field(
+        default="auto",
+        description='"auto" climbs from bounds over charts to histories only as far as each verdict needs, with the '
+        'verdicts of "history", which integrates everything; "reference" does so eight times finer, and "chart" looks '
+        "up whatever is on a chart",
     )
-    workers: int = Field(default=0, ge=0, le=256, description="threads; 0: as many as there are cores")
+    azimuth_step: float = Field(
+        default=10.0,
+        gt=0.0,
+        le=90.0,
+        description="degrees between the directions tried for an object whose orientation is not recorded (RotD100)",
+    )
+    fragility: bool | Literal["auto"] = Field(
+        default="auto",
+        description='from what shaking each object on display fails: true, false, or "auto", which leaves it out of a '
+        "collection where it would take minutes; the report says so then",
+    )
+    workers: int = Field(default=0, ge=0, le=256, description="threads; 0 means as many as there are cores")
 
     @property
     def numerics(self) -> Numerics:
@@ -114,46 +145,79 @@ class Analysis(_Part):
 
 
 class Display(_Part):
-    """What of the collection is assessed."""
+    """What of the collection is assessed: what is on display.
 
-    stores: bool = Field(default=False, description="assess what is not on display too, with totals of its own")
+    What is not, because the museum's records say so, is counted and named.
+    """
+
+    stores: bool = Field(
+        default=False,
+        description="assess what is not on display too, with totals of its own; there is no model of the shelves and "
+        "cabinets that it stands on",
+    )
 
 
 class Execution(_Part):
     """Where the work is done."""
 
-    processes: int = Field(default=0, ge=0, le=1024, description="of this machine; 0: as many as there are cores")
+    processes: int = Field(
+        default=0,
+        ge=0,
+        le=1024,
+        description="processes of this machine that share a large night; 0 means as many as there are cores",
+    )
     cluster: str = Field(
-        default="", pattern=r"^$|^(tcp|tls|ucx|ws|wss)://[^\s@]+$", description="address of a Dask scheduler"
+        default="",
+        pattern=r"^$|^(tcp|tls|ucx|ws|wss)://[^\s@]+$",
+        description='the address of a Dask cluster that works instead, such as "tcp://scheduler:8786"; its workers '
+        "have Kouros installed, and here `pip install 'kouros[cluster]'` brings Dask",
     )
 
 
 class Mitigation(_Part):
     """What the museum can do about what fails."""
 
-    measures: str = Field(default="", description="a CSV file whose rows replace Kouros's measures of the same name")
+    measures: str = Field(
+        default="",
+        description="a CSV file with columns of Kouros's measures.csv: rows of the same name replace Kouros's words, "
+        "order and limits",
+    )
     catalogue: str = Field(
-        default="", description="a CSV file of your own isolators, in place of Kouros's generic ones"
+        default="",
+        description="a CSV file with the columns of Kouros's isolators.csv: the isolators that you have or can buy, in "
+        "place of Kouros's generic ones",
     )
 
 
 class Charts(_Part):
-    """How long response charts are kept, and how much room they may take."""
+    """How long response charts are kept, and how much room they may take; single histories as long, in as much room."""
 
-    unused_days: float = Field(default=30.0, ge=1.0, le=3650.0, description="after the last use of their motion")
-    megabytes: float = Field(default=200.0, ge=0.0, le=1e6, description="of all of them; the oldest are removed first")
+    unused_days: float = Field(
+        default=30.0, ge=1.0, le=3650.0, description="days after the last use of their motion, or of a history itself"
+    )
+    megabytes: float = Field(default=200.0, ge=0.0, le=1e6, description="room for all; the oldest are removed first")
 
 
 class Report(_Part):
     """How the report is written."""
 
-    folder: str = Field(default="reports", description="one folder a run, and 'latest'")
-    length: Literal["cm", "mm", "m", "in", "ft"] = "cm"
-    survey: bool | Literal["auto"] = Field(
-        default="auto", description="find out what is worth measuring; auto: unless that takes minutes"
+    folder: str = Field(default="reports", description='one folder a run, and "latest"')
+    length: Literal["cm", "mm", "m", "in", "ft"] = Field(
+        default="cm", description="the unit of lengths: cm, mm, m, in or ft"
     )
-    language: str = Field(default="en", pattern=r"^[A-Za-z]{2,3}([-_][A-Za-z0-9]{2,8})*$", description="of the pages")
-    catalogues: str = Field(default="", description="folder of translations: <language>/LC_MESSAGES/kouros.mo")
+    survey: bool | Literal["auto"] = Field(
+        default="auto",
+        description="find out which missing measurements would settle a verdict, and print what that costs: true, "
+        'false, or "auto", which leaves it out of a collection where it would take minutes',
+    )
+    language: str = Field(
+        default="en",
+        pattern=r"^[A-Za-z]{2,3}([-_][A-Za-z0-9]{2,8})*$",
+        description="the language of the pages; other than English, it needs a catalogue",
+    )
+    catalogues: str = Field(
+        default="", description="the folder of translations, which holds <language>/LC_MESSAGES/kouros.mo"
+    )
 
 
 class Settings(_Part):
@@ -163,7 +227,7 @@ class Settings(_Part):
     inventory: Inventory = Inventory()
     collection: Collection = Collection()
     site: SiteFolder = SiteFolder()
-    floors: Floors = Floors({})
+    floors: Floors = Field(default=Floors({}), examples=[{"2": ["Hall of Sculpture", "Gallery 12"]}])
     display: Display = Display()
     analysis: Analysis = Analysis()
     execution: Execution = Execution()
@@ -227,91 +291,26 @@ def load_settings(file: str | Path) -> Settings:
         raise SettingsError(f"{where}: {key}: {first['msg']}{shown}; see `kouros init`") from None
 
 
-TEMPLATE = """\
-# Settings of Kouros.  Paths are relative to this file.  Passwords never stand here: put the whole database address
-# into the environment variable KOUROS_DATABASE.
-
-[museum]
-name = {museum}
-
-[inventory]
-# A file, or an address such as "postgresql://server/kouros".
-database = "kouros.sqlite"
-
-[collection]
-# The museum's own export, read again before every run.  Leave it empty to use what was imported last.
-source = {source}
-# A preset (carnegie, kouros) or the file of your own mapping.
-mapping = {mapping}
-# A CSV file of your own rules of classification, with the columns of Kouros's table; they are read before it.
-rules = ""
-# A night that finds this share of objects fewer than the last one publishes nothing.
-shrink_limit = 0.2
-
-[site]
-# The folder with manifest.toml and the records of your site; "demo" is the bundled record.
-folder = {site}
-
-[floors]
-# Which galleries stand on which floor of the site's manifest; the others stand on the ground.  "*": all the others.
-# "2" = ["Hall of Sculpture", "Gallery 12"]
-
-[display]
-# What is on display is assessed.  What is not, because the museum's records say so, is counted and named; true assesses
-# it too, with totals of its own.  There is no model of the shelves and cabinets that it stands on.
-stores = false
-
-[analysis]
-# "auto" climbs from bounds over charts to histories only as far as each verdict needs, with the verdicts of "history",
-# which integrates everything; "reference" does so eight times finer, and "chart" looks up whatever is on a chart.
-fidelity = "auto"
-# Degrees between the directions tried for an object whose orientation is not recorded.
-azimuth_step = 10.0
-# From what shaking each object on display fails: true, false, or "auto", which leaves it out of a collection where it
-# would take minutes; the report says so then.
-fragility = "auto"
-# Threads; 0 means as many as there are cores.
-workers = 0
-
-[execution]
-# Processes of this machine that share a large night; 0 means as many as there are cores.
-processes = 0
-# The address of a Dask cluster that works instead, such as "tcp://scheduler:8786"; its workers have Kouros installed.
-cluster = ""
-
-[mitigation]
-# A CSV file with columns of Kouros's measures.csv: rows of the same name replace Kouros's words, order and limits.
-measures = ""
-# A CSV file with the columns of Kouros's isolators.csv: the isolators that you have or can buy.
-catalogue = ""
-
-[charts]
-# Response charts are kept until their motion was unused for so many days, and in this much room; single histories
-# until they were unused for so many days, and in as much room again.
-unused_days = 30
-megabytes = 200
-
-[report]
-folder = "reports"
-# cm, mm, m, in or ft
-length = "cm"
-# Each night also finds out which missing measurements would settle a verdict, and prints what that costs: true, false,
-# or "auto", which leaves it out of a collection where it would take minutes.
-survey = "auto"
-# The language of the pages; other than English, it needs <language>/LC_MESSAGES/kouros.mo in the folder of catalogues.
-language = "en"
-catalogues = ""
-"""
+_HEAD = (
+    "Settings of Kouros.  Paths are relative to this file.  Passwords never stand here: put the whole database address "
+    f"into the environment variable {DATABASE_VARIABLE}."
+)
 
 
 def template(*, museum: str, source: str, mapping: str, site: str) -> str:
-    """Return a commented kouros.toml."""
-    quoted = {key: _quoted(value) for key, value in {"museum": museum, "source": source, "mapping": mapping}.items()}
-    return TEMPLATE.format(site=_quoted(site), **quoted) + OPERATIONS
+    """Return a commented kouros.toml: every setting with its default.
 
+    Parameters
+    ----------
+    museum, source, mapping, site : str
+        The values of [museum] name, [collection] source and mapping, and [site] folder.
+    """
+    from pipeline.settings.commented import commented
 
-def _quoted(text: str) -> str:
-    import json
-
-    # A JSON string is a TOML basic string.
-    return json.dumps(text, ensure_ascii=False)
+    given = {
+        ("museum", "name"): museum,
+        ("collection", "source"): source,
+        ("collection", "mapping"): mapping,
+        ("site", "folder"): site,
+    }
+    return commented(Settings, given, _HEAD)

@@ -72,7 +72,7 @@ class EmailHook(_Hook):
     """A mail to people."""
 
     host: str = Field(min_length=1, pattern=r"^[^\s/@]+$", description="the mail server")
-    port: int = Field(default=587, ge=1, le=65535)
+    port: int = Field(default=587, ge=1, le=65535, description="its port")
     security: Literal["starttls", "tls", "none"] = Field(default="starttls", description="how the line is encrypted")
     sender: str = Field(description="the address that the mail comes from")
     to: tuple[str, ...] = Field(min_length=1, description="the addresses that it goes to")
@@ -102,11 +102,35 @@ class EmailHook(_Hook):
 
 
 class Hooks(Part):
-    """Who is told when verdicts changed, when a run failed, and when the collection shrank."""
+    """Who is told when verdicts "changed", when a run "failed", and when the collection "shrunk" suspiciously.
 
-    command: tuple[CommandHook, ...] = ()
-    webhook: tuple[WebhookHook, ...] = ()
-    email: tuple[EmailHook, ...] = ()
+    Each may be repeated.  Secrets never stand here: url_from, token_from and password_from name variables KOUROS_... of
+    the environment.
+    """
+
+    command: tuple[CommandHook, ...] = Field(
+        default=(),
+        description="a program that gets the event as JSON on its standard input, and is started without a shell",
+        examples=[{"run": ["/usr/local/bin/tell-conservation", "--from=kouros"], "on": list(EVENTS)}],
+    )
+    webhook: tuple[WebhookHook, ...] = Field(
+        default=(),
+        description="an address that the event is sent to as JSON, by POST",
+        examples=[{"url": "https://hooks.museum.example/kouros", "token_from": "KOUROS_WEBHOOK_TOKEN"}],
+    )
+    email: tuple[EmailHook, ...] = Field(
+        default=(),
+        description="a mail to people",
+        examples=[
+            {
+                "host": "smtp.museum.example",
+                "sender": "kouros@museum.example",
+                "to": ["registrar@museum.example"],
+                "user": "kouros",
+                "password_from": "KOUROS_SMTP_PASSWORD",
+            }
+        ],
+    )
 
     @property
     def variables(self) -> tuple[str, ...]:
@@ -118,60 +142,30 @@ class Hooks(Part):
 class Logs(Part):
     """Where the log is kept, one JSON object a line."""
 
-    file: str = Field(default="", description="a file beside kouros.toml; empty: none is kept")
-    megabytes: float = Field(default=10.0, gt=0.0, le=1000.0, description="of one file, before the next is begun")
+    file: str = Field(
+        default="",
+        description='a file, such as "logs/kouros.jsonl"; empty: none.  `kouros --log-json run` writes the same lines '
+        "to standard error",
+    )
+    megabytes: float = Field(
+        default=10.0, gt=0.0, le=1000.0, description="megabytes of one file, before the next is begun"
+    )
     keep: int = Field(default=5, ge=1, le=1000, description="full files that are kept")
 
 
 class Retention(Part):
-    """What stays of earlier nights.  0: no limit.  The last good run and its report always stay."""
+    """What stays of earlier nights; 0 means all, nothing is removed unasked.  The last good ones always stay."""
 
-    runs: int = Field(default=0, ge=0, description="runs in the database")
-    reports: int = Field(default=0, ge=0, description="report folders")
-    days: float = Field(default=0.0, ge=0.0, description="runs and reports older than this are removed")
+    runs: int = Field(default=0, ge=0, description="how many runs stay in the database")
+    reports: int = Field(default=0, ge=0, description="how many folders of reports stay")
+    days: float = Field(default=0.0, ge=0.0, description="days after which runs and reports are removed")
 
 
 class Limits(Part):
-    """How much of an input is accepted."""
+    """How much of an input is accepted: a collection beyond these is refused whole."""
 
-    megabytes: float = Field(default=1024.0, gt=0.0, le=102_400.0, description="of a file of the collection")
-    rows: int = Field(default=5_000_000, ge=1, le=200_000_000, description="of the collection")
-    seconds: float = Field(default=3600.0, gt=0.0, le=86_400.0, description="that reading the collection may take")
-
-
-OPERATIONS = """
-# Who is told when verdicts "changed", when a run "failed", and when the collection "shrunk" suspiciously; each may be
-# repeated.  Secrets never stand here: url_from, token_from and password_from name variables KOUROS_... of the
-# environment.  A command gets the event as JSON on its standard input, and is started without a shell.
-# [[hooks.command]]
-# run = ["/usr/local/bin/tell-conservation", "--from=kouros"]
-# on = ["changed", "failed", "shrunk"]
-# [[hooks.webhook]]
-# url = "https://hooks.museum.example/kouros"
-# token_from = "KOUROS_WEBHOOK_TOKEN"
-# [[hooks.email]]
-# host = "smtp.museum.example"
-# sender = "kouros@museum.example"
-# to = ["registrar@museum.example"]
-# user = "kouros"
-# password_from = "KOUROS_SMTP_PASSWORD"
-
-[logs]
-# A file with one JSON object a line, such as "logs/kouros.jsonl"; empty: none.  `kouros --log-json run` writes the same
-# lines to standard error.
-file = ""
-megabytes = 10
-keep = 5
-
-[retention]
-# How many runs and report folders stay, and for how many days; 0 means all.  The last good ones always stay.
-runs = 30
-reports = 30
-days = 0
-
-[limits]
-# A collection beyond these is refused whole: megabytes of a file, rows, seconds that reading may take.
-megabytes = 1024
-rows = 5000000
-seconds = 3600
-"""
+    megabytes: float = Field(default=1024.0, gt=0.0, le=102_400.0, description="megabytes of a file of the collection")
+    rows: int = Field(default=5_000_000, ge=1, le=200_000_000, description="rows of the collection")
+    seconds: float = Field(
+        default=3600.0, gt=0.0, le=86_400.0, description="seconds that reading the collection may take"
+    )

@@ -13,6 +13,7 @@ from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context, remembered
 from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.verdicts import LevelMotions
+from pipeline.cache import Cache
 from pipeline.execute import Threads
 from pipeline.records import Columns, Item, Motion, Support
 from pipeline.records.numerics import HISTORIES
@@ -37,7 +38,7 @@ def test_batches_at_the_same_time_keep_the_histories_of_their_own_work(
     def batch(friction: float, file: str, *, together: bool = False) -> None:
         item = Item("1", "G", support=Support.FREESTANDING, height_m=0.1, base_width_m=0.3, base_depth_m=0.3,
                     friction=friction, clearance_m=0.01)  # fmt: skip
-        with remembered(tmp_path / file) as histories:
+        with remembered(Cache(tmp_path), file) as histories:
             if together:
                 both.wait(10)
             assess([classify(item)], [level], Context(Threads(1), charts=charts, histories=histories), HISTORIES)
@@ -46,22 +47,22 @@ def test_batches_at_the_same_time_keep_the_histories_of_their_own_work(
 
     monkeypatch.setattr(demands, "_run", noted)
     with ThreadPoolExecutor(2) as pool:
-        done = [pool.submit(batch, *task, together=True) for task in ((0.1, "a.npz"), (0.15, "b.npz"))]
+        done = [pool.submit(batch, *task, together=True) for task in ((0.1, "a"), (0.15, "b"))]
         for one in done:
             one.result(30)
     assert sorted(ran) == [0.1, 0.15]
     ran.clear()
-    batch(0.1, "a.npz")
-    batch(0.15, "b.npz")
+    batch(0.1, "a")
+    batch(0.15, "b")
     assert not ran
-    batch(0.15, "a.npz")
-    batch(0.1, "b.npz")
+    batch(0.15, "a")
+    batch(0.1, "b")
     assert ran == [0.15, 0.1]
 
 
 def test_work_that_fails_keeps_nothing(tmp_path: Path) -> None:
     def fails() -> None:
-        with remembered(tmp_path / "a.npz") as histories:
+        with remembered(Cache(tmp_path), "a") as histories:
             histories.note("key", {"friction": np.array([0.1])}, {"displacement": np.array([1.0])})
             raise RuntimeError
 

@@ -124,7 +124,7 @@ def test_most_rules_are_used_by_one_real_collection_and_the_last_holds_for_the_r
         ({"words": "vase|***"}, r"column 'words': '\*\*\*' has no word; write words, or an ending"),
         ({"words": "va*se"}, r"column 'words': 'va\*se' has no word"),
         ({"rule": "rest"}, r"line 3, rule 'rest': column 'rule': line 2 has this name; give each row its own"),
-        ({"rule": "a: b"}, r"line 2, rule 'a: b': column 'rule' must be a name without a colon"),
+        ({"rule": "a: b"}, r"line 2, rule 'a: b': column 'rule': must be a name without a colon"),
     ],
 )
 def test_a_mistake_in_the_table_is_named(cells: dict[str, str], message: str) -> None:

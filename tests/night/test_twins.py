@@ -13,7 +13,7 @@ from pipeline.cache import HISTORIES
 from pipeline.collection.catalogue import catalogue
 from pipeline.collection.listing import Listed, Listing
 from pipeline.collection.record import kind_of
-from pipeline.execute.crew import Alone
+from pipeline.execute.pool import SerialPool
 from pipeline.mitigate.installed import Placed
 from pipeline.models import model_named
 from pipeline.night import assessment as assessing
@@ -161,7 +161,7 @@ def test_why_models_were_left_out_is_taken_over_too() -> None:
     assert as_own(twin, Assessment(scene, (), ())).scene == replace(twin, skipped={"Stress": "it is whole"})
 
 
-class Pair(Alone):
+class Pair(SerialPool):
     """Two who work, one after the other in this process, so that it can be seen what each is given."""
 
     workers = 2
@@ -172,7 +172,7 @@ def pair(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rounds, "FEW", 0)
     monkeypatch.setattr(rounds, "BATCH", 4)
     monkeypatch.setattr(rounds, "KIND_BATCH", 1)
-    monkeypatch.setattr(rounds, "crew", lambda **_: nullcontext(Pair()))
+    monkeypatch.setattr(rounds, "pool", lambda **_: nullcontext(Pair()))
 
 
 @pytest.mark.usefixtures("pair")

@@ -3,10 +3,15 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from math import inf
+from typing import Annotated
+
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from pipeline.quantities import G
 from pipeline.records import Scene
-from pipeline.tables import number, table
+from pipeline.tables import table
+from pipeline.tables.rows import Number, checked
 
 
 @dataclass(frozen=True)
@@ -14,10 +19,10 @@ class Published:
     """A published fragility: median [m/s2], dispersion, what it is of, and who says so."""
 
     what: str
-    median: float
-    dispersion: float
+    median: Annotated[Number, Field(alias="median_g"), AfterValidator(lambda g: g * G)]
+    dispersion: Number
     support: str
-    friction_below: float
+    friction_below: Annotated[float, BeforeValidator(lambda cell: cell or inf)]
     source: str
 
 
@@ -27,17 +32,7 @@ def all_published() -> Sequence[Published]:
 
     raises : TableError for what is no number
     """
-    return tuple(
-        Published(
-            row["what"],
-            number(row, "median_g", "fragility.csv") * G,
-            number(row, "dispersion", "fragility.csv"),
-            row["support"],
-            number(row, "friction_below", "fragility.csv") if row["friction_below"] else float("inf"),
-            row["source"],
-        )
-        for row in table("fragility")
-    )
+    return checked(Published, table("fragility"), "fragility.csv", named="what")
 
 
 def published(scene: Scene) -> Published | None:

@@ -1,14 +1,18 @@
 """The cache of response charts: a few in memory, and, where a folder is given, all that were built, run after run."""
 
+import logging
 from collections import OrderedDict
 from collections.abc import Callable, Set
 from concurrent.futures import Future
 from pathlib import Path
 from threading import Lock
+from time import perf_counter
 
 from pipeline.analysis.response_charts.response_chart import ResponseChart
 from pipeline.cache import CHARTS, Cache
 from pipeline.records import ChartAxis
+
+logger = logging.getLogger(__name__)
 
 KEPT = 64
 """Charts held in memory, of about 0.2 MB each; the one that was asked for longest ago goes first."""
@@ -57,7 +61,12 @@ class ChartCache:
             try:
                 found = self._recalled(key, axis)
                 if found is None:
+                    since = perf_counter()
                     found = build()
+                    logger.info(
+                        "response chart %s: built of %d analyses in %.2f s",
+                        key, found.cells.nodes, perf_counter() - since,
+                    )  # fmt: skip
                     if self._cache is not None:
                         self._cache.put(CHARTS, key, found.kept())
                 chart.set_result(found)

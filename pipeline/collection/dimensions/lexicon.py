@@ -5,8 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from typing import Annotated
 
-from pipeline.tables import TableError, table
+from pydantic import Field
+
+from pipeline.tables import table
+from pipeline.tables.rows import checked
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,26 +25,23 @@ class Unit:
     system: str
 
 
+@dataclass(frozen=True, slots=True)
+class _Row:
+    unit: str
+    kind: str
+    si: Annotated[Fraction, Field(gt=0)]
+    smaller: str
+    system: str
+
+
 @cache
 def units() -> dict[str, Unit]:
     """Return the units by name.
 
     raises : TableError where a unit's value is no decimal number above zero
     """
-    out = {}
-    for row in table("dimension_units"):
-        try:
-            value = Fraction(row["si"])
-        except ValueError as problem:
-            raise TableError(
-                f"dimension_units.csv, {row['unit']!r}: si must be a number, not {row['si']!r}"
-            ) from problem
-        if value <= 0:
-            raise TableError(f"dimension_units.csv, {row['unit']!r}: si must be above zero, not {row['si']}")
-        out[row["unit"]] = Unit(
-            row["unit"], row["kind"], value.numerator, value.denominator, row["smaller"], row["system"]
-        )
-    return out
+    rows = checked(_Row, table("dimension_units"), "dimension_units.csv", named="unit")
+    return {r.unit: Unit(r.unit, r.kind, r.si.numerator, r.si.denominator, r.smaller, r.system) for r in rows}
 
 
 @cache

@@ -1,0 +1,107 @@
+"""What all worker pools are: results in the order of the tasks, bounded work ahead of them, and their errors."""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from collections.abc import Callable, Generator, Iterable
+from time import perf_counter
+from typing import Protocol, TypeVar
+
+from pipeline.errors import KourosError
+
+logger = logging.getLogger(__name__)
+
+Shared = TypeVar("Shared")
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+_Result_co = TypeVar("_Result_co", covariant=True)
+
+AHEAD = 2
+"""Tasks that are handed out for each worker at a time: nobody waits, and memory stays bounded by them."""
+
+DEATHS = 3
+"""Workers that may die of one task before it is given up."""
+
+
+class PoolError(KourosError):
+    """The workers cannot be reached, or die of a task."""
+
+    exit_code = 1
+
+
+class MissingClusterError(PoolError):
+    """The settings name a Dask cluster, and Dask is not installed."""
+
+    exit_code = 2
+
+
+class WorkerPool(Protocol):
+    """Runs a function on many tasks."""
+
+    @property
+    def workers(self) -> int:
+        """How many tasks are worked on at a time."""
+        ...
+
+    def each(self, work: Callable[[Shared, Task], Result], shared: Shared, tasks: Iterable[Task]) -> Generator[Result]:
+        """Yield what the function returns for each task, in the order of the tasks.
+
+        Parameters
+        ----------
+        work : callable
+            A function at the top of a module, which workers can import.
+        shared : object
+            The first argument of every call; it goes to each worker once.
+        tasks : iterable
+            The second argument of each call; read no more than `AHEAD` tasks a worker ahead of the results.
+
+        Raises
+        ------
+        PoolError
+            Where `DEATHS` workers died of one task.
+        Exception
+            Whatever a task raises, when it is that task's turn.
+        """
+        ...
+
+
+class Pending(Protocol[_Result_co]):
+    """A result that is being worked on, of the standard library or of Dask."""
+
+    def result(self) -> _Result_co:
+        """Wait for the result."""
+        ...
+
+
+def in_order(
+    submit: Callable[[Task], Pending[Result]], tasks: Iterable[Task], ahead: int, waiting: deque[Pending[Result]]
+) -> Generator[Result]:
+    """Yield the results of tasks in their order, with a bounded number of them handed out.
+
+    Parameters
+    ----------
+    submit : callable
+        Hands a task out.
+    tasks : iterable
+        Read as far as tasks are handed out.
+    ahead : int
+        Tasks that are handed out and whose results were not yet taken, at most.
+    waiting : deque
+        Holds those tasks, so that the caller can drop them at the end.
+    """
+    began, count = perf_counter(), 0
+    for task in tasks:
+        waiting.append(submit(task))
+        count += 1
+        if len(waiting) >= ahead:
+            yield _first(waiting)
+    while waiting:
+        yield _first(waiting)
+    logger.info("%d tasks done in %.2f s", count, perf_counter() - began)
+
+
+def _first(waiting: deque[Pending[Result]]) -> Result:
+    result = waiting[0].result()
+    waiting.popleft()
+    return result

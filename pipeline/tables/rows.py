@@ -1,0 +1,100 @@
+"""Rows of tables checked by models: each table has one class that says what its columns may hold."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Annotated, TypeVar
+
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
+
+from pipeline.tables import Row, TableError
+
+Model = TypeVar("Model")
+
+_SHOWN = 80
+"""Characters of a cell that a message repeats."""
+
+
+def _entries(cell: object) -> object:
+    return tuple(filter(None, map(str.strip, cell.split("|")))) if isinstance(cell, str) else cell
+
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+"""A cell that holds a finite number."""
+
+Optional = Annotated[Number | None, BeforeValidator(lambda cell: None if cell == "" else cell)]
+"""A cell that holds a finite number or nothing."""
+
+Entries = Annotated[tuple[str, ...], BeforeValidator(_entries)]
+"""A cell whose entries are parted by `|`; empty ones do not count."""
+
+
+def checked(
+    model: type[Model],
+    rows: Sequence[Row],
+    file: str,
+    *,
+    named: str = "",
+    context: Mapping[str, object] | None = None,
+) -> tuple[Model, ...]:
+    """Return the rows of a table as instances of its model.
+
+    Parameters
+    ----------
+    model : type
+        A dataclass or a pydantic model whose fields, or their aliases, are columns; other columns are left aside.
+    rows : sequence of Row
+        As `pipeline.tables.read_table` returns them: the first is line 2 of the file.
+    file : str
+        Its name, for messages.
+    named : str
+        The column by which messages name a row besides its line; "" for none.
+    context : mapping, optional
+        What validators of the model ask for.
+
+    Raises
+    ------
+    TableError
+        For the first row that does not hold what the model says: file, line, column, value and what it must be.
+    """
+    adapter = TypeAdapter(model)
+    return tuple(_one(adapter, row, f"{file}, line {line}", named, context) for line, row in enumerate(rows, start=2))
+
+
+def _one(adapter: TypeAdapter[Model], row: Row, where: str, named: str, context: Mapping[str, object] | None) -> Model:
+    try:
+        return adapter.validate_python(dict(row), context=context)
+    except ValidationError as problem:
+        first = problem.errors(include_url=False)[0]
+        column = str(first["loc"][0]) if first["loc"] else ""
+        name = f", {named} {_short(row.get(named))}" if named else ""
+        own = first.get("ctx", {}).get("error")
+        if first["type"] == "missing":
+            said = "there is no such column"
+        elif own is not None:
+            said = str(own)
+        else:
+            said = f"{first['msg'][:1].lower()}{first['msg'][1:]}, not {_short(row.get(column))}"
+        # Not chained: pydantic would repeat the whole row.
+        raise TableError(f"{where}{name}: column {column!r}: {said}") from None
+
+
+def _short(cell: object) -> str:
+    shown = repr(cell)
+    return shown if len(shown) <= _SHOWN else f"{shown[:_SHOWN]}..."
+
+
+def once(values: Iterable[str], column: str, file: str) -> None:
+    """Refuse a value that stands in a column twice.
+
+    Raises
+    ------
+    TableError
+        Naming file, both lines and the column.
+    """
+    seen: dict[str, int] = {}
+    for line, value in enumerate(values, start=2):
+        if value in seen:
+            raise TableError(
+                f"{file}, line {line}, {column} {_short(value)}: column {column!r}: line {seen[value]} has this name; "
+                "give each row its own"
+            )
+        seen[value] = line
