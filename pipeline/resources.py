@@ -18,6 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from pipeline.extensions import extension_versions
+
 SMALL = 8 << 20
 """Bytes of a file that a person writes: settings, a mapping, a manifest."""
 
@@ -26,6 +28,8 @@ _PACKAGE = Path(__file__).resolve().parent
 
 def digest_of(*parts: str, kinds: Iterable[str] = (".py",), but: Iterable[str] = ()) -> str:
     """Return the SHA-256 of files of the package, names included: what is kept depends on the code that made it.
+
+    What other packages have installed as parts of Kouros is such code too, whichever files are asked for.
 
     parts : files, and folders with all below them; none: the whole package
     kinds : endings of the files in folders that count
@@ -38,6 +42,7 @@ def digest_of(*parts: str, kinds: Iterable[str] = (".py",), but: Iterable[str] =
         name = file.relative_to(_PACKAGE)
         if file.suffix in kinds and file.is_file() and name.parts[0] not in left_out:
             digest.update(name.as_posix().encode() + b"\0" + file.read_bytes())
+    digest.update("".join(map(repr, extension_versions())).encode())
     return digest.hexdigest()
 
 
