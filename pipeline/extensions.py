@@ -81,6 +81,8 @@ class Registry(Sequence[Part], Generic[Part]):
     @property
     def parts(self) -> tuple[Part, ...]:
         """All parts that can be used; Kouros's own alone for a module of another package that is being loaded."""
+        if self._parts is not None:
+            return self._parts
         with self._lock:
             if self._parts is None and not self._loading:
                 self._loading = True

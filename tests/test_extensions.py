@@ -9,6 +9,7 @@ import pytest
 
 from pipeline.errors import InputError
 from pipeline.extensions import ExtensionWarning, Registry, extension_versions
+from tests.packages import install
 
 GROUP = "kouros.tried"
 
@@ -22,15 +23,6 @@ def part(value: object) -> Part:
     if not isinstance(value, str):
         raise InputError(f"{value!r} is no text: name one")
     return Part(value)
-
-
-def install(folder: Path, package: str, source: str, points: str, version: str = "1.0") -> None:
-    """What a package manager leaves of a package: its module, its name and version, its entry points."""
-    (folder / f"{package}.py").write_text(source, encoding="utf-8")
-    told = folder / f"{package}-{version}.dist-info"
-    told.mkdir()
-    (told / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {package}\nVersion: {version}\n", encoding="utf-8")
-    (told / "entry_points.txt").write_text(points, encoding="utf-8")
 
 
 @pytest.fixture

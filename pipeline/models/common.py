@@ -1,6 +1,6 @@
 """What several generic models share: flags in words, excitations prepared once, error floors."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 
@@ -181,6 +181,23 @@ def _ratio(push: Array, weight: Array) -> float:
 def broadcast(parameters: Mapping[str, Array], name: str) -> Array:
     """Return one parameter as a contiguous array."""
     return np.ascontiguousarray(parameters[name], dtype=np.float64)
+
+
+def grid(**values: Sequence[float]) -> dict[str, list[float]]:
+    """Return every combination of some values, as columns.
+
+    Parameters
+    ----------
+    **values : sequence of float
+        By name.
+
+    Returns
+    -------
+    dict of str to list of float
+        Columns by name, of one length.
+    """
+    columns = np.meshgrid(*values.values())
+    return {name: column.ravel().tolist() for name, column in zip(values, columns, strict=True)}
 
 
 def needs(scene: Scene, *names: str) -> str:

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.models.common import needs
+from pipeline.models.common import grid, needs
 from pipeline.models.friction import stick_slip, stick_slip_trace
 from pipeline.models.sliding import DIRECTIONS
 from pipeline.quantities import Array, Quantity
-from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Support
+from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Support, Trials
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
@@ -58,4 +58,12 @@ HORIZONTAL_ISOLATOR = Model(
     applies=_applies,
     sentence="Its isolator moves {demand}; its stroke is {capacity}.",
     fails="exceeds the stroke of its isolator",
+    trials=Trials(
+        ranges={"frequency": (0.3, 2.0), "damping": (0.02, 0.2), "friction": (0.0, 0.15)},
+        extremes=grid(frequency=[0.02, 1.0, 500.0], damping=[0.0, 1.0, 2.0], friction=[0.0, 1e-6, 5.0]),
+        sample={"frequency": 10.0, "damping": 0.1, "friction": 0.05},
+        promised=5e-4,
+    ),
+    listed="Table 2, Isolator, horizontal: Coulomb friction & viscous damping",
+    supports=(Support.ISOLATED,),
 )

@@ -7,10 +7,10 @@ import numpy as np
 from pipeline.errors import InputError
 from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
-from pipeline.models.common import ROUNDING, after_record
+from pipeline.models.common import ROUNDING, after_record, grid
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Bounds, Columns, Excitation, Model, Scene
+from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Trials
 
 MOST_PHASE = 2e6
 """Radians of an oscillator's own, its damping counted in, in a sample interval from which on it is refused."""
@@ -20,6 +20,8 @@ PROMISED = 1e-9
 
 OSCILLATES = "its recursion is exact and fast, its spectrum so jagged that a chart takes thousands of analyses"
 """Why what follows a response spectrum is not tabulated."""
+
+EXTREMES = grid(frequency=[0.02, 1.0, 20.0, 500.0], damping=[0.0, 1.0, 2.0])
 
 
 def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[Array, Array]:
@@ -122,4 +124,10 @@ OSCILLATOR = Model(
     applies=_applies,
     sentence="It moves {demand} against its base; there is room for {capacity}.",
     fails="moves too far",
+    trials=Trials(
+        ranges={"frequency": (0.5, 20.0), "damping": (0.01, 0.1)},
+        extremes=EXTREMES,
+        sample={"frequency": 100.0, "damping": 0.02},
+        promised=1e-9,
+    ),
 )

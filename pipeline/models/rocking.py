@@ -24,7 +24,7 @@ from pipeline.models.common import (
 )
 from pipeline.models.flips import FELL, FELL_AT, FLAGS, IMPACTS, LAST_NEAR, LIFTED_AT, RATIO, RESTED, flips, integrate
 from pipeline.quantities import Array, G, Quantity
-from pipeline.records import Bounds, Columns, Excitation, Model, Scene
+from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support, Trials
 
 VELOCITY_SCREEN = 1.0
 """V_max > 10 B / sqrt(H') in cm and s is V_max > 1.0 B / sqrt(H') in m and s (Ishiyama 1982, in the paper's form)."""
@@ -246,6 +246,15 @@ def _applies(scene: Scene) -> str:
     return unless_free(scene, "rock") or needs(scene, "half_width", "cg_height")
 
 
+_ALPHAS = np.tile([0.02, 0.2, 1.2], 3)
+_EXTREMES = {
+    "half_width": (0.3 * np.tan(_ALPHAS)).tolist(),
+    "cg_height": [0.3] * 9,
+    "restitution": np.repeat([0.0, 0.6, 1.0], 3).tolist(),
+}
+"""Plates, columns and boxes, each with a landing that takes all, some and nothing of its rate."""
+
+
 def _symmetric(parameters: Mapping[str, Array]) -> bool:
     other = parameters["half_width_other"]
     same = np.isnan(other) | (other == parameters["half_width"])
@@ -300,5 +309,13 @@ ROCKING = Model(
         "it rocks."
     ),
     fails=ROCKS,
+    trials=Trials(
+        ranges={"half_width": (0.02, 0.4), "cg_height": (0.05, 1.0)},
+        extremes=_EXTREMES,
+        sample={"half_width": 0.2, "cg_height": 0.5},
+        promised=1e-4,
+    ),
+    listed="Table 1, Rigid: Rocking",
+    supports=(Support.FREESTANDING,),
     says=(HARMLESS, OVERTURNS),
 )

@@ -7,7 +7,7 @@ import numpy as np
 from pipeline.models.common import lift_ratios, needs, unless_free
 from pipeline.models.friction import kinetic, slip_bounds, stick_slip, stick_slip_trace
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Bounds, ChartAxis, Columns, Excitation, Model, Scene
+from pipeline.records import Bounds, ChartAxis, Columns, Excitation, Model, Scene, Support, Trials
 
 FRICTION_STATIC = Quantity("friction_static", "-", "coefficient at rest", 0.0)
 FRICTION_KINETIC = Quantity(
@@ -24,6 +24,8 @@ FRICTION_AXIS = ChartAxis(
     # From here on it rests: it moves only where |a_h| exceeds mu (g + a_z).
     settled=lambda motion: max(lift_ratios(motion)),
 )
+
+FRICTION_EXTREMES = {"friction_static": [0.0, 1e-6, 0.1, 5.0]}
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
@@ -88,4 +90,14 @@ SLIDING = Model(
         "for {capacity}."
     ),
     fails="slides",
+    trials=Trials(
+        ranges={"friction_static": (0.1, 0.6)},
+        extremes=FRICTION_EXTREMES,
+        sample={"friction_static": 0.1},
+        promised=5e-4,
+    ),
+    listed="Table 1, Rigid: Sliding",
+    supports=(Support.FREESTANDING,),
+    needs_size=False,
+    room_settles=True,
 )

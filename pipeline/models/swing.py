@@ -11,10 +11,10 @@ from pipeline.kernels import samples
 from pipeline.kernels.flags import UNRESOLVED
 from pipeline.kernels.pendulum import MOST_STEPS, pendulum_batch
 from pipeline.kernels.spherical import spherical_batch
-from pipeline.models.common import NO_HISTORY, ROUNDING, broadcast, magnified, needs, shaken
+from pipeline.models.common import NO_HISTORY, ROUNDING, broadcast, grid, magnified, needs, shaken
 from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.quantities import Array, Quantity
-from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Support
+from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Support, Trials
 
 CHANDELIER = 1.4
 """The paper's factor on the undamped two-dimensional result for an object that swings in all directions."""
@@ -28,6 +28,9 @@ LENGTH = Quantity("length", "m", "from the point of suspension to the centre of 
 # How often a short string winds itself up is chaos, of which its displacement, which is never more than its length,
 # shows nothing: to follow it took four times the analyses under strong shaking, and a tenth of the axis was left open.
 LENGTH_AXIS = ChartAxis("length", low=0.008, high=20.0, nodes=400, leads=True)
+
+_EXTREMES = grid(length=[0.001, 0.01, 1.0, 100.0], damping=[0.0, 1.0, 2.0])
+_SAMPLE = {"length": 0.01, "damping": 0.1}
 
 
 def _swept(angle: Array) -> Array:
@@ -159,6 +162,12 @@ SWING = Model(
     applies=lambda scene: _hangs(scene, Support.HUNG, "it does not hang on a wall"),
     sentence=_SENTENCE,
     fails="swings",
+    trials=Trials(
+        ranges={"length": (0.1, 3.0), "damping": (0.005, 0.1)}, extremes=_EXTREMES, sample=_SAMPLE, promised=1e-6
+    ),
+    listed="Table 1, Flexible: 2-D, swinging",
+    supports=(Support.HUNG,),
+    room_settles=True,
 )
 
 SWING_3D = Model(
@@ -182,4 +191,11 @@ SWING_3D = Model(
     applies=lambda scene: _hangs(scene, Support.SUSPENDED, "it does not hang from one point"),
     sentence=_SENTENCE,
     fails="swings",
+    trials=Trials(
+        ranges={"length": (0.2, 5.0), "damping": (0.002, 0.02)}, extremes=_EXTREMES, sample=_SAMPLE, promised=1e-4
+    ),
+    listed="Table 1, Flexible: 3-D, swinging",
+    supports=(Support.SUSPENDED,),
+    room_settles=True,
+    turns=True,
 )

@@ -14,7 +14,7 @@ from pipeline.records.change import (
 )
 from pipeline.records.decision import Basis, Decision, DecisionKind, Standing, in_force
 from pipeline.records.fragility import Fragility
-from pipeline.records.model import Bounds, ChartAxis, Columns, Model
+from pipeline.records.model import Bounds, ChartAxis, ChartFigure, Columns, Figure, Model, Trials
 from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.part import Errors, Found, Outline, Sheet, Tally, Urgent
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
@@ -47,6 +47,7 @@ __all__ = [
     "CauseKind",
     "Chart",
     "ChartAxis",
+    "ChartFigure",
     "Check",
     "Columns",
     "Curve",
@@ -59,6 +60,7 @@ __all__ = [
     "Excitation",
     "Executor",
     "FieldChange",
+    "Figure",
     "Finding",
     "Found",
     "Fragility",
@@ -86,6 +88,7 @@ __all__ = [
     "Standing",
     "Support",
     "Tally",
+    "Trials",
     "Urgent",
     "Verdict",
     "VerdictChange",
