@@ -19,6 +19,10 @@ def _model(value: object) -> Model:
     """Return what another package offers, as a model; a row that does not fit together refuses itself."""
     if not isinstance(value, Model):
         raise InputError(f"it is a {type(value).__name__}; let the entry point name a pipeline.records.Model")
+    kinds = {figure.kind for model in MODELS.own for figure in model.pictures}
+    for figure in value.pictures:
+        if figure.kind in kinds:
+            raise InputError(f"there are pictures of the kind {figure.kind!r} already; give them another")
     return value
 
 

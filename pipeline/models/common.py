@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.kernels import flags, samples
 from pipeline.kernels.quiet import block_maxima, demand_ratio
 from pipeline.quantities import Array, G
-from pipeline.records import Excitation, Scene, Support
+from pipeline.records import Curve, Excitation, Scene, Support
 
 SENSITIVE = flags.SENSITIVE
 NO_TILT = 16
@@ -176,6 +176,29 @@ def _ratio(push: Array, weight: Array) -> float:
     if ((weight == 0.0) & (nearby > 0.0)).any():
         return float("inf")
     return float(np.max(np.divide(push, weight, out=np.zeros_like(push), where=weight > 0.0)))
+
+
+def curve(label: str, x: Sequence[float] | Array, y: Sequence[float] | Array) -> Curve:
+    """Return a line of a picture, to five digits: finer than any that is drawn.
+
+    Parameters
+    ----------
+    label : str
+        What it is called; "" for the only one.
+    x, y : array_like of float, shape (n,)
+        In the units of the picture's axes.
+
+    Returns
+    -------
+    Curve
+        The line.
+    """
+    return Curve(label, tuple(map(rounded, x)), tuple(map(rounded, y)))
+
+
+def rounded(value: float) -> float:
+    """Return a number to the five digits that a picture is drawn with."""
+    return float(f"{value:.5g}")
 
 
 def broadcast(parameters: Mapping[str, Array], name: str) -> Array:

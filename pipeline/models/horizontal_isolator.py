@@ -8,7 +8,7 @@ from pipeline.models.common import grid, needs
 from pipeline.models.friction import stick_slip, stick_slip_trace
 from pipeline.models.sliding import DIRECTIONS
 from pipeline.quantities import Array, Quantity
-from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Support, Trials
+from pipeline.records import Axis, ChartAxis, ChartFigure, Columns, Excitation, Model, Scene, Support, Trials
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
@@ -66,4 +66,17 @@ HORIZONTAL_ISOLATOR = Model(
     ),
     listed="Table 2, Isolator, horizontal: Coulomb friction & viscous damping",
     supports=(Support.ISOLATED,),
+    pictures=(
+        ChartFigure(
+            "isolator",
+            title="Horizontal isolator",
+            caption=(
+                "Peak horizontal acceleration passed on, with 2 % viscous damping and four friction coefficients."
+            ),
+            x=Axis("Isolator frequency", "Hz", "log"),
+            y=Axis("Peak acceleration", "m/s2"),
+            source="Agbabian et al. 1991, Figure 6",
+            curves={f"friction {m:.2f}": {"friction": m, "damping": 0.02} for m in (0.05, 0.10, 0.15, 0.20)},
+        ),
+    ),
 )

@@ -7,10 +7,10 @@ import numpy as np
 from pipeline.errors import InputError
 from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
-from pipeline.models.common import ROUNDING, after_record, grid
+from pipeline.models.common import ROUNDING, after_record, curve, grid
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Trials
+from pipeline.records import Axis, Bounds, Chart, Columns, Excitation, Figure, Model, Motion, Scene, Trials
 
 MOST_PHASE = 2e6
 """Radians of an oscillator's own, its damping counted in, in a sample interval from which on it is refused."""
@@ -102,6 +102,27 @@ def _applies(_scene: Scene) -> str:
     return "a building block of other models and of response spectra, not an object"
 
 
+SPECTRUM_FREQUENCIES = np.round(np.geomspace(0.2, 50.0, 96), 4)
+
+
+def _spectrum(key: str, motion: Motion) -> Chart:
+    curves = []
+    for label, angle in (("east", 0.0), ("north", 90.0)):
+        for damping in (0.02, 0.05):
+            given = {"frequency": SPECTRUM_FREQUENCIES, "damping": np.full_like(SPECTRUM_FREQUENCIES, damping)}
+            felt = _run(motion.excitation(angle), given, 1, False)["pseudo_acceleration"]
+            curves.append(curve(f"{label}, {100.0 * damping:.0f} %", SPECTRUM_FREQUENCIES, felt))
+    return Chart(
+        key,
+        "Acceleration felt by a flexible object",
+        "Pseudo-acceleration of an oscillator; a rigid object (33 Hz and more) feels the peak acceleration.",
+        Axis("Natural frequency", "Hz", "log"),
+        Axis("Pseudo-acceleration", "m/s2"),
+        tuple(curves),
+        source="Agbabian et al. 1991, sec. 2.5; Nigam and Jennings 1969",
+    )
+
+
 OSCILLATOR = Model(
     name="oscillator",
     title="Oscillator",
@@ -130,4 +151,5 @@ OSCILLATOR = Model(
         sample={"frequency": 100.0, "damping": 0.02},
         promised=1e-9,
     ),
+    pictures=(Figure("spectrum", _spectrum),),
 )

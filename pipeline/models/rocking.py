@@ -16,6 +16,7 @@ from pipeline.models.common import (
     SENSITIVE,
     broadcast,
     contact_lost,
+    curve,
     largest_push,
     largest_speed,
     lift_ratios,
@@ -24,7 +25,20 @@ from pipeline.models.common import (
 )
 from pipeline.models.flips import FELL, FELL_AT, FLAGS, IMPACTS, LAST_NEAR, LIFTED_AT, RATIO, RESTED, flips, integrate
 from pipeline.quantities import Array, G, Quantity
-from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support, Trials
+from pipeline.records import (
+    Axis,
+    Bounds,
+    Chart,
+    Columns,
+    Excitation,
+    Figure,
+    Model,
+    Motion,
+    Scene,
+    Support,
+    Trials,
+    Zone,
+)
 
 VELOCITY_SCREEN = 1.0
 """V_max > 10 B / sqrt(H') in cm and s is V_max > 1.0 B / sqrt(H') in m and s (Ishiyama 1982, in the paper's form)."""
@@ -246,6 +260,51 @@ def _applies(scene: Scene) -> str:
     return unless_free(scene, "rock") or needs(scene, "half_width", "cg_height")
 
 
+def _stability(key: str, motion: Motion) -> Chart:
+    # Figure 2: base width against equivalent height H' = 2 h_cg.  The lines are the paper's screens A_max/g = B/H' and
+    # V_max = 10 B/sqrt(H') (Ishiyama 1982).  Overturning asks for both: below their crossing no object rocks without.
+    excitation = motion.excitation(None)
+    slope = largest_push(excitation) / G
+    speed = largest_speed(excitation) / VELOCITY_SCREEN
+    heights = np.geomspace(0.02, 5.0, 40)
+    uplift = slope * heights
+    overturn = np.minimum(uplift, speed * np.sqrt(heights))
+    low, high = 0.005, 5.0
+
+    def band(label: str, bottom: Array, top: Array, tone: str) -> Zone:
+        xs = np.concatenate([heights, heights[::-1]])
+        ys = np.clip(np.concatenate([bottom, top[::-1]]), low, high)
+        outline = curve("", xs, ys)
+        return Zone(label, outline.x, outline.y, tone)
+
+    floor, ceiling = np.full_like(heights, low), np.full_like(heights, high)
+    zones = (
+        band("stands", uplift, ceiling, "safe"),
+        band("rocks", overturn, uplift, "warn"),
+        band("overturns", floor, overturn, "danger"),
+    )
+    crossing = (speed / slope) ** 2 if slope > 0.0 else 0.0
+    caption = (
+        f"Peak resultant acceleration {slope:.2f} g, velocity {100.0 * speed * VELOCITY_SCREEN:.0f} cm/s. "
+        "H' is twice the height of the centre of gravity. "
+        f"Below H' = {100.0 * crossing:.0f} cm there is no band in which an object rocks without overturning. "
+        "The lines are the paper's closed-form criteria; the verdict comes from the time history."
+    )
+    return Chart(
+        key,
+        "Rocking stability",
+        caption,
+        Axis("Equivalent height H'", "m", "log"),
+        Axis("Base width B", "m", "log"),
+        (
+            curve("A_max/g = B/H'", heights, uplift),
+            curve("V_max = 10 B/√H'", heights, np.clip(speed * np.sqrt(heights), low, high)),
+        ),
+        zones,
+        source="Agbabian et al. 1991, Figure 2; Ishiyama 1982",
+    )
+
+
 _ALPHAS = np.tile([0.02, 0.2, 1.2], 3)
 _EXTREMES = {
     "half_width": (0.3 * np.tan(_ALPHAS)).tolist(),
@@ -317,5 +376,6 @@ ROCKING = Model(
     ),
     listed="Table 1, Rigid: Rocking",
     supports=(Support.FREESTANDING,),
+    pictures=(Figure("stability", _stability),),
     says=(HARMLESS, OVERTURNS),
 )

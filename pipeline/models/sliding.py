@@ -4,10 +4,24 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.models.common import lift_ratios, needs, unless_free
+from pipeline.models.common import curve, lift_ratios, needs, unless_free
 from pipeline.models.friction import kinetic, slip_bounds, stick_slip, stick_slip_trace
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Bounds, ChartAxis, Columns, Excitation, Model, Scene, Support, Trials
+from pipeline.records import (
+    Axis,
+    Bounds,
+    Chart,
+    ChartAxis,
+    ChartFigure,
+    Columns,
+    Excitation,
+    Figure,
+    Model,
+    Motion,
+    Scene,
+    Support,
+    Trials,
+)
 
 FRICTION_STATIC = Quantity("friction_static", "-", "coefficient at rest", 0.0)
 FRICTION_KINETIC = Quantity(
@@ -61,6 +75,29 @@ def _applies(scene: Scene) -> str:
     return unless_free(scene, "slide") or needs(scene, "friction_static")
 
 
+PATH_FRICTION = 0.05
+PATH_POINTS = 1500
+
+
+def _path(key: str, motion: Motion) -> Chart:
+    # Figure 3.
+    given = {"friction_static": PATH_FRICTION, "friction_kinetic": np.nan, "directions": 2.0}
+    path = _trace(motion.excitation(None, 0.0), given)
+    every = max(1, path["u_x"].size // PATH_POINTS)
+    x, y = path["u_x"][::every], path["u_y"][::every]
+    far = float(np.hypot(path["u_x"], path["u_y"]).max())
+    return Chart(
+        key,
+        f"Path of an object with friction {PATH_FRICTION:g}",
+        f"Seen from above, from where it stood (0, 0). It gets {100.0 * far:.1f} cm away.",
+        Axis("East", "m"),
+        Axis("North", "m"),
+        (curve("", x, y),),
+        equal=True,
+        source="Agbabian et al. 1991, Figure 3",
+    )
+
+
 SLIDING = Model(
     name="sliding",
     title="Sliding",
@@ -100,4 +137,17 @@ SLIDING = Model(
     supports=(Support.FREESTANDING,),
     needs_size=False,
     room_settles=True,
+    pictures=(
+        ChartFigure(
+            "sliding",
+            title="Sliding against friction",
+            caption="Largest distance an object slides from where it stood, for each friction coefficient of its base.",
+            x=Axis("Friction coefficient", "-", "log"),
+            y=Axis("Largest displacement", "m"),
+            source="Agbabian et al. 1991, Figure 4",
+            curves={"": {}},
+            decides=True,
+        ),
+        Figure("path", _path),
+    ),
 )

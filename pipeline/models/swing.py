@@ -14,7 +14,7 @@ from pipeline.kernels.spherical import spherical_batch
 from pipeline.models.common import NO_HISTORY, ROUNDING, broadcast, grid, magnified, needs, shaken
 from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.quantities import Array, Quantity
-from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Support, Trials
+from pipeline.records import Axis, ChartAxis, ChartFigure, Columns, Excitation, Model, Scene, Support, Trials
 
 CHANDELIER = 1.4
 """The paper's factor on the undamped two-dimensional result for an object that swings in all directions."""
@@ -28,6 +28,9 @@ LENGTH = Quantity("length", "m", "from the point of suspension to the centre of 
 # How often a short string winds itself up is chaos, of which its displacement, which is never more than its length,
 # shows nothing: to follow it took four times the analyses under strong shaking, and a tenth of the axis was left open.
 LENGTH_AXIS = ChartAxis("length", low=0.008, high=20.0, nodes=400, leads=True)
+
+PICTURED_EVERY = 30.0
+"""Degrees between the directions of which a swing's picture shows the worst."""
 
 _EXTREMES = grid(length=[0.001, 0.01, 1.0, 100.0], damping=[0.0, 1.0, 2.0])
 _SAMPLE = {"length": 0.01, "damping": 0.1}
@@ -168,6 +171,23 @@ SWING = Model(
     listed="Table 1, Flexible: 2-D, swinging",
     supports=(Support.HUNG,),
     room_settles=True,
+    pictures=(
+        ChartFigure(
+            "swing",
+            title="Swing of a hung object",
+            caption=(
+                f"Largest sideways displacement in the worst direction (every {PICTURED_EVERY:g} degrees), for four "
+                "damping coefficients."
+            ),
+            x=Axis("Suspension length", "m", "log"),
+            y=Axis("Largest displacement", "m"),
+            source="Agbabian et al. 1991, Figure 5",
+            curves={f"damping {d:.2f}": {"damping": d} for d in (0.0, 0.05, 0.10, 0.20)},
+            # Below, verdicts need a chart and nobody a picture.
+            low=0.1,
+            azimuth_step=PICTURED_EVERY,
+        ),
+    ),
 )
 
 SWING_3D = Model(

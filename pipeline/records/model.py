@@ -88,6 +88,8 @@ class Figure:
 class ChartFigure:
     """A picture of a model's response charts under a motion: its first output along their axis.
 
+    What the charts are made of and how far off they may be is added to the caption.
+
     kind         : how its key begins, which marks refer to
     curves       : what each is called -> the parameters that its chart has fixed
     low          : where the chart begins; None: as the model's charts do
