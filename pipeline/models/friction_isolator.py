@@ -1,4 +1,14 @@
-"""Generic isolator: a low-friction interface (Agbabian et al. 1991, sec. 2.6 and Table 2)."""
+r"""Generic isolator: a low-friction interface, which slides as a rigid body does and passes on what friction gives.
+
+.. math::
+
+    u'' = -a_h - \mu_k N \frac{u'}{|u'|}, \qquad a_{\mathrm{on}} = a_h + u''
+
+References
+----------
+Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+methods for museum objects. Studies in Conservation 36. Sec. 2.6 and Table 2.
+"""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,16 @@
-"""Generic isolator: horizontal, with spring, viscous damping and Coulomb friction (Agbabian et al. 1991, Figure 6)."""
+r"""Generic isolator: horizontal, with spring, viscous damping and Coulomb friction.
+
+With stick phases, while the spring and the push are less than the friction,
+
+.. math::
+
+    u'' + 2 \zeta \omega u' + \omega^2 u + \mu N \frac{u'}{|u'|} = -a_h, \qquad a_{\mathrm{on}} = a_h + u''
+
+References
+----------
+Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+methods for museum objects. Studies in Conservation 36. Sec. 2.6 and Figure 6.
+"""
 
 from collections.abc import Mapping
 

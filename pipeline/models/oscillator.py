@@ -1,4 +1,16 @@
-"""The damped oscillator (Nigam and Jennings 1969): response spectra, flexible plinths, and the core of two models."""
+r"""The damped oscillator: response spectra, flexible plinths, and the core of two models.
+
+.. math::
+
+    u'' + 2 \zeta \omega u' + \omega^2 u = -a
+
+by the recursion that is exact for an excitation that is linear between its samples.
+
+References
+----------
+Nigam, N. C. and Jennings, P. C. (1969). Calculation of response spectra from strong-motion earthquake records. Bulletin
+of the Seismological Society of America 59.
+"""
 
 from collections.abc import Mapping
 
@@ -25,9 +37,24 @@ EXTREMES = grid(frequency=[0.02, 1.0, 20.0, 500.0], damping=[0.0, 1.0, 2.0])
 
 
 def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[Array, Array]:
-    """Return the largest |u| [m] and |a + share u''| [m/s2] of n oscillators, (n,) each.
+    """Return the largest |u| and |a + share u''| of n oscillators.
 
-    raises : ValueError for an oscillator that turns more than MOST_PHASE in a sample interval
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction.
+    w, zeta, share : ndarray, shape (n,)
+        Natural frequency [rad/s], damping ratio [-], share of u'' that is felt [-].
+
+    Returns
+    -------
+    displacement, acceleration : ndarray, shape (n,)
+        [m], [m/s2].
+
+    Raises
+    ------
+    InputError
+        For an oscillator that turns more than MOST_PHASE in a sample interval.
     """
     phase = w * (1.0 + 2.0 * zeta) * motion.dt
     if phase.max(initial=0.0) > MOST_PHASE:
@@ -47,11 +74,23 @@ Between = tuple[Array, Array]
 
 
 def oscillate_bounds(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[Between, Between]:
-    """Return what the largest |u| [m] and |a + share u''| [m/s2] of n oscillators lie between, (low, high) each.
+    """Return what the largest |u| and |a + share u''| of n oscillators lie between.
 
     The oscillator is linear: shaken along any direction it answers with the components of its answers to x and to y, so
     that their peaks' resultant bounds every direction, for the cost of two.  Along one direction both bounds are the
     answer itself.
+
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction or in two.
+    w, zeta, share : ndarray, shape (n,)
+        As in `oscillate`.
+
+    Returns
+    -------
+    displacement, acceleration : tuple of two ndarray, shape (n,)
+        Low and high [m], [m/s2].
     """
     peaks = oscillate(motion, w, zeta, share)
     if motion.y is None:

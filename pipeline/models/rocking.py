@@ -1,4 +1,30 @@
-"""Generic model 1: rigid body rocking (Agbabian et al. 1991, sec. 2.1; Housner 1963; Ishiyama 1982)."""
+r"""Generic model 1: rigid body rocking.
+
+With s the sign of the angle theta [rad], R the distance from an edge to the centre of gravity, alpha the slenderness
+and rho the radius of gyration,
+
+.. math::
+
+    \theta'' = -p^2 \left[\left(1 + \frac{a_z}{g}\right) \sin(s\alpha - \theta)
+               + \frac{a_h}{g} \cos(s\alpha - \theta)\right], \qquad p^2 = \frac{g R}{\rho^2 + R^2}
+
+and at each landing, by the angular momentum about the new edge (b to either side, h high),
+
+.. math::
+
+    \theta'_+ = e\,\theta'_-, \qquad e = \max\left(0, \frac{\rho^2 + h^2 - b_1 b_2}{\rho^2 + R_2^2}\right)
+
+An edge lifts at |a_h| > (g + a_z) b/h.  The screen is the paper's: A_max/g > B/H' and V_max > 10 B/sqrt(H') [cm, s].
+
+References
+----------
+Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+methods for museum objects. Studies in Conservation 36. Sec. 2.1.
+Housner, G. W. (1963). The behavior of inverted pendulum structures during earthquakes. Bulletin of the Seismological
+Society of America 53.
+Ishiyama, Y. (1982). Motions of rigid bodies and criteria for overturning by earthquake excitations. Earthquake
+Engineering and Structural Dynamics 10.
+"""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -72,9 +98,18 @@ lifts an edge in a time of 1 / p."""
 
 
 def bodies(parameters: Mapping[str, Array]) -> Array:
-    """Return what the kernel needs of each body, (n, 6): alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-].
+    """Return what the kernel needs of each body.
 
-    c = R / (rho^2 + R^2), so that p^2 = g c; restitution from the angular momentum about the new edge, never below 0.
+    Parameters
+    ----------
+    parameters : mapping of str to ndarray, shape (n,)
+        Those of the model, in SI; NaN for what is not given.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+        alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]: c = R / (rho^2 + R^2), so that p^2 = g c, and the restitution
+        from the angular momentum about the new edge, never below 0.
     """
     b1, h = parameters["half_width"], parameters["cg_height"]
     other = parameters["half_width_other"]
@@ -91,9 +126,19 @@ def bodies(parameters: Mapping[str, Array]) -> Array:
 
 
 def uplift_ratios(motion: Excitation, body: Array) -> Array:
-    """Return the largest |a_h| / (N b/h) over time (n,): exact along a direction, the most of any for two directions.
+    """Return the largest |a_h| / (N b/h) over time, N = max(0, g + a_z).
 
-    body : (n, 6) as from `bodies`
+    Parameters
+    ----------
+    motion : Excitation
+        Along a direction, of which the ratio is exact, or in two, of which it is the most of any direction.
+    body : ndarray, shape (n, 6)
+        As from `bodies`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]; infinite where contact is lost under a push.
     """
     to_positive, to_negative = lift_ratios(motion)
     return np.maximum(to_positive / np.tan(body[:, 0]), to_negative / np.tan(body[:, 1]))

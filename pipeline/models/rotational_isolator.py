@@ -1,4 +1,16 @@
-"""Generic isolator: rotational, a damped oscillator about the base (Agbabian et al. 1991, sec. 2.6)."""
+r"""Generic isolator: rotational, a damped oscillator about the base.
+
+With the moment of inertia I about the pivot, c and k of the pad and the centre of gravity h above it,
+
+.. math::
+
+    I \theta'' + c\,\theta' + (k - m g h)\,\theta = -m h\,a_h
+
+References
+----------
+Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+methods for museum objects. Studies in Conservation 36. Sec. 2.6.
+"""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,17 @@
-"""Generic model 2: rigid body sliding (Agbabian et al. 1991, sec. 2.2 and Figures 3 and 4; Newmark 1965)."""
+r"""Generic model 2: rigid body sliding.
+
+With u [m] from where it stood, N = max(0, g + a_z) and friction mu_s at rest and mu_k while it slips,
+
+.. math::
+
+    u'' = -a_h - \mu_k N \frac{u'}{|u'|}, \qquad \text{at rest while } |a_h| \le \mu_s N
+
+References
+----------
+Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+methods for museum objects. Studies in Conservation 36. Sec. 2.2, Figures 3 and 4.
+Newmark, N. M. (1965). Effects of earthquakes on dams and embankments. Geotechnique 15.
+"""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,19 @@
-"""Generic models 3 and 6: stress at a critical section, rigid and flexible (Agbabian et al. 1991, sec. 2.3 and 2.5)."""
+r"""Generic models 3 and 6: stress at a critical section, rigid and flexible.
+
+With the mass m above a section of area A_s and modulus S, and the lever l from it to the centre of gravity,
+
+.. math::
+
+    \sigma = \frac{m A\, l}{S} \mp \frac{m g}{A_s}, \qquad \tau = \frac{m A}{A_s}
+
+where A is the peak acceleration of a rigid object, and of a flexible one the pseudo-acceleration of its oscillator,
+PSA(f, zeta).  The static tilt with the same effect is arcsin(A / g).
+
+References
+----------
+Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+methods for museum objects. Studies in Conservation 36. Sec. 2.3 and 2.5.
+"""
 
 from collections.abc import Mapping, Sequence
 
@@ -34,9 +49,20 @@ _AXES = ({"section_modulus": "section_modulus_width"}, {"section_modulus": "sect
 
 
 def section_stresses(push: Array, parameters: Mapping[str, Array]) -> Columns:
-    """Return the stresses and the equivalent tilt under a horizontal acceleration push [m/s2] (n,).
+    """Return the stresses and the equivalent tilt under a horizontal acceleration.
 
-    sigma = m A l / S -/+ m g / A; tau = m A / A.  The tilt is empty from 1 g on: no tilt reproduces it.
+    Parameters
+    ----------
+    push : ndarray, shape (n,) or float
+        [m/s2].
+    parameters : mapping of str to ndarray, shape (n,)
+        mass [kg], lever [m], area [m2] and section_modulus [m3].
+
+    Returns
+    -------
+    Columns
+        tension, compression, shear and error [Pa], tilt [deg], note, (n,) each; the tilt is NaN from 1 g on, where none
+        reproduces the acceleration.
     """
     mass, area = parameters["mass"], parameters["area"]
     bending = mass * push * parameters["lever"] / parameters["section_modulus"]

@@ -1,4 +1,25 @@
-"""Generic models 4 and 5: swinging in two and in three dimensions (Agbabian et al. 1991, sec. 2.4 and Figure 5)."""
+r"""Generic models 4 and 5: swinging in two and in three dimensions.
+
+A pendulum of length L [m] and damping C_v in the plane of its wall,
+
+.. math::
+
+    \theta'' + 2 C_v \omega \theta' + \frac{g + a_z}{L} \sin\theta = -\frac{a_h}{L} \cos\theta,
+    \qquad \omega = \sqrt{g / L}
+
+and one that swings in all directions, q the unit vector from the point of suspension to the centre of gravity,
+
+.. math::
+
+    q'' = -|q'|^2 q + (I - q q^T) f - 2 \zeta \omega q', \qquad f = -(a_x, a_y, g + a_z) / L
+
+The screen of the second is the paper's estimate: 1.4 times the undamped swing in one plane.
+
+References
+----------
+Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+methods for museum objects. Studies in Conservation 36. Sec. 2.4 and Figure 5.
+"""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -121,7 +121,7 @@ class Model:
     measured and to be given to objects it must guarantee the following:
 
     1.  `needs` names its parameters and `gives` its outputs, in SI, the first of which ranks directions (RotD100) and
-        is what the error is of.  None of its own reasons makes an output NaN but for what a note explains.
+        is what the error is of.  None is below zero, and none NaN or infinite without a note, at `trials.extremes`.
     2.  `run(excitation, parameters, refine, estimate)` returns a column (n,) for each output, and "error" and "note".
         The parameters are float arrays (n,) within the limits of `needs`; what is optional and not given is NaN or its
         default.  `refine` divides the standard step; without `estimate` the error is NaN and the cost a third.  It
