@@ -176,7 +176,8 @@ def _traceable(place: Place) -> bool:
     # A one-directional history needs its direction, and an isolator passes another motion on.
     if place.scene.support is Support.ISOLATED:
         return False
-    return model_named(place.model).directions != 1 or place.scene.item.orientation_deg is not None
+    model = model_named(place.model)
+    return model.trace is not None and (model.directions != 1 or place.scene.item.orientation_deg is not None)
 
 
 def _closing(

@@ -71,8 +71,8 @@ def _widened(scene: Scene, parameters: Mapping[str, float]) -> Scene:
         before = scene.parameters.get(name)
         if before is not None:
             found[name] = _exactly(half, "m", "half of the footing plate") if before.high < half else before
-    own = models_of(Support.FREESTANDING)
-    return replace(_cleared(_with(scene, **found), parameters), models=(*own, *models_of(Support.FASTENED)))
+    models = dict.fromkeys((*models_of(Support.FREESTANDING), *models_of(Support.FASTENED), *scene.models))
+    return replace(_cleared(_with(scene, **found), parameters), models=tuple(models))
 
 
 def _strengthened(scene: Scene, parameters: Mapping[str, float]) -> Scene:

@@ -384,8 +384,8 @@ ROCKING = Model(
     gives=(
         Quantity("rotation_ratio", "-", "largest |theta| / alpha"),
         Quantity("overturned", "bool", "reached a quarter turn"),
-        Quantity("overturning_time", "s", "when it did; empty if it did not"),
-        Quantity("uplift_time", "s", "when an edge first lifted; empty if none did"),
+        Quantity("overturning_time", "s", "when it did; empty if it did not", optional=True),
+        Quantity("uplift_time", "s", "when an edge first lifted; empty if none did", optional=True),
         Quantity("impacts", "count", "landings at 1e-3 p alpha or faster"),
         Quantity("uplift_ratio", "-", "largest |a_h| / (max(0, g + a_z) b/h)"),
     ),

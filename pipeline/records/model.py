@@ -134,7 +134,8 @@ class Model:
         support, the isolator, which parameters the scene has, and the frequency: scenes alike in these are asked once.
     6.  An object is tried with it where its class names it (column models of tables/classes.csv), where the museum says
         that the object is held in one of the ways in `supports` and its class would say otherwise, or where
-        `joins(item, class, models)` is true.  Parameters that scenes do not have come from `estimates(scene)`.
+        `joins(item, class, models)` is true.  Parameters that scenes do not have come from `estimates(scene)`.  Neither
+        looks at what objects that are otherwise alike differ in: number, gallery and place.
     7.  `trials` says on which objects its cost and its error are measured, and what may break it.
     8.  What it does besides (bounds, a certificate, a screen, histories in time, a chart, pictures) it does as said
         below, or leaves out.
@@ -152,7 +153,7 @@ class Model:
     needs : tuple of Quantity
         Its parameters, in the order a caller would name them.
     gives : tuple of Quantity
-        Its outputs.
+        Its outputs; one that is optional may be empty (NaN).
     directions : int
         1, 2 or 0, see 3.
     run : callable
@@ -202,7 +203,8 @@ class Model:
     say_screen : callable
         (one row of the screen, one set of parameters) -> the criterion in words.
     trace : callable, optional
-        (excitation, one set of parameters) -> time histories at the samples, (n,) each.
+        (excitation, one set of parameters) -> time histories at the samples, (n,) each; of a model whose demand is
+        called "displacement" u_x, and u_y in two directions [m], from where it stood.
     bound : callable, optional
         (excitation, parameters) -> guaranteed bounds, much cheaper than `run`; those of a one-direction model that is
         given two hold for a body shaken along any.  None: it has none that is worth having.

@@ -12,8 +12,8 @@ from pipeline.records import Model, Motion
 STRONG = 5.0
 """Peak of each horizontal component of the shaking [m/s2]."""
 
-UNKNOWN = ("overturning_time", "uplift_time", "angle", "fidelity", "note")
-"""Columns that may be empty, or are not numbers."""
+BESIDE = ("angle", "fidelity", "note")
+"""Columns beside the outputs and their error, which may be empty or are not numbers."""
 
 
 def shaking(samples: int = 300, dt: float = 0.02, vertical: float = 0.5) -> Motion:
@@ -70,10 +70,24 @@ def pushed() -> list[tuple[Model, int | None]]:
     ]
 
 
-def complaint(row: Mapping[str, Any]) -> str:
-    """Return what is wrong with a result: a NaN or an infinity that no note explains, a negative size."""
+def complaint(model: Model, row: Mapping[str, Any]) -> str:
+    """Return what is wrong with a result: a NaN or an infinity that no note explains, a negative size.
+
+    Parameters
+    ----------
+    model : Model
+        Whose optional outputs may be empty.
+    row : mapping
+        One row of the table of `respond`.
+
+    Returns
+    -------
+    str
+        "" where nothing is.
+    """
+    may_be_empty = {*BESIDE, *(q.name for q in model.gives if q.optional)}
     for column, value in row.items():
-        if column in UNKNOWN:
+        if column in may_be_empty:
             continue
         if not np.isfinite(float(value)) and not row["note"]:
             return f"{column} is {value} without a note"

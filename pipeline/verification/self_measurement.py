@@ -230,7 +230,7 @@ def _unexplained(model: Model, directions: int | None) -> float:
         f"{motion}: {said}"
         for motion in motions()
         for _, row in _answers(model, directions, motion).iterrows()
-        if (said := complaint(row))
+        if (said := complaint(model, row))
     ]
     if problems:
         raise ArithmeticError(f"{counted(len(problems), 'result')}, such as {problems[0]}")

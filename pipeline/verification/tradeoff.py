@@ -337,7 +337,7 @@ def keep(found: Tradeoff, folder: Path) -> Path:
 
 
 def kept(folder: Path) -> Tradeoff | None:
-    """Return the last measurement, or None: never measured, measured on other kernels, or damaged."""
+    """Return the last measurement, or None: never measured, measured on other kernels or models, or damaged."""
     try:
         said = json.loads((folder / KEPT_AS).read_text(encoding="utf-8"))
         found = Tradeoff(
@@ -349,7 +349,9 @@ def kept(folder: Path) -> Tradeoff | None:
         )
     except (OSError, ValueError, KeyError, TypeError):
         return None
-    return found if found.kernels == KERNEL_VERSION else None
+    # A model of another package may be gone since.
+    there = {model.name for model in MODELS}
+    return found if found.kernels == KERNEL_VERSION and {s.model for s in found.samples} <= there else None
 
 
 def tradeoff_on(settings: Settings | None, site: str | None, progress: Progress, **wishes: Any) -> Tradeoff:

@@ -53,7 +53,7 @@ def work(name: str, directions: int | None, answers: Queue[Any]) -> None:
                 except Exception as problem:  # noqa: BLE001
                     answers.put((case, repr(problem)))
                     continue
-                answers.put((case, complaint(table.iloc[0])))
+                answers.put((case, complaint(model_named(name), table.iloc[0])))
     answers.put(("done", ""))
 
 

@@ -32,7 +32,7 @@ import numpy as np
 
 from pipeline.models.common import largest_push, needs, unless_free
 from pipeline.quantities import G, Quantity
-from pipeline.records import Estimate, Model, Origin, Trials
+from pipeline.records import Axis, Chart, Curve, Estimate, Figure, Model, Origin, Trials
 
 
 def _run(motion, parameters, refine, estimate):
@@ -43,6 +43,13 @@ def _run(motion, parameters, refine, estimate):
 def _grip(scene):
     note = "grip of its foot: 2 (1.5 to 2.5), assumed"
     return {"grip": Estimate(2.0, "-", Origin.ASSUMED, 1.5, 2.5, note, "judgement")}
+
+
+def _picture(key, motion):
+    heights = (0.1, 1.0)
+    slope = largest_push(motion.excitation(None)) / G
+    line = Curve("a/g = B/H", heights, tuple(slope * height for height in heights))
+    return Chart(key, "Toppling by West", "", Axis("Height", "m"), Axis("Width", "m"), (line,))
 
 
 TOPPLING = Model(
@@ -72,6 +79,8 @@ TOPPLING = Model(
     ),
     joins=lambda item, object_class, models: object_class == "vessel",
     estimates=_grip,
+    pictures=(Figure("toppling", _picture),),
+    mark=lambda parameters, _: ("toppling", 2.0 * parameters["cg_height"], 2.0 * parameters["half_width"]),
 )
 '''
 POINTS = "[kouros.models]\ntoppling = kouros_toppling:TOPPLING\n"
@@ -151,6 +160,8 @@ def test_a_night_runs_it_on_the_objects_that_it_names(packages: Path, tmp_path: 
     pushes = [peak / G * 0.45 * 0.4 / (2.0 * 0.3 * 0.2) for peak in peaks]
     assert any(0.996 * push <= float(topples["demand"]) <= push for push in pushes)
     assert "grip of its foot: 2 (1.5 to 2.5), assumed" in topples["assumptions"]
+    (page,) = (tmp_path / "reports").glob("*/a-*.html")
+    assert "Toppling by West" in page.read_text(encoding="utf-8")
     told = kouros("-q", "run", "--explain", "2", **asked)
     assert "Toppling: not required: its name says that it is case furniture or a box (named 'box')\n" in told
     # The same version, and other words in the file: what was kept is of another model.
