@@ -10,8 +10,10 @@ never stops a night.
 """
 
 import hashlib
+import re
 import warnings
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
@@ -139,9 +141,9 @@ def _words(entry: EntryPoint, problem: BaseException) -> str:
 
 
 def _package(entry: EntryPoint) -> tuple[str, str]:
-    if entry.dist is None:
-        return "a package without a name", "?"
-    return entry.dist.name, entry.dist.version
+    # Either is None where the package's METADATA is damaged.
+    name, version = (None, None) if entry.dist is None else (entry.dist.name, entry.dist.version)
+    return name or "a package without a name", version or "?"
 
 
 def _entries(group: str) -> list[EntryPoint]:
@@ -163,7 +165,7 @@ def extension_versions() -> tuple[ExtensionVersion, ...]:
     found = entry_points()
     groups = sorted(group for group in found.groups if group.startswith(PREFIX))
     return tuple(
-        ExtensionVersion(group, entry.name, *_package(entry), _source_digest(entry.module.partition(".")[0]))
+        ExtensionVersion(group, entry.name, *_package(entry), _source_digest(re.split("[.:]", entry.value)[0].strip()))
         for group in groups
         for entry in _entries(group)
     )
@@ -174,15 +176,15 @@ def _source_digest(top: str) -> str:
     """Return the SHA-256 of the source of a package or a module, names included; "" where there is none."""
     digest = hashlib.sha256()
     for folder, file in sorted(_sources(top)):
-        digest.update(file.relative_to(folder).as_posix().encode() + b"\0" + file.read_bytes())
+        with suppress(OSError):
+            digest.update(file.relative_to(folder).as_posix().encode() + b"\0" + file.read_bytes())
     return digest.hexdigest()
 
 
 def _sources(top: str) -> Iterator[tuple[Path, Path]]:
-    try:
-        spec: Any = find_spec(top)
-    except (ImportError, ValueError):
-        spec = None
+    spec: Any = None
+    with suppress(ImportError, ValueError):
+        spec = find_spec(top)
     if spec is None:
         return
     if spec.submodule_search_locations:

@@ -84,6 +84,17 @@ def test_what_cannot_be_used_is_said_and_left_out(site: Path, source: str, wrong
     assert [str(one.message) for one in said] == [problem]
 
 
+@pytest.mark.parametrize("value", ["", "two words", ":X", "5:X", "absent.module:X"])
+def test_an_entry_point_that_names_nothing_is_left_out(site: Path, value: str) -> None:
+    install(site, "tried_damaged", "", f"[{GROUP}]\ndamaged = {value}\n")
+    (site / "tried_damaged-1.0.dist-info" / "METADATA").write_text("")
+    registry = Registry(GROUP, (Part("own"),), part)
+    with pytest.warns(ExtensionWarning, match="a package without a name . offers 'damaged'"):
+        assert len(registry) == 1
+    (one,) = extension_versions()
+    assert one[:4] == (GROUP, "damaged", "a package without a name", "?")
+
+
 def test_a_module_that_reads_the_registry_while_it_is_loaded_sees_the_own_parts(
     site: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
