@@ -18,6 +18,8 @@ from importlib.metadata import version
 from pathlib import Path
 from threading import get_ident
 
+from pipeline.extensions import extension_versions
+
 SMALL = 8 << 20
 """Bytes of a file that a person writes: settings, a mapping, a manifest."""
 
@@ -82,6 +84,8 @@ def _digest(files: Iterable[Path], libraries: Iterable[str]) -> str:
         f"python {sys.version_info.major}.{sys.version_info.minor}",
         *(f"{name} {version(name)}" for name in libraries),
     ]
+    # What other packages have installed as parts of Kouros is such code too.
+    versions += map(repr, extension_versions())
     digest = hashlib.sha256("\n".join(versions).encode())
     for file in files:
         within = _PACKAGE if file.is_relative_to(_PACKAGE) else _PACKAGE.parent

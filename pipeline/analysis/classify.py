@@ -5,13 +5,14 @@ the row of the class (tables/classes.csv) and the material (tables/materials.csv
 as assumed.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache, lru_cache
 from math import pi
 
 from pipeline.analysis.rules import Table, rule_for
 from pipeline.errors import InputError
+from pipeline.models import MODELS, model_named
 from pipeline.records import SECTION_SHAPES, Estimate, Item, Origin, Scene, Support
 from pipeline.tables import Range, Row, damping_of, friction_of, material_in, spread, table
 
@@ -364,32 +365,43 @@ def classify(item: Item, rules: Table | None = None, decided: tuple[str, str] | 
         object_class, words = decided
     row = _classes()[object_class]
     support = item.support or Support(row["support"])
-    own = Support(row["support"])
-    models = () if row["models"] in (NO_MODEL, WHEN_HELD) else tuple(row["models"].split("|"))
-    if not models and (item.support is None or (row["models"] == NO_MODEL and item.support is own)):
+    models = _tried(item, row)
+    if not models:
         why = f"no generic model applies: it {row['why']}"
         return Scene(item, row["class"], words, support, (), {}, (), (why,))
-    if item.support is not None and (item.support is not own or not models):
-        models = MODELS_OF[item.support]
-    elif item.frequency_hz is not None and "stress" in models:
-        models = (*models, "flexible_stress")
     builder = _Builder(item, row, support)
     builder.build()
     builder.missing.extend(_unheld(item, support))
-    assumptions = [e.note for e in builder.found.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
+    missing = tuple(builder.missing) if _needs_size(models) else ()
+    known = _with_their_own(Scene(item, row["class"], words, support, models, builder.found, (), missing))
+    assumptions = [e.note for e in known.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
     if item.support is None:
         assumptions.insert(0, f"support: {support.value}, assumed for: {row['title'].lower()}; not recorded")
-    missing = builder.missing if needs_size(models) else []
-    return Scene(
-        item,
-        row["class"],
-        words,
-        support,
-        models,
-        builder.found,
-        tuple(dict.fromkeys(assumptions)),
-        tuple(missing),
-    )
+    return Scene(item, row["class"], words, support, models, known, tuple(dict.fromkeys(assumptions)), missing)
+
+
+def _tried(item: Item, row: Row) -> tuple[str, ...]:
+    """Return the models that are tried on an object of a class: those of its class, or of how it is held, and more."""
+    own = Support(row["support"])
+    models = () if row["models"] in (NO_MODEL, WHEN_HELD) else tuple(row["models"].split("|"))
+    if item.support is not None and (item.support is not own or not (models or row["models"] == NO_MODEL)):
+        models = models_of(item.support)
+    more = (m.name for m in MODELS if m.joins and m.name not in models and m.joins(item, row["class"], models))
+    return (*models, *more)
+
+
+def _with_their_own(scene: Scene) -> Mapping[str, Estimate]:
+    """Return the parameters of a scene, with those that the models tried on it estimate for themselves."""
+    known = dict(scene.parameters)
+    for estimates in _estimates_of(scene.models):
+        known |= {name: one for name, one in estimates(scene).items() if name not in known}
+    return known
+
+
+@cache
+def _estimates_of(models: tuple[str, ...]) -> tuple[Callable[[Scene], Mapping[str, Estimate]], ...]:
+    made = (model_named(name).estimates for name in models)
+    return tuple(estimates for estimates in made if estimates is not None)
 
 
 def unclassified(item: Item) -> Scene:
@@ -410,16 +422,25 @@ def _unheld(item: Item, support: Support) -> list[str]:
     ]
 
 
-MODELS_OF: Mapping[Support, tuple[str, ...]] = {
-    Support.FREESTANDING: ("rocking", "sliding"),
-    Support.FASTENED: ("stress", "flexible_stress"),
-    Support.HUNG: ("swing",),
-    Support.SUSPENDED: ("swing_3d",),
-    Support.ISOLATED: ("friction_isolator", "horizontal_isolator", "rotational_isolator", "stress", "flexible_stress"),
-}
-"""The models to try when the museum says how an object is held and its class would say otherwise."""
+@cache
+def models_of(support: Support) -> tuple[str, ...]:
+    """Return the models to try when the museum says how an object is held and its class would say otherwise.
+
+    Parameters
+    ----------
+    support : Support
+        How it is held.
+
+    Returns
+    -------
+    tuple of str
+        Names; what it stands on comes before what it does on it.
+    """
+    held = (model for model in MODELS if support in model.supports)
+    return tuple(model.name for model in sorted(held, key=lambda model: model.kind != "isolator"))
 
 
-def needs_size(models: Iterable[str]) -> bool:
+@cache
+def _needs_size(models: tuple[str, ...]) -> bool:
     """Say whether any of the models needs the object's dimensions."""
-    return bool(set(models) - {"sliding", "friction_isolator"})
+    return any(model_named(name).needs_size for name in models)

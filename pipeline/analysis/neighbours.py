@@ -17,9 +17,6 @@ from pipeline.records import Estimate, Finding, Motion, Scene, Spacing, Support,
 REST, PERIODS = 10.0, 4.0
 """Seconds after the record, and periods of a swing, that histories are followed; the last half tells the rest."""
 
-TURNING = "swing_3d"
-"""The model whose plane of swinging turns by itself, so that its last part does not tell all directions."""
-
 KEPT = 256
 """Histories that are kept at once."""
 
@@ -179,7 +176,8 @@ def _traceable(place: Place) -> bool:
     # A one-directional history needs its direction, and an isolator passes another motion on.
     if place.scene.support is Support.ISOLATED:
         return False
-    return model_named(place.model).directions != 1 or place.scene.item.orientation_deg is not None
+    model = model_named(place.model)
+    return model.trace is not None and (model.directions != 1 or place.scene.item.orientation_deg is not None)
 
 
 def _closing(
@@ -276,7 +274,7 @@ class _Shaken:
         azimuth = np.radians(x_azimuth)
         # x points to its azimuth, clockwise from north, and y is a quarter turn further to the left.
         path = np.stack([np.sin(azimuth) * u_x - np.cos(azimuth) * u_y, np.cos(azimuth) * u_x + np.sin(azimuth) * u_y])
-        made = _History(path, path[:, -(padded.samples - motion.samples) // 2 :], model_named(model).name == TURNING)
+        made = _History(path, path[:, -(padded.samples - motion.samples) // 2 :], model_named(model).turns)
         self._kept[key] = made
         if len(self._kept) > KEPT:
             self._kept.popitem(last=False)

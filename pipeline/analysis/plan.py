@@ -146,6 +146,7 @@ def _kind(scene: Scene) -> Hashable:
     # All that the choice of models may look at (see Model.applies): scenes alike in it are decided once.
     known = scene.parameters
     return (
+        scene.object_class,
         scene.support,
         scene.models,
         scene.missing,
@@ -165,11 +166,13 @@ def _choose(scene: Scene) -> tuple[tuple[int, ...], Mapping[str, str]]:
 def _reason(model: Model, scene: Scene) -> str:
     if scene.missing:
         return f"not recorded: {', '.join(scene.missing)}"
-    reason = model.applies(scene)
+    tried = model.name in scene.models
+    # What a model estimates for itself is known where it is tried: elsewhere its lack is no reason.
+    reason = model.applies(scene) if tried or model.estimates is None else ""
     if not reason and isinstance(model.capacity, str) and model.capacity not in scene.parameters:
         reason = f"not recorded: {model.capacity.replace('_', ' ')}"
-    if not reason and model.name not in scene.models:
-        return f"not required: {scene.rule.partition(': ')[2]}; it is free to move instead"
+    if not reason and not tried:
+        return "; ".join(filter(None, (f"not required: {scene.rule.partition(': ')[2]}", model.unasked)))
     return reason
 
 

@@ -9,9 +9,10 @@ from pipeline.analysis.figures import chart_key
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.bench import Bench, Carriage, Trial, checks, passes, why_not
 from pipeline.mitigate.means import LAST, STORED, STORED_SENTENCE, STORED_TITLE, Means, Measure, own_means
-from pipeline.mitigate.measures import DISPLACEMENTS, MEASURES, TOGETHER
+from pipeline.mitigate.measures import MEASURES, TOGETHER
 from pipeline.mitigate.offers import Need, Offer, Proposal, Way
 from pipeline.mitigate.shared import SHARED, case_of, company
+from pipeline.models import settled_by_room
 from pipeline.records import Check, Finding, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 from pipeline.tables import TableError
@@ -102,7 +103,7 @@ def _wanted(findings: Sequence[Finding]) -> bool:
 
 def _for_room_alone(findings: Sequence[Finding]) -> bool:
     still = [f for f in findings if f.verdict is Verdict.UNDETERMINED]
-    return bool(still) and all(f.model in DISPLACEMENTS for f in still)
+    return bool(still) and all(settled_by_room(f.model) for f in still)
 
 
 def _unassessed(

@@ -6,7 +6,7 @@ The parameters are those of a recommendation, by name [SI]; what they are is wha
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from pipeline.analysis.classify import MODELS_OF
+from pipeline.analysis.classify import models_of
 from pipeline.records import Estimate, Origin, Scene, Support
 
 Change = Callable[[Scene, Mapping[str, float]], Scene]
@@ -31,7 +31,7 @@ def _with(scene: Scene, **found: Estimate) -> Scene:
 
 def held(scene: Scene, _parameters: Mapping[str, float] | None = None) -> Scene:
     """Return it held at its base: it neither rocks nor slides, and its critical section bears the push."""
-    return replace(scene, support=Support.FASTENED, models=MODELS_OF[Support.FASTENED])
+    return replace(scene, support=Support.FASTENED, models=models_of(Support.FASTENED))
 
 
 def _cleared(scene: Scene, parameters: Mapping[str, float]) -> Scene:
@@ -71,8 +71,8 @@ def _widened(scene: Scene, parameters: Mapping[str, float]) -> Scene:
         before = scene.parameters.get(name)
         if before is not None:
             found[name] = _exactly(half, "m", "half of the footing plate") if before.high < half else before
-    own = MODELS_OF[Support.FREESTANDING]
-    return replace(_cleared(_with(scene, **found), parameters), models=(*own, *MODELS_OF[Support.FASTENED]))
+    models = dict.fromkeys((*models_of(Support.FREESTANDING), *models_of(Support.FASTENED), *scene.models))
+    return replace(_cleared(_with(scene, **found), parameters), models=tuple(models))
 
 
 def _strengthened(scene: Scene, parameters: Mapping[str, float]) -> Scene:

@@ -13,15 +13,13 @@ from pipeline.mitigate.changes import changed, held, knows_section
 from pipeline.mitigate.holding import footing, force_and_moment, strengths, wax_area, wax_checks
 from pipeline.mitigate.means import Isolator, Means, Measure
 from pipeline.mitigate.offers import Need, Numbers, Offer, Proposal, refused
+from pipeline.models import settled_by_room
 from pipeline.models.stress import STRESS
 from pipeline.quantities import G
 from pipeline.records import Check, Finding, Scene, Support, Verdict
 from pipeline.tables import number, table
 
 Propose = Callable[[Need, Bench, Measure], Proposal]
-
-DISPLACEMENTS = frozenset({"sliding", "swing", "swing_3d", "friction_isolator"})
-"""Models whose failure is a collision: room settles it."""
 
 MARGIN = 1.1
 """Room asked for over the largest demand of the uncertain inputs: the error of the motion is not in it."""
@@ -50,8 +48,8 @@ def keep_clear(need: Need, bench: Bench, measure: Measure) -> Proposal:  # noqa:
     others must pass as they stand: an object that may rock is not helped by room, even where only its sliding is known
     to need some.
     """
-    moving = [f for f in need.findings if f.model in DISPLACEMENTS and f.high is not None]
-    others = [f for f in need.findings if f.model not in DISPLACEMENTS and f.verdict is not Verdict.PASS]
+    moving = [f for f in need.findings if settled_by_room(f.model) and f.high is not None]
+    others = [f for f in need.findings if not settled_by_room(f.model) and f.verdict is not Verdict.PASS]
     if others:
         may = "it fails" if any(f.verdict is Verdict.FAIL for f in others) else "it may fail"
         return refused(f"room does not help: {may} otherwise than by moving")
@@ -68,7 +66,7 @@ def keep_clear(need: Need, bench: Bench, measure: Measure) -> Proposal:  # noqa:
     for f in need.findings:
         demand, used, limit = f.demand or 0.0, f.utilisation or 0.0, f.capacity or 0.0
         passes = f.verdict is Verdict.PASS
-        if f.model in DISPLACEMENTS:
+        if settled_by_room(f.model):
             judged = judge(demand, f.low or 0.0, f.high or 0.0, capacity)
             passes, used, limit = judged.verdict is Verdict.PASS, judged.utilisation, judged.capacity
         checks.append((f.level, Check(f.model, f.title, demand, f.unit, limit, used, passes, f.demand)))
@@ -201,7 +199,7 @@ def wide_base(need: Need, bench: Bench, measure: Measure) -> Proposal:
     allowed = 2.0 * measure.limit * half.value
     if width > allowed:
         return refused(f"it would need a plate {100 * width:.0f} cm wide; {100 * allowed:.0f} cm is allowed")
-    room = up(MARGIN * max((f.high or 0.0 for f in need.findings if f.model in DISPLACEMENTS), default=0.0))
+    room = up(MARGIN * max((f.high or 0.0 for f in need.findings if settled_by_room(f.model)), default=0.0))
     if room > measure.limit_high:
         least = f"the {100 * measure.limit_high:.0f} cm allowed"
         return refused(f"it would need {100 * room:.0f} cm of room around its plate, more than {least}")
@@ -350,7 +348,7 @@ def _rocks(need: Need) -> bool:
 
 
 def _movement(findings: Sequence[Finding]) -> Numbers:
-    moves = [f for f in findings if f.model in DISPLACEMENTS]
+    moves = [f for f in findings if settled_by_room(f.model)]
     return {"movement": (max((f.high or 0.0 for f in moves), default=0.0), "m")}
 
 

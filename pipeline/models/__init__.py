@@ -1,8 +1,9 @@
-"""The registry of generic models: one file and one row each.  Where else a new one is named: README."""
+"""The registry of generic models: one file and one row each, and those of other packages (group ``kouros.models``)."""
 
 from difflib import get_close_matches
 
 from pipeline.errors import InputError
+from pipeline.extensions import Registry
 from pipeline.models.friction_isolator import FRICTION_ISOLATOR
 from pipeline.models.horizontal_isolator import HORIZONTAL_ISOLATOR
 from pipeline.models.oscillator import OSCILLATOR
@@ -13,24 +14,53 @@ from pipeline.models.stress import FLEXIBLE_STRESS, STRESS
 from pipeline.models.swing import SWING, SWING_3D
 from pipeline.records import Model
 
-MODELS: tuple[Model, ...] = (
-    ROCKING,
-    SLIDING,
-    STRESS,
-    FLEXIBLE_STRESS,
-    SWING,
-    SWING_3D,
-    FRICTION_ISOLATOR,
-    HORIZONTAL_ISOLATOR,
-    ROTATIONAL_ISOLATOR,
-    OSCILLATOR,
+
+def _model(value: object) -> Model:
+    """Return what another package offers, as a model; a row that does not fit together refuses itself."""
+    if not isinstance(value, Model):
+        raise InputError(f"it is a {type(value).__name__}; let the entry point name a pipeline.records.Model")
+    kinds = {figure.kind for model in MODELS.own for figure in model.pictures}
+    for figure in value.pictures:
+        if figure.kind in kinds:
+            raise InputError(f"there are pictures of the kind {figure.kind!r} already; give them another")
+    return value
+
+
+MODELS = Registry(
+    "kouros.models",
+    (
+        ROCKING,
+        SLIDING,
+        STRESS,
+        FLEXIBLE_STRESS,
+        SWING,
+        SWING_3D,
+        FRICTION_ISOLATOR,
+        HORIZONTAL_ISOLATOR,
+        ROTATIONAL_ISOLATOR,
+        OSCILLATOR,
+    ),
+    _model,
 )
 
 
 def model_named(name: str) -> Model:
     """Return the model of that name.
 
-    raises : ValueError naming the models there are and the closest one
+    Parameters
+    ----------
+    name : str
+        As ``kouros models`` lists it.
+
+    Returns
+    -------
+    Model
+        Its row.
+
+    Raises
+    ------
+    InputError
+        Naming the models there are and the closest one.
     """
     for model in MODELS:
         if model.name == name:
@@ -39,3 +69,8 @@ def model_named(name: str) -> Model:
     close = get_close_matches(name, names, n=1)
     hint = f"; did you mean {close[0]!r}?" if close else "."
     raise InputError(f"there is no model {name!r}{hint} The models are: {', '.join(names)}")
+
+
+def settled_by_room(name: str) -> bool:
+    """Say whether the failure that a model tells of is a collision, so that room settles it."""
+    return model_named(name).room_settles

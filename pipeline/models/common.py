@@ -1,6 +1,6 @@
 """What several generic models share: flags in words, excitations prepared once, error floors."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 
@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.kernels import flags, samples
 from pipeline.kernels.quiet import block_maxima, demand_ratio
 from pipeline.quantities import Array, G
-from pipeline.records import Excitation, Scene, Support
+from pipeline.records import Curve, Excitation, Scene, Support
 
 SENSITIVE = flags.SENSITIVE
 NO_TILT = 16
@@ -53,10 +53,19 @@ def words(bits: float) -> str:
 
 
 def magnified(motion: Excitation) -> tuple[Excitation, float]:
-    """Return the excitation, and by how much it was multiplied to keep it out of the numbers that a processor is slow
-    with (denormals: 100 times): 1 but for one below FAINTEST, to which every response is in proportion.
+    """Keep an excitation out of the numbers that a processor is slow with (denormals: 100 times).
 
-    What holds a body, which is not multiplied here, must be.
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction or in two.
+
+    Returns
+    -------
+    motion : Excitation
+        Multiplied where its peak is below FAINTEST, where every response is in proportion to it.
+    times : float
+        By how much, 1 as a rule.  What holds a body, which is not multiplied here, must be.
     """
     rows = (motion.x, motion.z) if motion.y is None else (motion.x, motion.y, motion.z)
     peak = max(float(np.abs(row).max()) for row in rows)
@@ -99,7 +108,18 @@ def contact_lost(motion: Excitation, size: int) -> Array:
 
 @lru_cache(maxsize=_KNOWN)
 def largest_push(motion: Excitation) -> float:
-    """Return A_max [m/s2]: the peak along the direction, or the peak resultant of two."""
+    """Return A_max: the peak along the direction, or the peak resultant of two.
+
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction or in two.
+
+    Returns
+    -------
+    float
+        [m/s2].
+    """
     return float(np.max(np.abs(motion.x) if motion.y is None else np.hypot(motion.x, motion.y)))
 
 
@@ -109,7 +129,18 @@ _STRONGEST = 64
 
 @lru_cache(maxsize=_KNOWN)
 def smallest_push(motion: Excitation) -> float:
-    """Return a lower bound of A_max [m/s2] along any direction; along the one of the excitation it is A_max itself."""
+    """Return a lower bound of A_max along any direction; along the one of the excitation it is A_max itself.
+
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction or in two.
+
+    Returns
+    -------
+    float
+        [m/s2].
+    """
     if motion.y is None:
         return largest_push(motion)
     half = np.radians(0.25)
@@ -128,7 +159,18 @@ def smallest_push(motion: Excitation) -> float:
 
 
 def largest_speed(motion: Excitation) -> float:
-    """Return V_max [m/s]: what the manifest says, or the peak ground velocity, between the samples too."""
+    """Return V_max: what the manifest says, or the peak ground velocity, between the samples too.
+
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction or in two.
+
+    Returns
+    -------
+    float
+        [m/s].
+    """
     if motion.v_max is not None:
         return motion.v_max
     v = _velocity(motion.x, motion.dt, motion.start[0])
@@ -158,7 +200,15 @@ def after_record(motion: Excitation) -> int:
 def lift_ratios(motion: Excitation) -> tuple[float, float]:
     """Return the largest -a / N and a / N over time, N = max(0, g + a_z): what lifts either edge of a body of slope 1.
 
-    For two directions both are the largest |a_h| / N.  Infinite where contact is lost under a push.
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction or in two.
+
+    Returns
+    -------
+    to_positive, to_negative : float
+        [-]; for two directions both are the largest |a_h| / N.  Infinite where contact is lost under a push.
     """
     weight = np.maximum(0.0, G + motion.z)
     if motion.y is not None:
@@ -178,19 +228,85 @@ def _ratio(push: Array, weight: Array) -> float:
     return float(np.max(np.divide(push, weight, out=np.zeros_like(push), where=weight > 0.0)))
 
 
+def curve(label: str, x: Sequence[float] | Array, y: Sequence[float] | Array) -> Curve:
+    """Return a line of a picture, to five digits: finer than any that is drawn.
+
+    Parameters
+    ----------
+    label : str
+        What it is called; "" for the only one.
+    x, y : array_like of float, shape (n,)
+        In the units of the picture's axes.
+
+    Returns
+    -------
+    Curve
+        The line.
+    """
+    return Curve(label, tuple(map(rounded, x)), tuple(map(rounded, y)))
+
+
+def rounded(value: float) -> float:
+    """Return a number to the five digits that a picture is drawn with."""
+    return float(f"{value:.5g}")
+
+
 def broadcast(parameters: Mapping[str, Array], name: str) -> Array:
     """Return one parameter as a contiguous array."""
     return np.ascontiguousarray(parameters[name], dtype=np.float64)
 
 
+def grid(**values: Sequence[float]) -> dict[str, list[float]]:
+    """Return every combination of some values, as columns.
+
+    Parameters
+    ----------
+    **values : sequence of float
+        By name.
+
+    Returns
+    -------
+    dict of str to list of float
+        Columns by name, of one length.
+    """
+    columns = np.meshgrid(*values.values())
+    return {name: column.ravel().tolist() for name, column in zip(values, columns, strict=True)}
+
+
 def needs(scene: Scene, *names: str) -> str:
-    """Return "" when the scene has all these parameters, else which are missing."""
+    """Return "" when the scene has all these parameters, else which are missing.
+
+    Parameters
+    ----------
+    scene : Scene
+        An object where it stands.
+    *names : str
+        Of parameters.
+
+    Returns
+    -------
+    str
+        For `Model.applies`.
+    """
     missing = [n for n in names if n not in scene.parameters]
     return f"not known: {', '.join(missing)}" if missing else ""
 
 
 def unless_free(scene: Scene, what: str) -> str:
-    """Return the reason why an object that is not free on its support does not {what}; "" when it is free."""
+    """Return the reason why an object that is not free on its support does not {what}; "" when it is free.
+
+    Parameters
+    ----------
+    scene : Scene
+        An object where it stands.
+    what : str
+        A verb, such as "rock".
+
+    Returns
+    -------
+    str
+        For `Model.applies`.
+    """
     reasons = {
         Support.FASTENED: f"it is fastened to its support, so it does not {what}",
         Support.HUNG: f"it hangs on a wall, so it does not {what}",

@@ -15,12 +15,32 @@ CLOSE = 1e-3
 def worst_direction(
     model: Model, motion: Motion, values: Mapping[str, Array], refine: int, tail: float | None, azimuth_step: float
 ) -> tuple[Columns, Array]:
-    """Return the columns of each row's worst direction, as `run` gives them with an estimate, and that direction (n,).
+    """Return the response of each row in its worst direction.
 
-    azimuth_step : degrees between the directions that are looked at, each first with half the refinement
-    error        : a direction counts as the worst once no other one, as the coarse step found it, is within CLOSE below
-                   it or above.  Where an outcome of one direction hangs on the amplitude and another direction settles
-                   it, the error covers the first output of that one too
+    A direction counts as the worst once no other one, as the coarse step found it, is within CLOSE below it or above.
+
+    Parameters
+    ----------
+    model : Model
+        One that is shaken along one direction.
+    motion : Motion
+        What shakes.
+    values : mapping of str to ndarray, shape (n,)
+        Its parameters.
+    refine : int
+        As in `Model.run`; each direction is looked at with half of it first.
+    tail : float or None
+        Seconds of rest after the record; None: until rest.
+    azimuth_step : float
+        Degrees between the directions that are looked at.
+
+    Returns
+    -------
+    columns : Columns
+        As `Model.run` gives them with an estimate.  Where an outcome of one direction hangs on the amplitude and
+        another direction settles it, the error covers the first output of that one too.
+    direction : ndarray, shape (n,)
+        Degrees from x towards y.
     """
     size = next(iter(values.values())).size
     turn = 180.0 if model.symmetric(values) else 360.0

@@ -47,12 +47,29 @@ def integrate(
     history: Array | None = None,
     rest: float = REST,
 ) -> Array:
-    """Return what `kernels.rocking.rocking_batch` finds, (n, 8).
+    """Return what `kernels.rocking.rocking_batch` finds.
 
-    body  : (n, 6), initial : (n,) rad, refine : as in that kernel
-    until : (n,) s, after which a body that has calmed down is not followed; None: every body is, to the end
-    history : (k, 1), receives the angle of a single body at the samples; None: nobody asks
-    rest  : as in that kernel
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction.
+    body : ndarray, shape (n, 6)
+        As from `models.rocking.bodies`.
+    initial : ndarray, shape (n,)
+        Angle that each is released at [rad].
+    refine : int
+        As in that kernel.
+    until : ndarray, shape (n,), optional
+        [s] after which a body that has calmed down is not followed; None: every body is, to the end.
+    history : ndarray, shape (k, 1), optional
+        Receives the angle of a single body at the samples [rad].
+    rest : float
+        As in that kernel.
+
+    Returns
+    -------
+    ndarray, shape (n, 8)
+        Columns RATIO, FELL, FELL_AT, LIFTED_AT, IMPACTS, FLAGS, LAST_NEAR and RESTED.
     """
     quiet = Quiet(motion)
     results = np.empty((body.shape[0], 8))
@@ -79,12 +96,27 @@ def integrate(
 def flips(motion: Excitation, body: Array, initial: Array, uplift: Array, found: Array) -> NDArray[np.bool_]:
     """Return which bodies may stand instead of fall, or fall instead of stand, within 1 % of the motion's amplitude.
 
-    body, initial : as in `integrate`;  uplift : (n,) largest uplift ratio;  found : (n, 8) their own response
-    error         : of 1,506 flips that 81 amplitudes show it finds 97 of 100, and it says so of 19 of 100 of the other
-                    bodies that lift an edge, at 44 % of the cost of two integrations (22,400 bodies, seven records,
-                    scaled to 0.2 to 0.7 g).  Of 120 of those others, in random motions, 16 flip at one of 1,601:
-                    the rest fall at another time, or tip to another angle.  What stays below NEAR, or falls at once, is
-                    not asked.
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction.
+    body, initial : ndarray
+        As in `integrate`.
+    uplift : ndarray, shape (n,)
+        Largest uplift ratio [-].
+    found : ndarray, shape (n, 8)
+        Their own response, as from `integrate`.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        What stays below NEAR, or falls at once, is not asked.
+
+    Notes
+    -----
+    Of 1,506 flips that 81 amplitudes show it finds 97 of 100, and it says so of 19 of 100 of the other bodies that lift
+    an edge, at 44 % of the cost of two integrations (22,400 bodies, seven records, scaled to 0.2 to 0.7 g).  Of 120 of
+    those others, in random motions, 16 flip at one of 1,601: the rest fall at another time, or tip to another angle.
     """
     fallen = found[:, FELL] > 0.0
     took = (found[:, FELL_AT] - np.maximum(0.0, found[:, LIFTED_AT])) * np.sqrt(G * body[:, 2])

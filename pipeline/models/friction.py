@@ -36,9 +36,22 @@ def stick_slip(
 ) -> Columns:
     """Run n bodies on dry friction, with a spring and a dashpot where w > 0.
 
-    w [rad/s], zeta, mu_s, mu_k [-] : (n,)
-    returns : displacement, residual, path [m], acceleration [m/s2], error of the displacement [m] and of the
-              acceleration [m/s2], note; (n,) each
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction, which is solved in closed form, or in two, which is integrated.
+    w, zeta, mu_s, mu_k : ndarray, shape (n,)
+        Natural frequency [rad/s], damping ratio, friction at rest and while slipping [-].
+    refine : int
+        How much finer than the coarsest step two directions are integrated.
+    estimate : bool
+        Whether errors are estimated, by another pass; else those of two directions are NaN.
+
+    Returns
+    -------
+    Columns
+        displacement, residual, path_length [m], acceleration [m/s2], error of the displacement [m],
+        acceleration_error [m/s2] and note, (n,) each.
     """
     shaking, times = magnified(motion)
     quiet = Quiet(shaking)
@@ -138,9 +151,19 @@ def _steps(w: Array, refine: int) -> tuple[float, float]:
 def slip_bounds(motion: Excitation, mu_s: Array, mu_k: Array, *outputs: str) -> Bounds:
     """Return guaranteed bounds of what n bodies without a spring do on dry friction (the proof is in kernels.bounds).
 
-    mu_s, mu_k [-] : (n,), mu_k <= mu_s
-    outputs : those wanted of displacement, residual, path_length [m], exactly 0 where nothing slips and infinite above
-              where nothing stops it, and acceleration [m/s2]
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction or in two.
+    mu_s, mu_k : ndarray, shape (n,)
+        Friction at rest and while slipping [-], mu_k <= mu_s.
+    *outputs : str
+        Those wanted of displacement, residual, path_length [m] and acceleration [m/s2].
+
+    Returns
+    -------
+    Bounds
+        Of each of them; exactly 0 where nothing slips, and infinite above where nothing stops it.
     """
     quiet = Quiet(motion)
     results = np.empty((mu_s.size, 4))
@@ -170,7 +193,20 @@ def slip_bounds(motion: Excitation, mu_s: Array, mu_k: Array, *outputs: str) -> 
 
 
 def stick_slip_trace(motion: Excitation, w: float, zeta: float, mu_s: float, mu_k: float) -> Columns:
-    """Return u_x, u_y [m] and the absolute accelerations a_x, a_y [m/s2] of one body at the samples, (n,) each."""
+    """Return the time history of one body at the samples.
+
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction or in two.
+    w, zeta, mu_s, mu_k : float
+        As in `stick_slip`.
+
+    Returns
+    -------
+    Columns
+        u_x, u_y [m] against its support and the absolute accelerations a_x, a_y [m/s2], (n,) each.
+    """
     quiet = Quiet(motion)
     arrays = [np.array([p]) for p in (w, zeta, mu_s, mu_k)]
     results, samples = np.empty((1, 7)), quiet.x.size + after_record(motion)
@@ -186,7 +222,20 @@ def stick_slip_trace(motion: Excitation, w: float, zeta: float, mu_s: float, mu_
 def kinetic(parameters: Mapping[str, Array]) -> Array:
     """Return the kinetic friction: the static one where none is given.
 
-    raises : ValueError where the kinetic friction is above the static one: such a body could neither slip nor stick
+    Parameters
+    ----------
+    parameters : mapping of str to ndarray, shape (n,)
+        friction_static and friction_kinetic [-]; NaN for what is not given.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-].
+
+    Raises
+    ------
+    InputError
+        Where the kinetic friction is above the static one: such a body could neither slip nor stick.
     """
     mu_s, mu_k = parameters["friction_static"], parameters["friction_kinetic"]
     above = np.flatnonzero(mu_k > mu_s)

@@ -1,4 +1,14 @@
-"""Generic isolator: a low-friction interface (Agbabian et al. 1991, sec. 2.6 and Table 2)."""
+r"""Generic isolator: a low-friction interface, which slides as a rigid body does and passes on what friction gives.
+
+.. math::
+
+    u'' = -a_h - \mu_k N \frac{u'}{|u'|}, \qquad a_{\mathrm{on}} = a_h + u''
+
+References
+----------
+Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+methods for museum objects. Studies in Conservation 36. Sec. 2.6 and Table 2.
+"""
 
 from collections.abc import Mapping
 
@@ -6,9 +16,9 @@ import numpy as np
 
 from pipeline.models.common import needs
 from pipeline.models.friction import kinetic, slip_bounds, stick_slip, stick_slip_trace
-from pipeline.models.sliding import FRICTION_AXIS, FRICTION_KINETIC, FRICTION_STATIC
+from pipeline.models.sliding import FRICTION_AXIS, FRICTION_EXTREMES, FRICTION_KINETIC, FRICTION_STATIC
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support
+from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support, Trials
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
@@ -62,4 +72,9 @@ FRICTION_ISOLATOR = Model(
     sentence="On its low-friction pad it slides up to {demand}; there is room for {capacity}.",
     at_most="On its low-friction pad it slides at most {demand} (at most {high}); there is room for {capacity}.",
     fails="slides",
+    trials=Trials(ranges={"friction_static": (0.03, 0.15)}, extremes=FRICTION_EXTREMES),
+    listed="Table 2, Isolator, friction: Low friction interface",
+    supports=(Support.ISOLATED,),
+    needs_size=False,
+    room_settles=True,
 )

@@ -1,14 +1,26 @@
-"""Generic isolator: horizontal, with spring, viscous damping and Coulomb friction (Agbabian et al. 1991, Figure 6)."""
+r"""Generic isolator: horizontal, with spring, viscous damping and Coulomb friction.
+
+With stick phases, while the spring and the push are less than the friction,
+
+.. math::
+
+    u'' + 2 \zeta \omega u' + \omega^2 u + \mu N \frac{u'}{|u'|} = -a_h, \qquad a_{\mathrm{on}} = a_h + u''
+
+References
+----------
+Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+methods for museum objects. Studies in Conservation 36. Sec. 2.6 and Figure 6.
+"""
 
 from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.models.common import needs
+from pipeline.models.common import grid, needs
 from pipeline.models.friction import stick_slip, stick_slip_trace
 from pipeline.models.sliding import DIRECTIONS
 from pipeline.quantities import Array, Quantity
-from pipeline.records import ChartAxis, Columns, Excitation, Model, Scene, Support
+from pipeline.records import Axis, ChartAxis, ChartFigure, Columns, Excitation, Model, Scene, Support, Trials
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
@@ -58,4 +70,25 @@ HORIZONTAL_ISOLATOR = Model(
     applies=_applies,
     sentence="Its isolator moves {demand}; its stroke is {capacity}.",
     fails="exceeds the stroke of its isolator",
+    trials=Trials(
+        ranges={"frequency": (0.3, 2.0), "damping": (0.02, 0.2), "friction": (0.0, 0.15)},
+        extremes=grid(frequency=[0.02, 1.0, 500.0], damping=[0.0, 1.0, 2.0], friction=[0.0, 1e-6, 5.0]),
+        sample={"frequency": 10.0, "damping": 0.1, "friction": 0.05},
+        promised=5e-4,
+    ),
+    listed="Table 2, Isolator, horizontal: Coulomb friction & viscous damping",
+    supports=(Support.ISOLATED,),
+    pictures=(
+        ChartFigure(
+            "isolator",
+            title="Horizontal isolator",
+            caption=(
+                "Peak horizontal acceleration passed on, with 2 % viscous damping and four friction coefficients."
+            ),
+            x=Axis("Isolator frequency", "Hz", "log"),
+            y=Axis("Peak acceleration", "m/s2"),
+            source="Agbabian et al. 1991, Figure 6",
+            curves={f"friction {m:.2f}": {"friction": m, "damping": 0.02} for m in (0.05, 0.10, 0.15, 0.20)},
+        ),
+    ),
 )

@@ -1,4 +1,16 @@
-"""The damped oscillator (Nigam and Jennings 1969): response spectra, flexible plinths, and the core of two models."""
+r"""The damped oscillator: response spectra, flexible plinths, and the core of two models.
+
+.. math::
+
+    u'' + 2 \zeta \omega u' + \omega^2 u = -a
+
+by the recursion that is exact for an excitation that is linear between its samples.
+
+References
+----------
+Nigam, N. C. and Jennings, P. C. (1969). Calculation of response spectra from strong-motion earthquake records. Bulletin
+of the Seismological Society of America 59.
+"""
 
 from collections.abc import Mapping
 
@@ -7,10 +19,10 @@ import numpy as np
 from pipeline.errors import InputError
 from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
-from pipeline.models.common import ROUNDING, after_record
+from pipeline.models.common import ROUNDING, after_record, curve, grid
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Bounds, Columns, Excitation, Model, Scene
+from pipeline.records import Axis, Bounds, Chart, Columns, Excitation, Figure, Model, Motion, Scene, Trials
 
 MOST_PHASE = 2e6
 """Radians of an oscillator's own, its damping counted in, in a sample interval from which on it is refused."""
@@ -21,11 +33,28 @@ PROMISED = 1e-9
 OSCILLATES = "its recursion is exact and fast, its spectrum so jagged that a chart takes thousands of analyses"
 """Why what follows a response spectrum is not tabulated."""
 
+EXTREMES = grid(frequency=[0.02, 1.0, 20.0, 500.0], damping=[0.0, 1.0, 2.0])
+
 
 def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[Array, Array]:
-    """Return the largest |u| [m] and |a + share u''| [m/s2] of n oscillators, (n,) each.
+    """Return the largest |u| and |a + share u''| of n oscillators.
 
-    raises : ValueError for an oscillator that turns more than MOST_PHASE in a sample interval
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction.
+    w, zeta, share : ndarray, shape (n,)
+        Natural frequency [rad/s], damping ratio [-], share of u'' that is felt [-].
+
+    Returns
+    -------
+    displacement, acceleration : ndarray, shape (n,)
+        [m], [m/s2].
+
+    Raises
+    ------
+    InputError
+        For an oscillator that turns more than MOST_PHASE in a sample interval.
     """
     phase = w * (1.0 + 2.0 * zeta) * motion.dt
     if phase.max(initial=0.0) > MOST_PHASE:
@@ -45,11 +74,23 @@ Between = tuple[Array, Array]
 
 
 def oscillate_bounds(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[Between, Between]:
-    """Return what the largest |u| [m] and |a + share u''| [m/s2] of n oscillators lie between, (low, high) each.
+    """Return what the largest |u| and |a + share u''| of n oscillators lie between.
 
     The oscillator is linear: shaken along any direction it answers with the components of its answers to x and to y, so
     that their peaks' resultant bounds every direction, for the cost of two.  Along one direction both bounds are the
     answer itself.
+
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction or in two.
+    w, zeta, share : ndarray, shape (n,)
+        As in `oscillate`.
+
+    Returns
+    -------
+    displacement, acceleration : tuple of two ndarray, shape (n,)
+        Low and high [m], [m/s2].
     """
     peaks = oscillate(motion, w, zeta, share)
     if motion.y is None:
@@ -100,6 +141,27 @@ def _applies(_scene: Scene) -> str:
     return "a building block of other models and of response spectra, not an object"
 
 
+SPECTRUM_FREQUENCIES = np.round(np.geomspace(0.2, 50.0, 96), 4)
+
+
+def _spectrum(key: str, motion: Motion) -> Chart:
+    curves = []
+    for label, angle in (("east", 0.0), ("north", 90.0)):
+        for damping in (0.02, 0.05):
+            given = {"frequency": SPECTRUM_FREQUENCIES, "damping": np.full_like(SPECTRUM_FREQUENCIES, damping)}
+            felt = _run(motion.excitation(angle), given, 1, False)["pseudo_acceleration"]
+            curves.append(curve(f"{label}, {100.0 * damping:.0f} %", SPECTRUM_FREQUENCIES, felt))
+    return Chart(
+        key,
+        "Acceleration felt by a flexible object",
+        "Pseudo-acceleration of an oscillator; a rigid object (33 Hz and more) feels the peak acceleration.",
+        Axis("Natural frequency", "Hz", "log"),
+        Axis("Pseudo-acceleration", "m/s2"),
+        tuple(curves),
+        source="Agbabian et al. 1991, sec. 2.5; Nigam and Jennings 1969",
+    )
+
+
 OSCILLATOR = Model(
     name="oscillator",
     title="Oscillator",
@@ -122,4 +184,11 @@ OSCILLATOR = Model(
     applies=_applies,
     sentence="It moves {demand} against its base; there is room for {capacity}.",
     fails="moves too far",
+    trials=Trials(
+        ranges={"frequency": (0.5, 20.0), "damping": (0.01, 0.1)},
+        extremes=EXTREMES,
+        sample={"frequency": 100.0, "damping": 0.02},
+        promised=1e-9,
+    ),
+    pictures=(Figure("spectrum", _spectrum),),
 )

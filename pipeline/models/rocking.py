@@ -1,4 +1,30 @@
-"""Generic model 1: rigid body rocking (Agbabian et al. 1991, sec. 2.1; Housner 1963; Ishiyama 1982)."""
+r"""Generic model 1: rigid body rocking.
+
+With s the sign of the angle theta [rad], R the distance from an edge to the centre of gravity, alpha the slenderness
+and rho the radius of gyration,
+
+.. math::
+
+    \theta'' = -p^2 \left[\left(1 + \frac{a_z}{g}\right) \sin(s\alpha - \theta)
+               + \frac{a_h}{g} \cos(s\alpha - \theta)\right], \qquad p^2 = \frac{g R}{\rho^2 + R^2}
+
+and at each landing, by the angular momentum about the new edge (b to either side, h high),
+
+.. math::
+
+    \theta'_+ = e\,\theta'_-, \qquad e = \max\left(0, \frac{\rho^2 + h^2 - b_1 b_2}{\rho^2 + R_2^2}\right)
+
+An edge lifts at |a_h| > (g + a_z) b/h.  The screen is the paper's: A_max/g > B/H' and V_max > 10 B/sqrt(H') [cm, s].
+
+References
+----------
+Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+methods for museum objects. Studies in Conservation 36. Sec. 2.1.
+Housner, G. W. (1963). The behavior of inverted pendulum structures during earthquakes. Bulletin of the Seismological
+Society of America 53.
+Ishiyama, Y. (1982). Motions of rigid bodies and criteria for overturning by earthquake excitations. Earthquake
+Engineering and Structural Dynamics 10.
+"""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -16,6 +42,7 @@ from pipeline.models.common import (
     SENSITIVE,
     broadcast,
     contact_lost,
+    curve,
     largest_push,
     largest_speed,
     lift_ratios,
@@ -24,7 +51,20 @@ from pipeline.models.common import (
 )
 from pipeline.models.flips import FELL, FELL_AT, FLAGS, IMPACTS, LAST_NEAR, LIFTED_AT, RATIO, RESTED, flips, integrate
 from pipeline.quantities import Array, G, Quantity
-from pipeline.records import Bounds, Columns, Excitation, Model, Scene
+from pipeline.records import (
+    Axis,
+    Bounds,
+    Chart,
+    Columns,
+    Excitation,
+    Figure,
+    Model,
+    Motion,
+    Scene,
+    Support,
+    Trials,
+    Zone,
+)
 
 VELOCITY_SCREEN = 1.0
 """V_max > 10 B / sqrt(H') in cm and s is V_max > 1.0 B / sqrt(H') in m and s (Ishiyama 1982, in the paper's form)."""
@@ -58,9 +98,18 @@ lifts an edge in a time of 1 / p."""
 
 
 def bodies(parameters: Mapping[str, Array]) -> Array:
-    """Return what the kernel needs of each body, (n, 6): alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-].
+    """Return what the kernel needs of each body.
 
-    c = R / (rho^2 + R^2), so that p^2 = g c; restitution from the angular momentum about the new edge, never below 0.
+    Parameters
+    ----------
+    parameters : mapping of str to ndarray, shape (n,)
+        Those of the model, in SI; NaN for what is not given.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+        alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]: c = R / (rho^2 + R^2), so that p^2 = g c, and the restitution
+        from the angular momentum about the new edge, never below 0.
     """
     b1, h = parameters["half_width"], parameters["cg_height"]
     other = parameters["half_width_other"]
@@ -77,9 +126,19 @@ def bodies(parameters: Mapping[str, Array]) -> Array:
 
 
 def uplift_ratios(motion: Excitation, body: Array) -> Array:
-    """Return the largest |a_h| / (N b/h) over time (n,): exact along a direction, the most of any for two directions.
+    """Return the largest |a_h| / (N b/h) over time, N = max(0, g + a_z).
 
-    body : (n, 6) as from `bodies`
+    Parameters
+    ----------
+    motion : Excitation
+        Along a direction, of which the ratio is exact, or in two, of which it is the most of any direction.
+    body : ndarray, shape (n, 6)
+        As from `bodies`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [-]; infinite where contact is lost under a push.
     """
     to_positive, to_negative = lift_ratios(motion)
     return np.maximum(to_positive / np.tan(body[:, 0]), to_negative / np.tan(body[:, 1]))
@@ -246,6 +305,60 @@ def _applies(scene: Scene) -> str:
     return unless_free(scene, "rock") or needs(scene, "half_width", "cg_height")
 
 
+def _stability(key: str, motion: Motion) -> Chart:
+    # Figure 2: base width against equivalent height H' = 2 h_cg.  The lines are the paper's screens A_max/g = B/H' and
+    # V_max = 10 B/sqrt(H') (Ishiyama 1982).  Overturning asks for both: below their crossing no object rocks without.
+    excitation = motion.excitation(None)
+    slope = largest_push(excitation) / G
+    speed = largest_speed(excitation) / VELOCITY_SCREEN
+    heights = np.geomspace(0.02, 5.0, 40)
+    uplift = slope * heights
+    overturn = np.minimum(uplift, speed * np.sqrt(heights))
+    low, high = 0.005, 5.0
+
+    def band(label: str, bottom: Array, top: Array, tone: str) -> Zone:
+        xs = np.concatenate([heights, heights[::-1]])
+        ys = np.clip(np.concatenate([bottom, top[::-1]]), low, high)
+        outline = curve("", xs, ys)
+        return Zone(label, outline.x, outline.y, tone)
+
+    floor, ceiling = np.full_like(heights, low), np.full_like(heights, high)
+    zones = (
+        band("stands", uplift, ceiling, "safe"),
+        band("rocks", overturn, uplift, "warn"),
+        band("overturns", floor, overturn, "danger"),
+    )
+    crossing = (speed / slope) ** 2 if slope > 0.0 else 0.0
+    caption = (
+        f"Peak resultant acceleration {slope:.2f} g, velocity {100.0 * speed * VELOCITY_SCREEN:.0f} cm/s. "
+        "H' is twice the height of the centre of gravity. "
+        f"Below H' = {100.0 * crossing:.0f} cm there is no band in which an object rocks without overturning. "
+        "The lines are the paper's closed-form criteria; the verdict comes from the time history."
+    )
+    return Chart(
+        key,
+        "Rocking stability",
+        caption,
+        Axis("Equivalent height H'", "m", "log"),
+        Axis("Base width B", "m", "log"),
+        (
+            curve("A_max/g = B/H'", heights, uplift),
+            curve("V_max = 10 B/√H'", heights, np.clip(speed * np.sqrt(heights), low, high)),
+        ),
+        zones,
+        source="Agbabian et al. 1991, Figure 2; Ishiyama 1982",
+    )
+
+
+_ALPHAS = np.tile([0.02, 0.2, 1.2], 3)
+_EXTREMES = {
+    "half_width": (0.3 * np.tan(_ALPHAS)).tolist(),
+    "cg_height": [0.3] * 9,
+    "restitution": np.repeat([0.0, 0.6, 1.0], 3).tolist(),
+}
+"""Plates, columns and boxes, each with a landing that takes all, some and nothing of its rate."""
+
+
 def _symmetric(parameters: Mapping[str, Array]) -> bool:
     other = parameters["half_width_other"]
     same = np.isnan(other) | (other == parameters["half_width"])
@@ -271,8 +384,8 @@ ROCKING = Model(
     gives=(
         Quantity("rotation_ratio", "-", "largest |theta| / alpha"),
         Quantity("overturned", "bool", "reached a quarter turn"),
-        Quantity("overturning_time", "s", "when it did; empty if it did not"),
-        Quantity("uplift_time", "s", "when an edge first lifted; empty if none did"),
+        Quantity("overturning_time", "s", "when it did; empty if it did not", optional=True),
+        Quantity("uplift_time", "s", "when an edge first lifted; empty if none did", optional=True),
         Quantity("impacts", "count", "landings at 1e-3 p alpha or faster"),
         Quantity("uplift_ratio", "-", "largest |a_h| / (max(0, g + a_z) b/h)"),
     ),
@@ -300,5 +413,14 @@ ROCKING = Model(
         "it rocks."
     ),
     fails=ROCKS,
+    trials=Trials(
+        ranges={"half_width": (0.02, 0.4), "cg_height": (0.05, 1.0)},
+        extremes=_EXTREMES,
+        sample={"half_width": 0.2, "cg_height": 0.5},
+        promised=1e-4,
+    ),
+    listed="Table 1, Rigid: Rocking",
+    supports=(Support.FREESTANDING,),
+    pictures=(Figure("stability", _stability),),
     says=(HARMLESS, OVERTURNS),
 )

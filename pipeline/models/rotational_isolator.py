@@ -1,4 +1,16 @@
-"""Generic isolator: rotational, a damped oscillator about the base (Agbabian et al. 1991, sec. 2.6)."""
+r"""Generic isolator: rotational, a damped oscillator about the base.
+
+With the moment of inertia I about the pivot, c and k of the pad and the centre of gravity h above it,
+
+.. math::
+
+    I \theta'' + c\,\theta' + (k - m g h)\,\theta = -m h\,a_h
+
+References
+----------
+Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+methods for museum objects. Studies in Conservation 36. Sec. 2.6.
+"""
 
 from collections.abc import Mapping
 
@@ -8,9 +20,9 @@ from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_history
 from pipeline.models.common import ROUNDING, after_record, needs
 from pipeline.models.horizontal_isolator import DAMPING
-from pipeline.models.oscillator import OSCILLATES, oscillate, oscillate_bounds
+from pipeline.models.oscillator import EXTREMES, OSCILLATES, oscillate, oscillate_bounds
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support
+from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support, Trials
 
 
 def _run(
@@ -52,6 +64,8 @@ def _applies(scene: Scene) -> str:
     return needs(scene, "frequency", "damping", "cg_height", "inertia_ratio", "rotation_limit")
 
 
+_MANY = len(EXTREMES["frequency"])
+
 ROTATIONAL_ISOLATOR = Model(
     name="rotational_isolator",
     title="Rotational isolator",
@@ -80,4 +94,15 @@ ROTATIONAL_ISOLATOR = Model(
     sentence="Its pad lets it turn by {demand}; {capacity} is allowed.",
     at_most="Its pad lets it turn by at most {demand}; {capacity} is allowed.",
     fails="turns too far on its pad",
+    trials=Trials(
+        ranges={
+            "frequency": (1.0, 8.0),
+            "damping": (0.05, 0.3),
+            "cg_height": (0.1, 1.0),
+            "inertia_ratio": (1.1, 1.6),
+        },
+        extremes={**EXTREMES, "cg_height": [0.5] * _MANY, "inertia_ratio": [1.3] * _MANY},
+    ),
+    listed="Table 2, Isolator, rotational: Damped oscillator",
+    supports=(Support.ISOLATED,),
 )

@@ -1,13 +1,40 @@
-"""Generic model 2: rigid body sliding (Agbabian et al. 1991, sec. 2.2 and Figures 3 and 4; Newmark 1965)."""
+r"""Generic model 2: rigid body sliding.
+
+With u [m] from where it stood, N = max(0, g + a_z) and friction mu_s at rest and mu_k while it slips,
+
+.. math::
+
+    u'' = -a_h - \mu_k N \frac{u'}{|u'|}, \qquad \text{at rest while } |a_h| \le \mu_s N
+
+References
+----------
+Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+methods for museum objects. Studies in Conservation 36. Sec. 2.2, Figures 3 and 4.
+Newmark, N. M. (1965). Effects of earthquakes on dams and embankments. Geotechnique 15.
+"""
 
 from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.models.common import lift_ratios, needs, unless_free
+from pipeline.models.common import curve, lift_ratios, needs, unless_free
 from pipeline.models.friction import kinetic, slip_bounds, stick_slip, stick_slip_trace
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Bounds, ChartAxis, Columns, Excitation, Model, Scene
+from pipeline.records import (
+    Axis,
+    Bounds,
+    Chart,
+    ChartAxis,
+    ChartFigure,
+    Columns,
+    Excitation,
+    Figure,
+    Model,
+    Motion,
+    Scene,
+    Support,
+    Trials,
+)
 
 FRICTION_STATIC = Quantity("friction_static", "-", "coefficient at rest", 0.0)
 FRICTION_KINETIC = Quantity(
@@ -24,6 +51,8 @@ FRICTION_AXIS = ChartAxis(
     # From here on it rests: it moves only where |a_h| exceeds mu (g + a_z).
     settled=lambda motion: max(lift_ratios(motion)),
 )
+
+FRICTION_EXTREMES = {"friction_static": [0.0, 1e-6, 0.1, 5.0]}
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
@@ -59,6 +88,29 @@ def _applies(scene: Scene) -> str:
     return unless_free(scene, "slide") or needs(scene, "friction_static")
 
 
+PATH_FRICTION = 0.05
+PATH_POINTS = 1500
+
+
+def _path(key: str, motion: Motion) -> Chart:
+    # Figure 3.
+    given = {"friction_static": PATH_FRICTION, "friction_kinetic": np.nan, "directions": 2.0}
+    path = _trace(motion.excitation(None, 0.0), given)
+    every = max(1, path["u_x"].size // PATH_POINTS)
+    x, y = path["u_x"][::every], path["u_y"][::every]
+    far = float(np.hypot(path["u_x"], path["u_y"]).max())
+    return Chart(
+        key,
+        f"Path of an object with friction {PATH_FRICTION:g}",
+        f"Seen from above, from where it stood (0, 0). It gets {100.0 * far:.1f} cm away.",
+        Axis("East", "m"),
+        Axis("North", "m"),
+        (curve("", x, y),),
+        equal=True,
+        source="Agbabian et al. 1991, Figure 3",
+    )
+
+
 SLIDING = Model(
     name="sliding",
     title="Sliding",
@@ -88,4 +140,27 @@ SLIDING = Model(
         "for {capacity}."
     ),
     fails="slides",
+    trials=Trials(
+        ranges={"friction_static": (0.1, 0.6)},
+        extremes=FRICTION_EXTREMES,
+        sample={"friction_static": 0.1},
+        promised=5e-4,
+    ),
+    listed="Table 1, Rigid: Sliding",
+    supports=(Support.FREESTANDING,),
+    needs_size=False,
+    room_settles=True,
+    pictures=(
+        ChartFigure(
+            "sliding",
+            title="Sliding against friction",
+            caption="Largest distance an object slides from where it stood, for each friction coefficient of its base.",
+            x=Axis("Friction coefficient", "-", "log"),
+            y=Axis("Largest displacement", "m"),
+            source="Agbabian et al. 1991, Figure 4",
+            curves={"": {}},
+            decides=True,
+        ),
+        Figure("path", _path),
+    ),
 )

@@ -1,6 +1,21 @@
-"""Generic models 3 and 6: stress at a critical section, rigid and flexible (Agbabian et al. 1991, sec. 2.3 and 2.5)."""
+r"""Generic models 3 and 6: stress at a critical section, rigid and flexible.
 
-from collections.abc import Mapping
+With the mass m above a section of area A_s and modulus S, and the lever l from it to the centre of gravity,
+
+.. math::
+
+    \sigma = \frac{m A\, l}{S} \mp \frac{m g}{A_s}, \qquad \tau = \frac{m A}{A_s}
+
+where A is the peak acceleration of a rigid object, and of a flexible one the pseudo-acceleration of its oscillator,
+PSA(f, zeta).  The static tilt with the same effect is arcsin(A / g).
+
+References
+----------
+Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+methods for museum objects. Studies in Conservation 36. Sec. 2.3 and 2.5.
+"""
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -8,7 +23,7 @@ from pipeline.models.common import NO_TILT, ROUNDING, largest_push, needs, small
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.models.oscillator import OSCILLATES, oscillate, oscillate_bounds
 from pipeline.quantities import Array, G, Quantity
-from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support
+from pipeline.records import Bounds, Columns, Excitation, Item, Model, Scene, Support, Trials
 
 RIGID_PERIOD = 0.06
 """Period [s] up to which ASCE 7 calls a component rigid."""
@@ -34,9 +49,20 @@ _AXES = ({"section_modulus": "section_modulus_width"}, {"section_modulus": "sect
 
 
 def section_stresses(push: Array, parameters: Mapping[str, Array]) -> Columns:
-    """Return the stresses and the equivalent tilt under a horizontal acceleration push [m/s2] (n,).
+    """Return the stresses and the equivalent tilt under a horizontal acceleration.
 
-    sigma = m A l / S -/+ m g / A; tau = m A / A.  The tilt is empty from 1 g on: no tilt reproduces it.
+    Parameters
+    ----------
+    push : ndarray, shape (n,) or float
+        [m/s2].
+    parameters : mapping of str to ndarray, shape (n,)
+        mass [kg], lever [m], area [m2] and section_modulus [m3].
+
+    Returns
+    -------
+    Columns
+        tension, compression, shear and error [Pa], tilt [deg], note, (n,) each; the tilt is NaN from 1 g on, where none
+        reproduces the acceleration.
     """
     mass, area = parameters["mass"], parameters["area"]
     bending = mass * push * parameters["lever"] / parameters["section_modulus"]
@@ -131,6 +157,20 @@ def _holds(scene: Scene, flexible: bool) -> str:
     return ""
 
 
+def _bends(item: Item, _object_class: str, models: Sequence[str]) -> bool:
+    # Its own frequency, where it is recorded, says which of the two it is (see _holds).
+    return item.frequency_hz is not None and STRESS.name in models
+
+
+_RANGES = {
+    "mass": (1.0, 100.0),
+    "lever": (0.05, 1.0),
+    "area": (1e-4, 1e-2),
+    "section_modulus": (1e-6, 1e-3),
+}
+
+_LOOSE = "it is free to move instead"
+
 _SENTENCE = "Held at its base, its critical section reaches {demand} ({low} to {high}); {capacity} is allowed."
 
 STRESS = Model(
@@ -156,6 +196,10 @@ STRESS = Model(
     applies=lambda scene: _holds(scene, flexible=False),
     sentence=_SENTENCE,
     fails="breaks",
+    trials=Trials(ranges=_RANGES),
+    listed="Table 1, Rigid: Stress, static",
+    supports=(Support.FASTENED, Support.ISOLATED),
+    unasked=_LOOSE,
 )
 
 FLEXIBLE_STRESS = Model(
@@ -185,4 +229,9 @@ FLEXIBLE_STRESS = Model(
         "uncertain); {capacity} is allowed."
     ),
     fails="breaks",
+    trials=Trials(ranges={**_RANGES, "frequency": (1.0, 16.0), "damping": (0.01, 0.05)}),
+    listed="Table 1, Flexible: Stress, dynamic",
+    supports=(Support.FASTENED, Support.ISOLATED),
+    joins=_bends,
+    unasked=_LOOSE,
 )

@@ -15,7 +15,7 @@ from pipeline.records.change import (
 from pipeline.records.decision import Basis, Decision, DecisionKind, Standing, in_force
 from pipeline.records.fragility import Fragility
 from pipeline.records.measurement_request import MeasurementRequest
-from pipeline.records.model import Bounds, ChartAxis, Columns, Model
+from pipeline.records.model import Bounds, ChartAxis, ChartFigure, Columns, Figure, Model, Trials
 from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.numerics import Numerics
 from pipeline.records.part import Errors, Found, Outline, Page, Result, Tally, Urgent
@@ -48,6 +48,7 @@ __all__ = [
     "CauseKind",
     "Chart",
     "ChartAxis",
+    "ChartFigure",
     "Check",
     "Columns",
     "Curve",
@@ -60,6 +61,7 @@ __all__ = [
     "Excitation",
     "Executor",
     "FieldChange",
+    "Figure",
     "Finding",
     "Found",
     "Fragility",
@@ -90,6 +92,7 @@ __all__ = [
     "Standing",
     "Support",
     "Tally",
+    "Trials",
     "Urgent",
     "Verdict",
     "VerdictChange",

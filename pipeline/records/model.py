@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.errors import InputError
 from pipeline.quantities import Array, Quantity
-from pipeline.records.motion import Excitation
-from pipeline.records.scene import Scene
+from pipeline.records.motion import Excitation, Motion
+from pipeline.records.picture import Axis, Chart
+from pipeline.records.scene import Estimate, Item, Scene, Support
 
 Columns = dict[str, Array]
 """Output name -> (n,) values; "error" and "note" (bit flags, see models.common.NOTES) are always there."""
@@ -53,41 +56,185 @@ class ChartAxis:
 
 
 @dataclass(frozen=True)
-class Model:
-    """A generic model or isolator: one row of the registry (see pipeline.models.MODELS).
+class Trials:
+    """The objects that a model's error and cost are measured on, and at which the self-test tries to break it.
 
-    needs      : its parameters, in the order a caller would name them
-    gives      : its outputs; the first is the one that ranks directions (RotD100) and carries the error
-    directions : 1 (along an angle), 2 (both horizontal directions) or 0 (the parameter `directions` says)
-    run        : (excitation, parameters, refine, estimate) -> columns; parameters are broadcast (n,) arrays, refine
-                 divides the standard step; without estimate the error is left out (NaN) and the cost is a third
-    errors     : output -> column of `run` with its own error, where `error` is not of the same unit
-    demand     : which output is set against the capacity
-    capacity   : parameter of the scene that the demand is held against, or a constant
-    applies    : scene -> "" where the model applies, else the reason why not; it may look at the support, the isolator,
-                 which parameters there are, and the frequency
-    axes       : the object's own axes that it is shaken along where they are known, width first, then depth: for each,
-                 the parameters of the scene that take the places of its own
-    symmetric  : parameters -> True when the response does not change with the sign of the motion
-    screen     : (excitation, parameters) -> columns by the paper's closed-form criterion; reported, never deciding
-    say_screen : (one row of the screen, one set of parameters) -> the criterion in words
-    trace      : (excitation, one set of parameters) -> time histories at the samples, (n,) each
-    bound      : (excitation, parameters) -> guaranteed bounds, much cheaper than `run`; those of a one-direction
-                 model that is given two hold for a body shaken along any.  None: it has none that is worth having
-    certificate: (excitation in two directions, parameters) -> the demand itself or an upper bound of it for any
-                 direction, without integration; what it shows to be below the capacity is never integrated
-    exact      : the certificate is the demand itself, not only a bound
-    rests      : certificate up to which nothing moves, so that there is nothing to integrate; None: always integrate
-    flips      : (excitation, parameters, columns of `run` without estimate) -> (n,) where 1 % of the excitation changes
-                 the yes or no among its outputs; None: it has none
-    outcome    : (one row, one set of parameters) -> what the object does, in a word and in a sentence
-    otherwise  : scene -> (output, capacity, sentence) that take the place of its own for this scene, or None
-    chart      : how its response is tabulated; None: never, it is always integrated
-    uncharted  : why there is no chart
-    mark       : (one set of parameters, demand) -> (kind of chart, x, y), or None
-    at_most    : the sentence that takes the place of its own where only a bound is known, which the demand is then
-    fails      : what an object does whose demand exceeds the capacity, such as "slides"
-    says       : what else its findings may say that holds no number, for the catalogue of a translation
+    ranges   : each parameter that it must be given -> (low, high) in SI, drawn from in equal ratios where the
+               collection has no object of it (`kouros tradeoff`)
+    extremes : parameter -> values, columns of one length; empty: a closed form, with no time steps to break
+    sample   : an object that time steps of 0.5 to 40 ms must not trouble; empty: the self-test asks of none
+    promised : relative error of `history` on the sample, against `reference`
+    """
+
+    ranges: Mapping[str, tuple[float, float]]
+    extremes: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    sample: Mapping[str, float] = field(default_factory=dict)
+    promised: float = 0.0
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A picture of a motion's effect by closed forms and histories.
+
+    kind : how its key begins, which marks refer to
+    draw : (key, motion) -> the picture
+    """
+
+    kind: str
+    draw: Callable[[str, Motion], Chart]
+
+
+@dataclass(frozen=True)
+class ChartFigure:
+    """A picture of a model's response charts under a motion: its first output along their axis.
+
+    What the charts are made of and how far off they may be is added to the caption.
+
+    kind         : how its key begins, which marks refer to
+    curves       : what each is called -> the parameters that its chart has fixed
+    low          : where the chart begins; None: as the model's charts do
+    azimuth_step : degrees between the directions of which the worst is shown; None: as verdicts ask for them
+    decides      : whether it is drawn from the very charts that verdicts are found by
+    """
+
+    kind: str
+    title: str
+    caption: str
+    x: Axis
+    y: Axis
+    source: str
+    curves: Mapping[str, Mapping[str, float]]
+    low: float | None = None
+    azimuth_step: float | None = None
+    decides: bool = False
+
+
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
+
+
+@dataclass(frozen=True)
+class Model:
+    """A generic model or isolator: one row of the registry (`pipeline.models.MODELS`), which holds all about it.
+
+    A new one is a module with its kernel where it has one, a module with its row, and its name in the registry; or the
+    two modules in another package, with an entry point of the group ``kouros.models``.  In order to be run, to be
+    measured and to be given to objects it must guarantee the following:
+
+    1.  `needs` names its parameters and `gives` its outputs, in SI, the first of which ranks directions (RotD100) and
+        is what the error is of.  None is below zero, and none NaN or infinite without a note, at `trials.extremes`.
+    2.  `run(excitation, parameters, refine, estimate)` returns a column (n,) for each output, and "error" and "note".
+        The parameters are float arrays (n,) within the limits of `needs`; what is optional and not given is NaN or its
+        default.  `refine` divides the standard step; without `estimate` the error is NaN and the cost a third.  It
+        neither changes its arguments nor keeps anything between calls, and gives each row what it would give it alone.
+    3.  `directions` says what the excitation holds: 1 (x, along an angle), 2 (x and y), or 0 (the parameter
+        `directions` says which).
+    4.  `demand` is the output that is held against `capacity`, a parameter of the scene or a constant; a larger one is
+        worse.
+    5.  `applies(scene)` returns "" or the reason why it is not run on an object.  It may look at the class, the
+        support, the isolator, which parameters the scene has, and the frequency: scenes alike in these are asked once.
+    6.  An object is tried with it where its class names it (column models of tables/classes.csv), where the museum says
+        that the object is held in one of the ways in `supports` and its class would say otherwise, or where
+        `joins(item, class, models)` is true.  Parameters that scenes do not have come from `estimates(scene)`.  Neither
+        looks at what objects that are otherwise alike differ in: number, gallery and place.
+    7.  `trials` says on which objects its cost and its error are measured, and what may break it.
+    8.  What it does besides (bounds, a certificate, a screen, histories in time, a chart, pictures) it does as said
+        below, or leaves out.
+
+    Parameters
+    ----------
+    name : str
+        As it is asked for: lower case, digits and underscores.
+    title : str
+        In words, for a report.
+    kind : str
+        "rigid", "flexible" or "isolator".
+    source, equation : str
+        Who says so, and the equation in plain text.
+    needs : tuple of Quantity
+        Its parameters, in the order a caller would name them.
+    gives : tuple of Quantity
+        Its outputs; one that is optional may be empty (NaN).
+    directions : int
+        1, 2 or 0, see 3.
+    run : callable
+        See 2.
+    demand : str
+        See 4.
+    capacity : str or float
+        See 4.
+    applies : callable
+        See 5.
+    sentence : str
+        What a finding says; {demand}, {low}, {high} and {capacity} are put in.
+    fails : str
+        What an object does whose demand exceeds the capacity, such as "slides".
+    trials : Trials
+        See 7.
+    listed : str
+        Where the paper's lists of generic models have it, such as "Table 1, Rigid: Rocking".
+    supports : tuple of Support
+        See 6.
+    joins : callable, optional
+        (item, class, models that its class names) -> whether it is tried on an object besides those; None: on none.
+    estimates : callable, optional
+        scene -> parameters of its own by name, each with range, origin and note; none takes the place of one that the
+        scene has.
+    needs_size : bool
+        Whether it cannot be run without the object's dimensions.
+    unasked : str
+        What is said besides of an object that it applies to and that is not tried with it.
+    room_settles : bool
+        Whether its failure is a collision, so that room settles it.
+    turns : bool
+        Whether its plane of motion turns by itself, so that its last part does not tell all directions.
+    pictures : tuple of Figure or ChartFigure
+        What is drawn of every motion, in order.
+    at_most : str
+        The sentence that takes the place of its own where only a bound is known, which the demand is then.
+    errors : mapping
+        Output -> column of `run` with its own error, where `error` is not of the same unit.
+    axes : tuple of mapping
+        The object's own axes that it is shaken along where they are known, width first, then depth: for each, the
+        parameters of the scene that take the places of its own.
+    symmetric : callable
+        parameters -> True when the response does not change with the sign of the motion.
+    screen : callable, optional
+        (excitation, parameters) -> columns by the paper's closed-form criterion; reported, never deciding.
+    say_screen : callable
+        (one row of the screen, one set of parameters) -> the criterion in words.
+    trace : callable, optional
+        (excitation, one set of parameters) -> time histories at the samples, (n,) each; of a model whose demand is
+        called "displacement" u_x, and u_y in two directions [m], from where it stood.
+    bound : callable, optional
+        (excitation, parameters) -> guaranteed bounds, much cheaper than `run`; those of a one-direction model that is
+        given two hold for a body shaken along any.  None: it has none that is worth having.
+    certificate : callable, optional
+        (excitation in two directions, parameters) -> the demand itself or an upper bound of it for any direction,
+        without integration; what it shows to be below the capacity is never integrated.
+    exact : bool
+        The certificate is the demand itself, not only a bound.
+    rests : float, optional
+        Certificate up to which nothing moves, so that there is nothing to integrate; None: always integrate.
+    flips : callable, optional
+        (excitation, parameters, columns of `run` without estimate) -> (n,) where 1 % of the excitation changes the yes
+        or no among its outputs; None: it has none.
+    outcome : callable
+        (one row, one set of parameters) -> what the object does, in a word and in a sentence.
+    otherwise : callable
+        scene -> (output, capacity, sentence) that take the place of its own for this scene, or None.
+    chart : ChartAxis, optional
+        How its response is tabulated; None: never, it is always integrated.
+    uncharted : str
+        Why there is no chart.
+    says : tuple of str
+        What else its findings may say that holds no number, for the catalogue of a translation.
+    mark : callable
+        (one set of parameters, demand) -> (kind of picture, x, y), or None.
+
+    Raises
+    ------
+    InputError
+        Where these do not fit together: which, and what mends it.
     """
 
     name: str
@@ -104,6 +251,16 @@ class Model:
     applies: Callable[[Scene], str]
     sentence: str
     fails: str
+    trials: Trials
+    listed: str = ""
+    supports: tuple[Support, ...] = ()
+    joins: Callable[[Item, str, Sequence[str]], bool] | None = None
+    estimates: Callable[[Scene], Mapping[str, Estimate]] | None = None
+    needs_size: bool = True
+    unasked: str = ""
+    room_settles: bool = False
+    turns: bool = False
+    pictures: tuple[Figure | ChartFigure, ...] = ()
     at_most: str = ""
     errors: Mapping[str, str] = field(default_factory=dict)
     axes: tuple[Mapping[str, str], ...] = ({}, {})
@@ -122,6 +279,34 @@ class Model:
     uncharted: str = ""
     says: tuple[str, ...] = ()
     mark: Callable[[Mapping[str, float], float], tuple[str, float, float] | None] = lambda _parameters, _demand: None
+
+    def __post_init__(self) -> None:
+        """Refuse a row whose names do not fit together."""
+        known, made = [q.name for q in self.needs], [q.name for q in self.gives]
+        if not _NAME.fullmatch(self.name):
+            raise InputError(f"a model's name is lower case letters, digits and underscores, not {self.name!r}")
+        if self.directions not in (0, 1, 2) or (self.directions == 0 and "directions" not in known):
+            raise InputError(f"{self.name}: directions is 1 or 2, or 0 with a parameter 'directions' among its needs")
+        if not known:
+            raise InputError(f"{self.name}: needs is empty; name the parameters that it is run with")
+        must = [q.name for q in self.needs if not q.optional]
+        named: tuple[tuple[str, Iterable[str], Sequence[str]], ...] = (
+            ("demand", (self.demand,), made),
+            ("errors", self.errors, made),
+            ("axes", (name for axis in self.axes for name in axis), known),
+            ("chart", () if self.chart is None else (self.chart.name, *self.chart.absent), known),
+            ("trials.ranges", self.trials.ranges, known),
+            ("trials.extremes", self.trials.extremes, known),
+            ("trials.sample", self.trials.sample, known),
+        )
+        for what, names, allowed in named:
+            for name in names:
+                if name not in allowed:
+                    raise InputError(f"{self.name}: {what} names {name!r}; use one of {', '.join(allowed)}")
+        for what, given in (("ranges", self.trials.ranges), ("extremes", self.trials.extremes)):
+            lost = [name for name in must if name not in given]
+            if lost and (given or what == "ranges"):
+                raise InputError(f"{self.name}: trials.{what} lacks {', '.join(lost)}; it must be given these")
 
     @cached_property
     def inputs(self) -> tuple[str, ...]:

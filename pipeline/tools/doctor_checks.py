@@ -2,10 +2,13 @@
 
 import os
 import shutil
+import warnings
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 
+from pipeline.extensions import ExtensionWarning, extension_versions
+from pipeline.models import MODELS
 from pipeline.operations.hooks import look, named
 from pipeline.operations.report_status import FAILED, GOOD, RUNNING, last_good, status
 from pipeline.operations.workspace import LockedError, Workspace, locked
@@ -30,6 +33,7 @@ def looks(settings: Settings, workspace: Workspace | None) -> Iterator[Look]:
     yield "disk", lambda: _disk(settings)
     yield "permissions", lambda: _permissions(settings)
     yield "kernels", _kernels
+    yield "extensions", _extensions
     yield "lock", lambda: _lock(settings)
     yield "last report", lambda: _last_report(settings)
     yield "retention", lambda: _retention(settings)
@@ -88,6 +92,16 @@ def _kernels() -> Found:
     others = sum(1 for other in folder.parent.glob("kernels-*") if other != folder)
     text = f"version {KERNEL_VERSION}, {counted(compiled, 'piece')} of compiled code in {folder}"
     return "ok", f"{text}; {counted(others, 'folder')} of other versions may be deleted" if others else text
+
+
+def _extensions() -> Found:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ExtensionWarning)
+        problems = MODELS.problems
+    if problems:
+        return "warning", "; ".join(problems)
+    installed = [f"{one.name} of {one.distribution} {one.version} ({one.group})" for one in extension_versions()]
+    return "ok", ", ".join(installed) or "no other package brings parts of its own"
 
 
 def _lock(settings: Settings) -> Found:

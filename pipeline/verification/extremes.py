@@ -1,18 +1,19 @@
-"""The motions and objects at which a model may break: data of the numerical self-test and of the tests."""
+"""The motions at which a model may break, for the numerical self-test and the tests; its objects: `Model.trials`."""
 
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from pipeline.models import MODELS
 from pipeline.quantities import Array, G
-from pipeline.records import Motion
+from pipeline.records import Model, Motion
 
 STRONG = 5.0
 """Peak of each horizontal component of the shaking [m/s2]."""
 
-UNKNOWN = ("overturning_time", "uplift_time", "angle", "fidelity", "note")
-"""Columns that may be empty, or are not numbers."""
+BESIDE = ("angle", "fidelity", "note")
+"""Columns beside the outputs and their error, which may be empty or are not numbers."""
 
 
 def shaking(samples: int = 300, dt: float = 0.02, vertical: float = 0.5) -> Motion:
@@ -53,58 +54,40 @@ def motions() -> dict[str, Motion]:
     }
 
 
-def objects(name: str) -> dict[str, list[float]]:
-    """Return the extreme parameter sets of a model, as columns."""
-    if name == "rocking":
-        alphas, e = np.array([0.02, 0.2, 1.2] * 3), np.repeat([0.0, 0.6, 1.0], 3)
-        return {"half_width": list(0.3 * np.tan(alphas)), "cg_height": [0.3] * 9, "restitution": list(e)}
-    if name in ("sliding", "friction_isolator"):
-        return {"friction_static": [0.0, 1e-6, 0.1, 5.0]}
-    if name == "horizontal_isolator":
-        return _grid(frequency=[0.02, 1.0, 500.0], damping=[0.0, 1.0, 2.0], friction=[0.0, 1e-6, 5.0])
-    if name.startswith("swing"):
-        return _grid(length=[0.001, 0.01, 1.0, 100.0], damping=[0.0, 1.0, 2.0])
-    out = _grid(frequency=[0.02, 1.0, 20.0, 500.0], damping=[0.0, 1.0, 2.0])
-    if name == "rotational_isolator":
-        size = len(out["frequency"])
-        out |= {"cg_height": [0.5] * size, "inertia_ratio": [1.3] * size}
-    return out
+def pushed() -> list[tuple[Model, int | None]]:
+    """Return each model that is integrated in time, and in how many directions where it can be told.
+
+    Returns
+    -------
+    list of (Model, int or None)
+        Those of the registry with extreme objects; a model that takes both comes once for each.
+    """
+    return [
+        (model, directions)
+        for model in MODELS
+        if model.trials.extremes
+        for directions in ((1, 2) if model.directions == 0 else (None,))
+    ]
 
 
-def _grid(**values: list[float]) -> dict[str, list[float]]:
-    columns = np.meshgrid(*values.values())
-    return {name: list(column.ravel()) for name, column in zip(values, columns, strict=True)}
+def complaint(model: Model, row: Mapping[str, Any]) -> str:
+    """Return what is wrong with a result: a NaN or an infinity that no note explains, a negative size.
 
+    Parameters
+    ----------
+    model : Model
+        Whose optional outputs may be empty.
+    row : mapping
+        One row of the table of `respond`.
 
-MODELS: tuple[tuple[str, int | None], ...] = (
-    ("rocking", None),
-    ("sliding", 1),
-    ("sliding", 2),
-    ("friction_isolator", None),
-    ("horizontal_isolator", 1),
-    ("horizontal_isolator", 2),
-    ("rotational_isolator", None),
-    ("oscillator", None),
-    ("swing", None),
-    ("swing_3d", None),
-)
-"""Each model that is integrated in time, and in how many directions where it can be told."""
-
-PROMISED: tuple[tuple[str, dict[str, float], float], ...] = (
-    ("sliding", {"friction_static": 0.1}, 5e-4),
-    ("swing", {"length": 0.01, "damping": 0.1}, 1e-6),
-    ("swing_3d", {"length": 0.01, "damping": 0.1}, 1e-4),
-    ("oscillator", {"frequency": 100.0, "damping": 0.02}, 1e-9),
-    ("horizontal_isolator", {"frequency": 10.0, "damping": 0.1, "friction": 0.05}, 5e-4),
-    ("rocking", {"half_width": 0.2, "cg_height": 0.5}, 1e-4),
-)
-"""An object for each model that time steps of 0.5 to 40 ms must not trouble, and the relative error of `history`."""
-
-
-def complaint(row: Mapping[str, Any]) -> str:
-    """Return what is wrong with a result: a NaN or an infinity that no note explains, a negative size."""
+    Returns
+    -------
+    str
+        "" where nothing is.
+    """
+    may_be_empty = {*BESIDE, *(q.name for q in model.gives if q.optional)}
     for column, value in row.items():
-        if column in UNKNOWN:
+        if column in may_be_empty:
             continue
         if not np.isfinite(float(value)) and not row["note"]:
             return f"{column} is {value} without a note"

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from pipeline.analysis.response import respond, trace
+from pipeline.models import MODELS
 from pipeline.quantities import Array, G, counted
-from pipeline.records import Motion
-from pipeline.verification.extremes import MODELS, PROMISED, along_x, complaint, motions, objects, shaking
+from pipeline.records import Model, Motion
+from pipeline.verification.extremes import along_x, complaint, motions, pushed, shaking
 from pipeline.verification.outcome import Outcome
 
 
@@ -176,11 +177,11 @@ def _small_swings() -> float:
     )
 
 
-def _sampled(name: str, dt: float) -> float:
+def _sampled(model: Model, dt: float) -> float:
     motion = shaking(samples=400, dt=dt)
-    parameters: dict[str, Any] = next(p for model, p, _ in PROMISED if model == name)
+    parameters: dict[str, Any] = dict(model.trials.sample)
     history, reference = (
-        float(respond(name, motion, fidelity=fidelity, **parameters).iloc[:, 0].to_numpy()[0])
+        float(respond(model.name, motion, fidelity=fidelity, **parameters).iloc[:, 0].to_numpy()[0])
         for fidelity in ("history", "reference")
     )
     return abs(history - reference) / max(abs(reference), 1e-12)
@@ -214,22 +215,22 @@ def _memory() -> float:
 
 def _moved(motion: str) -> float:
     # Metres, or a share of an angle.
-    return _largest(_answers(name, directions, motion).iloc[:, 0].to_numpy().max() for name, directions in MODELS)
+    return _largest(_answers(*one, motion).iloc[:, 0].to_numpy().max() for one in pushed())
 
 
-def _answers(name: str, directions: int | None, motion: str) -> Any:
-    asked: dict[str, Any] = {**objects(name), "tail": 1.0}
+def _answers(model: Model, directions: int | None, motion: str) -> Any:
+    asked: dict[str, Any] = {**model.trials.extremes, "tail": 1.0}
     if directions is not None:
         asked["directions"] = directions
-    return respond(name, motions()[motion], **asked)
+    return respond(model.name, motions()[motion], **asked)
 
 
-def _unexplained(name: str, directions: int | None) -> float:
+def _unexplained(model: Model, directions: int | None) -> float:
     problems = [
         f"{motion}: {said}"
         for motion in motions()
-        for _, row in _answers(name, directions, motion).iterrows()
-        if (said := complaint(row))
+        for _, row in _answers(model, directions, motion).iterrows()
+        if (said := complaint(model, row))
     ]
     if problems:
         raise ArithmeticError(f"{counted(len(problems), 'result')}, such as {problems[0]}")
@@ -268,22 +269,23 @@ def _cases() -> Iterator[Case]:
         yield Case(f"acceleration times {k:g}", "scales", 1e-9, partial(_scaled, k))
     yield Case("swings of 1e-3 and 1e-6 of it", "scale", 1e-5, _small_swings)
     for dt in (0.0005, 0.04):
-        for name, _, promised in PROMISED:
-            what = f"{name} at dt {1000.0 * dt:g} ms"
-            yield Case(what, "reference", promised, partial(_sampled, name, dt))
+        for model in MODELS:
+            if model.trials.sample:
+                what = f"{model.name} at dt {1000.0 * dt:g} ms"
+                yield Case(what, "reference", model.trials.promised, partial(_sampled, model, dt))
     yield Case("one sample", "does not move", 0.0, partial(_moved, "one sample"))
     yield Case("3 million samples", "steady state at resonance", 1e-5, _long)
     yield Case("a million objects", "Newmark 1965", 1e-11, _million)
     yield Case("many objects: memory", "bytes for each object", 1000.0, _memory)
     yield Case("denormal accelerations", "nothing that can be seen", 1e-290, partial(_moved, "denormals"))
     yield Case("a motion of zeros", "does not move", 0.0, partial(_moved, "zeros"))
-    for name, ways in MODELS:
-        what = name if ways is None else f"{name}, {ways} direction{'s'[: ways - 1]}"
+    for model, ways in pushed():
+        what = model.name if ways is None else f"{model.name}, {ways} direction{'s'[: ways - 1]}"
         yield Case(
             f"{what}: {counted(len(motions()), 'motion')}, extreme objects",
             "no NaN without a reason",
             0.0,
-            partial(_unexplained, name, ways),
+            partial(_unexplained, model, ways),
         )
 
 

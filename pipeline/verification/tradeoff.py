@@ -55,27 +55,6 @@ MOVED = 1e-3
 CLOSED = 1e-14
 """Error below which a model is exact but for rounding."""
 
-PLAUSIBLE: Mapping[str, Mapping[str, tuple[float, float]]] = {
-    "rocking": {"half_width": (0.02, 0.4), "cg_height": (0.05, 1.0)},
-    "sliding": {"friction_static": (0.1, 0.6)},
-    "stress": {
-        "mass": (1.0, 100.0), "lever": (0.05, 1.0), "area": (1e-4, 1e-2), "section_modulus": (1e-6, 1e-3),
-    },
-    "flexible_stress": {
-        "mass": (1.0, 100.0), "lever": (0.05, 1.0), "area": (1e-4, 1e-2), "section_modulus": (1e-6, 1e-3),
-        "frequency": (1.0, 16.0), "damping": (0.01, 0.05),
-    },
-    "swing": {"length": (0.1, 3.0), "damping": (0.005, 0.1)},
-    "swing_3d": {"length": (0.2, 5.0), "damping": (0.002, 0.02)},
-    "friction_isolator": {"friction_static": (0.03, 0.15)},
-    "horizontal_isolator": {"frequency": (0.3, 2.0), "damping": (0.02, 0.2), "friction": (0.0, 0.15)},
-    "rotational_isolator": {
-        "frequency": (1.0, 8.0), "damping": (0.05, 0.3), "cg_height": (0.1, 1.0), "inertia_ratio": (1.1, 1.6),
-    },
-    "oscillator": {"frequency": (0.5, 20.0), "damping": (0.01, 0.1)},
-}  # fmt: skip
-"""Ranges in SI that parameters are drawn from, in equal ratios, where the collection has no object of a model."""
-
 
 @dataclass(frozen=True)
 class Setting:
@@ -191,7 +170,7 @@ def _drawn(
                 name: np.ascontiguousarray(column[picked]) for name, column in work.values.items()
             }, "the collection"
     given: dict[str, Any] = {}
-    for name, (low, high) in PLAUSIBLE[model.name].items():
+    for name, (low, high) in model.trials.ranges.items():
         part = rng.uniform(size=objects)
         given[name] = low * (high / low) ** part if low > 0.0 else low + (high - low) * part
     return prepare(model, given), "plausible ranges"
@@ -223,7 +202,7 @@ def _of_model(
         told = f"{name} (step 1/{refine})" if name else f"step 1/{refine}"
         runs = [_timed(partial(_stepped, model, motion, values, angle, refine)) for motion in motions]
         rows.append(_setting(model, "step", told, name, motions, runs, truth))
-    if not two and model.kind != "stress":
+    if not two:
         finest = [_turned(model, motion, values, AZIMUTH_TRUTH) for motion in motions]
         for step in AZIMUTHS:
             told = f"every {step:g} degrees" + (" (the default)" if step == AZIMUTH_STEP else "")
@@ -286,11 +265,12 @@ def _setting(
     truth: Sequence[Columns],
 ) -> Setting:
     first = model.gives[0].name
+    outcome = next((q.name for q in model.gives if q.unit == "bool"), None)
     errors, wrong, cost = [], 0, []
     for motion, (columns, seconds), true in zip(motions, runs, truth, strict=True):
         counted = _counted(model, true)
-        if "overturned" in columns and kind != "bound":
-            differ = (columns["overturned"] != true["overturned"]) & ~_sensitive(true)
+        if outcome is not None and kind != "bound":
+            differ = (columns[outcome] != true[outcome]) & ~_sensitive(true)
             wrong += int(differ.sum())
             counted = counted & ~differ
         errors.append(np.abs(columns[first] - true[first])[counted] / np.abs(true[first][counted]))
@@ -356,13 +336,16 @@ def keep(found: Tradeoff, folder: Path) -> None:
 
 
 def kept(folder: Path) -> Tradeoff | None:
-    """Return the last measurement, or None: never measured, measured on other kernels, damaged, or of another form."""
+    """Return the last measurement, or None: never measured, measured on other kernels or models, or damaged."""
     found = Cache(folder).get(TRADEOFFS, LAST, lasting=True)
     try:
         last = None if found is None else TypeAdapter(Tradeoff).validate_json(json.dumps(found.said), strict=True)
     except ValueError:
         return None
-    return last if last is not None and last.kernels == KERNEL_VERSION else None
+    # A model of another package may be gone since.
+    there = {model.name for model in MODELS}
+    fits = last is not None and last.kernels == KERNEL_VERSION and {s.model for s in last.samples} <= there
+    return last if fits else None
 
 
 def tradeoff_on(settings: Settings | None, site: str | None, progress: Progress, **wishes: Any) -> Tradeoff:

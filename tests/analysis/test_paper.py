@@ -10,12 +10,12 @@ import pytest
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
-from pipeline.analysis.figures import stability_chart
 from pipeline.analysis.response import respond
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
+from pipeline.models import model_named
 from pipeline.quantities import G
-from pipeline.records import Item, Motion, Support, Verdict
+from pipeline.records import Figure, Item, Motion, Support, Verdict
 from tests.mitigate.scenes import TOWER, demo_motion, solve
 
 
@@ -45,7 +45,9 @@ def test_objects_under_20_cm_overturn_without_prior_rocking() -> None:
 
 def test_the_stability_chart_has_no_rocking_band_below_20_cm() -> None:
     """Figure 2: the zone "rocks" lies between the two lines, and is empty below where they cross."""
-    chart = stability_chart(representative())
+    (stability,) = model_named("rocking").pictures
+    assert isinstance(stability, Figure)
+    chart = stability.draw("stability:", representative())
     zone = next(zone for zone in chart.zones if zone.label == "rocks")
     half = len(zone.x) // 2
     heights, bottom, top = zone.x[:half], zone.y[:half], zone.y[half:][::-1]

@@ -19,10 +19,10 @@ from shaking import along_x
 
 from pipeline import Motion, respond
 from pipeline.cli import kouros
-from pipeline.models import MODELS as REGISTRY
+from pipeline.models import MODELS, model_named
 from pipeline.quantities import G
 from pipeline.verification import self_measurement as numerics
-from pipeline.verification.extremes import MODELS, PROMISED, complaint, motions, objects
+from pipeline.verification.extremes import complaint, motions, pushed
 
 LIMIT = 60.0
 """Seconds after which a case hangs, compilation excepted; on an idle machine all take well below ten."""
@@ -34,7 +34,7 @@ def work(name: str, directions: int | None, answers: Queue[Any]) -> None:
     """Run every case of a model and put (case, problem or "") into the queue."""
     extra = {} if directions is None else {"directions": directions}
     answers.put(("ready", ""))
-    columns = objects(name)
+    columns = model_named(name).trials.extremes
     chosen = motions()
     if name == "horizontal_isolator":
         # Its overdamped cases creep for the whole cap of 200 s: only the motions that ask something new of it.
@@ -53,11 +53,11 @@ def work(name: str, directions: int | None, answers: Queue[Any]) -> None:
                 except Exception as problem:  # noqa: BLE001
                     answers.put((case, repr(problem)))
                     continue
-                answers.put((case, complaint(table.iloc[0])))
+                answers.put((case, complaint(model_named(name), table.iloc[0])))
     answers.put(("done", ""))
 
 
-@pytest.mark.parametrize(("name", "directions"), MODELS)
+@pytest.mark.parametrize(("name", "directions"), [(model.name, directions) for model, directions in pushed()])
 def test_nothing_hangs_or_is_nan_in_silence(name: str, directions: int | None) -> None:
     context = mp.get_context("spawn")
     answers: Queue[Any] = context.Queue()
@@ -87,8 +87,9 @@ def test_the_self_test_of_the_numerics(case: numerics.Case) -> None:
 
 def test_every_model_in_time_is_pushed_to_its_extremes() -> None:
     """Stress has no history: it is a closed form of the peak; the flexible one is that of the oscillator."""
-    assert {name for name, _ in MODELS} == {model.name for model in REGISTRY} - {"stress", "flexible_stress"}
-    assert {name for name, _, _ in PROMISED} <= {name for name, _ in MODELS}
+    assert {model.name for model, _ in pushed()} == {model.name for model in MODELS} - {"stress", "flexible_stress"}
+    assert all(model.trials.extremes for model in MODELS if model.trials.sample)
+    assert {directions for model, directions in pushed() if model.name == "sliding"} == {1, 2}
 
 
 @pytest.mark.parametrize("broken", [float("nan"), 2.0, ValueError("no kernel")])

@@ -7,14 +7,25 @@ import numpy as np
 import pytest
 
 from pipeline.analysis.context import Context
-from pipeline.analysis.figures import ISOLATORS, SWING_DIRECTIONS, SWINGS, chart_keys, draw
+from pipeline.analysis.figures import chart_keys, draw
 from pipeline.analysis.response import respond
 from pipeline.analysis.response_charts import ChartCache, ResponseChart
 from pipeline.execute import Threads
+from pipeline.models import model_named
 from pipeline.models.common import lift_ratios
+from pipeline.models.swing import PICTURED_EVERY
 from pipeline.motions.synthesis import band_limited_random
 from pipeline.quantities import Array, G
-from pipeline.records import Chart, Motion
+from pipeline.records import Chart, ChartFigure, Motion
+
+
+def curves_of(model: str) -> list[dict[str, float]]:
+    """What the curves of a model's figure have fixed."""
+    (figure,) = (one for one in model_named(model).pictures if isinstance(one, ChartFigure))
+    return [dict(fixed) for fixed in figure.curves.values()]
+
+
+SWINGS, ISOLATORS = curves_of("swing"), curves_of("horizontal_isolator")
 
 
 @pytest.fixture(scope="module")
@@ -49,11 +60,10 @@ def true(motion: Motion, name: str, at: Array) -> list[Array]:
     if name == "sliding":
         return [respond("sliding", motion, friction_static=at)["displacement"].to_numpy()]
     if name == "swing":
-        given = {"angle": None, "azimuth_step": SWING_DIRECTIONS, "length": at}
-        return [respond("swing", motion, **given, **fixed)["displacement"].to_numpy() for fixed in SWINGS.values()]
+        given = {"angle": None, "azimuth_step": PICTURED_EVERY, "length": at}
+        return [respond("swing", motion, **given, **fixed)["displacement"].to_numpy() for fixed in SWINGS]
     return [
-        respond("horizontal_isolator", motion, frequency=at, **fixed)["acceleration"].to_numpy()
-        for fixed in ISOLATORS.values()
+        respond("horizontal_isolator", motion, frequency=at, **fixed)["acceleration"].to_numpy() for fixed in ISOLATORS
     ]
 
 

@@ -118,6 +118,9 @@ def test_what_was_measured_on_other_kernels_is_forgotten(found: tradeoff.Tradeof
     again = tradeoff.kept(tmp_path)
     assert again is not None
     assert list(again.settings) == list(found.settings)
+    gone = replace(found, samples=[*found.samples, replace(found.samples[0], model="uninstalled")])
+    tradeoff.keep(gone, tmp_path)
+    assert tradeoff.kept(tmp_path) is None
     tradeoff.keep(replace(found, kernels="another"), tmp_path)
     assert tradeoff.kept(tmp_path) is None
     Cache(tmp_path).put(TRADEOFFS, tradeoff.LAST, Kept({"measured": "", "kernels": KERNEL_VERSION}), lasting=True)
