@@ -26,7 +26,7 @@ SMALL = 8 << 20
 _PACKAGE = Path(__file__).resolve().parent
 
 
-_ELSEWHERE = frozenset({"_resources", "cli", "operations", "report", "tools", "verification"})
+_ELSEWHERE = frozenset({"cli", "operations", "report", "tools", "verification"})
 """Rooms at the top of the package that no stored result depends on: they ask for results, show and compare them."""
 
 _SOURCES = frozenset({".py", ".csv", ".toml"})

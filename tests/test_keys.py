@@ -106,7 +106,8 @@ def reached(roots: tuple[str, ...]) -> tuple[dict[Path, str], dict[str, str]]:
 def test_everything_that_computes_is_under_the_code_version(root: str) -> None:
     """A module that is reached and left out would leave what is kept as it was when that module changes."""
     files, libraries = reached((root,))
-    left_out = {file.relative_to(PACKAGE).as_posix(): by for file, by in files.items() if file not in set(code_files())}
+    covered = set(code_files())
+    left_out = {file.relative_to(PACKAGE).as_posix(): by for file, by in files.items() if file not in covered}
     assert left_out == {}
     names = {MODULES.get(name, name): by for name, by in libraries.items() if name not in HARMLESS | HOLDS}
     assert {name: by for name, by in names.items() if name not in LIBRARIES} == {}
@@ -191,11 +192,11 @@ def test_one_byte_of_any_file_makes_another_version(copied: Path) -> None:
     seen_code, seen_page = {before[0]}, {before[1]}
     code, page = set(code_files()), page_files()
     assert len(page) > 250
-    # Of each folder and ending three at most: they are read alike.
+    # Of each folder and ending two at most: they are read alike.
     alike: dict[tuple[Path, str], list[Path]] = {}
     for file in page:
         alike.setdefault((file.parent, file.suffix), []).append(file)
-    tried = [file for files in alike.values() for file in {files[0], files[len(files) // 2], files[-1]}]
+    tried = [file for files in alike.values() for file in {files[0], files[-1]}]
     for file in tried:
         for _ in changed(file):
             now = told()

@@ -191,9 +191,14 @@ def charts_of(
 
 
 def tidy(settings: "Settings", using: Collection[str]) -> None:
-    """Remove from the cache what the settings do not keep any longer.
+    """Remove from the cache what the settings do not keep any longer, see `pipeline.cache.Cache.prune`.
 
-    using : as in `charts_of`
+    Parameters
+    ----------
+    settings : Settings
+        Those of ``[charts]`` count: days, and megabytes of each kind.
+    using : collection of str
+        Hashes of motions in use.
     """
     limits = settings.charts
     Cache(settings.kept).prune(days=limits.unused_days, most_bytes=round(1e6 * limits.megabytes), using=using)

@@ -190,7 +190,7 @@ class Mitigation(_Part):
 
 
 class Charts(_Part):
-    """How long response charts are kept, and how much room they may take; single histories as long, in as much room."""
+    """How long response charts, histories and processed motions are kept, and how much room each may take."""
 
     unused_days: float = Field(
         default=30.0, ge=1.0, le=3650.0, description="days after the last use of their motion, or of a history itself"
@@ -250,7 +250,7 @@ class Settings(_Part):
 
     @property
     def kept(self) -> Path:
-        """The folder in which processed motions, charts and measurements are kept between nights."""
+        """The folder of the cache, in which motions, charts, histories and measurements are kept between nights."""
         return (self.rehearsal or self.home) / KEPT
 
     @property

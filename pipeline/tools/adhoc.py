@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pipeline.cache import Cache
 from pipeline.operations.workspace import UsageError, charts_of, site_folder
 from pipeline.records import Motion, Numerics
 
@@ -56,13 +57,17 @@ def respond_on_site(
 def _motions(site: str, settings: "Settings | None") -> Sequence[Motion]:
     from pipeline.kernels import user_cache
     from pipeline.motions.site import read_motion, read_site
+    from pipeline.settings import Charts
 
     folder = site_folder(Path(), site)
     if settings is None:
-        return read_motion(folder, kept=user_cache("motions"))
+        kept, limits = user_cache("motions"), Charts()
+        motions = read_motion(folder, kept=kept)
+        Cache(kept).prune(days=limits.unused_days, most_bytes=round(1e6 * limits.megabytes))
+        return motions
     # Processed once for the nights and for this.
-    kept = read_site(folder, kept=settings.kept)
-    return [one.motion for level in kept.levels for one in level.motions]
+    found = read_site(folder, kept=settings.kept)
+    return [one.motion for level in found.levels for one in level.motions]
 
 
 def _support(word: str) -> tuple[str, dict[str, Any]]:

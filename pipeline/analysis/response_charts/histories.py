@@ -17,8 +17,12 @@ from pipeline.records import Columns
 class Histories:
     """The histories of what is worked on together: those that were kept, and those used or run now, to be kept.
 
-    cache : None: nothing is kept, and only what is asked for twice is run once
-    key   : under which they are kept
+    Parameters
+    ----------
+    cache : Cache, optional
+        None: nothing is kept, and only what is asked for twice is run once.
+    key : str, optional
+        Under which they are kept together.
     """
 
     def __init__(self, cache: Cache | None = None, key: str = "") -> None:
@@ -31,8 +35,17 @@ class Histories:
     def recall(self, key: str, values: Mapping[str, Array]) -> tuple[NDArray[np.bool_], Columns]:
         """Return which rows are there, and the columns of those.
 
-        key    : of everything but the parameters (see `pipeline.cache.key_of`)
-        values : the parameters, (n,) each
+        Parameters
+        ----------
+        key : str
+            Of everything but the parameters, see `pipeline.cache.key_of`.
+        values : mapping of str to ndarray, shape (n,)
+            The parameters, in SI; those that are not given are NaN.
+
+        Returns
+        -------
+        there : ndarray of bool, shape (n,)
+        columns : dict of str to ndarray, shape (there.sum(),)
         """
         rows = _rows(values)
         used = self._used.setdefault(key, {})
@@ -51,7 +64,15 @@ class Histories:
         return there, {name: np.ascontiguousarray(found[:, i]) for i, name in enumerate(self._names[key])}
 
     def note(self, key: str, values: Mapping[str, Array], columns: Columns) -> None:
-        """Take down histories that were run now."""
+        """Take down histories that were run now.
+
+        Parameters
+        ----------
+        key, values
+            As in `recall`.
+        columns : mapping of str to ndarray, shape (n,)
+            What they gave.
+        """
         self._names[key] = tuple(columns)
         table = np.column_stack([np.asarray(column, dtype=np.float64) for column in columns.values()])
         self._used.setdefault(key, {}).update(zip(_rows(values), table, strict=True))
