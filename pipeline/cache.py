@@ -266,9 +266,10 @@ def _prune(files: Collection[tuple[Path, re.Match[str]]], seconds: float, most_b
 def _read(file: Path) -> tuple[Kept, str]:
     """Return what is in a file, and the code version that put it there; else raise OSError or one of _UNREADABLE."""
     with file.open("rb") as stream:
-        if os.fstat(stream.fileno()).st_size > LARGEST:
+        size = os.fstat(stream.fileno()).st_size
+        if size > LARGEST:
             raise ValueError("it is too large")
-        data = stream.read(LARGEST)
+        data = stream.read(size)
     body = memoryview(data)[len(_MARK) + _SEAL :]
     if not data.startswith(_MARK):
         raise ValueError("it is no file of the cache")

@@ -14,7 +14,6 @@ import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 from threading import get_ident
 
@@ -79,10 +78,16 @@ def _package_files() -> list[Path]:
     return sorted(file for file in found if file.relative_to(_PACKAGE).parts[0] != "_resources")
 
 
+def _installed(library: str) -> str:
+    from importlib.metadata import version
+
+    return version(library)
+
+
 def _digest(files: Iterable[Path], libraries: Iterable[str]) -> str:
     versions = [
         f"python {sys.version_info.major}.{sys.version_info.minor}",
-        *(f"{name} {version(name)}" for name in libraries),
+        *(f"{name} {_installed(name)}" for name in libraries),
     ]
     # What other packages have installed as parts of Kouros is such code too.
     versions += map(repr, extension_versions())

@@ -228,8 +228,8 @@ def test_a_name_a_new_file_and_a_moved_byte_count(copied: Path) -> None:
 
 @pytest.mark.parametrize("name", [*LIBRARIES, *PRINTERS])
 def test_another_version_of_a_library_makes_another_version(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    before, real = told(), resources.version
-    monkeypatch.setattr(resources, "version", lambda one: "0.0" if one == name else real(one))
+    before, real = told(), resources._installed
+    monkeypatch.setattr(resources, "_installed", lambda one: "0.0" if one == name else real(one))
     after = told()
     assert (after[0] != before[0]) is (name in LIBRARIES)
     assert after[1] != before[1]
