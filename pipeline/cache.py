@@ -191,18 +191,18 @@ class Cache:
             with replacing(file) as aside, aside.open("wb") as stream:
                 stream.writelines((_MARK, _seal(body), body))
 
-    def prune(self, *, days: float, most_bytes: int, using: Collection[str] = ()) -> None:
+    def prune(self, *, days: float = 30.0, most_bytes: int = 200_000_000, using: Collection[str] = ()) -> None:
         """Remove what other code kept, then what was not used for some days, then what was used longest ago.
 
         What is lasting stays, as do files of other names and what cannot be removed.
 
         Parameters
         ----------
-        days : float
+        days : float, optional
             Since the last use of anything of the same group; of what has no group, of itself.
-        most_bytes : int
+        most_bytes : int, optional
             Of each kind.
-        using : collection of str
+        using : collection of str, optional
             Groups in use now, whether or not anything of them was asked for: they count as used now.
         """
         for former in (*self.folder.glob("*.npz"), *self.folder.glob("*/*.npz")):

@@ -57,13 +57,12 @@ def respond_on_site(
 def _motions(site: str, settings: "Settings | None") -> Sequence[Motion]:
     from pipeline.kernels import user_cache
     from pipeline.motions.site import read_motion, read_site
-    from pipeline.settings import Charts
 
     folder = site_folder(Path(), site)
     if settings is None:
-        kept, limits = user_cache("motions"), Charts()
+        kept = user_cache("motions")
         motions = read_motion(folder, kept=kept)
-        Cache(kept).prune(days=limits.unused_days, most_bytes=round(1e6 * limits.megabytes))
+        Cache(kept).prune()
         return motions
     # Processed once for the nights and for this.
     found = read_site(folder, kept=settings.kept)
