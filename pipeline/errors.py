@@ -24,6 +24,10 @@ class KourosError(Exception):
     exit_code: ClassVar[int] = 2
 
 
+class DamageWarning(UserWarning):
+    """Something that Kouros keeps is not what was written; it is made again."""
+
+
 class InputError(KourosError, ValueError):
     """A value that was given, in a call, a file or a table, and cannot be used."""
 

@@ -18,10 +18,11 @@ import tomlkit
 from pipeline.collection.dimensions import parse
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.mapping import MAPPABLE, WRITTEN, Mapping
+from pipeline.collection.opening import open_source
 from pipeline.collection.record import units_of
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.files import unreadable
-from pipeline.collection.sources.opening import is_database, open_source
+from pipeline.collection.sources.registry import is_address, recognised
 from pipeline.collection.sources.rows import Row
 from pipeline.tables import table
 
@@ -87,7 +88,7 @@ def guess(where: str | Path, table: str | None = None) -> Guess:
              whose tables one must be named
     """
     doubts: list[str] = []
-    if is_database(where):
+    if is_address(where):
         name = expand_secrets(str(where)).shown
         source, columns = _of_database(str(where), name, table)
     else:
@@ -183,10 +184,9 @@ def _source(path: Path) -> dict[str, str]:
             head = stream.read(SNIFFED)
     except OSError as problem:
         raise unreadable(path, problem) from problem
-    if head.startswith(b"PK\x03\x04"):
-        return {"format": "xlsx"}
-    if b"lido-schema.org" in head[:4096]:
-        return {"format": "lido"}
+    kind = recognised(str(path), head)
+    if kind is not None:
+        return {"format": kind.name}
     encoding = _encoding(head)
     # A character that the end of what was read cuts in two is no fault.
     text = head.decode(encoding, "ignore")

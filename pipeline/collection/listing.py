@@ -1,29 +1,27 @@
-"""The objects of a collection in as much as they are sorted by, in columns: half a million of them are had in no time.
-
-They are kept in a file from night to night, so that a night asks the inventory only for those that changed since.
-"""
+"""The objects of a collection in as much as they are sorted and told apart by, in columns of Arrow."""
 
 from __future__ import annotations
 
 import hashlib
-import json
-from bisect import bisect_left
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any, NamedTuple, overload
 
 import numpy as np
 
-from pipeline.resources import replacing
-
 
 class Listed(NamedTuple):
-    """An object in as much as the objects of a collection are sorted by.
+    """An object in as much as the objects of a collection are sorted and told apart by.
 
-    kind : see `inventory.ITEM`
+    Attributes
+    ----------
+    object_number, gallery, case, on_display
+        Fields of its record.
+    digest : str
+        `record.digest_of` its record.
+    assessment_digest : str
+        `record.assessment_digest_of` its record.
     """
 
     object_number: str
@@ -31,12 +29,7 @@ class Listed(NamedTuple):
     case: str
     on_display: bool
     digest: str
-    kind: int | None
-
-    @property
-    def assessment_digest(self) -> str:
-        """Of the record, without what tells one object from others of its kind."""
-        return self.digest if self.kind is None else f"{self.kind & (2**64 - 1):016x}"
+    assessment_digest: str
 
 
 class Run(NamedTuple):
@@ -63,12 +56,20 @@ class Listing(Sequence[Listed]):
     table: Any
 
     @classmethod
-    def of(cls, objects: Iterable[Listed]) -> Listing:
+    def of(cls, objects: Iterable[Sequence[Any]]) -> Listing:
         """Return some objects, in their order."""
         import pyarrow as pa
 
         columns = list(zip(*objects, strict=True)) or [()] * len(Listed._fields)
         return cls(pa.table([pa.array(list(c), t) for c, t in zip(columns, _schema().types, strict=True)], _schema()))
+
+    def sorted(self) -> Listing:
+        """Return the objects as `order` sorts them: Arrow compares texts as UTF-8, which is by code points as well."""
+        import pyarrow.compute as pc
+
+        keys = [("on_display", "descending"), *((name, "ascending") for name in ("gallery", "case", "object_number"))]
+        table = self.table.set_column(3, "on_display", pc.cast(self.table.column("on_display"), "int8"))
+        return Listing(self.table.take(pc.sort_indices(table, sort_keys=keys)).combine_chunks())
 
     def __len__(self) -> int:
         """How many objects."""
@@ -123,11 +124,6 @@ class Listing(Sequence[Listed]):
         alone = np.asarray(_equal(self._array("case"), ""))
         return np.flatnonzero(alone | _differs(self._array("case")) | _differs(self._array("gallery")))
 
-    @property
-    def complete(self) -> bool:
-        """Whether the digest and the kind of every object are known."""
-        return not (_equal(self._array("digest"), "").any() or self.table.column("kind").null_count)
-
     def places(self, numbers: Collection[str]) -> dict[str, int]:
         """Return where objects are, by number; what is not there is left out."""
         import pyarrow as pa
@@ -149,22 +145,6 @@ class Listing(Sequence[Listed]):
             found.update(text)
         return found.digest()
 
-    def changed(self, gone: Collection[str], new: Iterable[Listed]) -> Listing:
-        """Return a sorted listing without some objects, and with others.
-
-        gone : object numbers
-        """
-        import pyarrow as pa
-
-        left = np.delete(np.arange(len(self)), list(self.places(gone).values()))
-        kept = Listing(self.table.take(left)) if len(left) < len(self) else self
-        parts, start = [], 0
-        for one in sorted(new, key=order):
-            at = bisect_left(kept, order(one), lo=start, key=order)
-            parts += [kept.table.slice(start, at - start), Listing.of([one]).table]
-            start = at
-        return Listing(pa.concat_tables([*parts, kept.table.slice(start)]).combine_chunks())
-
     def joined(self, runs: Iterable[Run]) -> Listing:
         """Return the objects of some runs, one behind the other."""
         import pyarrow as pa
@@ -177,47 +157,11 @@ class Listing(Sequence[Listed]):
         return self.table.column(name).combine_chunks()
 
 
-def write_listing(file: Path, listing: Listing, told: Mapping[str, Any]) -> None:
-    """Keep a listing; where that cannot be, the next night reads the inventory, and that is all.
-
-    told : what it is the listing of, for JSON
-    """
-    import pyarrow as pa
-
-    sink = pa.BufferOutputStream()
-    with pa.ipc.new_stream(sink, _schema()) as stream:
-        stream.write_table(listing.table)
-    content = sink.getvalue()
-    head = json.dumps([hashlib.sha256(content).hexdigest(), told]).encode()
-    with suppress(OSError):
-        file.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(file) as aside, aside.open("wb") as binary:
-            binary.write(head + b"\n")
-            binary.write(content)
-
-
-def read_listing(file: Path) -> tuple[Listing, dict[str, Any]] | None:
-    """Return what `write_listing` kept, and what was told with it; None where it is not there, or damaged."""
-    import pyarrow as pa
-
-    try:
-        with file.open("rb") as binary:
-            digest, told = json.loads(binary.readline(1 << 16))
-            content = binary.read()
-        if hashlib.sha256(content).hexdigest() != digest:
-            return None
-        table = pa.ipc.open_stream(pa.py_buffer(content)).read_all()
-        return (Listing(table.combine_chunks()), dict(told)) if table.schema == _schema() else None
-    except (OSError, ValueError, TypeError, pa.ArrowException):
-        return None
-
-
 def _schema() -> Any:
     import pyarrow as pa
 
     text = pa.large_string()
-    types = {"on_display": pa.bool_(), "kind": pa.int64()}
-    return pa.schema([(name, types.get(name, text)) for name in Listed._fields])
+    return pa.schema([(name, pa.bool_() if name == "on_display" else text) for name in Listed._fields])
 
 
 def _equal(column: Any, value: object) -> Any:

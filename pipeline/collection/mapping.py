@@ -6,13 +6,15 @@ import tomllib
 from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Self
 
 from pydantic import (
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Field,
     PrivateAttr,
+    SerializeAsAny,
     StrictBool,
     StrictFloat,
     StrictStr,
@@ -23,6 +25,8 @@ from pydantic import (
 
 from pipeline.collection.errors import MappingError
 from pipeline.collection.record import KINDS, REQUIRED, units_of
+from pipeline.collection.sources.base import Name, Source, SourceSettings
+from pipeline.collection.sources.registry import SOURCES, source_named
 from pipeline.errors import InputError
 from pipeline.quantities import LENGTHS, MASSES
 from pipeline.records import Support
@@ -39,88 +43,66 @@ MAPPABLE = (*(name for name, kind in KINDS.items() if kind != "list" and name !=
 WRITTEN = "as written"
 """The unit of a column whose cells name their own."""
 
-# In all but UTF-16 (Excel's "Unicode text") the line ends survive a broken byte, so that it spoils one row only.
-Encoding = Literal[
-    "utf-8",
-    "utf-16",
-    "ascii",
-    "cp437",
-    "cp850",
-    "cp1250",
-    "cp1251",
-    "cp1252",
-    "cp1253",
-    "cp1254",
-    "iso-8859-1",
-    "iso-8859-2",
-    "iso-8859-15",
-    "mac-roman",
-    "koi8-r",
-    "big5",
-    "euc-jp",
-    "euc-kr",
-    "gb18030",
-    "shift-jis",
-]
 Number = Annotated[StrictFloat, Field(allow_inf_nan=False)]
-Name = Annotated[str, Field(min_length=1)]
 
 
 class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class Source(_Part):
-    """How the museum's file or database is read."""
+class SourceFaultError(InputError):
+    """A section [source] that its kind of source refuses.
 
-    format: Literal["csv", "tsv", "xlsx", "lido", "sql"] = Field(description="The kind of source.")
-    encoding: Encoding | None = Field(
-        default=None, description="csv, tsv: how its letters are coded; Excel's older exports use cp1252."
-    )
-    delimiter: str | None = Field(
-        default=None,
-        pattern=r'^[^"\r\n\x00]$',
-        description="csv: the one character between two cells: a comma, a semicolon or a tab.",
-    )
-    decimal: Literal[".", ","] = Field(default=".", description="The decimal mark of numbers that stand in texts.")
-    sheet: Name | None = Field(
-        default=None, description="xlsx: the name of the sheet; needed where more than one is visible."
-    )
-    header_row: int | None = Field(default=None, ge=1, le=100, description="xlsx: the row of the column names; 1.")
-    language: Name | None = Field(default=None, description='lido: the language to prefer, such as "en" or "de".')
-    query: Name | None = Field(default=None, description="sql: one SELECT; or name a table instead.")
-    table: Name | None = Field(default=None, description='sql: a table or view, such as "tms.objects".')
-    timeout_seconds: float | None = Field(
-        default=None, gt=0.0, le=86400.0, description="sql: how long the database may take for it; 600."
-    )
-    unmapped_columns: Literal["ignore", "refuse"] = Field(
-        default="ignore", description="What to do with a column that no field is mapped to."
-    )
+    Attributes
+    ----------
+    errors : list
+        As pydantic gives them, within the section.
+    """
 
-    @model_validator(mode="after")
-    def _fits(self) -> Self:
-        needs, may = _KEYS[self.format]
-        for key in ("encoding", "delimiter", "sheet", "header_row", "language", "query", "table", "timeout_seconds"):
-            given = getattr(self, key) is not None
-            if key in needs and not given:
-                raise InputError(f'{key} is missing; a source of format "{self.format}" needs it')
-            if given and key not in needs + may:
-                raise InputError(f'{key} has no meaning for format "{self.format}"; leave it out')
-        if self.delimiter == self.decimal == ",":
-            raise InputError('a comma cannot be both delimiter and decimal mark; most such files have delimiter = ";"')
-        if self.format == "sql" and (self.query is None) == (self.table is None):
-            raise InputError('a source of format "sql" needs either query = "SELECT ..." or table = "name"')
-        return self
+    def __init__(self, errors: Sequence[Any]) -> None:
+        super().__init__("; ".join(str(error["msg"]) for error in errors))
+        self.errors = errors
 
 
-_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "csv": (("encoding", "delimiter"), ()),
-    "tsv": (("encoding",), ()),
-    "xlsx": ((), ("sheet", "header_row")),
-    "lido": ((), ("language",)),
-    "sql": ((), ("query", "table", "timeout_seconds")),
-}
-"""Of each format: which keys of [source] it needs, and which it may have."""
+def _settings_of(section: object) -> object:
+    """Return the section [source] as settings of its own kind of source.
+
+    Raises
+    ------
+    SourceFaultError
+        For keys and values that are not that kind's.
+    InputError
+        For a format that no source has.
+    """
+    if not isinstance(section, dict) or not isinstance(section.get("format"), str):
+        return section
+    kind = source_named(section["format"])
+    if kind is None:
+        known = [source.name for source in SOURCES]
+        left_out = f". {'; '.join(SOURCES.problems)}" if SOURCES.problems else ""
+        raise InputError(
+            f"there is no format {section['format']!r}{closest(section['format'], known)}. "
+            f"Known are {', '.join(known)}{left_out}"
+        )
+    try:
+        return kind.Settings.model_validate(section)
+    except ValidationError as fault:
+        raise SourceFaultError([_of_kind(kind, error) for error in fault.errors()]) from fault
+
+
+def _of_kind(kind: Source, error: Any) -> dict[str, Any]:
+    """Return an error within [source] in words that name the kind of source."""
+    key = str(error["loc"][-1]) if error["loc"] else ""
+    known = list(kind.Settings.model_fields)
+    others = {name for source in SOURCES for name in source.Settings.model_fields}
+    message = str(error["msg"])
+    if error["type"] == "missing":
+        message = f'{key} is missing; a source of format "{kind.name}" needs it'
+    elif error["type"] == "extra_forbidden" and key in others:
+        message = f'{key} has no meaning for format "{kind.name}"; leave it out'
+    elif error["type"] == "extra_forbidden":
+        message = f"there is no such key{closest(key, known)}. Known are {', '.join(known)}"
+    return {"type": "source", "loc": ("source", *error["loc"]), "msg": message}
 
 
 class Museum(_Part):
@@ -197,7 +179,9 @@ class Display(_Part):
 class Mapping(_Part):
     """A museum's file, column by column; ``name`` is the preset's or the file's name, for messages."""
 
-    source: Source = Field(description="How the source is read.")
+    source: Annotated[SerializeAsAny[SourceSettings], BeforeValidator(_settings_of)] = Field(
+        description="How the source is read."
+    )
     museum: Museum = Field(description="Whose collection it is.")
     columns: dict[str, ColumnMap] = Field(
         description="Field of the object record (or diameter_m) -> where it comes from."
@@ -282,9 +266,16 @@ def load_mapping(path_or_preset_name: str | Path) -> Mapping:
     try:
         mapping = Mapping.model_validate(data)
     except ValidationError as fault:
-        raise MappingError("\n".join(f"{name}: {_say(error)}" for error in fault.errors())) from fault
+        raise MappingError("\n".join(f"{name}: {_say(error)}" for error in _expanded(fault))) from fault
     mapping._name = name
     return mapping
+
+
+def _expanded(fault: ValidationError) -> Iterator[Any]:
+    """Yield all errors of a mapping, those of [source] one by one."""
+    for error in fault.errors():
+        cause = error.get("ctx", {}).get("error")
+        yield from cause.errors if isinstance(cause, SourceFaultError) else [error]
 
 
 def mapping_schema() -> dict[str, Any]:
@@ -307,6 +298,13 @@ def mapping_schema() -> dict[str, Any]:
         {"required": ["columns"]},
         {"required": ["constant"]},
     ]
+    # Of another package's kind of source nothing but its name is known here.
+    own = [source.Settings.model_json_schema() for source in SOURCES.own]
+    others = {"not": {"enum": [source.name for source in SOURCES.own]}, "type": "string"}
+    schema["$defs"]["SourceSettings"] = {
+        "description": "How the museum's file or database is read.",
+        "oneOf": [*own, {"properties": {"format": others}, "required": ["format"], "type": "object"}],
+    }
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
@@ -376,7 +374,7 @@ def _constant_fault(field: str, kind: str, column: ColumnMap) -> str:
 
 
 _SECTIONS: dict[str, type[BaseModel]] = {
-    "source": Source,
+    "source": SourceSettings,
     "museum": Museum,
     "columns": ColumnMap,
     "dimensions": Texts,

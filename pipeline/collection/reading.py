@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
+import json
 import logging
+from collections import Counter, abc
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from itertools import count
+from dataclasses import dataclass
+from dataclasses import field as member
+from hashlib import blake2b
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
-from pipeline.collection.blocks import Block, Piece, cut
 from pipeline.collection.cells import Cells
-from pipeline.collection.contradictions import contradictions
+from pipeline.collection.consistency import contradictions
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.limits import STANDARD, Limits, Meter
 from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, Texts, check_header
 from pipeline.collection.measured import fill, is_dimension
+from pipeline.collection.opening import open_source
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
 from pipeline.collection.sources.delimited import RECORD_LIMIT
-from pipeline.collection.sources.opening import open_source
-from pipeline.collection.sources.rows import Row
-from pipeline.collection.suspicion import Evidence, Suspicion, suspicions
+from pipeline.collection.sources.rows import NO_FAULTS, Row
+from pipeline.collection.unit_audit import Evidence, Suspicion, suspicions
 from pipeline.errors import KourosError, fault_words
 from pipeline.records import Item, Origin, Problem, Provenance
 
@@ -43,18 +45,56 @@ class Rejected:
     remedy: str
 
 
+class KnownRow(NamedTuple):
+    """What is known of a row that became an object.
+
+    Attributes
+    ----------
+    object_number : str
+        Of its object.
+    noted : str or None
+        Field, message and remedy of each of its problems, as JSON; None where it has none.
+    evidence : str or None
+        What it says about the units of the whole source (`unit_audit.Evidence.plain`), as JSON; None for nothing.
+    """
+
+    object_number: str
+    noted: str | None
+    evidence: str | None
+
+
+KnownRows = abc.Mapping[str, KnownRow]
+"""What is known of rows, by their digests."""
+
+
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What a source held: ``rows`` is always the number of items and of rejected rows together.
+    """What a source held: ``rows`` is always the number of objects and of rejected rows together.
 
-    source  : the file's name, without its folder, or the database without its password
-    sha256  : of the file's bytes, or of the rows that the database gave
-    mapping : name of the mapping; museum and credit as the mapping gives them
-    places  : of each item, its row and its line in the source
-    suspicions : units that the whole source seems to have wrong
-    blocks  : what became of its rows, for the next reading
-    unread  : what was only counted, because it is as it was at the last reading; None: everything was read
-    flagged : whether a column says what is on display
+    Attributes
+    ----------
+    items : tuple of Item
+        What was read now.
+    rows : int
+        Of the source.
+    rejected : tuple of Rejected
+        Rows that were kept out.
+    source : str
+        The file's name, without its folder, or the database without its password.
+    sha256 : str
+        Of the file's bytes, or of the rows that the database gave.
+    mapping, museum, credit : str
+        Name of the mapping; museum and credit as the mapping gives them.
+    places : tuple of (int, int)
+        Of each item, its row and its line in the source.
+    suspicions : tuple of Suspicion
+        Units that the whole source seems to have wrong.
+    known : mapping of str to KnownRow
+        What is known of the rows that were read now, by their digests, for the next reading.
+    unread : Unread or None
+        What was only counted, because it is as it was at the last reading; None where everything was read.
+    flagged : bool
+        Whether a column says what is on display.
     """
 
     items: tuple[Item, ...]
@@ -67,7 +107,7 @@ class Reading:
     credit: str = ""
     places: tuple[tuple[int, int], ...] = ()
     suspicions: tuple[Suspicion, ...] = ()
-    blocks: tuple[Block, ...] = ()
+    known: KnownRows = member(default_factory=dict)
     unread: Unread | None = None
     flagged: bool = False
 
@@ -81,66 +121,130 @@ class Reading:
 class Unread:
     """The rows that are as they were at the last reading, all of which became objects.
 
-    objects : how many
-    gone    : numbers of the objects of that reading whose rows did not come again as they were
-    noted   : the problems of the unread objects: row, line, object number, field, message, remedy
+    Attributes
+    ----------
+    objects : int
+        How many.
+    gone : frozenset of str
+        Digests of the rows of that reading that did not come again, or not as objects.
+    numbers : frozenset of str
+        Numbers of the objects of those rows.
+    noted : tuple
+        The problems of the unread objects: row, line, object number, field, message, remedy.
     """
 
     objects: int
     gone: frozenset[str]
+    numbers: frozenset[str]
     noted: tuple[tuple[int, int, str, str, str, str], ...]
 
 
 def read_items(
-    where: str | Path, mapping: Mapping, limits: Limits = STANDARD, before: Sequence[Block] | None = None
+    where: str | Path,
+    mapping: Mapping,
+    limits: Limits = STANDARD,
+    known: KnownRows | None = None,
 ) -> Reading:
     """Read a museum's file or database, row by row.
 
     A value that cannot be accepted is None in its item, which keeps the reason as a problem; only rows that are broken,
     have no object number or repeat one are rejected.
 
-    where  : path of a file, or the URL of a database
-    limits : bytes, rows and seconds that are accepted
-    before : the blocks of an earlier reading by the same mapping and code; those of its rows that come again are
-             counted and not read
-    raises : CollectionError for a source that is missing, unreadable, too large, empty or not in its encoding;
-             MappingError where the mapping's columns are not the source's
+    Parameters
+    ----------
+    where : str or Path
+        Path of a file, or the URL of a database.
+    mapping : Mapping
+        Which column is which field.
+    limits : Limits
+        Bytes, rows and seconds that are accepted.
+    known : mapping of str to KnownRow, optional
+        What is known of the rows of an earlier reading by the same mapping, code and limits, by their digests: those
+        that come again are counted and not read.
+
+    Returns
+    -------
+    Reading
+        With items of the rows that were read.
+
+    Raises
+    ------
+    CollectionError
+        For a source that is missing, unreadable, too large, empty or not in its encoding.
+    MappingError
+        Where the mapping's columns are not the source's.
     """
     since = perf_counter()
     with open_source(where, mapping, limits) as source:
         header = next(source.rows, None)
         if header is None:
             raise CollectionError(f"{source.name}: empty collection: there is no header; export it again")
-        desk = _Desk(source.name, mapping, header, limits)
-        for piece in cut(source, header.cells, before or (), desk.holds):
-            desk.take(piece)
+        reader = RowReader(source.name, mapping, header, limits, known or {})
+        for row in source.rows:
+            reader.take(row)
         digest = source.digest()
     logger.info(
-        "%s: read %d rows in %.2f s by mapping %r", source.name, desk.rows, perf_counter() - since, mapping.name
+        "%s: read %d rows in %.2f s by mapping %r", source.name, reader.rows, perf_counter() - since, mapping.name
     )
-    if not desk.rows:
+    if not reader.rows:
         raise CollectionError(f"{source.name}: empty collection: a header and no data rows; export it again")
     return Reading(
-        items=tuple(desk.items),
-        rows=desk.rows,
-        rejected=tuple(desk.rejected),
+        items=tuple(reader.items),
+        rows=reader.rows,
+        rejected=tuple(reader.rejected),
         source=source.name,
         sha256=digest,
         mapping=mapping.name,
         museum=mapping.museum.name,
         credit=mapping.museum.credit,
-        places=tuple(desk.places),
-        suspicions=suspicions(desk.evidence),
-        blocks=tuple(desk.blocks),
-        unread=None if before is None else desk.unread(before),
-        flagged=desk.flagged,
+        places=tuple(reader.places),
+        suspicions=suspicions(reader.evidence()),
+        known=reader.found,
+        unread=None if known is None else reader.unread(),
+        flagged=reader.flagged,
     )
 
 
-class _Desk:
-    """Where the rows of one file are looked at, one after the other."""
+def row_digest(header: bytes, cells: Sequence[str]) -> str:
+    """Return the digest of a row: that of its cells and of the header, on which their meaning rests.
 
-    def __init__(self, file: str, mapping: Mapping, header: Row, limits: Limits) -> None:
+    Parameters
+    ----------
+    header : bytes
+        What stands for the names of the columns.
+    cells : sequence of str
+        The row's cells.
+
+    Returns
+    -------
+    str
+        128 bits as hexadecimal digits.
+    """
+    text = "\0".join(cells)
+    if text.count("\0") != len(cells) - 1:
+        # Where the cells end must be told: JSON does it whatever they hold.
+        text = json.dumps(cells)
+    return blake2b(header + text.encode("utf-8", "surrogatepass"), digest_size=16).hexdigest()
+
+
+class RowReader:
+    """Turns the rows of one source into items, one after the other.
+
+    Parameters
+    ----------
+    file : str
+        The source's name, for messages.
+    mapping : Mapping
+        Which column is which field.
+    header : Row
+        The names of the columns.
+    limits : Limits
+        Rows and seconds that are accepted.
+    known : mapping of str to KnownRow
+        What is known of rows of an earlier reading, by their digests.
+    """
+
+    def __init__(self, file: str, mapping: Mapping, header: Row, limits: Limits, known: KnownRows) -> None:
         names = [cell.strip() for cell in header.cells]
         check_header(mapping, file, names)
         self._file = file
@@ -159,78 +263,74 @@ class _Desk:
         self._texts = texts and [names.index(source) for source in texts.columns if source in names]
         self._mapping = mapping
         self._constants = {f: c.constant for f, c in mapping.columns.items() if c.constant is not None}
+        self._header = bytes.fromhex(row_digest(b"", header.cells))
+        self._known = known
+        self._again: set[str] = set()
+        self._noted: list[tuple[int, int, str, str, str, str]] = []
+        self._evidence: Counter[str] = Counter()
+        self._meter = Meter(file, limits)
         self.items: list[Item] = []
         self.places: list[tuple[int, int]] = []
         self.rejected: list[Rejected] = []
-        self._meter = Meter(file, limits)
-        self._unread: list[Block] = []
-        self._noted: list[tuple[int, int, str, str, str, str]] = []
-        self.blocks: list[Block] = []
-        self.evidence = Evidence()
+        self.found: dict[str, KnownRow] = {}
 
     @property
     def rows(self) -> int:
+        """How many rows were taken."""
         return self._meter.rows
 
-    def holds(self, block: Block) -> bool:
-        """Say whether what became of the rows of a block holds again: none of its numbers was given already.
+    def take(self, row: Row) -> None:
+        """Read a row, or only count it where what is known of it holds again.
 
-        Such a row must be refused, as it was not when it was read.
+        It does not hold where an earlier row gave the object's number: then this one must be refused.
         """
-        return self._seen.keys().isdisjoint(block.numbers)
-
-    def take(self, piece: Piece) -> None:
-        """Read the rows of a block, or only count them."""
-        if piece.known is not None:
-            self._take_over(piece, piece.known)
+        self._meter.count()
+        # What its source found wrong is not in its cells.
+        faulty = row.fault[0] or (row.faults is not NO_FAULTS and row.faults)
+        digest = "" if faulty else row_digest(self._header, row.cells)
+        known = self._known.get(digest)
+        if known is not None and known.object_number not in self._seen:
+            self._take_over(row, digest, known)
             return
-        first, refused = len(self.items), len(self.rejected)
-        at = {}
-        for place, row in enumerate(piece.rows):
-            try:
-                self._take(row)
-            except KourosError:
-                raise
-            except Exception as problem:  # noqa: BLE001 - whatever it is, it is this row's, and told
-                self._reject(row, "", f"{FAILED}: {fault_words(problem)}", TELL)
-            at[row.number] = place
-        items = self.items[first:]
-        numbers = tuple(item.object_number for item in items)
-        if len(self.rejected) > refused:
-            # It is never taken over, so that nothing need be known of its rows.
-            block = Block("", numbers, (), Evidence.of(items))
-        else:
-            noted = tuple(
-                (at[row], line - piece.line, item.object_number, problem.field, problem.message, problem.remedy)
-                for item, (row, line) in zip(items, self.places[first:], strict=True)
-                for problem in item.problems
-            )
-            block = Block(piece.digest, numbers, noted, Evidence.of(items), piece.span)
-        self.blocks.append(block)
-        self.evidence.add(block.evidence)
+        before = len(self.items)
+        try:
+            self._take(row)
+        except KourosError:
+            raise
+        except Exception as problem:  # noqa: BLE001 - whatever it is, it is this row's, and told
+            self._reject(row, "", f"{FAILED}: {fault_words(problem)}", TELL)
+        for item in self.items[before:]:
+            evidence = Evidence.of([item]).plain()
+            said = json.dumps(evidence, separators=(",", ":")) if any(evidence) else None
+            if said is not None:
+                self._evidence[said] += 1
+            if digest:
+                noted = [(one.field, one.message, one.remedy) for one in item.problems]
+                self.found[digest] = KnownRow(item.object_number, json.dumps(noted) if noted else None, said)
 
-    def _take_over(self, piece: Piece, known: Block) -> None:
-        self._meter.count(len(known.numbers))
-        self._seen.update(zip(known.numbers, count(piece.number), strict=False))
-        block = known
-        if piece.rows:
-            # Blank lines more or less change where its rows are, and nothing else.
-            places = [row.line - piece.line for row in piece.rows]
-            noted = tuple((one[0], places[one[0]], *one[2:]) for one in known.noted)
-            block = replace(known, noted=noted, span=piece.span)
-        self._noted += [(piece.number + one[0], piece.line + one[1], *one[2:]) for one in block.noted]
-        self._unread.append(block)
-        self.blocks.append(block)
-        self.evidence.add(block.evidence)
+    def _take_over(self, row: Row, digest: str, known: KnownRow) -> None:
+        number = known.object_number
+        self._seen[number] = row.number
+        self._again.add(digest)
+        if known.noted is not None:
+            self._noted += [(row.number, row.line, number, *problem) for problem in json.loads(known.noted)]
+        if known.evidence is not None:
+            self._evidence[known.evidence] += 1
 
-    def unread(self, before: Sequence[Block]) -> Unread:
+    def evidence(self) -> Evidence:
+        """Return what all rows say about the units of the source."""
+        whole = Evidence()
+        for said, times in self._evidence.items():
+            whole.add(Evidence.of_plain(json.loads(said)), times)
+        return whole
+
+    def unread(self) -> Unread:
         """Return what was only counted."""
-        again = {block.digest for block in self._unread}
-        gone = frozenset(number for block in before if block.digest not in again for number in block.numbers)
-        return Unread(sum(len(block.numbers) for block in self._unread), gone, tuple(self._noted))
+        gone = frozenset(self._known.keys() - self._again)
+        numbers = frozenset(self._known[digest].object_number for digest in gone)
+        return Unread(len(self._again), gone, numbers, tuple(self._noted))
 
     def _take(self, row: Row) -> None:
-        self._meter.count()
         message, remedy = row.fault
         if message:
             self._reject(row, "", message, remedy)

@@ -131,35 +131,47 @@ def _item() -> TypeAdapter[Item]:
 
 
 def digest_of(item: Item) -> str:
-    """Return a digest of what is recorded: a field that a later Kouros adds leaves those of old records alone."""
+    """Return a digest of what is recorded: a field that a later Kouros adds leaves those of old records alone.
+
+    Parameters
+    ----------
+    item : Item
+        The record.
+
+    Returns
+    -------
+    str
+        128 bits as hexadecimal digits.
+    """
     return blake2b(_item().dump_json(item, exclude_defaults=True), digest_size=16).hexdigest()
 
 
 INDIVIDUAL = (
-    "object_number", "gallery", "title", "dimensions", "position_x_m", "position_y_m", "value_class", "provenance",
-    "problems",
+    "object_number", "gallery", "dimensions", "position_x_m", "position_y_m", "value_class", "provenance", "problems",
 )  # fmt: skip
-"""Fields that tell one object from others of its kind: nothing computed rests on them but through the classification,
-and where an object stands beside others."""
+"""Fields that tell one object from others that are alike: nothing computed of an object by itself rests on them."""
+
+_INDIVIDUAL = set(INDIVIDUAL)
 
 
-_TITLE_BITS = 24
+def assessment_digest_of(item: Item) -> str:
+    """Return a digest of what the assessment of an object by itself rests on: all fields but INDIVIDUAL ones.
 
+    The title is one of them, as the classification reads it.  Objects that share it are found to do the same under the
+    same shaking, by the same rules and settings.
 
-def kind_of(item: Item) -> int:
-    """Return a number of 64 bits, with a sign, that objects share which may well be alike.
+    Parameters
+    ----------
+    item : Item
+        The record.
 
-    Those that differ in no field but INDIVIDUAL ones have the same `family_of` it; with the same title, by which they
-    may be classified, the same number.  Two kinds may by chance have one number: it is no proof.
+    Returns
+    -------
+    str
+        128 bits as hexadecimal digits.
     """
-    told = _item().dump_json(item, exclude=set(INDIVIDUAL), exclude_defaults=True)
-    title = blake2b(item.title.encode(), digest_size=_TITLE_BITS // 8)
-    return int.from_bytes(blake2b(told, digest_size=8 - _TITLE_BITS // 8).digest() + title.digest(), signed=True)
-
-
-def family_of(kind: int) -> int:
-    """Return what kinds of objects have in common that differ in nothing but their title."""
-    return kind >> _TITLE_BITS
+    told = _item().dump_json(item, exclude=_INDIVIDUAL, exclude_defaults=True)
+    return blake2b(told, digest_size=16).hexdigest()
 
 
 def to_items(records: list[Any]) -> list[Item]:

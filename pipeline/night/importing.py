@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pipeline.collection.inventory import Difference, held, latest_import, replace_inventory, return_to
+from pipeline.collection.inventory.source_rows import hold_source, known_rows
 from pipeline.collection.limits import Limits
 from pipeline.collection.mapping import load_mapping, preset_file, preset_names
 from pipeline.collection.reading import NOWHERE, Reading, read_items
 from pipeline.collection.sources.address import expand_secrets
-from pipeline.collection.sources.opening import is_database
-from pipeline.collection.suspicion import Suspicion
-from pipeline.night.source_state import known_blocks, mapping_of
+from pipeline.collection.sources.registry import is_address
+from pipeline.collection.unit_audit import Suspicion
+from pipeline.night.source_state import mapping_of, source_key
 from pipeline.operations.workspace import IMPORTS, Workspace
 from pipeline.records import Item, Problem
 from pipeline.report.text import safe_cell
@@ -94,9 +95,12 @@ def proposed(source: str, table: str | None = None, most: int = 10) -> Proposed:
     reading = read_items(source, found.mapping)
     step = max(len(reading.items) // most, 1)
     examples = tuple(_in_words(item) for item in reading.items[::step][:most])
-    if is_database(source):
+    if is_address(source):
         shown = expand_secrets(source).shown
-        named = re.sub(r"[^A-Za-z0-9_.-]+", "-", found.mapping.source.table or "query").strip("-.") or "mapping"
+        named = (
+            re.sub(r"[^A-Za-z0-9_.-]+", "-", getattr(found.mapping.source, "table", None) or "query").strip("-.")
+            or "mapping"
+        )
     else:
         shown, named = Path(source).name, Path(source).stem
     return Proposed(named, shown, found, reading.rows, len(reading.items), examples, reading.suspicions)
@@ -112,7 +116,7 @@ def _in_words(item: Item) -> str:
 
 def source_of(workspace: Workspace, source: str) -> str:
     """Return where a source of the settings is: a database's URL as it is, a file's path from the settings' folder."""
-    return source if is_database(source) else str(workspace.settings.path(source))
+    return source if is_address(source) else str(workspace.settings.path(source))
 
 
 def accepted(settings: Settings) -> Limits:
@@ -137,14 +141,17 @@ def import_collection(
               looks on: rows that are as they were at the last reading are not read again
     raises  : CollectionError, MappingError and ShrunkError, as reading and writing do; nothing is written then
     """
-    before = known_blocks(workspace, source, mapping) if nightly else None
-    reading = read_items(source, mapping_of(workspace.settings, mapping), accepted(workspace.settings), before)
+    key = source_key(workspace.settings, source, mapping)
+    known = known_rows(workspace.engine, key) if nightly else None
+    reading = read_items(source, mapping_of(workspace.settings, mapping), accepted(workspace.settings), known)
     if nightly:
         stays = held(workspace.engine, reading.sha256)
         if stays is not None:
+            if not dry_run:
+                hold_source(workspace.engine, key, reading.sha256)
             return Imported(reading, None, held=stays)
     last = latest_import(workspace.engine)
-    changes = replace_inventory(workspace.engine, reading, shrink_limit=shrink_limit, dry_run=dry_run)
+    changes = replace_inventory(workspace.engine, reading, shrink_limit=shrink_limit, dry_run=dry_run, key=key)
     after = latest_import(workspace.engine)
     if after is None or last == after or workspace.settings.rehearsal is not None:
         return Imported(reading, changes)

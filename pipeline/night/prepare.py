@@ -14,9 +14,9 @@ from pipeline.analysis.faults import sound, without_failing
 from pipeline.analysis.plan import Work, plan
 from pipeline.analysis.response_charts.grouping import group_name, groups
 from pipeline.analysis.rules import Table
-from pipeline.collection.catalogue import Catalogue
 from pipeline.collection.inventory import latest_import
 from pipeline.collection.listing import Listing
+from pipeline.collection.object_index import ObjectIndex
 from pipeline.execute import Threads
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import Means
@@ -54,7 +54,7 @@ PADDED = 0.25
 def run_context(
     workspace: Workspace,
     site: Site,
-    catalogue: Catalogue,
+    index: ObjectIndex,
     chosen: Listing,
     pictures: Pictures,
     started: datetime,
@@ -62,7 +62,7 @@ def run_context(
 ) -> RunContext:
     """Make ready what everything that is done in a run shares; its charts are to be tidied at the end.
 
-    catalogue : all objects of the inventory;  chosen : those that the run is of
+    index : all objects of the inventory;  chosen : those that the run is of
     pictures  : where those of the motions are had
     raises    : SettingsError for a floor that the site does not have, MotionError for a floor's record, TableError and
                 UsageError for tables of the museum's own, ReportError for a language without a catalogue
@@ -78,7 +78,7 @@ def run_context(
     surveyed = _asked(settings.report.survey, shown <= SURVEYED)
     info = latest_import(workspace.engine)
     said = [_level_note(level) for level in site.levels]
-    said += notes(settings, site, catalogue.objects.galleries)
+    said += notes(settings, site, index.objects.galleries)
     if settings.analysis.fragility and not fragile:
         said.append(_left_out("From what shaking each object fails", "[analysis] fragility = true"))
     if settings.report.survey and not surveyed:
@@ -93,7 +93,7 @@ def run_context(
         museum=settings.museum.name or (info.museum if info else ""),
         level_notes=tuple(said),
         settings=_stored_settings(workspace, site, info.credit if info else "", tested)
-        | {INVENTORY: catalogue.version, READING: told(workspace, catalogue)},
+        | {INVENTORY: index.version, READING: told(workspace, index)},
         assessments=(),
         charts={},
         motions=tuple(summary for storey in storeys.values() for summary in storey.summaries),
@@ -124,9 +124,9 @@ def run_context(
     return context
 
 
-def admit(context: RunContext, catalogue: Catalogue, chosen: Listing, x_azimuth: float) -> list[ChartTask]:
+def admit(context: RunContext, index: ObjectIndex, chosen: Listing, x_azimuth: float) -> list[ChartTask]:
     """Decide which response charts are used (see `popular`), and return those to be built before the sheets."""
-    found = popular(catalogue, assessed(chosen, context.stores), context.rules, context.means, x_azimuth)
+    found = popular(index, assessed(chosen, context.stores), context.rules, context.means, x_azimuth)
     context.admitted = frozenset(found)
     return [
         ChartTask(model.name, motion, angle, alike)
@@ -145,7 +145,7 @@ Group = tuple[Model, float | None, dict[str, float]]
 
 
 def popular(
-    catalogue: Catalogue, chosen: Listing, rules: Table | None, means: Means, x_azimuth: float
+    index: ObjectIndex, chosen: Listing, rules: Table | None, means: Means, x_azimuth: float
 ) -> dict[str, Group]:
     """Return the groups of parameters whose charts pay for a collection, as a sample of its objects says, by name.
 
@@ -153,7 +153,7 @@ def popular(
     Of the measures only rubber pads make something of many objects that one chart could serve.
     """
     every = max(1, len(chosen) // SAMPLE)
-    sample = catalogue.items([one.object_number for one in chosen[::every]])
+    sample = index.items([one.object_number for one in chosen[::every]])
     # What cannot even be planned for is told where it is assessed.
     scenes = sound(lambda some: [classify(item, rules) for item in some], list(sample.values()))
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any
 
-from pipeline.collection.account import account, doubts
-from pipeline.collection.catalogue import Catalogue
+from pipeline.collection.inventory.reading_report import account, doubts
+from pipeline.collection.object_index import ObjectIndex
 from pipeline.collection.reading import NOWHERE
 from pipeline.operations.workspace import Workspace
 from pipeline.quantities import counted
@@ -15,15 +15,15 @@ from pipeline.report.pages.reading import INVENTORY, READING
 UNKNOWN = "not known what was refused or is doubted: import again"
 
 
-def told(workspace: Workspace, catalogue: Catalogue) -> dict[str, Any] | None:
+def told(workspace: Workspace, index: ObjectIndex) -> dict[str, Any] | None:
     """Return what became of the rows behind the inventory, for JSON; None where that was not noted.
 
     unsaid : objects that are taken to be on display because neither a column nor a location says what is; else 0
     """
-    found = account(workspace.engine, catalogue.version)
+    found = account(workspace.engine, index.version)
     if found is None:
         return None
-    stores = any(not run.on_display and run.gallery != NOWHERE for run in catalogue.objects.runs)
+    stores = any(not run.on_display and run.gallery != NOWHERE for run in index.objects.runs)
     return {
         "source": found.source,
         "rows": found.rows,
@@ -31,7 +31,7 @@ def told(workspace: Workspace, catalogue: Catalogue) -> dict[str, Any] | None:
         "doubtful": found.doubtful,
         "sheets": found.sheets,
         "suspicions": [dict(zip(("field", "message", "remedy"), one, strict=True)) for one in found.suspicions],
-        "unsaid": 0 if found.flagged or stores else catalogue.objects.shown,
+        "unsaid": 0 if found.flagged or stores else index.objects.shown,
     }
 
 

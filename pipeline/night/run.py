@@ -9,15 +9,16 @@ from typing import Any, Protocol, TypeVar
 
 from pipeline.analysis.faults import LIKE
 from pipeline.collection.inventory import latest_import
+from pipeline.collection.inventory.records import DamagedRecordError, repair
 from pipeline.collection.listing import Listing
-from pipeline.errors import InputError
+from pipeline.errors import DamageWarning, InputError
 from pipeline.motions.site import Site
-from pipeline.night.figures import pictures
+from pipeline.night.figures import Pictures, pictures
 from pipeline.night.importing import Imported, import_collection, source_of
 from pipeline.night.prepare import admit, run_context
 from pipeline.night.reading_summary import doubts_of
 from pipeline.night.scheduler import NightRun
-from pipeline.night.source_state import remember, unchanged
+from pipeline.night.source_state import unchanged
 from pipeline.operations.dry_run import DryRunWarning, rehearsed
 from pipeline.operations.report_status import Status, last_good, mark_good, mark_running, status
 from pipeline.operations.run_summary import SUMMARY, Stores, Summary, summary_text
@@ -86,16 +87,34 @@ def _run(
         with pictures(workspace, site) as drawing:
             if not (resume and _was_read(workspace, cut_off)):
                 _refresh(workspace, progress, dry_run=dry_run)
-            everything = workspace.catalogue()
-            objects = _chosen(everything.objects, chosen)
-            context = run_context(workspace, site, everything, objects, drawing, started, progress)
-        try:
-            charts = admit(context, everything, objects, site.manifest.site.x_azimuth)
-            night = NightRun(workspace, context, everything, objects, decisions_in_force(workspace.engine))
-            night.charts = charts
-            return _hold(night, progress, chosen, dry_run=dry_run, strict=strict)
-        finally:
-            tidy(settings, context.motions)
+
+            def held() -> Summary:
+                night = _planned(workspace, site, chosen, drawing, started, progress)
+                try:
+                    return _hold(night, progress, chosen, dry_run=dry_run, strict=strict)
+                finally:
+                    tidy(settings, night.context.motions)
+
+            try:
+                return held()
+            except DamagedRecordError as problem:
+                if dry_run or not settings.collection.source:
+                    raise
+                warnings.warn(f"{problem}; they are read again now", DamageWarning, stacklevel=2)
+                repair(workspace.engine, problem.numbers)
+                _refresh(workspace, progress, dry_run=False)
+                return held()
+
+
+def _planned(
+    workspace: Workspace, site: Site, chosen: Selection, drawing: Pictures, started: datetime, progress: Progress
+) -> NightRun:
+    """Return the run with all that is shared in it made ready, and what there is to do known."""
+    index = workspace.object_index()
+    objects = _chosen(index.objects, chosen)
+    context = run_context(workspace, site, index, objects, drawing, started, progress)
+    charts = admit(context, index, objects, site.manifest.site.x_azimuth)
+    return NightRun(workspace, context, index, objects, decisions_in_force(workspace.engine), charts)
 
 
 def _hold(night: NightRun, progress: Progress, chosen: Selection, *, dry_run: bool, strict: bool) -> Summary:
@@ -191,10 +210,6 @@ def _refresh(workspace: Workspace, progress: Progress, *, dry_run: bool) -> None
         )
         if dry_run and not workspace.scratch:
             _told(done)
-        elif not dry_run:
-            # What a person went back to is not what the source says.
-            blocks = done.reading.blocks if done.held is None else ()
-            remember(workspace, source, wanted.mapping, done.reading.sha256, blocks)
     progress.step("collection", 1, 1)
 
 

@@ -1,6 +1,7 @@
 """The work of a run: which units have results, which pages the last report has, and who does what is left."""
 
 import logging
+import warnings
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass, field, replace
@@ -11,10 +12,10 @@ from time import monotonic
 from typing import Any
 
 from pipeline.analysis.faults import Fault
-from pipeline.collection.catalogue import Catalogue
 from pipeline.collection.database import Database
 from pipeline.collection.inventory import fields_since
 from pipeline.collection.listing import Listing
+from pipeline.collection.object_index import ObjectIndex
 from pipeline.execute.memory import give_back
 from pipeline.execute.pool import WorkerPool, cores, pool
 from pipeline.night.context import RunContext
@@ -116,27 +117,31 @@ class NightRun:
         What finding out what is worth measuring cost [s].
     faults
         Objects that Kouros failed on.
-    charts
-        Response charts that are built before anything is assessed.
     damaged
         Keys of pages whose rows in the database are not what was written.
     """
 
     def __init__(
-        self, workspace: Workspace, context: RunContext, catalogue: Catalogue, objects: Listing, decisions: Decisions
+        self,
+        workspace: Workspace,
+        context: RunContext,
+        index: ObjectIndex,
+        objects: Listing,
+        decisions: Decisions,
+        charts: Sequence[ChartTask] = (),
     ) -> None:
-        self.workspace, self.context = workspace, context
-        self._catalogue, self._decisions, self._objects = catalogue, decisions, objects
+        self.workspace, self.context, self._charts = workspace, context, charts
+        self._index, self._decisions, self._objects = index, decisions, objects
         keys = UnitKeys(context, rules_digest(workspace.settings))
         self._pages = [_Shown(part, keys.units(part, decisions)) for part in paged(objects, workspace.settings)]
-        placed = catalogue.placed()
+        placed = index.placed()
         for (gallery, shown), several in groupby(self._pages, lambda one: (one.part.gallery, one.part.on_display)):
             pages = list(several)
             if shown and gallery in placed:
                 named = keys.neighbours(pages[0].part, [unit for page in pages for unit in page.units])
                 for page in pages:
                     page.spacings = named
-        self._digests = catalogue.digests(list(decisions))
+        self._digests = index.digests(list(decisions))
         self._names: dict[str, str] = {}
         self._memory: dict[str, Kept] | None = None
         self._work = self._missing()
@@ -146,7 +151,6 @@ class NightRun:
             if work.assessed
         )
         self.seconds = 0.0
-        self.charts: Sequence[ChartTask] = ()
         self.faults: list[Fault] = []
 
     # -----------------------------------------------------------------------------------------------------------------
@@ -158,8 +162,7 @@ class NightRun:
         keys = [page_digest(page.digests(), page.results({}), page.spacings) for page in self._pages]
         found, damaged = fetch_pages(engine, keys)
         self.damaged = frozenset(damaged)
-        for key in damaged:
-            note("page.damaged", level=logging.WARNING, page=key)
+        _damage("page", damaged)
         work: dict[tuple[str, bool], _Work] = {}
         wanted: list[_Shown] = []
         for page, key in zip(self._pages, keys, strict=True):
@@ -226,9 +229,9 @@ class NightRun:
             self._memory = {}
         if self._work:
             with self._pool(self.fresh) as workers:
-                if self.charts and self.context.kept is not None and self.fresh > FEW:
-                    for at, _ in enumerate(workers.each(build_chart, self.context, self.charts)):
-                        progress.step("response charts", at + 1, len(self.charts))
+                if self._charts and self.context.kept is not None and self.fresh > FEW:
+                    for at, _ in enumerate(workers.each(build_chart, self.context, self._charts)):
+                        progress.step("response charts", at + 1, len(self._charts))
                 tasks = [self._batches(work, workers.workers) for work in self._work]
                 number = sum(len(some) for some in tasks)
                 each = (task() for some in tasks for task in some)
@@ -259,7 +262,7 @@ class NightRun:
             work.assessed,
             tuple(unit.key for unit in units),
             tuple(len(unit.members) for unit in units),
-            self._catalogue.packed(numbers),
+            self._index.packed(numbers),
             tuple(about),
             batch,
         )
@@ -326,7 +329,7 @@ class NightRun:
         if page.kept is not None:
             return page.kept.members
         return Members(
-            self._catalogue.packed(page.numbers()),
+            self._index.packed(page.numbers()),
             page.digests(),
             page.results(self._names),
             self._names.get(page.spacings, page.spacings),
@@ -340,8 +343,7 @@ class NightRun:
         found, damaged = fetch(self.workspace.engine, left)
         gone = {key for key in left if key not in found}
         if gone:
-            for key in damaged:
-                note("result.damaged", level=logging.WARNING, result=key)
+            _damage("result", damaged)
             found |= self._again(gone)
         return mine | found
 
@@ -477,6 +479,14 @@ class NightRun:
             return pool(address=wanted.cluster)
         self.context = replace(self.context, threads=1)
         return pool(processes=wanted.processes or cores())
+
+
+def _damage(what: str, keys: Sequence[str]) -> None:
+    """Say that rows of the database are not what was written, and are made again."""
+    if keys:
+        note(f"{what}.damaged", level=logging.WARNING, keys=list(keys))
+        told = f"{counted(len(keys), what)} of the database changed since written: see whether the disk is sound"
+        warnings.warn(f"{told}; made again", DamageWarning, stacklevel=3)
 
 
 def _shares(units: int, workers: int, most: int) -> int:

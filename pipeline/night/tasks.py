@@ -12,7 +12,7 @@ from typing import Any
 from pipeline.analysis.chart_runs import deciding, response_chart
 from pipeline.analysis.faults import Fault, each_apart, fault, fitting, unassessed
 from pipeline.analysis.neighbours import neighbours
-from pipeline.collection.catalogue import read_packed
+from pipeline.collection.object_index import read_packed
 from pipeline.execute.memory import give_back
 from pipeline.night.assessment import Assessed, assess_objects, left_aside
 from pipeline.night.context import RunContext

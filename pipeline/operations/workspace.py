@@ -16,17 +16,14 @@ from pipeline.resources import resource, sweep
 if TYPE_CHECKING:
     from pipeline.analysis.response_charts import ChartCache
     from pipeline.analysis.rules import Table
-    from pipeline.collection.catalogue import Catalogue
     from pipeline.collection.database import Database
+    from pipeline.collection.object_index import ObjectIndex
     from pipeline.mitigate import Means
     from pipeline.motions.site import Site
     from pipeline.settings import Settings
 
 IMPORTS = "imports"
 """Folder beside the settings that holds the log of every import that changed something."""
-
-LISTING = "listing.arrow"
-"""File, among what is kept, for the listing of the inventory's objects, see `pipeline.collection.listing`."""
 
 
 class LockedError(KourosError):
@@ -71,11 +68,11 @@ class Workspace:
             self._own(wanted.catalogue, "[mitigation] catalogue names the file of your own isolators"),
         )
 
-    def catalogue(self) -> "Catalogue":
-        """Return the objects of the inventory; their listing is kept for another time."""
-        from pipeline.collection.catalogue import catalogue
+    def object_index(self) -> "ObjectIndex":
+        """Return the objects of the inventory as it is now."""
+        from pipeline.collection.object_index import object_index
 
-        return catalogue(self.engine, self.settings.kept / LISTING)
+        return object_index(self.engine)
 
     def site(self) -> "Site":
         """Read the site of the settings; its processed motions are kept for the next time.

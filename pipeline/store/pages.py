@@ -11,7 +11,7 @@ from sqlalchemy import Connection, Engine, insert, select, update
 
 from pipeline.analysis.faults import with_fault
 from pipeline.analysis.survey import in_order
-from pipeline.collection.catalogue import read_packed
+from pipeline.collection.object_index import read_packed
 from pipeline.records import ITEM_FIELDS, Found, Item, Page
 from pipeline.store.codec import StoreError
 from pipeline.store.results import decode, decode_spacings, fetch, of_object
@@ -55,7 +55,7 @@ class Members:
 
     @cached_property
     def _rows(self) -> list[list[Any]]:
-        rows: list[list[Any]] = json.loads(self.items)
+        rows: list[list[Any]] = json.loads(self.items)[1]
         return rows
 
     def column(self, name: str) -> list[Any]:

@@ -22,11 +22,11 @@ class Parcel:
 
     hint: Any
     dictionary: bytes
-    records: Mapping[int, bytes]
-    same: Mapping[int, int]
+    records: Mapping[str, bytes]
+    same: Mapping[str, str]
 
     @classmethod
-    def of(cls, hint: Any, records: Mapping[int, Any], same: Mapping[int, int] | None = None) -> "Parcel":
+    def of(cls, hint: Any, records: Mapping[str, Any], same: Mapping[str, str] | None = None) -> "Parcel":
         """Pack records.
 
         same   : further keys, each with the key whose record is theirs too
@@ -37,7 +37,7 @@ class Parcel:
         packed = {key: _compressed(text, dictionary) for key, text in texts.items()}
         return cls(hint, dictionary, packed, same or {})
 
-    def only(self, keys: Collection[int]) -> "Parcel":
+    def only(self, keys: Collection[str]) -> "Parcel":
         """Return a parcel with those of its records that are wanted, each once."""
         wanted = {self.same.get(key, key): None for key in keys}
         return Parcel(self.hint, self.dictionary, {k: self.records[k] for k in wanted if k in self.records}, {})

@@ -26,8 +26,9 @@ from sqlalchemy.types import TypeDecorator, TypeEngine
 
 from pipeline.collection.database import METADATA
 from pipeline.collection.inventory import IMPORT_BATCH, ITEM
-from pipeline.collection.noting import READING
-from pipeline.collection.supplement import SUPPLEMENT
+from pipeline.collection.inventory.local_measurements import SUPPLEMENT
+from pipeline.collection.inventory.reading_report import READING
+from pipeline.collection.inventory.source_rows import SOURCE_ROW, SOURCE_STATE
 from pipeline.records import Chart, Decision, MotionSummary, Standing
 from pipeline.store import codec
 
@@ -45,6 +46,8 @@ __all__ = [
     "RUN_DECISION",
     "RUN_MOTION",
     "RUN_PAGE",
+    "SOURCE_ROW",
+    "SOURCE_STATE",
     "SUPPLEMENT",
 ]
 

@@ -130,12 +130,12 @@ def _assessed(workspace: Workspace, site: Site, name: str, engine: Database, pro
 
     returns : how many objects had no result yet
     """
-    everything = workspace.catalogue()
+    everything = workspace.object_index()
     with pictures(workspace, site) as drawing:
         context = run_context(workspace, site, everything, everything.objects, drawing, datetime.now(UTC), progress)
     charts = admit(context, everything, everything.objects, site.manifest.site.x_azimuth)
-    night = NightRun(workspace, context, everything, everything.objects, decisions_in_force(workspace.engine))
-    night.charts = charts
+    decisions = decisions_in_force(workspace.engine)
+    night = NightRun(workspace, context, everything, everything.objects, decisions, charts)
     night.assess(progress, store=False)
     night.copy_results(engine)
     head = replace(context.head, run_id=name, finished=context.head.started)

@@ -8,7 +8,7 @@ from pathlib import Path
 from time import monotonic
 
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
-from pipeline.collection.sources.opening import is_database
+from pipeline.collection.sources.registry import is_address
 from pipeline.night.reading_summary import in_line, told, unsaid
 from pipeline.night.source_state import mapping_of
 from pipeline.operations.secrets import hider
@@ -76,7 +76,7 @@ def _collection(settings: Settings) -> tuple[str, str]:
     mapping_of(settings, wanted.mapping)
     if not wanted.source:
         return "ok", "no source: the inventory is used as it was last imported"
-    if is_database(wanted.source):
+    if is_address(wanted.source):
         return "ok", f"a database, mapping {wanted.mapping}; `kouros import --dry-run` asks it"
     source = settings.path(wanted.source)
     if not source.is_file():
@@ -131,7 +131,7 @@ def _inventory(workspace: Workspace, items: Sequence[Item]) -> tuple[str, str]:
         return "warning", "nothing imported yet; `kouros import FILE` does that, `kouros run` too where a source is set"
     shown = sum(galleries(items).values())
     doubts = strangers(workspace.settings.floors, {item.gallery for item in items})
-    read = told(workspace, workspace.catalogue())
+    read = told(workspace, workspace.object_index())
     text = f"{counted(len(items), 'object')}, {shown:,} on display, from {info.source} on {info.imported_at}; "
     text += f"read: {in_line(read)}"
     if read is None:

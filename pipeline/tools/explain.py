@@ -73,7 +73,7 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
     raises : UsageError for an object that the inventory does not have, with close ones; errors as a run
     """
     settings = workspace.settings
-    everything, inventory = workspace.catalogue(), read_inventory(workspace.engine)
+    everything, inventory = workspace.object_index(), read_inventory(workspace.engine)
     items = named(inventory, objects=(number,))
     site = workspace.site()
     executor, decisions = Threads(settings.analysis.workers or None), decisions_in_force(workspace.engine)

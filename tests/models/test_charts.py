@@ -6,8 +6,6 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
-from pipeline.analysis.response_charts.refine import MOST_NODES, UNITS, refine
-from pipeline.analysis.response_charts.response_chart import axis_of
 from shaking import along_x, random_motion
 
 from pipeline import respond

@@ -140,7 +140,7 @@ def test_every_measure_at_the_ends_of_its_range_is_run_on_every_class(tmp_path: 
     settings = museum(tmp_path, rows)
     assert kouros("import", "collection.csv", "--mapping", "kouros", folder=tmp_path).returncode == 0
     engine = open_workspace(settings).engine
-    digests = open_workspace(settings).catalogue().digests([row["object_number"] for row in rows])
+    digests = open_workspace(settings).object_index().digests([row["object_number"] for row in rows])
     for at, (kind, measure, end) in enumerate(pairs):
         own = {
             "object_number": f"{at}",

@@ -12,12 +12,10 @@ from lxml import html
 from sqlalchemy import create_engine, delete, text
 
 from pipeline.cli.console import summary_lines
-from pipeline.collection import noting
-from pipeline.collection.account import account, doubts
 from pipeline.collection.database import open_database
-from pipeline.collection.inventory import latest_import, replace_inventory, versions
+from pipeline.collection.inventory import latest_import, reading_report, replace_inventory, versions
+from pipeline.collection.inventory.reading_report import READING, account, doubts
 from pipeline.collection.mapping import load_mapping
-from pipeline.collection.noting import READING
 from pipeline.collection.reading import read_items
 from pipeline.night.importing import bundled_collection, go_back, import_collection
 from pipeline.night.reading_summary import UNKNOWN
@@ -115,7 +113,7 @@ def test_a_night_that_reads_nothing_anew_or_only_what_changed_says_it_too(museum
     # The same files: of an unchanged inventory nothing is asked again.
     for name in ("reading.html", "reading.csv"):
         assert again.with_name(name).samefile(before.with_name(name))
-    # One plain row more and a doubtful one less: the blocks that did not change are only counted.
+    # One plain row more and a doubtful one less: the rows that did not change are only counted.
     workspace_rows = [*BAD[:4], "4,B,Jug,0.2,0.2,0.2", BAD[5], "6,B,Dish,0.05,0.3,0.3"]
     export = museum.home / "export.csv"
     kept = export.read_text(encoding="utf-8")
@@ -271,7 +269,7 @@ def test_a_hundred_thousand_doubts_make_no_heavy_page(tmp_path: Path) -> None:
 
 def test_what_a_version_keeps_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """More objects are doubtful than row and line are kept of: each is still named, the later ones by number alone."""
-    monkeypatch.setattr(noting, "PLACES", 50)
+    monkeypatch.setattr(reading_report, "PLACES", 50)
     problem = (Problem("mass_kg", "no", "weigh it"),)
     reading = read_items(bundled_collection(), load_mapping("carnegie"))
     items = tuple(replace(item, problems=problem) for item in reading.items)

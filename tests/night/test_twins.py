@@ -5,15 +5,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from pipeline.execute.crew import Alone
 from pipeline.night.deduplication import Twins, as_own, likeness
 
 from pipeline.analysis.classify import classify
-from pipeline.analysis.response_charts import ChartCache
-from pipeline.cache import HISTORIES
-from pipeline.collection.catalogue import catalogue
+from pipeline.analysis.response_charts import Shelf
 from pipeline.collection.listing import Listed, Listing
-from pipeline.collection.record import kind_of
-from pipeline.execute.pool import SerialPool
+from pipeline.collection.object_index import object_index
+from pipeline.collection.record import assessment_digest_of
 from pipeline.mitigate.installed import Placed
 from pipeline.models import model_named
 from pipeline.night import assessment as assessing
@@ -21,7 +20,7 @@ from pipeline.night import scheduler as rounds
 from pipeline.night.importing import import_collection
 from pipeline.night.prepare import popular
 from pipeline.night.units import Part
-from pipeline.operations.workspace import open_workspace
+from pipeline.operations.workspace import HISTORIES, open_workspace
 from pipeline.records import Assessment, Item, Problem, Provenance, Support
 from pipeline.records.scene import Origin
 from pipeline.settings import load_settings
@@ -161,7 +160,7 @@ def test_why_models_were_left_out_is_taken_over_too() -> None:
     assert as_own(twin, Assessment(scene, (), ())).scene == replace(twin, skipped={"Stress": "it is whole"})
 
 
-class Pair(SerialPool):
+class Pair(Alone):
     """Two who work, one after the other in this process, so that it can be seen what each is given."""
 
     workers = 2
@@ -172,7 +171,7 @@ def pair(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rounds, "FEW", 0)
     monkeypatch.setattr(rounds, "BATCH", 4)
     monkeypatch.setattr(rounds, "KIND_BATCH", 1)
-    monkeypatch.setattr(rounds, "pool", lambda **_: nullcontext(Pair()))
+    monkeypatch.setattr(rounds, "crew", lambda **_: nullcontext(Pair()))
 
 
 @pytest.mark.usefixtures("pair")
@@ -191,8 +190,8 @@ def test_where_several_work_what_holds_for_many_is_found_before_the_sheets(tmp_p
     assert parts <= {file.name for file in kept.iterdir()}
 
 
-def listed(number: str, kind: int | None, case: str = "") -> Listed:
-    return Listed(number, "Room", case, True, number, kind)
+def listed(number: str, kind: int, case: str = "") -> Listed:
+    return Listed(number, "Room", case, True, number, str(kind))
 
 
 def piece(*objects: Listed, floor: str = "") -> rounds._Piece:
@@ -201,27 +200,26 @@ def piece(*objects: Listed, floor: str = "") -> rounds._Piece:
 
 def test_which_kinds_are_found_beforehand(monkeypatch: pytest.MonkeyPatch) -> None:
     """Those of more than one object, the most frequent first; all of them where all can be remembered."""
-    first = piece(listed("1", 7), listed("2", 8), listed("3", 7), listed("4", None), listed("5", 9, case="A"))
+    first = piece(listed("1", 7), listed("2", 8), listed("3", 7), listed("5", 9, case="A"))
     second = piece(listed("6", 8), listed("7", 8), listed("8", 5), listed("9", 9))
     upstairs = piece(listed("10", 7), floor="Upstairs")
     every = rounds._frequent([first, second, upstairs], ())
-    assert every == {"": {8: "2", 7: "1", 9: "9", 5: "8"}, "Upstairs": {7: "10"}}
+    assert every == {"": {"8": "2", "7": "1", "9": "9", "5": "8"}, "Upstairs": {"7": "10"}}
     # What a decision changes is the object's own.
-    assert rounds._frequent([first, second], {"1", "8"}) == {"": {8: "2", 7: "3", 9: "9"}}
+    assert rounds._frequent([first, second], {"1", "8"}) == {"": {"8": "2", "7": "3", "9": "9"}}
     monkeypatch.setattr(rounds, "KINDS", 4)
-    assert rounds._frequent([first, second, upstairs], ()) == {"": {8: "2", 7: "1"}}
+    assert rounds._frequent([first, second, upstairs], ()) == {"": {"8": "2", "7": "1"}}
     monkeypatch.setattr(rounds, "KINDS", 1)
-    assert rounds._frequent([first, second, upstairs], ()) == {"": {8: "2"}}
+    assert rounds._frequent([first, second, upstairs], ()) == {"": {"8": "2"}}
 
 
 def test_a_kind_is_what_the_record_says_but_for_what_is_the_objects_own() -> None:
-    assert kind_of(CUP) == kind_of(
+    assert assessment_digest_of(CUP) == assessment_digest_of(
         replace(CUP, object_number="2", gallery="R", value_class="A", problems=(Problem("a", "b"),))
     )
     others = [replace(CUP, height_m=0.11), replace(CUP, medium="glass"), replace(CUP, on_display=False)]
-    kinds = {kind_of(one) for one in (CUP, *others)}
+    kinds = {assessment_digest_of(one) for one in (CUP, *others)}
     assert len(kinds) == 4
-    assert all(-(2**63) <= kind < 2**63 for kind in kinds)
 
 
 def test_pads_have_a_chart_where_many_works_hang_on_walls(tmp_path: Path) -> None:
@@ -237,7 +235,7 @@ def test_pads_have_a_chart_where_many_works_hang_on_walls(tmp_path: Path) -> Non
         ]
         write(settings.home, hung)
         import_collection(workspace, settings.home / "collection.csv", "kouros", shrink_limit=1.0)
-        everything = catalogue(workspace.engine)
+        everything = object_index(workspace.engine)
         found = popular(everything, everything.objects, workspace.rules, workspace.means, 90.0)
         return {alike["damping"] for model, _, alike in found.values() if model.name == "swing"}
 
@@ -250,6 +248,6 @@ def test_pads_have_a_chart_where_many_works_hang_on_walls(tmp_path: Path) -> Non
 def test_a_shelf_that_was_told_what_pays_asks_nobody_else() -> None:
     swing = model_named("swing").chart
     assert swing is not None
-    assert ChartCache(admitted=frozenset({"a"})).pays("a", "key", swing, 1, 400)
-    assert not ChartCache(admitted=frozenset({"a"})).pays("b", "key", swing, 10_000, 400)
-    assert ChartCache().pays("b", "key", swing, 10_000, 400)
+    assert Shelf(admitted=frozenset({"a"})).pays("a", "key", swing, 1, 400)
+    assert not Shelf(admitted=frozenset({"a"})).pays("b", "key", swing, 10_000, 400)
+    assert Shelf().pays("b", "key", swing, 10_000, 400)

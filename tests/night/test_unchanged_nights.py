@@ -155,7 +155,7 @@ def test_a_result_that_is_there_is_taken_up_by_a_run_that_was_cut_off(settings: 
 
 
 def listed(number: int, case: str = "", gallery: str = "Store") -> Listed:
-    return Listed(f"S.{number:05d}", gallery, case, True, "", None)
+    return Listed(f"S.{number:05d}", gallery, case, True, "", "")
 
 
 def test_a_large_gallery_is_cut_where_its_own_objects_say() -> None:

@@ -175,19 +175,19 @@ def test_what_the_dead_left_unfinished_goes_and_nothing_else(tmp_path: Path) -> 
     try:
         reports, kept = workspace.reports, tmp_path / KEPT
         places = [
-            reports / "20310501T030000.000-1", reports / "status.json", reports / "latest", kept / "source.jsonl",
+            reports / "20310501T030000.000-1", reports / "status.json", reports / "latest", kept / "self-test.json",
             *(kept / kind / "a.kept" for kind in KINDS), tmp_path / IMPORTS / "00001-2031-05-01.csv",
             tmp_path / "kouros.toml",
         ]  # fmt: skip
         dead = [left_by(gone.pid, place) for place in places]
         # In a container a process has the number of last night's; and numbers go round.
         dead.append(left_by(os.getpid(), reports / "index.html", age=86_400.0))
-        dead.append(left_by(alive.pid, kept / "listing.arrow", age=7 * 86_400.0))
+        dead.append(left_by(alive.pid, kept / "trade-off.json", age=7 * 86_400.0))
         target = reports / "a-folder-of-others"
         target.mkdir()
         (link := reports / f".latest.{gone.pid}-1.kouros.partial").symlink_to(target, target_is_directory=True)
         stay = [
-            left_by(alive.pid, reports / "index.html"), left_by(os.getpid(), kept / "source.jsonl"), target,
+            left_by(alive.pid, reports / "index.html"), left_by(os.getpid(), kept / "self-test.json"), target,
             tmp_path / f".notes.{gone.pid}.partial", tmp_path / "thesis.kouros.partial", tmp_path / ".kouros.partial",
             target / f".mine.{gone.pid}-1.kouros.partial",
         ]  # fmt: skip

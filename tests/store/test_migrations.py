@@ -18,7 +18,7 @@ import pipeline
 from pipeline.collection.database import open_database
 from pipeline.collection.inventory import latest_import, read_inventory, replace_inventory, versions
 from pipeline.collection.reading import Reading
-from pipeline.collection.record import to_records
+from pipeline.collection.record import digest_of, to_records
 from pipeline.records import Item, Problem, Support
 from pipeline.resources import resource
 from pipeline.store.codec import StoreError
@@ -57,8 +57,9 @@ def test_the_inventory_works_on_migrated_tables(engine: Engine) -> None:
     ]
     batch = {"sha256": "", "mapping": "", "museum": "", "credit": "", "rows": 2, "items": 2, "rejected": []}
     with engine.begin() as connection:
-        version = {"since": 1, "until": None, "digest": ""}
-        connection.execute(insert(ITEM), [record | version for record in to_records(items)])
+        version = {"since": 1, "until": None}
+        records = zip(items, to_records(items), strict=True)
+        connection.execute(insert(ITEM), [record | version | {"digest": digest_of(item)} for item, record in records])
         for source in ("first.csv", "second.csv"):  # the database numbers them
             connection.execute(insert(IMPORT_BATCH), batch | {"imported_at": "2031-05-01", "source": source})
     assert read_inventory(engine) == items

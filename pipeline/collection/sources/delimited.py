@@ -9,10 +9,38 @@ from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BufferedReader, TextIOBase, TextIOWrapper
+from typing import ClassVar, Literal, Self
+
+from pydantic import Field, model_validator
 
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.sources.base import FileSource, Request, SourceSettings
 from pipeline.collection.sources.rows import Row
+from pipeline.errors import InputError
 
+# In all but UTF-16 (Excel's "Unicode text") the line ends survive a broken byte, so that it spoils one row only.
+Encoding = Literal[
+    "utf-8",
+    "utf-16",
+    "ascii",
+    "cp437",
+    "cp850",
+    "cp1250",
+    "cp1251",
+    "cp1252",
+    "cp1253",
+    "cp1254",
+    "iso-8859-1",
+    "iso-8859-2",
+    "iso-8859-15",
+    "mac-roman",
+    "koi8-r",
+    "big5",
+    "euc-jp",
+    "euc-kr",
+    "gb18030",
+    "shift-jis",
+]
 FIELD_LIMIT = 1 << 20
 """Characters of one cell."""
 
@@ -34,17 +62,18 @@ class _Lines:
     """The lines of a stream, which can be taken back to the second line of the row that was being read.
 
     line   : how many were read, from the file's first on
-    length : characters of the row so far;  plain : whether all are ASCII and none is NUL
+    length : characters of the row so far;  plain : whether all are of the encoding and none is NUL
     """
 
-    def __init__(self, stream: TextIOBase, file: str, line: int, rescued: int) -> None:
-        self._readline = stream.readline
+    def __init__(self, stream: TextIOBase, file: str) -> None:
+        # The stream lives as long as its lines: else it would close the file.
+        self._stream, self._readline = stream, stream.readline
         self._file = file
         self._ahead: deque[str] = deque()
         self._record: list[str] = []
         self.length = 0
-        self.rescued = rescued
-        self.line = line
+        self._rescued = 0
+        self.line = 0
         self.plain = True
 
     def __iter__(self) -> _Lines:
@@ -62,23 +91,19 @@ class _Lines:
                 f"{self._file}, line {self.line}: a row of more than {RECORD_LIMIT:,} characters; this is not a table "
                 "with one object a row, or a quotation mark is never closed: export it again"
             )
-        if not line.isascii() or "\x00" in line:
+        if "\x00" in line or (not line.isascii() and _UNDECODED.search(line)):
             self.plain = False
         return line
 
     def begin(self) -> None:
         self._record, self.length, self.plain = [], 0, True
 
-    def end(self) -> str:
-        """Return the text of the row."""
-        return self._record[0] if len(self._record) == 1 else "".join(self._record)
-
     def rewind(self) -> None:
         """Read on from the second line of the row: a quotation mark that is never closed spoils its own line only."""
         again = self._record[1:]
         del self._record[1:]
-        self.rescued += sum(map(len, again))
-        if self.rescued > RESCUE_LIMIT:
+        self._rescued += sum(map(len, again))
+        if self._rescued > RESCUE_LIMIT:
             raise CollectionError(
                 f"{self._file}, line {self.line}: too many rows with broken quotation marks; export the file again"
             )
@@ -96,149 +121,95 @@ def _field_limit() -> Iterator[None]:
         csv.field_size_limit(before)
 
 
-class DelimitedRows:
-    """The header (number 0) of a CSV file and then every row that is not blank, whole or broken.
-
-    Rows whose bytes are known can be passed over, see `sources.rows.Spans`.
-    """
+class _Table:
+    """A CSV file that is being read."""
 
     def __init__(self, binary: BufferedReader, file: str, delimiter: str, encoding: str) -> None:
-        """Begin at the first row.
+        self._file, self._encoding = file, encoding
+        binary.seek(_mark(binary, file, encoding))
+        stream = TextIOWrapper(binary, encoding=encoding, errors="surrogateescape", newline="")
+        self._lines = _Lines(stream, file)
+        self._reader = csv.reader(self._lines, delimiter=delimiter, strict=True)
 
-        binary : the file
-        raises : CollectionError for a mark at its beginning that its encoding does not go with
+    def some(self) -> list[tuple[int, list[str], tuple[str, str]]]:
+        """Return some rows that are not blank: their first line, their cells, why they cannot be used; none at the end.
+
+        The limit of the csv module is the whole process's, and is not left changed while the rows are used.
         """
-        self._binary, self._file, self._delimiter, self._encoding = binary, file, delimiter, encoding
-        # Where the row begins that is given next, in bytes; the rows and lines before it.
-        self._at = _mark(binary, file, encoding)
-        self.number, self.line = 0, 0
-        self._width = 0
-        self._rescued = 0
-        self._stream: TextIOWrapper | None = None
-        self._lines: _Lines | None = None
-        self._reader: Iterator[list[str]] = iter(())
-        # What was read and not yet given: rows, the text that each is read from, the lines up to its end.
-        self._ahead: deque[tuple[Row, str, int]] = deque()
-        self._texts: list[str] = []
-
-    def __iter__(self) -> DelimitedRows:
-        return self
-
-    def __next__(self) -> Row:
-        """Return the next row.
-
-        raises : CollectionError for a header that cannot be read, a row beyond RECORD_LIMIT, a file that fails
-        """
-        if not self._ahead:
-            self._read_on()
-            if not self._ahead:
-                raise StopIteration
-        row, text, self.line = self._ahead.popleft()
-        self.number = row.number + 1
-        self._texts.append(text)
-        return row
-
-    def taken(self) -> bytes:
-        """Return the bytes of the rows since the last call; none where bytes do not tell where rows begin."""
-        texts, self._texts = "".join(self._texts), []
-        if self._encoding == "utf-16":
-            return b""
-        # A byte that is none of the encoding's comes back as it was.
-        content = texts.encode(self._encoding, "surrogateescape")
-        self._at += len(content)
-        return content
-
-    def peek(self, size: int) -> bytes:
-        """Return some bytes from where `taken` or `pass_over` left off on; fewer at the end of the file."""
-        try:
-            was = self._binary.tell()
-            self._binary.seek(self._at)
-            content = self._binary.read(size)
-            if self._stream is not None:
-                # It reads on from where it was.
-                self._binary.seek(was)
-        except OSError as problem:
-            raise _stopped(self._file, self.line + 1, problem) from problem
-        return content
-
-    def pass_over(self, size: int, rows: int, lines: int) -> None:
-        """Go on behind some bytes from where `taken` left off on."""
-        self._at += size
-        self.number += rows
-        self.line += lines
-        self._ahead.clear()
-        if self._stream is not None and self._lines is not None:
-            self._rescued = self._lines.rescued
-            # Else the file would be closed with the stream.
-            self._stream.detach()
-            self._stream = self._lines = None
-
-    def _begin(self) -> _Lines:
-        self._binary.seek(self._at)
-        self._stream = TextIOWrapper(self._binary, encoding=self._encoding, errors="surrogateescape", newline="")
-        lines = _Lines(self._stream, self._file, self.line, self._rescued)
-        self._reader = csv.reader(lines, delimiter=self._delimiter, strict=True)
-        return lines
-
-    def _read_on(self) -> None:
-        """Read some rows ahead."""
-        if self._lines is None:
-            self._lines = self._begin()
-        number = self.number
-        # The limit of the csv module is the whole process's, and is not left changed while the rows are used.
+        out: list[tuple[int, list[str], tuple[str, str]]] = []
+        characters = 0
+        lines, file = self._lines, self._file
         with _field_limit():
-            for start, cells, found, text in self._records(self._lines):
-                fault = found
-                if number == 0:
-                    if fault[0]:
-                        raise CollectionError(
-                            f"{self._file}, line {start}: the header cannot be read: {fault[0]}; {fault[1]}"
-                        )
-                    self._width = len(cells)
-                elif not fault[0] and len(cells) != self._width:
+            while characters < _TOGETHER and len(out) < _ROWS:
+                lines.begin()
+                start = lines.line + 1
+                cells: list[str] = []
+                try:
+                    cells = next(self._reader)
+                    fault = _FINE if lines.plain else _cell_fault(cells, self._encoding)
+                except StopIteration:
+                    break
+                except csv.Error as problem:
+                    lines.rewind()
                     fault = (
-                        f"{len(cells)} cells, the header has {self._width}",
-                        "see whether a cell with a delimiter lacks its quotation marks, or cells were shifted",
+                        f"not a row of a CSV file: {problem}",
+                        "close every quotation mark, double those inside a cell, and see whether the file was cut off",
                     )
-                self._ahead.append((Row(number, start, cells, fault), text, self._lines.line))
-                number += 1
+                except UnicodeDecodeError as problem:
+                    raise CollectionError(
+                        f"{file}, near line {start}: byte {problem.object[problem.start]:#04x} cannot be read as "
+                        f"{self._encoding}: {problem.reason}; name the file's encoding in the mapping, [source] "
+                        "encoding"
+                    ) from problem
+                except OSError as problem:
+                    raise _stopped(file, start, problem) from problem
+                characters += lines.length
+                if cells or fault[0]:
+                    out.append((start, cells, fault))
+        return out
 
-    def _records(self, lines: _Lines) -> Iterator[tuple[int, list[str], tuple[str, str], str]]:
-        """Yield some rows that are not blank: their first line, their cells, why they cannot be used, and their text.
 
-        The text of blank lines is that of the row that follows.
-        """
-        characters = count = 0
-        blank: list[str] = []
-        while not count or (characters < _TOGETHER and count < _ROWS):
-            lines.begin()
-            start = lines.line + 1
-            cells: list[str] = []
-            try:
-                cells = next(self._reader)
-                fault = _FINE if lines.plain else _cell_fault(cells, self._encoding)
-            except StopIteration:
-                return
-            except csv.Error as problem:
-                lines.rewind()
+def read_delimited(binary: BufferedReader, file: str, delimiter: str, encoding: str) -> Iterator[Row]:
+    """Yield the header (number 0) of a CSV file and then every row that is not blank, whole or broken.
+
+    Parameters
+    ----------
+    binary : BufferedReader
+        The file, at its beginning.
+    file : str
+        Its name in messages.
+    delimiter : str
+        The one character between two cells.
+    encoding : str
+        How its letters are coded.
+
+    Yields
+    ------
+    Row
+        With a fault where it cannot be used.
+
+    Raises
+    ------
+    CollectionError
+        For a mark at its beginning that its encoding does not go with, a header that cannot be read, a row beyond
+        RECORD_LIMIT, a file that fails.
+    """
+    table = _Table(binary, file, delimiter, encoding)
+    number = width = 0
+    while some := table.some():
+        for start, cells, found in some:
+            fault = found
+            if number == 0:
+                if fault[0]:
+                    raise CollectionError(f"{file}, line {start}: the header cannot be read: {fault[0]}; {fault[1]}")
+                width = len(cells)
+            elif not fault[0] and len(cells) != width:
                 fault = (
-                    f"not a row of a CSV file: {problem}",
-                    "close every quotation mark, double those inside a cell, and see whether the file was cut off",
+                    f"{len(cells)} cells, the header has {width}",
+                    "see whether a cell with a delimiter lacks its quotation marks, or cells were shifted",
                 )
-            except UnicodeDecodeError as problem:
-                raise CollectionError(
-                    f"{self._file}, near line {start}: byte {problem.object[problem.start]:#04x} cannot be read as "
-                    f"{self._encoding}: {problem.reason}; name the file's encoding in the mapping, [source] encoding"
-                ) from problem
-            except OSError as problem:
-                raise _stopped(self._file, start, problem) from problem
-            characters += lines.length
-            if cells or fault[0]:
-                count += 1
-                yield start, cells, fault, "".join((*blank, lines.end()))
-                blank.clear()
-            else:
-                blank.append(lines.end())
+            yield Row(number, start, cells, fault)
+            number += 1
 
 
 def _stopped(file: str, line: int, problem: OSError) -> CollectionError:
@@ -273,3 +244,54 @@ def _cell_fault(cells: list[str], encoding: str) -> tuple[str, str]:
         if "\x00" in cell:
             return f"a NUL byte in cell {column}", "the file is damaged or binary: export it again"
     return "", ""
+
+
+class CsvSettings(SourceSettings):
+    """How a CSV file is read."""
+
+    format: Literal["csv"] = Field(description="The kind of source.")
+    encoding: Encoding = Field(description="How its letters are coded; Excel's older exports use cp1252.")
+    delimiter: str = Field(
+        pattern=r'^[^"\r\n\x00]$', description="The one character between two cells: a comma, a semicolon or a tab."
+    )
+
+    @model_validator(mode="after")
+    def _one_comma(self) -> Self:
+        if self.delimiter == self.decimal == ",":
+            raise InputError('a comma cannot be both delimiter and decimal mark; most such files have delimiter = ";"')
+        return self
+
+
+class TsvSettings(SourceSettings):
+    """How a file with tabs between its cells is read."""
+
+    format: Literal["tsv"] = Field(description="The kind of source.")
+    encoding: Encoding = Field(description="How its letters are coded; Excel's Unicode text is utf-16.")
+
+
+class Csv(FileSource):
+    """Text with one character between two cells, and quotation marks where that is in a cell."""
+
+    name = "csv"
+    title = "a CSV file"
+    Settings: ClassVar[type[SourceSettings]] = CsvSettings
+
+    def recognises(self, where: str, head: bytes) -> bool:  # noqa: ARG002
+        """Plain text may be anything."""
+        return False
+
+    def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
+        """Yield the header and the rows."""
+        return read_delimited(binary, file, request.settings.delimiter, request.settings.encoding)
+
+
+class Tsv(Csv):
+    """The same with tabs."""
+
+    name = "tsv"
+    title = "a file with tabs between its cells"
+    Settings = TsvSettings
+
+    def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
+        """Yield the header and the rows."""
+        return read_delimited(binary, file, "\t", request.settings.encoding)

@@ -26,11 +26,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack
+from io import BufferedReader
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, Literal
 from unicodedata import normalize
 
+from pydantic import Field
+
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.sources.base import HEAD, FileSource, Name, Request, SourceSettings
 from pipeline.collection.sources.delimited import RECORD_LIMIT
 from pipeline.collection.sources.files import stream_of
 from pipeline.collection.sources.lido_terms import (
@@ -400,3 +404,26 @@ def _known(elements: Iterable[Any], words: dict[str, str], concepts: dict[str, s
             if word in words:
                 return words[word]
     return None
+
+
+class LidoSettings(SourceSettings):
+    """How a LIDO file is read."""
+
+    format: Literal["lido"] = Field(description="The kind of source.")
+    language: Name | None = Field(default=None, description='The language to prefer, such as "en" or "de".')
+
+
+class Lido(FileSource):
+    """A file in the exchange format of museums."""
+
+    name = "lido"
+    title = "a LIDO file"
+    Settings = LidoSettings
+
+    def recognises(self, where: str, head: bytes) -> bool:  # noqa: ARG002
+        """Say whether the format's namespace is named at its beginning."""
+        return b"lido-schema.org" in head[:HEAD]
+
+    def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
+        """Yield the header and the records."""
+        return read_records(binary, file, languages=(request.settings.language or "en",))

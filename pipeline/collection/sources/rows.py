@@ -7,9 +7,10 @@ from datetime import date, datetime, time
 from decimal import Decimal
 from math import isfinite
 from types import MappingProxyType
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
-_NO_FAULTS: Mapping[int, tuple[str, str]] = MappingProxyType({})
+NO_FAULTS: Mapping[int, tuple[str, str]] = MappingProxyType({})
+"""The faults of cells of a row that has none."""
 
 
 class Row(NamedTuple):
@@ -24,26 +25,7 @@ class Row(NamedTuple):
     line: int
     cells: list[str]
     fault: tuple[str, str] = ("", "")
-    faults: Mapping[int, tuple[str, str]] = _NO_FAULTS
-
-
-class Spans(Protocol):
-    """Rows that lie one behind the other as bytes, so that those that are known can be passed over.
-
-    number, line : of the row that is given next, and how many lines lie before it
-    """
-
-    number: int
-    line: int
-
-    def taken(self) -> bytes:
-        """Return the bytes of the rows since the last call, with which the next row's begin; none where not known."""
-
-    def peek(self, size: int) -> bytes:
-        """Return some bytes from where `taken` or `pass_over` left off on, and stay there; fewer at the end."""
-
-    def pass_over(self, size: int, rows: int, lines: int) -> None:
-        """Go on behind some bytes from where `taken` or `pass_over` left off on, which so many rows are."""
+    faults: Mapping[int, tuple[str, str]] = NO_FAULTS
 
 
 def as_text(value: object) -> str:

@@ -9,10 +9,14 @@ import zlib
 from collections.abc import Iterator
 from contextlib import ExitStack
 from datetime import datetime, time
+from io import BufferedReader
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, Literal
+
+from pydantic import Field
 
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.sources.base import FileSource, Name, Request, SourceSettings
 from pipeline.collection.sources.files import stream_of
 from pipeline.collection.sources.rows import Row, as_text
 from pipeline.collection.sources.workbook import SAVE_AGAIN, Range, Survey, check_archive, check_kind, survey
@@ -249,3 +253,29 @@ def _formula(what: str) -> tuple[str, str]:
 
 def _hidden(where: str) -> tuple[str, str]:
     return f"is one of the merged cells {where}", "unmerge them, and fill in every row and column"
+
+
+class XlsxSettings(SourceSettings):
+    """How a workbook is read."""
+
+    format: Literal["xlsx"] = Field(description="The kind of source.")
+    sheet: Name | None = Field(
+        default=None, description="The name of the sheet; needed where more than one is visible."
+    )
+    header_row: int | None = Field(default=None, ge=1, le=100, description="The row of the column names; 1.")
+
+
+class Xlsx(FileSource):
+    """A sheet of a workbook of Excel or LibreOffice."""
+
+    name = "xlsx"
+    title = "an Excel workbook"
+    Settings = XlsxSettings
+
+    def recognises(self, where: str, head: bytes) -> bool:  # noqa: ARG002
+        """Say whether it begins as a ZIP archive, which a workbook is."""
+        return head.startswith(b"PK\x03\x04")
+
+    def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
+        """Yield the header and the rows of the sheet."""
+        return read_sheet(binary, file, sheet=request.settings.sheet, header_row=request.settings.header_row or 1)

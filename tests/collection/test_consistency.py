@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pipeline.collection.contradictions import HEAVIEST, LIGHTEST, contradictions
+from pipeline.collection.consistency import HEAVIEST, LIGHTEST, contradictions
 
 CUBE = {"height_m": 0.1, "width_m": 0.1, "depth_m": 0.1}
 

@@ -75,19 +75,21 @@ class Evidence:
             found = _WRITTEN.fullmatch(origin.written)
             if found and origin.field in _SIDES and origin.origin is Origin.MEASURED:
                 digits = found[2]
-                counts = self.steps.setdefault(found[3], [0, 0])
                 # Halves and quarters are written in both.
-                counts[0] += len(digits) == 1 and digits != "5"
-                counts[1] += digits in _SIXTEENTHS
+                tenths, sixteenths = len(digits) == 1 and digits != "5", digits in _SIXTEENTHS
+                if tenths or sixteenths:
+                    counts = self.steps.setdefault(found[3], [0, 0])
+                    counts[0] += tenths
+                    counts[1] += sixteenths
 
-    def add(self, other: Evidence) -> None:
-        """Add what another part of the source says."""
+    def add(self, other: Evidence, times: int = 1) -> None:
+        """Add what another part of the source says, once or several times."""
         for unit, (tenths, sixteenths) in other.steps.items():
             counts = self.steps.setdefault(unit, [0, 0])
-            counts[0] += tenths
-            counts[1] += sixteenths
+            counts[0] += times * tenths
+            counts[1] += times * sixteenths
         for units, fills in other.fills.items():
-            self.fills.setdefault(units, []).extend(fills)
+            self.fills.setdefault(units, []).extend(fills * times)
 
     def plain(self) -> list[list[object]]:
         """Return it as JSON can hold it."""

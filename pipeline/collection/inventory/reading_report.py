@@ -1,28 +1,34 @@
-"""What reading refused and doubts is kept with the version that it led to, so that every later night can say it.
+"""The report of a reading: what was refused and is doubted, kept with the version that it led to.
 
-Values that are doubted are problems of the objects themselves; here is what the objects do not know.
+Values that are doubted are problems of the objects themselves; the table `reading` holds what the objects do not know.
 """
 
 from __future__ import annotations
 
 import json
 import zlib
-from collections.abc import Collection, Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Collection, Iterable, Iterator
+from typing import Any
 
-from sqlalchemy import Column, Connection, ForeignKey, Integer, LargeBinary, Table, delete, insert, select
+from sqlalchemy import Column, Connection, Engine, ForeignKey, Integer, LargeBinary, Table, delete, insert, select
 
 from pipeline.collection.database import METADATA
-
-if TYPE_CHECKING:
-    from pipeline.collection.reading import Reading
-    from pipeline.records import Item
+from pipeline.collection.inventory.records import RECORD_COLUMNS, shown, sound
+from pipeline.collection.inventory.tables import IMPORT_BATCH, ITEM, doubted, newest
+from pipeline.collection.reading import Reading
+from pipeline.records import Account, Doubt, Item
+from pipeline.records.reading import DOUBTFUL, REFUSED, SHEET, SOURCE
 
 PLACES = 50_000
 """Doubtful objects of which a version keeps row and line: of more their numbers must do."""
 
 CELLS = 10_000
 """What was not used of sheets of our own that a version keeps: the newest."""
+
+_CHUNK = 1_000
+"""Records that are read at a time."""
+
+_STREAM = {"yield_per": _CHUNK}
 
 READING = Table(
     "reading",
@@ -44,10 +50,77 @@ sheets     : what was not used of sheets of our own: sheet, row, line, object nu
 Cell = tuple[str, int, int, str, str, str, str]
 
 
-def told(connection: Connection, version: int) -> dict[str, Any] | None:
-    """Return what is kept with a version; None where nothing is."""
-    found = connection.execute(select(READING.c.told).where(READING.c.version == version)).scalar()
-    return None if found is None else dict(json.loads(zlib.decompress(found)))
+def account(engine: Engine, version: int | None = None) -> Account | None:
+    """Return what became of the rows behind a version.
+
+    Parameters
+    ----------
+    engine : Engine
+        Kouros's own database.
+    version : int, optional
+        Of the inventory; the newest where left out.
+
+    Returns
+    -------
+    Account or None
+        None where that was not noted, as before an upgrade.
+    """
+    with engine.connect() as connection:
+        number = newest(connection) if version is None else version
+        known = None if number is None else _told(connection, number)
+        if known is None or known["base"] is None:
+            return None
+        row = connection.execute(select(IMPORT_BATCH).where(IMPORT_BATCH.c.id == known["base"])).mappings().one()
+    return Account(
+        source=row["source"],
+        rows=row["rows"],
+        refused=len(row["rejected"]),
+        doubtful=known["doubtful"],
+        sheets=len(known["sheets"]),
+        suspicions=tuple((field, message, remedy) for field, message, remedy in known["suspicions"]),
+        flagged=known["flagged"],
+    )
+
+
+def doubts(engine: Engine, version: int) -> Iterator[Doubt]:
+    """Yield everything that was refused or is doubted of a version; nothing where that was not noted.
+
+    Parameters
+    ----------
+    engine : Engine
+        Kouros's own database.
+    version : int
+        Of the inventory.
+
+    Yields
+    ------
+    Doubt
+        What is of the whole source comes first, then rows refused, then sheets, then objects by number.
+
+    Raises
+    ------
+    DamagedRecordError
+        For records of doubtful objects that are not what was written.
+    """
+    with engine.connect() as connection:
+        known = _told(connection, version)
+        if known is None or known["base"] is None:
+            return
+        for field, message, remedy in known["suspicions"]:
+            yield Doubt(SOURCE, None, None, "", field, message, remedy)
+        rejected = select(IMPORT_BATCH.c.rejected).where(IMPORT_BATCH.c.id == known["base"])
+        for row in connection.execute(rejected).scalar_one():
+            # Its place is told besides.
+            message = row["message"].removeprefix(f"{row['file']}, row {row['row']} (line {row['line']}): ")
+            yield Doubt(REFUSED, row["row"], row["line"], "", row["field"], message, row["remedy"])
+        for sheet, at, line, number, field, message, remedy in known["sheets"]:
+            yield Doubt(SHEET, at or None, line or None, number, field, f"{sheet}: {message}", remedy)
+        wanted = select(*RECORD_COLUMNS).where(doubted(version)).order_by(ITEM.c.object_number)
+        for some in connection.execute(wanted, execution_options=_STREAM).partitions(_CHUNK):
+            for item in sound(some, shown(engine)):
+                place, below = known["places"].get(item.object_number, (None, None))
+                for one in item.problems:
+                    yield Doubt(DOUBTFUL, place, below, item.object_number, one.field, one.message, one.remedy)
 
 
 def note_import(
@@ -94,13 +167,13 @@ def note_sheet(
     before = _sheets(connection, below)
     left = [one for one in before if one[0] != reading.source and (one[3], one[4]) not in filled]
     # Of what was imported before an upgrade nothing is known.
-    known = told(connection, below) or {"base": None, "flagged": False, "suspicions": [], "places": {}}
+    known = _told(connection, below) or {"base": None, "flagged": False, "suspicions": [], "places": {}}
     _write(connection, version, known | {"doubtful": doubtful, "sheets": [*left, *_unused(reading, unknown)][-CELLS:]})
 
 
 def note_return(connection: Connection, version: int, back: int) -> None:
     """Keep with a return what is kept with the version returned to."""
-    known = told(connection, back)
+    known = _told(connection, back)
     if known is not None:
         _write(connection, version, known)
 
@@ -125,7 +198,7 @@ def _unused(reading: Reading, unknown: Collection[str]) -> Iterable[Cell]:
 
 
 def _sheets(connection: Connection, version: int | None) -> list[Cell]:
-    known = None if version is None else told(connection, version)
+    known = None if version is None else _told(connection, version)
     return [] if known is None else [tuple(one) for one in known["sheets"]]
 
 
@@ -135,3 +208,9 @@ def _write(connection: Connection, version: int, known: dict[str, Any]) -> None:
         return
     connection.execute(delete(READING).where(READING.c.version == version))
     connection.execute(insert(READING).values(version=version, told=content))
+
+
+def _told(connection: Connection, version: int) -> dict[str, Any] | None:
+    """Return what is kept with a version; None where nothing is."""
+    found = connection.execute(select(READING.c.told).where(READING.c.version == version)).scalar()
+    return None if found is None else dict(json.loads(zlib.decompress(found)))
