@@ -5,7 +5,7 @@ the row of the class (tables/classes.csv) and the material (tables/materials.csv
 as assumed.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, lru_cache
 from math import pi
@@ -373,7 +373,10 @@ def classify(item: Item, rules: Table | None = None, decided: tuple[str, str] | 
     builder.build()
     builder.missing.extend(_unheld(item, support))
     missing = tuple(builder.missing) if _needs_size(models) else ()
-    known = _with_their_own(Scene(item, row["class"], words, support, models, builder.found, (), missing))
+    known = builder.found
+    for estimates in _estimates_of(models):
+        scene = Scene(item, row["class"], words, support, models, dict(known), (), missing)
+        known |= {name: one for name, one in estimates(scene).items() if name not in known}
     assumptions = [e.note for e in known.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
     if item.support is None:
         assumptions.insert(0, f"support: {support.value}, assumed for: {row['title'].lower()}; not recorded")
@@ -386,20 +389,21 @@ def _tried(item: Item, row: Row) -> tuple[str, ...]:
     models = () if row["models"] in (NO_MODEL, WHEN_HELD) else tuple(row["models"].split("|"))
     if item.support is not None and (item.support is not own or not (models or row["models"] == NO_MODEL)):
         models = models_of(item.support)
-    more = (m.name for m in MODELS if m.joins and m.name not in models and m.joins(item, row["class"], models))
-    return (*models, *more)
+    for name, joins in _joining():
+        if name not in models and joins(item, row["class"], models):
+            models = (*models, name)
+    return models
 
 
-def _with_their_own(scene: Scene) -> Mapping[str, Estimate]:
-    """Return the parameters of a scene, with those that the models tried on it estimate for themselves."""
-    known = dict(scene.parameters)
-    for estimates in _estimates_of(scene.models):
-        known |= {name: one for name, one in estimates(scene).items() if name not in known}
-    return known
+@cache
+def _joining() -> tuple[tuple[str, Callable[[Item, str, Sequence[str]], bool]], ...]:
+    """Return the models that may be tried on objects whose class does not name them, and when."""
+    return tuple((model.name, model.joins) for model in MODELS if model.joins is not None)
 
 
 @cache
 def _estimates_of(models: tuple[str, ...]) -> tuple[Callable[[Scene], Mapping[str, Estimate]], ...]:
+    """Return how the models that are tried on an object estimate parameters of their own."""
     made = (model_named(name).estimates for name in models)
     return tuple(estimates for estimates in made if estimates is not None)
 
