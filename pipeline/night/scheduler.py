@@ -16,6 +16,7 @@ from pipeline.collection.database import Database
 from pipeline.collection.inventory import fields_since
 from pipeline.collection.listing import Listing
 from pipeline.collection.object_index import ObjectIndex
+from pipeline.errors import DamageWarning
 from pipeline.execute.memory import give_back
 from pipeline.execute.pool import WorkerPool, cores, pool
 from pipeline.night.context import RunContext
@@ -37,6 +38,7 @@ from pipeline.night.tasks import (
 from pipeline.night.units import Decisions, Unit, UnitKeys
 from pipeline.operations.event_log import note
 from pipeline.operations.workspace import Workspace
+from pipeline.quantities import counted
 from pipeline.records import Found, Page, Progress, RunChanges, Standing, Tally
 from pipeline.report.files.manifest import PreviousReport
 from pipeline.report.files.report_writer import ReportWriter, link_to, page_key
