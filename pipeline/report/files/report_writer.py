@@ -33,6 +33,7 @@ from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, draw
 from pipeline.report.language import speaking
 from pipeline.report.pages.compose import anchor_of, museum_view, page_head, page_name
 from pipeline.report.pages.environment import environment, fill
+from pipeline.report.pages.further import further_pages
 from pipeline.report.pages.reading import FILES, INVENTORY, READING, Doubts, reading_view, write_doubts
 from pipeline.report.pages.since import since_view
 from pipeline.report.pages.views import Pointer, State
@@ -217,7 +218,8 @@ class ReportWriter:
             entries = [page.entry for page in self._pages]
             museum = museum_view(head, entries, tally, units, since, workbook=WORKBOOK in self._files)
             env = environment(self.renderer.language)
-            shared: dict[str, Any] = {"museum": museum, "units": units, "State": State}
+            further, left_out = further_pages(env, head, tally, entries)
+            shared: dict[str, Any] = {"museum": museum, "units": units, "State": State, "further": further}
             traces = {
                 view.anchor: Markup(trace(motion, units, view.anchor))  # noqa: S704 - svg.py escapes all text itself
                 for view, motion in zip(museum.motions, head.motions, strict=True)
@@ -226,9 +228,13 @@ class ReportWriter:
             hashes = [motion.hash[:16] for motion in head.motions]
             measured = drawn([key for key in drawings if not any(h in key for h in hashes)], drawings)
             return [
-                ("index.html", fill(env, "index.html", shared | {"here": "index"})),
+                ("index.html", fill(env, "index.html", shared | {"here": "index", "left_out": left_out})),
                 ("method.html", fill(env, "method.html", shared | measured | {"here": "method"})),
                 ("motion.html", fill(env, "motion.html", shared | shaken | {"here": "motion", "traces": traces})),
+                *(
+                    (page.file, fill(env, "further.html", shared | {"here": page.file, "page": page}))
+                    for page in further
+                ),
             ]
 
 
