@@ -86,7 +86,6 @@ class ReportWriter:
         self._previous = previous or PreviousReport(folder)
         self._partial = aside_of(folder)
         self._pages: list[KeptPage] = []
-        self._reused = 0
         self._files: dict[str, FileSum] = {}
         self._stack = ExitStack()
 
@@ -114,7 +113,6 @@ class ReportWriter:
             raise KeyError(key)
         self._link(*page.files)
         self._pages.append(page)
-        self._reused += 1
         return page.tally
 
     def add(self, key: str, rendered: RenderedPage) -> Tally:
@@ -166,7 +164,7 @@ class ReportWriter:
         for name, text in [*self._shared(head, tally, changes, links), *(beside or {}).items()]:
             self._write(name, text.encode())
         reading = "" if doubts is None else self._read(head, doubts)
-        write_manifest(self._partial, Manifest(tuple(self._pages), reading, self._files))
+        write_manifest(self._partial, Manifest(tuple(self._pages), reading, dict(sorted(self._files.items()))))
         self._partial.rename(self.folder)
         return self.folder / "index.html"
 
@@ -182,7 +180,7 @@ class ReportWriter:
 
     def _export(self, started: str) -> None:
         """Write the exports of the whole report, or take those of the earlier one if it has the same pages."""
-        same = self._reused == len(self._pages) and [page.key for page in self._pages] == self._previous.pages
+        same = [page.key for page in self._pages] == self._previous.pages
         parts = [part_files(page.entry.sheet.page) for page in self._pages]
         taken = {name for name in (*EXPORTS, WORKBOOK) if same and self._previous.has(name)}
         self._link(*taken)
