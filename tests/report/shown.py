@@ -53,10 +53,10 @@ def shown(record: RunRecord, units: Units | None = None) -> Shown:
             record, assessments=found.assessments, wishes=found.wishes, spacings=found.spacings, decisions=mine
         )
         made = compose(part, sheet, chosen, several=len(levels) > 1)
-        pages[made.gallery.page] = made.gallery
+        pages[made.gallery.page.file] = made.gallery
         entries.append(made.entry)
         tallies.append(tally(found))
     head = replace(record, assessments=(), wishes=None, spacings=(), decisions=tuple(left))
     museum = museum_view(head, entries, total(tallies), chosen, None, workbook=True)
     rows = (*museum.rows, *((museum.stores,) if museum.stores else ()))
-    return Shown(museum, tuple(pages[row.sheets[0].page] for row in rows))
+    return Shown(museum, tuple(pages[row.pages[0].file] for row in rows))

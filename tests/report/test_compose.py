@@ -84,7 +84,7 @@ def test_an_object_that_no_measure_helps_is_named_at_its_place() -> None:
 
 def test_objects_not_on_display_have_one_page_whatever_their_gallery() -> None:
     (stored,) = [g for g in shown(builder.record(), Units()).galleries if not g.on_display]
-    assert stored.page == "not-on-display.html"
+    assert stored.page.file == "not-on-display.html"
     assert {o.number for o in stored.objects} == {"64.ST.1", "64.ST.2"}
 
 

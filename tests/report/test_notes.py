@@ -53,11 +53,11 @@ def test_numbers_tell_their_origin_and_cite_their_note() -> None:
 
 
 def _text(folder: Path, gallery: GalleryView) -> str:
-    page = etree.parse(str(folder / gallery.page))
+    page = etree.parse(str(folder / gallery.page.file))
     return " ".join("".join(page.getroot().itertext()).split())
 
 
-@pytest.mark.parametrize("gallery", MUSEUM.galleries, ids=lambda g: g.page)
+@pytest.mark.parametrize("gallery", MUSEUM.galleries, ids=lambda g: g.page.file)
 def test_every_fact_about_every_object_is_on_its_page(report: Path, gallery: GalleryView) -> None:
     said = _text(report, gallery)
     for view in (o for o in gallery.objects if o.carded):
@@ -71,7 +71,7 @@ def test_every_fact_about_every_object_is_on_its_page(report: Path, gallery: Gal
 def test_each_object_links_only_to_notes_of_its_own(report: Path) -> None:
     """An entry's links name exactly the texts that its view holds, read back through the page's lists."""
     for gallery in MUSEUM.galleries:
-        page = etree.parse(str(report / gallery.page))
+        page = etree.parse(str(report / gallery.page.file))
         listed = {e.get("id"): " ".join("".join(e.itertext()).split()) for e in page.iterfind(".//li[@id]")}
         for view in (o for o in gallery.objects if o.carded):
             card = page.find(f".//article[@id='{view.anchor}']")
@@ -87,7 +87,7 @@ def test_each_object_links_only_to_notes_of_its_own(report: Path) -> None:
 
 def test_pictures_are_for_what_fails_and_for_the_measure_never_for_what_passes(report: Path) -> None:
     for gallery in MUSEUM.galleries:
-        page = etree.parse(str(report / gallery.page))
+        page = etree.parse(str(report / gallery.page.file))
         for view in gallery.objects:
             card = page.find(f".//article[@id='{view.anchor}']")
             pictures = [] if card is None else list(card.iter("figure"))

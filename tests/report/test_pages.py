@@ -68,7 +68,9 @@ def test_nothing_is_fetched_and_nothing_runs(report: Path) -> None:
 
 @pytest.mark.parametrize("number", builder.HOSTILE)
 def test_hostile_titles_come_out_as_text(report: Path, number: str) -> None:
-    page = _pages(report)[next(g.page for g in shown(builder.record(), Units()).galleries if g.name == builder.PAINT)]
+    page = _pages(report)[
+        next(g.page.file for g in shown(builder.record(), Units()).galleries if g.name == builder.PAINT)
+    ]
     said = ["".join(e.itertext()) for e in page.iter("bdi")]
     title = builder.HOSTILE[number].replace("\x07", "\ufffd").replace("\ud800", "\ufffd")
     start = title[:40]

@@ -22,61 +22,18 @@ _NUMBERS = (
 )  # fmt: skip
 _LISTS = ("assumptions", "parameters", "checks", "rejected")
 FINDING_COLUMNS = (
-    "run",
-    "object_number",
-    "gallery",
-    "level",
-    "model",
-    "title",
-    "demand_name",
-    "demand",
-    "unit",
-    "low",
-    "high",
-    "range_is",
-    "capacity",
-    "capacity_origin",
-    "utilisation",
-    "verdict",
-    "outcome",
-    "fidelity",
-    "error",
-    "decided_by",
-    "motion",
-    "motion_hash",
-    "screen",
-    "note",
-    "assumptions",
-    "version",
-)
+    "run", "object_number", "gallery", "level", "model", "title", "demand_name", "demand", "unit", "low", "high",
+    "range_is", "capacity", "capacity_origin", "utilisation", "verdict", "outcome", "fidelity", "error", "decided_by",
+    "motion", "motion_hash", "screen", "note", "assumptions", "version",
+)  # fmt: skip
 RECOMMENDATION_COLUMNS = (
-    "run",
-    "object_number",
-    "gallery",
-    "level",
-    "measure",
-    "title",
-    "sentence",
-    "parameters",
-    "checks",
-    "rejected",
+    "run", "object_number", "gallery", "level", "measure", "title", "sentence", "parameters", "checks", "rejected",
     "source",
-)
+)  # fmt: skip
 OBJECT_COLUMNS = (
-    "run",
-    "object_number",
-    "title",
-    "gallery",
-    "on_display",
-    "state",
-    "object_class",
-    "missing",
-    "median_g",
-    "median_is",
-    "dispersion",
-    "annual_rate",
-    "page",
-)
+    "run", "object_number", "title", "gallery", "on_display", "state", "object_class", "missing", "median_g",
+    "median_is", "dispersion", "annual_rate", "page",
+)  # fmt: skip
 
 
 TABLES = {"findings": FINDING_COLUMNS, "recommendations": RECOMMENDATION_COLUMNS, "objects": OBJECT_COLUMNS}

@@ -46,7 +46,7 @@ class KeptPage:
     @property
     def files(self) -> tuple[str, ...]:
         """The page and its parts of the exports."""
-        page = self.entry.sheet.page
+        page = self.entry.page.file
         return page, *part_files(page)
 
 

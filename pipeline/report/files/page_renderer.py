@@ -89,7 +89,7 @@ class PageRenderer:
             else:
                 context |= drawn(gallery.charts, self.drawings) | self._script
                 text = fill(self._environment, "gallery.html", context | {"notes": page_notes(gallery.objects)})
-            parts = page_exports(record, page.run, gallery.page, made.anchor, self.units)
+            parts = page_exports(record, page.run, gallery.page.file, made.anchor, self.units)
         return RenderedPage(text.encode(), made.entry, tally(found), parts)
 
     @cached_property

@@ -117,7 +117,7 @@ class ReportWriter:
 
     def add(self, key: str, rendered: RenderedPage) -> Tally:
         """Add a page that was drawn for this report, and return what it adds to the totals."""
-        page = rendered.entry.sheet.page
+        page = rendered.entry.page.file
         self._write(page, rendered.page)
         for name, export in zip(part_files(page), EXPORTS, strict=True):
             self._write(name, rendered.parts[export])
@@ -181,7 +181,7 @@ class ReportWriter:
     def _export(self, started: str) -> None:
         """Write the exports of the whole report, or take those of the earlier one if it has the same pages."""
         same = [page.key for page in self._pages] == self._previous.pages
-        parts = [part_files(page.entry.sheet.page) for page in self._pages]
+        parts = [part_files(page.entry.page.file) for page in self._pages]
         taken = {name for name in (*EXPORTS, WORKBOOK) if same and self._previous.has(name)}
         self._link(*taken)
         for at, name in enumerate(EXPORTS):

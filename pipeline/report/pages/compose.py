@@ -26,8 +26,8 @@ from pipeline.report.pages.views import (
     GalleryRow,
     Lead,
     ObjectView,
+    PageView,
     Pointer,
-    SheetView,
     SinceView,
     State,
     TaskView,
@@ -104,9 +104,8 @@ def compose(record: RunRecord, page: Page, units: Units, *, several: bool) -> Co
     numbers = sorted(v.number for v in views)
     gallery = GalleryView(
         name=clean(page.gallery) if page.on_display else "",
-        page=file,
+        page=PageView(file, page.number, page.of, *(numbers[:1] + numbers[-1:])),
         on_display=page.on_display,
-        sheet=SheetView(file, page.number, page.of, *(numbers[:1] + numbers[-1:])),
         counts=Counts(**{state.value: by_state[state] for state in State}),
         tasks=_tasks(pairs, describer, units),
         objects=tuple(views),
@@ -129,7 +128,7 @@ def _entry(gallery: GalleryView, pairs: Sequence[tuple[Assessment, ObjectView]])
     return Entry(
         name=gallery.name,
         on_display=gallery.on_display,
-        sheet=gallery.sheet,
+        page=gallery.page,
         counts=gallery.counts,
         task=_first_task(gallery),
         leaders=tuple(leaders[:LEADERS]),
@@ -177,8 +176,8 @@ def museum_view(
     tally   : of all pages together
     raises  : ReportError where two galleries' files would have one name
     """
-    pages = Counter(entry.sheet.page for entry in entries)
-    twins = [entry.name for entry in entries if pages[entry.sheet.page] > 1]
+    pages = Counter(entry.page.file for entry in entries)
+    twins = [entry.name for entry in entries if pages[entry.page.file] > 1]
     if twins:
         raise ReportError(f"galleries {twins} would share one file; rename one of them in the collection's records")
     shown = [entry for entry in entries if entry.on_display]
@@ -219,12 +218,12 @@ def _rows(entries: Sequence[Entry]) -> tuple[GalleryRow, ...]:
         galleries.setdefault((entry.on_display, entry.name), []).append(entry)
     rows = []
     for (on_display, name), members in galleries.items():
-        members.sort(key=lambda entry: entry.sheet.number)
+        members.sort(key=lambda entry: entry.page.number)
         # What comes first is what comes first on the page of the gallery's worst object.
         worst = min(members, key=lambda entry: entry.leaders[0][0] if entry.leaders else _LAST)
         task = worst.task or next((entry.task for entry in members if entry.task), "")
         rows.append(
-            GalleryRow(name, on_display, tuple(e.sheet for e in members), _total(e.counts for e in members), task)
+            GalleryRow(name, on_display, tuple(e.page for e in members), _total(e.counts for e in members), task)
         )
     return tuple(sorted(rows, key=lambda g: (-g.counts.act, -g.counts.open, -g.counts.unknown, g.name)))
 

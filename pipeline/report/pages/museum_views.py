@@ -16,8 +16,8 @@ from pipeline.report.pages.views import (
     MotionLink,
     MotionView,
     ObjectView,
+    PageView,
     Pointer,
-    SheetView,
     SinceView,
     State,
     SurveyView,
@@ -30,9 +30,8 @@ class GalleryView:
     """One gallery's page, or one of its pages."""
 
     name: str
-    page: str
+    page: PageView
     on_display: bool
-    sheet: SheetView
     counts: Counts
     tasks: tuple[TaskView, ...]
     objects: tuple[ObjectView, ...]

@@ -341,13 +341,13 @@ class SinceView:
 
 
 @dataclass(frozen=True, slots=True)
-class SheetView:
+class PageView:
     """Which of its gallery's pages a page is: large galleries are cut into several.
 
     number, of : from 1;  first, last : numbers of the objects between which it lies in the catalogue's order
     """
 
-    page: str
+    file: str
     number: int = 1
     of: int = 1
     first: str = ""
@@ -364,7 +364,7 @@ class Entry:
 
     name: str
     on_display: bool
-    sheet: SheetView
+    page: PageView
     counts: Counts
     task: str
     leaders: tuple[tuple[tuple[int, bool, bool, str, float, str, str], Pointer], ...] = ()
@@ -377,7 +377,7 @@ class GalleryRow:
 
     name: str
     on_display: bool
-    sheets: tuple[SheetView, ...]
+    pages: tuple[PageView, ...]
     counts: Counts
     task: str
 
