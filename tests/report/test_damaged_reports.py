@@ -13,7 +13,7 @@ import pytest
 
 from pipeline.records import Tally
 from pipeline.report import Language, Units
-from pipeline.report.errors import ReportWarning
+from pipeline.report.errors import ReportError, ReportWarning
 from pipeline.report.files.manifest import MANIFEST, PreviousReport, read_manifest, verify_report, write_manifest
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.report_writer import ReportWriter, page_key
@@ -186,6 +186,20 @@ def test_a_report_of_an_earlier_version_is_not_used_and_nothing_is_said(good: Pa
     (last / MANIFEST).rename(last / ".sheets.json")
     _made, said, drawn = night(tmp_path / "next", last)
     assert (said, drawn) == ([], len(pages_of(RECORD)))
+
+
+def test_two_pages_of_one_name_are_refused_and_the_last_report_stays_as_it_was(good: Path, tmp_path: Path) -> None:
+    before = files_of(good)
+    page, found = pages_of(RECORD)[0]
+    writer = ReportWriter(tmp_path / "next", PageRenderer(HEAD, Units(), Language()), PreviousReport.read(good))
+    rendered = writer.renderer.draw(page, found, ())
+    with writer:
+        tallies = [writer.reuse(page_key(writer.renderer, page, ()))]
+        tallies.append(writer.add("another", replace(rendered, page=b"another")))
+        with pytest.raises(ReportError, match="would share one file"):
+            writer.finish(HEAD, total(tallies), None, {})
+    assert files_of(good) == before
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_where_files_cannot_be_linked_they_are_copied(

@@ -7,6 +7,7 @@ checksums were compared; the exports of the whole are put together from the part
 import os
 import shutil
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, suppress
 from hashlib import sha256
 from pathlib import Path
@@ -111,16 +112,19 @@ class ReportWriter:
         page = self._previous.get(key)
         if page is None:
             raise KeyError(key)
-        self._link(*page.files)
+        # Two galleries whose files would have one name are refused at the end; a linked file is never written into.
+        if page.entry.page.file not in self._files:
+            self._link(*page.files)
         self._pages.append(page)
         return page.tally
 
     def add(self, key: str, rendered: RenderedPage) -> Tally:
         """Add a page that was drawn for this report, and return what it adds to the totals."""
         page = rendered.entry.page.file
-        self._write(page, rendered.page)
-        for name, export in zip(part_files(page), EXPORTS, strict=True):
-            self._write(name, rendered.parts[export])
+        if page not in self._files:
+            self._write(page, rendered.page)
+            for name, export in zip(part_files(page), EXPORTS, strict=True):
+                self._write(name, rendered.parts[export])
         self._pages.append(KeptPage(key, rendered.entry, rendered.tally))
         return rendered.tally
 
@@ -184,9 +188,13 @@ class ReportWriter:
         parts = [part_files(page.entry.page.file) for page in self._pages]
         taken = {name for name in (*EXPORTS, WORKBOOK) if same and self._previous.has(name)}
         self._link(*taken)
-        for at, name in enumerate(EXPORTS):
-            if name not in taken:
-                self._files[name] = concatenate(self._partial / name, [self._partial / part[at] for part in parts])
+        wanted = {name: [self._partial / part[at] for part in parts] for at, name in enumerate(EXPORTS)}
+        # Copying, checksums and compression leave the other files' threads to work.
+        with ThreadPoolExecutor() as pool:
+            made = {
+                name: pool.submit(concatenate, self._partial / name, wanted[name]) for name in wanted.keys() - taken
+            }
+        self._files |= {name: one.result() for name, one in made.items()}
         if WORKBOOK not in taken and write_exports_workbook(self._partial, started):
             self._files[WORKBOOK] = sum_of(self._partial / WORKBOOK)
 
