@@ -16,10 +16,12 @@ PACKAGE = Path(resources.__file__).parent
 
 COMPUTES = (
     "pipeline.night.assessment",
+    "pipeline.night.unit_tasks",
+    "pipeline.store.results",
     "pipeline.motions.site",
     "pipeline.analysis.figures",
     "pipeline.collection.reading",
-    "pipeline.collection.catalogue",
+    "pipeline.collection.object_index",
 )
 """What makes the results that are kept: findings, motions, charts, histories, figures, items."""
 

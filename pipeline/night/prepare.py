@@ -28,7 +28,7 @@ from pipeline.night.figures import Pictures
 from pipeline.night.floors import floors_of, notes
 from pipeline.night.reading_summary import told
 from pipeline.night.source_state import rules_digest
-from pipeline.night.tasks import ChartTask
+from pipeline.night.unit_tasks import ChartTask
 from pipeline.operations.presentation import presentation
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Model, Progress, RunRecord, Scene

@@ -21,19 +21,17 @@ from pipeline.execute.memory import give_back
 from pipeline.execute.pool import WorkerPool, cores, pool
 from pipeline.night.context import RunContext
 from pipeline.night.decision_review import now, standing
+from pipeline.night.page_tasks import PageTask, Rendered, render_page
 from pipeline.night.paging import Part, paged
 from pipeline.night.source_state import rules_digest
-from pipeline.night.tasks import (
+from pipeline.night.unit_tasks import (
     Assessments,
     ChartTask,
     GalleryTask,
-    PageTask,
-    Rendered,
     UnitTask,
     assess_units,
     build_chart,
     find_neighbours,
-    render_page,
 )
 from pipeline.night.units import Decisions, Unit, UnitKeys
 from pipeline.operations.event_log import note

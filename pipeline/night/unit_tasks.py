@@ -1,27 +1,27 @@
-"""What workers do: assess units, find the gaps between neighbours, render pages.
+"""What workers find: response charts, the results of units, the gaps between neighbours.
 
-A `RunContext` holds what all tasks share and goes once to each worker; a task is the rest.  What comes back depends on
-these two alone: the same on this machine and on another, whoever did what before.
+Nothing of the report is asked here: what is found does not depend on how it is shown.  A `RunContext` holds what all
+tasks share and goes once to each worker; a task is the rest.  What comes back depends on these two alone: the same on
+this machine and on another, whoever did what before.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import partial
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 from pipeline.analysis.chart_runs import deciding, response_chart
-from pipeline.analysis.faults import Fault, each_apart, fault, fitting, unassessed
+from pipeline.analysis.faults import Fault, each_apart, fault, unassessed
 from pipeline.analysis.neighbours import neighbours
 from pipeline.collection.object_index import read_packed
 from pipeline.execute.memory import give_back
 from pipeline.night.assessment import Assessed, assess_objects, left_aside
-from pipeline.night.context import RunContext
-from pipeline.records import Decision, Found, Item, Motion, Page, Standing, Tally
-from pipeline.report.files.page_renderer import PageRenderer, RenderedPage
-from pipeline.report.pages.tallies import tally
+from pipeline.records import Decision, Item, Motion
 from pipeline.store.codec import StoreError
 from pipeline.store.pages import NEIGHBOURS, Members, found_of
 from pipeline.store.results import Stored, anonymous, encode, encode_spacings
+
+if TYPE_CHECKING:
+    from pipeline.night.context import RunContext
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class ChartTask:
     alike: Mapping[str, float]
 
 
-def build_chart(context: RunContext, task: ChartTask) -> None:
+def build_chart(context: "RunContext", task: ChartTask) -> None:
     """Build a response chart, where it is not kept yet, so that all who work find it."""
     given: dict[str, Any] = {name: value for name, value in task.alike.items() if value == value}  # noqa: PLR0124 - NaN: not given
     response_chart(
@@ -110,7 +110,7 @@ class Assessments:
     failed: frozenset[str] = frozenset()
 
 
-def assess_units(context: RunContext, task: UnitTask) -> Assessments:
+def assess_units(context: "RunContext", task: UnitTask) -> Assessments:
     """Assess units; what Kouros fails on costs the object its answer, and is told."""
     items, floor = read_packed(task.records), context.storeys[task.floor]
     if not task.assessed:
@@ -167,7 +167,7 @@ class GalleryTask:
     results: Mapping[str, bytes]
 
 
-def find_neighbours(context: RunContext, task: GalleryTask) -> Assessments:
+def find_neighbours(context: "RunContext", task: GalleryTask) -> Assessments:
     """Find the gaps between the neighbours of a gallery."""
     floor = context.storeys[task.floor]
     assessments = tuple(one for page in task.pages for one in found_of(page, task.results).assessments)
@@ -177,52 +177,3 @@ def find_neighbours(context: RunContext, task: GalleryTask) -> Assessments:
     )
     stored = encode_spacings(task.key, gaps, {one.object_number: one.words for one in faults})
     return Assessments((stored,), faults=tuple(faults), failed=frozenset([task.key] if faults else []))
-
-
-@dataclass(frozen=True)
-class PageTask:
-    """A page to be rendered.
-
-    Attributes
-    ----------
-    page
-        Where it belongs.
-    members
-        Its objects.
-    results
-        Theirs by key, as they are kept.
-    decisions
-        About its objects, as they stand.
-    draw
-        Whether it is wanted itself; else its totals alone.
-    """
-
-    page: Page
-    members: Members
-    results: Mapping[str, bytes]
-    decisions: tuple[Standing, ...] = field(default=())
-    draw: bool = True
-
-
-@dataclass(frozen=True)
-class Rendered:
-    """What came of a `PageTask`: the totals, the page where it was wanted, and the objects that Kouros failed on."""
-
-    tally: Tally
-    page: RenderedPage | None = None
-    faults: tuple[Fault, ...] = ()
-
-
-def render_page(context: RunContext, task: PageTask) -> Rendered:
-    """Render a page; an object that Kouros fails on is shown as one that cannot be assessed, and told."""
-    found = found_of(task.members, task.results)
-    if not task.draw:
-        return Rendered(tally(found))
-    faults: list[Fault] = []
-    # What renders is made outside of any object's guard: a language without a catalogue is nobody's fault here.
-    shown, page = fitting(found, partial(_drawn, context.renderer, task.page, task.decisions), faults)
-    return Rendered(page.tally if shown is found else tally(shown), page, tuple(faults))
-
-
-def _drawn(renderer: PageRenderer, page: Page, decisions: Sequence[Standing], found: Found) -> RenderedPage:
-    return renderer.draw(page, found, decisions)
