@@ -21,6 +21,8 @@ exclude_patterns = ["build"]
 html_theme = "furo"
 html_title = f"Kouros {release}"
 html_show_copyright = False
+html_static_path = ["static"]
+html_css_files = ["kouros.css"]
 html_show_sphinx = False
 
 # Every reference that leads nowhere is a warning, and `make docs` makes warnings errors.
@@ -29,7 +31,8 @@ nitpick_ignore_regex = [("py:.*", r".*")]  # types of other libraries, whose pag
 myst_heading_anchors = 3
 myst_enable_extensions = ["colon_fence", "deflist"]
 autodoc_member_order = "bysource"
-autodoc_typehints = "none"
+autodoc_typehints_format = "short"
+autodoc_preserve_defaults = True
 numpydoc_show_class_members = False
 
 

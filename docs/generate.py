@@ -5,6 +5,7 @@ import importlib
 import inspect
 import json
 import pkgutil
+import pydoc
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
@@ -96,6 +97,7 @@ def pages() -> dict[str, str]:
     """Return the text of every generated page, by its name."""
     makers: tuple[Callable[[], str], ...] = (
         cli, settings, manifest, mapping, records, exports, decisions, events, models, supports, tables, exit_codes,
+        contracts,
     )  # fmt: skip
     return {maker.__name__.replace("_", "-"): maker().strip() + "\n" for maker in makers}
 
@@ -120,10 +122,10 @@ def verbs(group: click.Group = kouros, path: tuple[str, ...] = ()) -> Iterable[t
 
 def cli() -> str:
     """Return what --help says of the command and of every verb."""
-    context = click.Context(kouros, info_name="kouros", terminal_width=100)
+    context = click.Context(kouros, info_name="kouros", terminal_width=88)
     said = [f"# Command line\n\nWhat `--help` says.\n\n## kouros\n\n{_block(kouros.get_help(context))}"]
     for words, command in verbs():
-        inside = click.Context(command, info_name=f"kouros {words}", terminal_width=100)
+        inside = click.Context(command, info_name=f"kouros {words}", terminal_width=88)
         said.append(f"## kouros {words}\n\n{_block(command.get_help(inside))}")
     return "\n\n".join(said)
 
@@ -205,10 +207,17 @@ def mapping() -> str:
     """Return every key of a mapping, and the mappings that come with Kouros."""
     schema = _schema("mapping")
     parts = ["# Mappings\n\nA TOML file that says which column of the museum's source is which field of the record."]
-    places = {"Source": "[source]", "Museum": "[museum]", "ColumnMap": "[columns.FIELD]", "Texts": "[dimensions]"}
-    for name, place in {**places, "Display": "[display]"}.items():
-        table = schema["$defs"][name]
+    for name, field in schema["properties"].items():
+        # Of the columns each is a table of its own; what may be left out is a table or nothing.
+        one = next((kind for kind in field.get("anyOf", ()) if "$ref" in kind), field)
+        table = _resolved(field["additionalProperties"] if name == "columns" else one, schema)
+        place = "[columns.FIELD]" if name == "columns" else f"[{name}]"
         parts.append(f"## `{place}`\n\n{_plain(table['description'])}\n\n{_keys(table, schema)}")
+        for kind in table.get("oneOf", ()):
+            own = _resolved(kind, schema)
+            if "properties" in own and "description" in own:
+                said = _plain(own["description"].partition("\n")[0])
+                parts.append(f"### `{place}`: {said}\n\n{_keys(own, schema)}")
     parts.append("### Fields that may be mapped\n\n" + ", ".join(f"`{name}`" for name in MAPPABLE))
     rows = []
     for preset in sorted(PRESETS.glob("*.toml")):
@@ -299,6 +308,26 @@ def _quantities(quantities: Iterable[Quantity], *, needed: bool) -> str:
     return _table(("Needs", "Unit", "Required", "Allowed", "Meaning"), said)
 
 
+CONTRACTS = {
+    "A generic model": "pipeline.records.Model",
+    "A measure": "pipeline.mitigate.measures.base.Measure",
+    "A source of collections": "pipeline.collection.sources.base.Source",
+    "A page of the report": "pipeline.report.pages.further",
+}
+"""What a part of each kind must keep to, wherever it comes from."""
+
+
+def contracts() -> str:
+    """Return the contracts of parts, in the words of their docstrings."""
+    intro = "What a part must keep to, of Kouros itself or of [another package](../../how-to/extend.md)."
+    parts = ["# Contracts of parts", intro]
+    for title, name in CONTRACTS.items():
+        found = pydoc.locate(name)
+        if found is not None:
+            parts.append(f"## {title}\n\n`{name}`\n\n{_block(inspect.getdoc(found) or '')}")
+    return "\n\n".join(parts)
+
+
 def tables() -> str:
     """Return every table of numbers and words, row by row, with the sources."""
     parts = ["# Tables\n\nWhat is assumed where a record is silent. Each row has its source; code repeats no number."]
@@ -306,8 +335,18 @@ def tables() -> str:
         with file.open(encoding="utf-8", newline="") as stream:
             header, *rows = csv.reader(stream)
         cells = [[_plain(cell.replace("|", ", ")) for cell in row] for row in rows]
-        parts.append(f"## {file.name}\n\n{TABLE_WORDS[file.stem]}\n\n{_table(header, cells)}")
+        shown = _table(header, cells) if len(header) <= WIDE else "\n".join(_row(header, row) for row in cells)
+        parts.append(f"## {file.name}\n\n{TABLE_WORDS[file.stem]}\n\n{shown}")
     return "\n\n".join(parts)
+
+
+WIDE = 7
+"""Columns beyond which a table is told row by row, without its empty cells."""
+
+
+def _row(header: Iterable[str], cells: Iterable[str]) -> str:
+    (_, first), *others = zip(header, cells, strict=True)
+    return f"- **{first}**: " + "; ".join(f"*{_plain(name)}* {cell}" for name, cell in others if cell)
 
 
 # Markdown -------------------------------------------------------------------------------------------------------------
