@@ -70,4 +70,4 @@ check-browser:
 	{ echo "the browser tests need chromium and chromium-driver: install both"; exit 1; }
 
 clean:
-	rm -rf .venv kouros-demo build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf .venv kouros-demo build docs/reference/generated dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -13,7 +13,9 @@ from pathlib import Path
 
 import click
 import pytest
+import yaml
 
+import pipeline
 from docs import generate
 from pipeline.cli import kouros
 from tests.docs.pages import DOCS, PAGES, PROMISED, ROOT, blocks, codes, links
@@ -225,6 +227,14 @@ def test_the_pages_are_built_without_a_warning(tmp_path: Path) -> None:
             r'<(?:script|img|link)[^>]*(?:src|href)="(https?:[^"]+)"', file.read_text(encoding="utf-8")
         )
         assert not fetched, f"{file.name} fetches {fetched}"
+
+
+def test_one_version_is_told_everywhere() -> None:
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert str(citation["version"]) == pipeline.__version__
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    released = re.findall(r"^## (\d\S*) \((\d{4}-\d{2}-\d{2})\)$", changes, re.M)
+    assert released[0] == (pipeline.__version__, str(citation["date-released"]))
 
 
 def test_the_readme_is_short() -> None:
