@@ -4,11 +4,11 @@ BIN := .venv/bin
 STAMP := .venv/.kouros-installed
 PEERS := .venv/.kouros-peers
 
-.PHONY: demo test lint bench soak audit airflow check-browser clean
+.PHONY: demo test lint docs bench soak audit airflow check-browser clean
 
 $(STAMP): pyproject.toml constraints.txt
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv || { echo "python3 has no venv module: apt-get install python3-venv"; exit 1; }
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,docs]'
 	@touch $(STAMP)
 
 # One by one: a peer that has no wheel for this machine is left out, and the benchmark says so.
@@ -27,11 +27,17 @@ test: $(STAMP) lint check-browser  ## lint, types, floors and all tests
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
 lint: $(STAMP)
-	$(BIN)/ruff format --check pipeline schemas tests examples .ci
-	$(BIN)/ruff check pipeline schemas tests examples .ci
+	$(BIN)/ruff format --check pipeline schemas tests examples docs .ci
+	$(BIN)/ruff check pipeline schemas tests examples docs .ci
 	$(BIN)/bandit --quiet --configfile pyproject.toml --recursive pipeline schemas
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# Offline; a broken link, a page that no table of contents names and an unreadable docstring are errors.
+docs: $(STAMP)  ## the documentation, in build/docs
+	$(BIN)/python -m docs.generate
+	$(BIN)/python -m sphinx -W --keep-going -q -b html -d build/doctrees docs build/docs
+	@echo "build/docs/index.html"
 
 bench: $(PEERS)  ## costs beside peers and beside C, ns per object and sample of each model, the stages of a night
 	$(BIN)/python -m tests.benchmarks
@@ -64,4 +70,4 @@ check-browser:
 	{ echo "the browser tests need chromium and chromium-driver: install both"; exit 1; }
 
 clean:
-	rm -rf .venv kouros-demo build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf .venv kouros-demo build docs/reference/generated dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

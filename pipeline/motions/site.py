@@ -102,9 +102,22 @@ class Site:
 def read_site(folder: str | Path, *, kept: Path | None = None) -> Site:
     """Read, check and process the records of the ground that a site's manifest names.
 
-    folder : the site's folder, or its manifest.toml
-    kept   : where processed motions are kept between nights; None keeps nothing
-    raises : MotionError (exit code 4) naming the file, the place in it and the remedy
+    Parameters
+    ----------
+    folder : str or Path
+        The site's folder, or its manifest.toml.
+    kept : Path or None
+        Where processed motions are kept between nights; None keeps nothing.
+
+    Returns
+    -------
+    Site
+        The manifest, and its levels with the processed motions.
+
+    Raises
+    ------
+    MotionError
+        Exit code 4; naming the file, the place in it and the remedy.
     """
     file = manifest_file(folder)
     manifest = load_manifest(file)
@@ -201,8 +214,22 @@ def carry(motion: Motion, table: FloorTable) -> Motion:
 def read_motion(path: str | Path, kept: Path | None = None) -> list[Motion]:
     """Return the processed motions of a site's folder or manifest file, in the manifest's order.
 
-    kept   : a folder in which processed motions are kept for the next time; None keeps none
-    raises : MotionError, as `read_site`
+    Parameters
+    ----------
+    path : str or Path
+        The site's folder, or its manifest.toml.
+    kept : Path or None
+        A folder in which processed motions are kept for the next time; None keeps none.
+
+    Returns
+    -------
+    list of Motion
+        Those of the ground; floors are passed on by ``transmit``.
+
+    Raises
+    ------
+    MotionError
+        Naming the file, the place in it and the remedy.
     """
     file = manifest_file(path)
     manifest = load_manifest(file)

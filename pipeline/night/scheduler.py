@@ -195,10 +195,10 @@ class NightRun:
         """The pages of the run, once all is known."""
         return tuple(one.page for one in self._pages if one.page is not None)
 
-    def rows(self) -> Iterator[dict[str, Any]]:
-        """Yield the rows of those pages that the database does not have."""
+    def rows(self, *, kept: bool = False) -> Iterator[dict[str, Any]]:
+        """Yield the rows of those pages that the database does not have, or, for another database, of all."""
         for one in self._pages:
-            if one.kept is None and one.page is not None:
+            if (kept or one.kept is None) and one.page is not None:
                 yield one.row or page_row(one.page, self._members(one))
 
     @property

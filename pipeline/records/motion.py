@@ -24,15 +24,28 @@ STRONGEST = 1e50
 class Motion:
     """The acceleration history of a base, piecewise linear between samples, at rest before and unexcited after.
 
-    dt           : s, the uniform time step
-    acceleration : (3, n) m/s2, rows x (east), y (north), z (up)
-    name         : what a report calls it
-    steps        : what was done to the record, in order, each step with its parameters
-    source       : who recorded it and under which licence
-    start        : m/s, the velocity (x, y, z) that the record starts with, as an agency's own velocity series may say;
-                   no model is moved by it, but the PGV and the overturning criterion are
-    v_max        : m/s, what the manifest says the velocity of the overturning criterion is; None: the PGV
-    raises       : ValueError for a shape that is not (3, n), values that are not finite, a dt that is not positive
+    Parameters
+    ----------
+    dt : float
+        The uniform time step in s.
+    acceleration : array_like, shape (3, n)
+        In m/s2, rows x (east), y (north), z (up).
+    name : str
+        What a report calls it.
+    steps : iterable of str
+        What was done to the record, in order, each step with its parameters.
+    source : str
+        Who recorded it and under which licence.
+    start : iterable of float
+        The velocity (x, y, z) in m/s that the record starts with, as an agency's own velocity series may say; no model
+        is moved by it, but the PGV and the overturning criterion are.
+    v_max : float or None
+        What the manifest says the velocity of the overturning criterion is, in m/s; None: the PGV.
+
+    Raises
+    ------
+    InputError
+        For a shape that is not (3, n), values that are not finite, a dt that is not positive.
     """
 
     dt: float

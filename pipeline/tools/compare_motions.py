@@ -139,5 +139,5 @@ def _assessed(workspace: Workspace, site: Site, name: str, engine: Database, pro
     night.assess(progress, store=False)
     night.copy_results(engine)
     head = replace(context.head, run_id=name, finished=context.head.started)
-    commit_run(engine, head, night.pages, night.rows(), counts={})
+    commit_run(engine, head, night.pages, night.rows(kept=True), counts={})
     return night.fresh

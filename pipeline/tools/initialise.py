@@ -11,7 +11,8 @@ from pipeline.settings import Settings, template
 MANIFEST = """\
 # The motions of your site; it names none yet.  Put the files of a record beside this one, and paste in below what
 # `kouros motions entries` prints of them: names, components, sha256.  Answer what it asks, then try
-# `kouros motions show` and `kouros check`.  README.md lists what a record may say; an error names the key.
+# `kouros motions show` and `kouros check`.  The documentation (docs/how-to/records.md)
+# lists what a record may say; an error names the key.
 
 [site]
 name = "Our site"

@@ -159,8 +159,8 @@ def test_the_dag_in_airflow_itself(placed: Callable[[str], str], tmp_path: Path)
     assert a_night_was_made(tmp_path)
 
 
-def test_the_readme_names_every_example() -> None:
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+def test_the_documentation_names_every_example() -> None:
+    page = (ROOT / "docs" / "how-to" / "schedule.md").read_text(encoding="utf-8")
     for example in EXAMPLES.iterdir():
         if not example.name.startswith("__"):
-            assert f"examples/{example.name}" in readme
+            assert f"examples/{example.name}" in page
