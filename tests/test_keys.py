@@ -41,6 +41,7 @@ HARMLESS = {
     "threadpoolctl": "how many threads, which changes no digit",
     "defusedxml": "refuses entities",
     "filelock": "one run at a time",
+    "tomlkit": "writes settings for a person",
 }
 """Libraries that are imported and that neither a number nor a page depends on, and why."""
 
