@@ -15,13 +15,15 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
 from threading import RLock
-from typing import Any, Generic, NamedTuple, Protocol, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar, overload
 
 from pipeline.errors import InputError
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 PREFIX = "kouros."
 """How the groups of entry points begin that Kouros looks at."""
@@ -131,7 +133,7 @@ class Registry(Sequence[Part], Generic[Part]):
         return iter(self.parts)
 
 
-def _words(entry: EntryPoint, problem: BaseException) -> str:
+def _words(entry: "EntryPoint", problem: BaseException) -> str:
     distribution, version = _package(entry)
     said = str(problem) if isinstance(problem, InputError) else f"{type(problem).__name__}: {problem}"
     return (
@@ -140,13 +142,15 @@ def _words(entry: EntryPoint, problem: BaseException) -> str:
     )
 
 
-def _package(entry: EntryPoint) -> tuple[str, str]:
+def _package(entry: "EntryPoint") -> tuple[str, str]:
     # Either is None where the package's METADATA is damaged.
     name, version = (None, None) if entry.dist is None else (entry.dist.name, entry.dist.version)
     return name or "a package without a name", version or "?"
 
 
-def _entries(group: str) -> list[EntryPoint]:
+def _entries(group: str) -> "list[EntryPoint]":
+    from importlib.metadata import entry_points
+
     return sorted(entry_points(group=group), key=lambda one: (one.name, *_package(one)))
 
 
@@ -162,6 +166,8 @@ def extension_versions() -> tuple[ExtensionVersion, ...]:
     tuple of ExtensionVersion
         Of all groups that begin with PREFIX, in order; empty where nothing is installed.
     """
+    from importlib.metadata import entry_points
+
     found = entry_points()
     groups = sorted(group for group in found.groups if group.startswith(PREFIX))
     return tuple(

@@ -9,6 +9,7 @@ import pytest
 
 from pipeline.errors import InputError
 from pipeline.extensions import ExtensionWarning, Registry, extension_versions
+from pipeline.resources import code_version
 from tests.packages import install
 
 GROUP = "kouros.tried"
@@ -33,6 +34,7 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     extension_versions.cache_clear()
     yield tmp_path
     extension_versions.cache_clear()
+    code_version.cache_clear()
     for name in set(sys.modules) - before:
         if name.startswith("tried"):
             del sys.modules[name]
@@ -118,11 +120,13 @@ def test_versions_are_told_without_loading_and_follow_the_source(site: Path) -> 
     assert other.code != one.code
 
 
-def test_every_digest_of_code_takes_them_in(site: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from pipeline.resources import digest_of
-
-    before = digest_of("models")
+def test_the_version_of_the_code_takes_them_in(site: Path) -> None:
+    """Every key of what is kept depends on it."""
+    code_version.cache_clear()
+    before = code_version()
     install(site, "tried_key", "X = 'x'", f"[{GROUP}]\nkey = tried_key:X\n")
-    assert digest_of("models") == before
+    code_version.cache_clear()
+    assert code_version() == before
     extension_versions.cache_clear()
-    assert digest_of("models") != before
+    code_version.cache_clear()
+    assert code_version() != before
