@@ -14,11 +14,7 @@ import pytest
 import pipeline
 from pipeline.analysis.classify import NO_MODEL, WHEN_HELD, models_of
 from pipeline.kernels import cache_folder
-from pipeline.mitigate.changes import CHANGES
-from pipeline.mitigate.installed import PARAMETERS
-from pipeline.mitigate.means import LAST, TERMS
 from pipeline.mitigate.measures import MEASURES
-from pipeline.mitigate.shared import SHARED
 from pipeline.models import MODELS
 from pipeline.records import Support
 from pipeline.resources import resource
@@ -42,18 +38,6 @@ def test_the_public_names_are_handed_on() -> None:
         _ = pipeline.nothing
 
 
-def told(begins: str) -> dict[str, str]:
-    """What a point of the README says of adding something: names of code, and the file that it says they are in."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    (point,) = re.findall(rf"^- {begins}: .*?(?=^- |\n\n)", text, re.M | re.S)
-    return {
-        name: path
-        for part in re.split(r"[;.] ", " ".join(point.split()))
-        for path in re.findall(r"\]\((pipeline/[^)]*\.py)\)", part)
-        for name in re.findall(r"`([A-Z_]+)`", part.partition(path)[0].rpartition(".py)")[2])
-    }
-
-
 def test_every_model_but_the_building_block_is_tried_on_some_object() -> None:
     """By its class, or by how it is held."""
     given = {name for row in table("classes") for name in row["models"].split("|")}
@@ -61,14 +45,8 @@ def test_every_model_but_the_building_block_is_tried_on_some_object() -> None:
     assert given - {NO_MODEL, WHEN_HELD, ""} == {model.name for model in MODELS} - {"oscillator"}
 
 
-def test_the_readme_names_every_place_where_a_measure_is_registered() -> None:
-    """Each name is in the file that is told, and holds every measure there is."""
-    for name, path in told("a measure").items():
-        assert re.search(rf"^{name}\b", (ROOT / path).read_text(encoding="utf-8"), re.M), (name, path)
-    assert set(told("a measure")) == {"TERMS", "CHANGES", "MEASURES", "SHARED", "PARAMETERS"}
-    measures = {row["measure"] for row in table("measures")}
-    assert set(TERMS) == set(MEASURES) | set(SHARED) == set(CHANGES) | {LAST} == measures
-    assert set(PARAMETERS) < measures
+def test_every_measure_has_a_row_of_the_table() -> None:
+    assert {row["measure"] for row in table("measures")} == {measure.name for measure in MEASURES.own}
 
 
 def test_importing_the_package_is_free_and_the_names_survive_any_order() -> None:
