@@ -119,8 +119,11 @@ def _hashed(folder: Path, names: Sequence[str], most: int = 5) -> str:
 
 
 def _measures(workspace: Workspace) -> tuple[str, str]:
-    have = workspace.measures
-    return "ok", f"{counted(len(have.measures), 'measure')}, {counted(len(have.isolators), 'isolator')}"
+    from pipeline.mitigate.measures import MEASURES
+
+    have, left_out = workspace.measures, MEASURES.problems
+    text = f"{counted(len(have.measures), 'measure')}, {counted(len(have.isolators), 'isolator')}"
+    return "warning" if left_out else "ok", "; ".join([text, *left_out])
 
 
 def _inventory(workspace: Workspace, items: Sequence[Item]) -> tuple[str, str]:

@@ -149,6 +149,8 @@ def test_a_measure_that_cannot_be_used_is_said_and_left_out(museum: Path, tmp_pa
     said = " ".join(done.stderr.split())
     assert "museum_strap 1.0 offers 'strap' (kouros.measures: museum_strap:Strap), which cannot be used" in said
     assert "column 'limit': input should be a valid number, unable to parse string as a number, not 'wide'" in said
+    looked = kouros(museum, "check", packages=packages)
+    assert "museum_strap 1.0 offers 'strap'" in " ".join(looked.stdout.split())
 
 
 def test_what_is_no_measure_is_refused_with_its_remedy() -> None:
