@@ -80,7 +80,7 @@ def _taken(taken: "Taken") -> str:
 def _advice(advice: "Recommendation") -> Iterator[str]:
     values = ", ".join(f"{name} {_number(v)} {advice.units[name]}" for name, v in advice.parameters.items())
     yield f"  advice, {advice.level}: {advice.title}" + (f" ({values})" if values else "")
-    from pipeline.mitigate.advise import ONLY_HERE
+    from pipeline.mitigate.search import ONLY_HERE
 
     if advice.sentence.endswith(ONLY_HERE):
         yield f"    {ONLY_HERE}"

@@ -1,7 +1,6 @@
 """Findings -> changed chains, run again -> recommendations: the least intrusive measure that passes."""
 
-from pipeline.mitigate.advise import advise
-from pipeline.mitigate.changes import changed
-from pipeline.mitigate.means import Means, means
+from pipeline.mitigate.catalogue import MeasureCatalogue, changed, measure_catalogue
+from pipeline.mitigate.search import advise
 
-__all__ = ["Means", "advise", "changed", "means"]
+__all__ = ["MeasureCatalogue", "advise", "changed", "measure_catalogue"]

@@ -1,7 +1,6 @@
-"""What a measure that is installed changes for an object, so that a run computes it as it stands now.
+"""Measures that are installed: the scene of an object as it stands now, and what an isolator passes on to it.
 
-The changes are those by which a measure is verified before it is advised (`pipeline.mitigate.changes`).  What stands on
-an isolator is run on the motion that the isolator passes on.
+The changes are those by which a measure is verified before it is advised (`Measure.change`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -11,58 +10,17 @@ from typing import Any
 from pipeline.analysis.assess import LevelMotions, assess
 from pipeline.analysis.context import Context
 from pipeline.analysis.transmission import transmit
-from pipeline.mitigate.changes import CHANGES, changed, held
+from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
+from pipeline.mitigate.measures.base import held
 from pipeline.models import model_named
-from pipeline.quantities import Quantity
 from pipeline.records import Finding, Numerics, Scene
-from pipeline.tables import table
-
-_FRICTION = Quantity("friction", "-", "friction of the surface", 0.0, 2.0, exclusive=True)
-_CLEARANCE = Quantity("clearance", "m", "room on all sides", 0.0, 100.0)
-_FREQUENCY = Quantity("frequency", "Hz", "natural frequency", 0.0, 100.0, exclusive=True)
-_DAMPING = Quantity("damping", "-", "ratio to critical damping", 0.0, 1.0)
-
-PARAMETERS: Mapping[str, tuple[Quantity, ...]] = {
-    "clearance": (_CLEARANCE,),
-    "rubber_pads": (_DAMPING,),
-    "surface": (_FRICTION,),
-    "grip_pad": (_FRICTION,),
-    "ballast": (
-        Quantity("mass", "kg", "mass of the ballast", 0.0, 1e5, exclusive=True),
-        Quantity("height", "m", "height of its centre above the base", 0.0, 100.0),
-    ),
-    "wide_base": (Quantity("width", "m", "width of the footing plate", 0.0, 100.0, exclusive=True), _CLEARANCE),
-    "friction_isolator": (_FRICTION, _CLEARANCE),
-    "horizontal_isolator": (
-        _FREQUENCY,
-        _DAMPING,
-        Quantity("friction", "-", "friction of the isolator", 0.0, 2.0),
-        Quantity("stroke", "m", "how far it can move", 0.0, 10.0, exclusive=True),
-    ),
-    "rotational_isolator": (
-        _FREQUENCY,
-        _DAMPING,
-        Quantity("rotation_limit", "rad", "how far it may turn", 0.0, 1.5, exclusive=True),
-    ),
-    "strengthen": (Quantity("enlargement", "-", "size of the section, times its own", 1.0, 100.0),),
-}
-"""What must be known of a measure that is installed; the others need nothing."""
 
 ON_TOP = "Under the motion that its isolator passes on"
 
-ISOLATORS = ("friction_isolator", "horizontal_isolator", "rotational_isolator")
-
-
-def installable() -> dict[str, tuple[Quantity, ...]]:
-    """Return the measures that can be said to be installed, each with what must be known of it."""
-    return {
-        row["measure"]: PARAMETERS.get(row["measure"], ()) for row in table("measures") if row["measure"] in CHANGES
-    }
-
 
 @dataclass(frozen=True, slots=True)
-class Measure:
-    """A measure that is installed: a row of measures.csv, its parameters [SI], and who says so."""
+class InstalledMeasure:
+    """A measure that is installed: its name in the catalogue, its parameters [SI], and who says so."""
 
     name: str
     parameters: Mapping[str, float]
@@ -75,9 +33,16 @@ Transfer = tuple[str, tuple[tuple[str, float], ...]]
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """An object as it stands: its scene, and where that is an isolator, the object as it stands on it.
+    """An object as it stands.
 
-    isolator : its kind; "" for none
+    Attributes
+    ----------
+    scene : Scene
+        Its scene, or that of the isolator under it.
+    above : Scene or None
+        The object as it stands on the isolator; None where there is none.
+    isolator : str
+        Model of the isolator; "" for none.
     """
 
     scene: Scene
@@ -91,26 +56,41 @@ class Placed:
         return self.isolator, tuple((name, known[name].value) for name in names)
 
 
-def placed(scene: Scene, measures: Sequence[Measure]) -> Placed:
+def placed(scene: Scene, measures: Sequence[InstalledMeasure], catalogue: MeasureCatalogue | None = None) -> Placed:
     """Return an object with its measures in place, one after the other.
 
-    What is done to an object that stands on an isolator is done to it, not to the isolator.  A measure whose change
-    needs what is not known of the object changes nothing, and the scene's assumptions say so.
+    What is done to an object that stands on an isolator is done to it, not to the isolator.  A measure that is not in
+    the catalogue any more, or whose change needs what is not known of the object, changes nothing, and the scene's
+    assumptions say so.
+
+    Parameters
+    ----------
+    scene : Scene
+        The object without them.
+    measures : sequence of InstalledMeasure
+        In the order in which they were decided.
+    catalogue : MeasureCatalogue, optional
+        What the museum has; Kouros's own where it is left out.
+
+    Returns
+    -------
+    Placed
     """
+    catalogue = catalogue or own_catalogue()
     stands = Placed(scene)
-    for measure in measures:
+    for installed in measures:
         before = stands.scene if stands.above is None else stands.above
         try:
-            after = changed(before, measure.name, measure.parameters)
+            measure = catalogue.named(installed.name)
+            after = measure.change(before, installed.parameters)
         except KeyError as unknown:
-            said = f"{measure.name} is installed ({measure.words}), but is not computed: {unknown} is not known"
+            said = f"{installed.name} is installed ({installed.words}), but is not computed: {unknown} is not known"
             scene = replace(stands.scene, assumptions=(*stands.scene.assumptions, said))
             stands = replace(stands, scene=scene)
             continue
-        after = _told(before, after, measure.words)
-        if measure.name in ISOLATORS:
-            # What is on a rotational isolator is mounted on it; on another it stands as it stood.
-            stands = Placed(after, held(before) if measure.name == "rotational_isolator" else before, measure.name)
+        after = _told(before, after, installed.words)
+        if measure.isolator:
+            stands = Placed(after, held(before) if measure.mounts else before, measure.isolator)
         elif stands.above is not None:
             stands = replace(stands, above=after)
         else:
@@ -138,8 +118,21 @@ def assess_above(
 ) -> list[tuple[list[Finding], Mapping[str, str]]]:
     """Run what stands on isolators on what these pass on; each isolator is run once, however many stand on it.
 
-    returns : for each object its findings on the isolator and the models left out there; nothing where it has none.
-              A finding names the motion of the site, and lies on no chart: those are drawn for that motion itself
+    Parameters
+    ----------
+    objects : sequence of Placed
+    levels : sequence of LevelMotions
+        The shaking of the floor.
+    context : Context
+        Where models are run.
+    numerics : Numerics
+        How finely.
+
+    Returns
+    -------
+    list of (list of Finding, mapping of str to str)
+        For each object its findings on the isolator and the models left out there; nothing where it has none.  A
+        finding names the motion of the site, and lies on no chart: those are drawn for that motion itself.
     """
     out: list[tuple[list[Finding], Mapping[str, str]]] = [([], {}) for _ in objects]
     groups: dict[Transfer, list[tuple[int, Scene]]] = {}

@@ -17,8 +17,8 @@ from pipeline.analysis.fragility.objects import fragilities
 from pipeline.analysis.rules import Table
 from pipeline.analysis.survey import measurement_requests
 from pipeline.collection.record import INDIVIDUAL
-from pipeline.mitigate import advise
-from pipeline.mitigate.installed import Measure, Placed, assess_above, placed
+from pipeline.mitigate import MeasureCatalogue, advise
+from pipeline.mitigate.installed import InstalledMeasure, Placed, assess_above, placed
 from pipeline.models import model_named
 from pipeline.night.floors import Storey
 from pipeline.records import (
@@ -60,15 +60,18 @@ class Assessed:
     wishes: tuple[MeasurementRequest, ...] | None = None
 
 
-def place(item: Item, rules: Table | None, decisions: Sequence[Decision]) -> Placed:
+def place(
+    item: Item, rules: Table | None, decisions: Sequence[Decision], measures: MeasureCatalogue | None = None
+) -> Placed:
     """Return an object as people say that it is and stands: of the class decided, with the measures installed.
 
     decisions : those in force about it
+    measures  : what the museum has; None: Kouros's own
     """
     classes = [d for d in decisions if d.kind is DecisionKind.CLASS and d.object_class in object_classes()]
     scene = classify(item, rules, (classes[-1].object_class, classes[-1].by) if classes else None)
-    measures = [Measure(d.measure, d.parameters, d.by) for d in decisions if d.kind is DecisionKind.INSTALLED]
-    return placed(scene, measures)
+    there = [InstalledMeasure(d.measure, d.parameters, d.by) for d in decisions if d.kind is DecisionKind.INSTALLED]
+    return placed(scene, there, measures)
 
 
 def assess_objects(
@@ -210,7 +213,7 @@ def placed_each(
     """Return each object as it stands, or the error that placing it came to."""
 
     def some(these: Sequence[Item]) -> list[Placed]:
-        objects = [place(item, context.rules, about.get(item.object_number, ())) for item in these]
+        objects = [place(item, context.rules, about.get(item.object_number, ()), context.measures) for item in these]
         return [replace(one, scene=replace(one.scene, floor=floor.name)) for one in objects]
 
     return apart(some, items, lambda item: item.support)
@@ -270,7 +273,9 @@ def _assessed(
         done = {finding.title for finding in findings[at]}
         skipped = {title: why for title, why in {**plan.skipped[at], **left_out}.items() if title not in done}
         scenes[at] = replace(scenes[at], skipped=skipped)
-    advice = advise(scenes, findings, levels, working, numerics, means=context.means, carriage=context.carriage)
+    advice = advise(
+        scenes, findings, levels, working, numerics, catalogue=context.measures, transmitted=context.transmitted
+    )
     curves: Sequence[tuple[Fragility, ...]] = [()] * len(scenes)
     if context.fragile:
         # What an isolator passes on would have to be scaled too.

@@ -12,8 +12,8 @@ from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.rules import Table
 from pipeline.cache import Cache, key_of
 from pipeline.execute import Threads
-from pipeline.mitigate import Means
-from pipeline.mitigate.bench import Carriage
+from pipeline.mitigate import MeasureCatalogue
+from pipeline.mitigate.trials import TransmittedMotions
 from pipeline.night.floors import Storey
 from pipeline.records import (
     Motion,
@@ -42,7 +42,7 @@ class RunContext:
     storeys: Mapping[str, Storey]
     analysis: Analysis
     rules: Table | None
-    means: Means
+    measures: MeasureCatalogue
     surveyed: bool
     fragile: bool
     stores: bool = False
@@ -55,7 +55,7 @@ class RunContext:
 
     def __getstate__(self) -> dict[str, Any]:
         # What was made on the way is made again where it is needed.
-        made = {"charts", "carriage", "renderer", "executor"}
+        made = {"charts", "transmitted", "renderer", "executor"}
         return {name: value for name, value in self.__dict__.items() if name not in made}
 
     @property
@@ -82,9 +82,9 @@ class RunContext:
             yield Context(self.executor, charts=self.charts, histories=histories)
 
     @cached_property
-    def carriage(self) -> Carriage:
+    def transmitted(self) -> TransmittedMotions:
         """What isolators pass on, once for all objects."""
-        return Carriage()
+        return TransmittedMotions()
 
     @cached_property
     def executor(self) -> Threads:

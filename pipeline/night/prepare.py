@@ -19,8 +19,7 @@ from pipeline.collection.listing import Listing
 from pipeline.collection.object_index import ObjectIndex
 from pipeline.execute import Threads
 from pipeline.kernels import KERNEL_VERSION
-from pipeline.mitigate import Means
-from pipeline.mitigate.measures import padded
+from pipeline.mitigate import MeasureCatalogue
 from pipeline.motions.record import NO_VERTICAL
 from pipeline.motions.site import Level, Site
 from pipeline.night.context import RunContext, motions_of
@@ -47,7 +46,7 @@ WORTH = 6
 """Times the analyses of a smooth chart that must be asked for: under strong motions charts take up to twice as many,
 and of those who ask, most ask the same."""
 
-PADDED = 0.25
+CHANGED = 0.25
 """Share of the works on walls that rubber pads are tried for, at least: a third of real ones under strong shaking."""
 
 
@@ -104,7 +103,7 @@ def run_context(
         storeys=storeys,
         analysis=settings.analysis,
         rules=workspace.rules,
-        means=workspace.means,
+        measures=workspace.measures,
         surveyed=surveyed,
         fragile=fragile,
         stores=settings.display.stores,
@@ -126,7 +125,7 @@ def run_context(
 
 def admit(context: RunContext, index: ObjectIndex, chosen: Listing, x_azimuth: float) -> list[ChartTask]:
     """Decide which response charts are used (see `popular`), and return those to be built before the sheets."""
-    found = popular(index, assessed(chosen, context.stores), context.rules, context.means, x_azimuth)
+    found = popular(index, assessed(chosen, context.stores), context.rules, context.measures, x_azimuth)
     context.admitted = frozenset(found)
     return [
         ChartTask(model.name, motion, angle, alike)
@@ -145,12 +144,12 @@ Group = tuple[Model, float | None, dict[str, float]]
 
 
 def popular(
-    index: ObjectIndex, chosen: Listing, rules: Table | None, means: Means, x_azimuth: float
+    index: ObjectIndex, chosen: Listing, rules: Table | None, measures: MeasureCatalogue, x_azimuth: float
 ) -> dict[str, Group]:
     """Return the groups of parameters whose charts pay for a collection, as a sample of its objects says, by name.
 
     What an object is found to do must not hang on which others happen to be worked on with it, or on who asked first.
-    Of the measures only rubber pads make something of many objects that one chart could serve.
+    Of the measures few make something of many objects that one chart could serve (`Measure.charted`).
     """
     every = max(1, len(chosen) // SAMPLE)
     sample = index.items([one.object_number for one in chosen[::every]])
@@ -160,7 +159,7 @@ def popular(
     def planned(some: Sequence[Scene]) -> list[tuple[Work, float]]:
         return [
             (work, share)
-            for those, share in ((some, 1.0), (padded(some, means), PADDED))
+            for those, share in ((some, 1.0), ([s for one in measures.measures for s in one.charted(some)], CHANGED))
             for work in plan(those, x_azimuth).work
         ]
 

@@ -1,7 +1,7 @@
 """Units: what is assessed together, one object or all in one case, and the key that its results are kept under."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from hashlib import blake2b
 from itertools import pairwise
 
@@ -50,17 +50,16 @@ class UnitKeys:
 
     def __init__(self, context: RunContext, rules: str) -> None:
         analysis = context.analysis.model_dump(exclude={"workers", "fragility"})
-        # The order of a set is another in every process.
-        measures = [repr(replace(m, classes=frozenset())) + repr(sorted(m.classes)) for m in context.means.measures]
-        means = (measures, repr(context.means.isolators))
+        measures = repr(context.measures)
         charts = None if context.admitted is None else sorted(context.admitted)
-        asked = (sorted(analysis.items()), rules, means, context.surveyed, context.fragile, charts)
+        asked = (sorted(analysis.items()), rules, measures, context.surveyed, context.fragile, charts)
         self._shaken = {
             name: _digest(code_version(), repr((asked, _shaking(floor)))) for name, floor in context.storeys.items()
         }
-        # What is left aside is only classed: no motion and no fidelity has a say in it.
+        # What is left aside is only classed, and stands as it was installed: no motion and no fidelity has a say in it.
         self._aside = {
-            name: _digest(code_version(), repr((rules, context.surveyed, "aside", name))) for name in context.storeys
+            name: _digest(code_version(), repr((rules, measures, context.surveyed, "aside", name)))
+            for name in context.storeys
         }
         self._stores = context.stores
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pipeline.analysis.rules import Table
     from pipeline.collection.database import Database
     from pipeline.collection.object_index import ObjectIndex
-    from pipeline.mitigate import Means
+    from pipeline.mitigate import MeasureCatalogue
     from pipeline.motions.site import Site
     from pipeline.settings import Settings
 
@@ -55,15 +55,15 @@ class Workspace:
         return None if path is None else with_own(path)
 
     @cached_property
-    def means(self) -> "Means":
+    def measures(self) -> "MeasureCatalogue":
         """The measures and isolators that the museum has.
 
         raises : UsageError for a file that is not there, TableError for one that cannot be used
         """
         wanted = self.settings.mitigation
-        from pipeline.mitigate import means
+        from pipeline.mitigate import measure_catalogue
 
-        return means(
+        return measure_catalogue(
             self._own(wanted.measures, "[mitigation] measures names the file of your own measures"),
             self._own(wanted.catalogue, "[mitigation] catalogue names the file of your own isolators"),
         )

@@ -7,11 +7,12 @@ from io import TextIOWrapper
 from typing import IO
 
 from pipeline.analysis.classify import object_classes
-from pipeline.mitigate.advise import ONLY_HERE
-from pipeline.mitigate.holding import WAX_CHECKS
-from pipeline.mitigate.installed import ON_TOP, PARAMETERS
-from pipeline.mitigate.means import STORED, STORED_SENTENCE, STORED_TITLE, TERMS
-from pipeline.mitigate.shared import FASTENED, FREE, IT
+from pipeline.mitigate.catalogue import own_catalogue
+from pipeline.mitigate.installed import ON_TOP
+from pipeline.mitigate.measures import MEASURES
+from pipeline.mitigate.proposals import IT
+from pipeline.mitigate.rows import STORED
+from pipeline.mitigate.search import ONLY_HERE
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
 from pipeline.records import Item
@@ -61,21 +62,23 @@ def _of_models() -> Iterator[str]:
 
 
 def _of_measures() -> Iterator[str]:
-    """Yield the sentences of measures.csv with their words put in, and what is added to them."""
-    for row in table("measures"):
-        sentence = row["sentence"]
+    """Yield the titles and the sentences of measures with their words put in, and what is added to them."""
+    for measure in own_catalogue().measures:
+        sentence = measure.row.sentence
+        yield from (measure.row.title, sentence, *measure.phrases)
         if "{surface}" in sentence:
             surfaces = dict.fromkeys(pair["surface_material"].lower() for pair in table("friction"))
             yield from (sentence.replace("{surface}", surface) for surface in surfaces)
         if "{what}" in sentence:
             yield sentence.replace("{what}", IT).replace(" {how}", "")
-    yield from (FREE, FASTENED, ONLY_HERE, STORED_TITLE, STORED_SENTENCE, *WAX_CHECKS)
+    yield ONLY_HERE
 
 
 def _names() -> Iterator[str]:
     """Yield fields, parameters, models, measures and classes as they are said in plain words."""
     quantities = [q for model in MODELS for q in (*model.needs, *model.gives)]
-    quantities += [q for several in PARAMETERS.values() for q in several]
+    quantities += [q for measure in MEASURES for q in measure.parameters]
     names = [field.name for field in fields(Item)] + [q.name for q in quantities] + [m.name for m in MODELS]
-    names += [*TERMS, STORED, *(name for terms in TERMS.values() for name in terms.gives), *object_classes()]
+    names += [name for measure in MEASURES for name in (measure.name, *measure.gives)]
+    names += [STORED, *object_classes()]
     yield from (bare(name) for name in names)

@@ -180,7 +180,7 @@ class Mitigation(_Part):
     measures: str = Field(
         default="",
         description="a CSV file with columns of Kouros's measures.csv: rows of the same name replace Kouros's words, "
-        "order and limits",
+        "order and limits; a row of another name says in a column 'like' of which measure it is a kind",
     )
     catalogue: str = Field(
         default="",

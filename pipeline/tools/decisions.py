@@ -11,8 +11,7 @@ import numpy as np
 from pipeline.analysis.classify import object_classes
 from pipeline.collection.inventory import items_named, object_numbers
 from pipeline.collection.record import digest_of
-from pipeline.mitigate.installed import installable
-from pipeline.mitigate.means import KINDS, Isolator
+from pipeline.mitigate.rows import Isolator
 from pipeline.models import MODELS
 from pipeline.motions.manifest import load_manifest
 from pipeline.operations.workspace import UsageError, Workspace, near, site_folder
@@ -188,16 +187,17 @@ def _verdict(wish: Wish, basis: Sequence[Basis]) -> Verdict:
 
 
 def _installed(workspace: Workspace, decision: Decision, words: Sequence[str]) -> Decision:
-    measures = installable()
+    measures = workspace.measures.installable
     if not words:
         raise UsageError(f"say what is installed: one of {', '.join(measures)}")
     measure = _of(words[0], measures, "measure that can be installed")
-    wanted = {_key(q): q for q in measures[measure]}
-    texts = _named(words[1:], (*wanted, "product", *((ISOLATOR,) if measure in KINDS else ())), measure)
+    kind = measures[measure].isolator
+    wanted = {_key(q): q for q in measures[measure].parameters}
+    texts = _named(words[1:], (*wanted, "product", *((ISOLATOR,) if kind else ())), measure)
     parameters: dict[str, float] = {}
     product = texts.pop("product", "")
     if ISOLATOR in texts:
-        isolator = _isolator(workspace, measure, texts.pop(ISOLATOR))
+        isolator = _isolator(workspace, kind, texts.pop(ISOLATOR))
         parameters, product = _own(isolator, wanted.values()), product or isolator.name
     if len(product) > WHO_LIMIT:
         raise UsageError(f"product has {len(product)} characters; at most {WHO_LIMIT} are kept: say it shorter")
@@ -233,7 +233,7 @@ def _named(words: Sequence[str], known: Sequence[str], measure: str) -> dict[str
 
 def _isolator(workspace: Workspace, kind: str, name: str) -> Isolator:
     """Return an isolator of that kind from the museum's catalogue."""
-    listed = {isolator.name: isolator for isolator in workspace.means.isolators}
+    listed = {isolator.name: isolator for isolator in workspace.measures.isolators}
     mine = [isolator.name for isolator in listed.values() if isolator.kind == kind]
     found = listed.get(name)
     if found is None:

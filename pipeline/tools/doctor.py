@@ -55,7 +55,7 @@ def _each(settings: Settings, workspace: Workspace | None) -> list[Diagnosis]:
     if workspace is not None:
         items = cache(partial(read_inventory, workspace.engine))
         looks += [
-            ("measures", lambda: _means(workspace)),
+            ("measures", lambda: _measures(workspace)),
             ("inventory", lambda: _inventory(workspace, items())),
             ("objects", lambda: _objects(workspace, items())),
         ]
@@ -118,9 +118,12 @@ def _hashed(folder: Path, names: Sequence[str], most: int = 5) -> str:
     return ", ".join(told) + (f" and {len(names) - most:,} more" if len(names) > most else "")
 
 
-def _means(workspace: Workspace) -> tuple[str, str]:
-    have = workspace.means
-    return "ok", f"{counted(len(have.measures), 'measure')}, {counted(len(have.isolators), 'isolator')}"
+def _measures(workspace: Workspace) -> tuple[str, str]:
+    from pipeline.mitigate.measures import MEASURES
+
+    have, left_out = workspace.measures, MEASURES.problems
+    text = f"{counted(len(have.measures), 'measure')}, {counted(len(have.isolators), 'isolator')}"
+    return "warning" if left_out else "ok", "; ".join([text, *left_out])
 
 
 def _inventory(workspace: Workspace, items: Sequence[Item]) -> tuple[str, str]:
@@ -151,8 +154,11 @@ def _objects(workspace: Workspace, inventory: Sequence[Item]) -> tuple[str, str]
 
     items, decisions = [item for item in inventory if item.on_display], decisions_in_force(workspace.engine)
 
+    rules, measures = workspace.rules, workspace.measures
+
     def tried(some: Sequence[Item]) -> Sequence[Item]:
-        plan([place(item, workspace.rules, decisions.get(item.object_number, ())).scene for item in some])
+        objects = [place(item, rules, decisions.get(item.object_number, ()), measures) for item in some]
+        plan([one.scene for one in objects])
         return some
 
     bad, until, looked = [], monotonic() + LONGEST, 0

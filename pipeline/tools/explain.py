@@ -82,7 +82,7 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
         levels = storey.shaking
         # The charts that a night uses, so that the reasons are those of the night.
         asked = assessed(everything.objects, settings.display.stores)
-        charted = popular(everything, asked, workspace.rules, workspace.means, storey.x_azimuth)
+        charted = popular(everything, asked, workspace.rules, workspace.measures, storey.x_azimuth)
         with charts_of(settings, [m.hash for level in levels for m in level.motions], charted) as charts:
             context = Context(executor, progress, charts)
             for index in storey.members:
@@ -95,7 +95,7 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
 
 
 def _placed(workspace: Workspace, item: Item, decisions: InForce) -> Placed:
-    return place(item, workspace.rules, decisions.get(item.object_number, ()))
+    return place(item, workspace.rules, decisions.get(item.object_number, ()), workspace.measures)
 
 
 def _neighbours(item: Item, inventory: Sequence[Item]) -> list[Item]:
@@ -128,7 +128,7 @@ def _explain(
         [r.finding for r in reasonings],
         *([*own, *above_it] for own, (above_it, _) in zip(around, on_top[1:], strict=True)),
     ]
-    advice = advise(scenes, found, levels, context, numerics, means=workspace.means)
+    advice = advise(scenes, found, levels, context, numerics, catalogue=workspace.measures)
     return Explanation(scene, tuple(reasonings), tuple(advice[0]))
 
 

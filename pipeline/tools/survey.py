@@ -65,8 +65,11 @@ def survey(
     decisions = decisions_in_force(workspace.engine)
     faults: list[Fault] = []
 
+    rules, measures = workspace.rules, workspace.measures
+
     def asked(shaking: Sequence[LevelMotions], some: Sequence[Item]) -> list[list[MeasurementRequest]]:
-        scenes = [place(item, workspace.rules, decisions.get(item.object_number, ())).scene for item in some]
+        objects = [place(item, rules, decisions.get(item.object_number, ()), measures) for item in some]
+        scenes = [one.scene for one in objects]
         _, findings = assess(scenes, shaking, context, numerics, outcomes=False)
         by_object: dict[str, list[MeasurementRequest]] = {item.object_number: [] for item in some}
         for request in measurement_requests(scenes, findings, shaking, context, numerics):

@@ -10,7 +10,7 @@ from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
-from pipeline.mitigate import Means, advise
+from pipeline.mitigate import MeasureCatalogue, advise
 from pipeline.motions import read_motion
 from pipeline.records import Item, Motion, Recommendation, Support
 from pipeline.resources import resource
@@ -26,16 +26,16 @@ def demo_motion() -> Motion:
 
 
 def solve_all(
-    items: Sequence[Item], motions: Sequence[Motion], means: Means | None = None, combine: str = "max"
+    items: Sequence[Item], motions: Sequence[Motion], catalogue: MeasureCatalogue | None = None, combine: str = "max"
 ) -> list[list[Recommendation]]:
     scenes = [classify(item) for item in items]
     levels = [LevelMotions("design", combine, tuple(motions))]
     _, findings = assess(scenes, levels, Context(Threads(1)))
-    return advise(scenes, findings, levels, Context(Threads(1)), means=means)
+    return advise(scenes, findings, levels, Context(Threads(1)), catalogue=catalogue)
 
 
-def solve(item: Item, motion: Motion, means: Means | None = None) -> Recommendation:
-    ((only,),) = solve_all([item], [motion], means)
+def solve(item: Item, motion: Motion, catalogue: MeasureCatalogue | None = None) -> Recommendation:
+    ((only,),) = solve_all([item], [motion], catalogue)
     return only
 
 

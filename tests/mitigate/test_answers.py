@@ -14,8 +14,8 @@ from pipeline.analysis.response import respond
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import changed
-from pipeline.mitigate.holding import strengths
-from pipeline.mitigate.means import Means, own_means
+from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
+from pipeline.mitigate.measures.wax import strengths
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import G
 from pipeline.records import Motion, Numerics, Support, Verdict
@@ -96,10 +96,10 @@ def test_a_low_friction_pad_never_excuses_a_tall_object(motion: Motion) -> None:
     assert any(text.startswith("Low-friction pad: it may rock") for text in solve(tall, motion).rejected)
 
 
-def without(kind: str) -> Means:
-    """The means of a museum that has no isolator of that kind."""
-    own = own_means()
-    return Means(own.measures, tuple(isolator for isolator in own.isolators if isolator.kind != kind))
+def without(kind: str) -> MeasureCatalogue:
+    """The catalogue of a museum that has no isolator of that kind."""
+    own = own_catalogue()
+    return MeasureCatalogue(own.measures, tuple(isolator for isolator in own.isolators if isolator.kind != kind))
 
 
 def test_another_surface_is_the_right_answer(motion: Motion) -> None:
@@ -186,8 +186,8 @@ def test_a_pad_that_turns_is_the_right_answer() -> None:
 
 def test_strengthening_is_the_right_answer(motion: Motion) -> None:
     """The bending m A l / S falls with the cube of the size; nothing that spares the object is to be had."""
-    own = own_means()
-    nothing = Means(own.measures, ())
+    own = own_catalogue()
+    nothing = MeasureCatalogue(own.measures, ())
     advice = solve(replace(TOWER, allowable_stress_pa=2e5), motion, nothing)
     assert advice.measure == "strengthen"
     push = float(np.hypot(*motion.acceleration[:2]).max())

@@ -9,7 +9,7 @@ import pytest
 
 from pipeline.analysis.response import respond
 from pipeline.analysis.transmission import transmit
-from pipeline.mitigate.shared import listed
+from pipeline.mitigate.proposals import listed
 from pipeline.quantities import G
 from pipeline.records import Motion
 from pipeline.report.units import Units

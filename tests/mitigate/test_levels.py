@@ -14,9 +14,9 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.response import respond
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
-from pipeline.mitigate import Means, advise, changed
-from pipeline.mitigate.advise import ONLY_HERE
-from pipeline.mitigate.means import own_means
+from pipeline.mitigate import MeasureCatalogue, advise, changed
+from pipeline.mitigate.catalogue import own_catalogue
+from pipeline.mitigate.search import ONLY_HERE
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import G
 from pipeline.records import Item, Motion, Recommendation, Verdict
@@ -33,10 +33,12 @@ def two(weak: Motion, strong: Motion) -> list[LevelMotions]:
     return [LevelMotions("weak", "max", (weak,)), LevelMotions("strong", "max", (strong,))]
 
 
-def solve(item: Item, levels: Sequence[LevelMotions], means: Means | None = None) -> dict[str, Recommendation]:
+def solve(
+    item: Item, levels: Sequence[LevelMotions], catalogue: MeasureCatalogue | None = None
+) -> dict[str, Recommendation]:
     scenes = [classify(item)]
     _, findings = assess(scenes, levels, Context(Threads(1)))
-    ((*found,),) = advise(scenes, findings, levels, Context(Threads(1)), means=means)
+    ((*found,),) = advise(scenes, findings, levels, Context(Threads(1)), catalogue=catalogue)
     return {one.level: one for one in found}
 
 
@@ -86,9 +88,9 @@ def test_a_measure_for_one_level_only_says_so(motion: Motion) -> None:
 
 def test_an_isolator_that_resonates_at_another_level_is_not_advised(motion: Motion) -> None:
     """At 0.15 g and its own frequency the isolator runs out of stroke, though the object stands as it is."""
-    own = own_means()
+    own = own_catalogue()
     soft = next(one for one in own.isolators if one.name == "generic 0.5 Hz, friction 0.05")
-    only = Means(own.measures, (soft,))
+    only = MeasureCatalogue(own.measures, (soft,))
     fragile = replace(TOWER, allowable_stress_pa=2e5, friction=0.5)
     slow = sine(0.15 * G, 0.5, 10.0)
     given = {"frequency": soft.frequency, "damping": soft.damping, "friction": soft.friction}

@@ -10,7 +10,7 @@ from lxml import html
 
 from pipeline.cli.console import summary_lines
 from pipeline.collection.database import open_database
-from pipeline.mitigate.means import own_means
+from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.night.run import Selection, run
 from pipeline.operations.run_summary import Summary
 from pipeline.operations.workspace import open_workspace
@@ -142,7 +142,7 @@ def test_where_nothing_is_on_display_nothing_is_called_safe(tmp_path: Path) -> N
 
 def test_no_stored_object_is_told_to_be_taken_off_display() -> None:
     """The same tower, with removal as the only measure."""
-    last = replace(own_means(), measures=own_means().measures[-1:])
+    last = replace(own_catalogue(), measures=own_catalogue().measures[-1:])
     shown, stored = (solve(replace(TOWER, on_display=there), demo_motion(), last) for there in (True, False))
     assert (shown.measure, shown.title) == ("remove", "Remove from display")
     assert stored.measure == "store_lower"

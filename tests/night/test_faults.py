@@ -15,7 +15,7 @@ from pipeline.analysis.faults import LIKE, apart
 from pipeline.cli.console import Console, summary_lines
 from pipeline.collection.database import open_database
 from pipeline.collection.record import plausible
-from pipeline.mitigate.installed import installable
+from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.night import assessment as assessing
 from pipeline.night import tasks as desk
 from pipeline.night.run import run
@@ -128,7 +128,7 @@ def test_every_measure_at_the_ends_of_its_range_is_run_on_every_class(tmp_path: 
     pairs = [
         (kind, measure, end)
         for at, kind in enumerate(NAMES)
-        for number, measure in enumerate(installable())
+        for number, measure in enumerate(own_catalogue().installable)
         for end in ("low", "high")
         # In turn where there is little time.
         if ROUNDS > 2 or (at + number) % 5 == (0 if end == "low" else 2)
@@ -149,7 +149,7 @@ def test_every_measure_at_the_ends_of_its_range_is_run_on_every_class(tmp_path: 
             "why": "b",
             "recorded": "2026-01-01T00:00:00Z",
         }
-        takes = installable()[measure]
+        takes = own_catalogue().installable[measure].parameters
         given = {q.name: (q.low or 1e-3) if end == "low" else min(q.high, 50.0) for q in takes}
         add_decision(engine, Decision(id=0, kind=DecisionKind.CLASS, object_class=kind, digest=digests[f"{at}"], **own))
         add_decision(

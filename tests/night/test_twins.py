@@ -236,7 +236,7 @@ def test_pads_have_a_chart_where_many_works_hang_on_walls(tmp_path: Path) -> Non
         write(settings.home, hung)
         import_collection(workspace, settings.home / "collection.csv", "kouros", shrink_limit=1.0)
         everything = object_index(workspace.engine)
-        found = popular(everything, everything.objects, workspace.rules, workspace.means, 90.0)
+        found = popular(everything, everything.objects, workspace.rules, workspace.measures, 90.0)
         return {alike["damping"] for model, _, alike in found.values() if model.name == "swing"}
 
     assert names(500) == set()

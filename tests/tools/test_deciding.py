@@ -15,7 +15,8 @@ from pipeline.analysis.response import respond
 from pipeline.analysis.transmission import transmit
 from pipeline.cli import kouros
 from pipeline.collection.database import open_database
-from pipeline.mitigate.installed import Measure, installable, placed
+from pipeline.mitigate.catalogue import own_catalogue
+from pipeline.mitigate.installed import InstalledMeasure, placed
 from pipeline.motions import read_motion
 from pipeline.night.decision_review import Now, standing
 from pipeline.night.run import run
@@ -226,12 +227,12 @@ def test_each_measure_that_can_be_installed_changes_a_scene() -> None:
     """Whatever measures.csv has, with the least that must be known of it; each changes what is run."""
     standing = Item("1", "G", object_name="vase", height_m=0.4, width_m=0.2, depth_m=0.2, mass_kg=3.0)
     hung = Item("2", "G", object_name="painting", height_m=0.8, width_m=0.6, support=Support.HUNG)
-    known = installable()
+    known = own_catalogue().installable
     assert set(known) == {row["measure"] for row in table("measures")} - {"remove"}
-    for name, quantities in known.items():
-        parameters = {q.name: 2.0 if q.name == "enlargement" else 0.4 for q in quantities}
+    for name, measure in known.items():
+        parameters = {q.name: 2.0 if q.name == "enlargement" else 0.4 for q in measure.parameters}
         scene = classify(hung if name in ("rubber_pads", "restrain") else standing)
-        stands = placed(scene, [Measure(name, parameters, "decided by Ann on 2031-05-01: because")])
+        stands = placed(scene, [InstalledMeasure(name, parameters, "decided by Ann on 2031-05-01: because")])
         assert stands.scene.parameters != scene.parameters or stands.scene.support is not scene.support, name
         assert not any("not computed" in text for text in stands.scene.assumptions), name
         assert (stands.above is not None) is name.endswith("isolator")
@@ -239,7 +240,9 @@ def test_each_measure_that_can_be_installed_changes_a_scene() -> None:
 
 def test_a_measure_that_lacks_a_number_of_the_object_is_not_computed_and_says_so() -> None:
     painting = classify(Item("2", "G", object_name="painting", height_m=0.8, support=Support.HUNG))
-    said = Measure("rotational_isolator", {"frequency": 3.0, "damping": 0.1, "rotation_limit": 0.1}, "decided by Ann")
+    said = InstalledMeasure(
+        "rotational_isolator", {"frequency": 3.0, "damping": 0.1, "rotation_limit": 0.1}, "decided by Ann"
+    )
     stands = placed(painting, [said])
     assert stands.scene.parameters == painting.parameters
     assert any("not computed: 'cg_height'" in text for text in stands.scene.assumptions)
@@ -401,17 +404,17 @@ def test_an_isolator_that_cannot_be_is_refused(museum: Path, words: list[str], m
 def test_what_is_fastened_to_an_isolator_stays_on_it() -> None:
     """A measure on an object that stands on an isolator changes the object; the isolator moves as before."""
     vase = classify(Item("1", "G", object_name="vase", height_m=0.4, width_m=0.2, depth_m=0.2, mass_kg=3.0))
-    springs = Measure(
+    springs = InstalledMeasure(
         "horizontal_isolator", {"frequency": 0.5, "damping": 0.02, "friction": 0.05, "stroke": 0.3}, "decided by Ann"
     )
-    room = Measure("clearance", {"clearance": 0.123}, "decided by Ann")
-    stands = placed(vase, [springs, Measure("fasten", {}, "decided by Ann"), room])
+    room = InstalledMeasure("clearance", {"clearance": 0.123}, "decided by Ann")
+    stands = placed(vase, [springs, InstalledMeasure("fasten", {}, "decided by Ann"), room])
     assert stands.scene.support is Support.ISOLATED
     assert stands.scene.parameters == placed(vase, [springs]).scene.parameters
     assert stands.above is not None
     assert stands.above.support is Support.FASTENED
     assert stands.above.parameters["clearance"].value == 0.123
-    pad = Measure("friction_isolator", {"friction": 0.05, "clearance": 0.3}, "decided by Ann")
+    pad = InstalledMeasure("friction_isolator", {"friction": 0.05, "clearance": 0.3}, "decided by Ann")
     other = placed(vase, [springs, pad])
     assert other.isolator == "friction_isolator"
     assert other.above is not None

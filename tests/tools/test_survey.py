@@ -17,7 +17,7 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.inventory import add_sheet, read_inventory, replace_inventory, return_to, versions
 from pipeline.collection.reading import Reading
 from pipeline.execute import Threads
-from pipeline.mitigate.installed import Measure, placed
+from pipeline.mitigate.installed import InstalledMeasure, placed
 from pipeline.operations.workspace import open_workspace
 from pipeline.quantities import G
 from pipeline.records import ITEM_FIELDS, Item, MeasurementRequest, Motion, Origin, Support, Verdict
@@ -184,7 +184,7 @@ def test_a_filled_in_number_says_which_sheet_it_is_from(tmp_path: Path) -> None:
 
 def test_what_is_open_on_an_isolator_is_not_tried_without_it() -> None:
     """Its models run on what the isolator passes on; tried on the floor, it would wrongly settle nothing."""
-    springs = Measure(
+    springs = InstalledMeasure(
         "horizontal_isolator", {"frequency": 0.5, "damping": 0.02, "friction": 0.05, "stroke": 0.3}, "Ann"
     )
     stands = placed(classify(BOX), [springs])

@@ -1,4 +1,4 @@
-"""Where trials are run: what all objects under the same levels of shaking share, each computed once."""
+"""Trials of measures: the models of changed scenes run again, and what all scenes under the same shaking share."""
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,30 +14,37 @@ from pipeline.analysis.model_runs import prepare
 from pipeline.analysis.response import answer
 from pipeline.analysis.transmission import transmit
 from pipeline.analysis.verdicts import LevelMotions, capacity_of
-from pipeline.mitigate.means import Isolator, Means
+from pipeline.mitigate.rows import Isolator
 from pipeline.models import model_named
 from pipeline.models.common import largest_push, lift_ratios
 from pipeline.quantities import Array, G
 from pipeline.records import Check, Finding, Motion, Numerics, Scene, Verdict
 from pipeline.records.numerics import CHART
 
-PASSED = 0.03
+TRANSMITTED_ERROR = 0.03
 """Error that the sampling of what an isolator passes on may bring to an oscillator of 20 Hz on it.
 
 What stands on it slides at most 0.5 % off then, and is lifted 0.3 % off; 1e-3 would take eight times as long.
 """
 
-HIDDEN = 1.005
+SAMPLING_FACTOR = 1.005
 """Factor on what an isolator passes on, for what its sampling may hide."""
 
 
 @dataclass(frozen=True, eq=False)
-class Carried:
+class IsolatorResponse:
     """An isolator under the motions of some levels, run once for all that may stand on it.
 
-    strokes       : m, its largest displacement, by level
-    accelerations : m/s2, the largest horizontal acceleration passed on, by level
-    shaking       : the levels as what stands on it feels them
+    Attributes
+    ----------
+    isolator : Isolator
+        Its row of the catalogue.
+    strokes : mapping of str to float
+        Its largest displacement [m], by level.
+    accelerations : mapping of str to float
+        The largest horizontal acceleration that it passes on [m/s2], by level.
+    shaking : tuple of LevelMotions
+        The levels as what stands on it feels them.
     """
 
     isolator: Isolator
@@ -58,14 +65,22 @@ class Carried:
 
 @dataclass(frozen=True)
 class Trial:
-    """A changed scene, and what it stands on; None: the floor itself."""
+    """A changed scene to be run.
+
+    Attributes
+    ----------
+    scene : Scene
+        The object with a measure in place.
+    on : IsolatorResponse or None
+        What it stands on; None for the floor itself.
+    """
 
     scene: Scene
-    on: Carried | None = None
+    on: IsolatorResponse | None = None
 
 
 @dataclass(frozen=True, eq=False)
-class Passed:
+class LevelResponse:
     """An isolator under one level: its largest displacement [m], the acceleration and the level that it passes on."""
 
     stroke: float
@@ -77,12 +92,12 @@ Bodies = tuple[tuple[float, float], ...]
 """What an object on a pad may be: the height of its centre of gravity [m] with its inertia ratio."""
 
 
-class Ground:
+class SharedLevel:
     """What a level of shaking is to all objects on the same floor, each worked out once."""
 
     def __init__(self, level: LevelMotions) -> None:
         self.level = level
-        self.passed: dict[Isolator, Passed] = {}
+        self.responses: dict[Isolator, LevelResponse] = {}
 
     @cached_property
     def push(self) -> float:
@@ -101,65 +116,87 @@ class Ground:
         return {name: (np.hypot(*a[:2]), np.maximum(0.0, G + a[2])) for name, a in motions.items()}
 
 
-class Carriage:
+class TransmittedMotions:
     """What isolators pass on and other things that hang on the shaking alone, kept for as long as this object lives."""
 
     def __init__(self) -> None:
-        self._grounds: dict[Hashable, Ground] = {}
+        self._shared: dict[Hashable, SharedLevel] = {}
 
-    def ground(self, level: LevelMotions) -> Ground:
+    def of(self, level: LevelMotions) -> SharedLevel:
         """Return what is known of a level so far."""
         key = (level.name, level.combine, level.x_azimuth, tuple(motion.hash for motion in level.motions))
-        return self._grounds.setdefault(key, Ground(level))
+        return self._shared.setdefault(key, SharedLevel(level))
 
 
-class Bench:
+class TrialRunner:
     """Runs the models of changed scenes under some levels of shaking, all of which a measure has to bear.
 
     What is said of a level is combined from its motions as its findings are: the largest, or the mean.  Of several
     levels the largest counts.
 
-    context, numerics : where trials are run, and how finely: as the findings were
+    Parameters
+    ----------
+    levels : sequence of LevelMotions
+        Levels of shaking, with their motions.
+    isolators : sequence of Isolator
+        The catalogue of isolators that there are.
+    context : Context
+        Where isolators and models are run.
+    numerics : Numerics
+        How finely: as the findings were made.
+    transmitted : TransmittedMotions, optional
+        What isolators pass on, kept from one runner to the next.
     """
 
     def __init__(
         self,
         levels: Sequence[LevelMotions],
-        means: Means,
+        isolators: Sequence[Isolator],
         context: Context,
         numerics: Numerics,
-        carriage: Carriage | None = None,
+        transmitted: TransmittedMotions | None = None,
     ) -> None:
-        self.levels, self.means = tuple(levels), means
+        self.levels, self._isolators = tuple(levels), tuple(isolators)
         self._context, self._numerics = context, numerics
-        carriage = carriage or Carriage()
-        self._grounds = [carriage.ground(level) for level in self.levels]
-        self._carried: dict[Isolator, Carried] = {}
+        transmitted = transmitted or TransmittedMotions()
+        self._shared = [transmitted.of(level) for level in self.levels]
+        self._isolated: dict[Isolator, IsolatorResponse] = {}
         self._on_pads: dict[tuple[Isolator, Bodies], tuple[float, float]] = {}
 
-    def most(self, of: Callable[[Motion], float]) -> float:
+    def catalogue(self, kind: str) -> list[Isolator]:
+        """Return the isolators of a kind that there are, in the order of their table."""
+        return [isolator for isolator in self._isolators if isolator.kind == kind]
+
+    def largest(self, of: Callable[[Motion], float]) -> float:
         """Return the largest over the levels of what is combined from the motions of each."""
         return max(level.combined([of(motion) for motion in level.motions]) for level in self.levels)
 
     @property
     def push(self) -> float:
         """A_max [m/s2], resultant."""
-        return max(ground.push for ground in self._grounds)
+        return max(shared.push for shared in self._shared)
 
     @property
     def lift(self) -> float:
         """The largest |a_h| / N: what an object's slope b/h is held against."""
-        return max(ground.lift for ground in self._grounds)
+        return max(shared.lift for shared in self._shared)
 
     @cached_property
     def shaken(self) -> Mapping[str, tuple[Array, Array]]:
         """|a_h| and N = max(0, g + a_z) at each sample [m/s2], (n,) each, by the hash of the motion."""
-        return {name: both for ground in self._grounds for name, both in ground.shaken.items()}
+        return {name: both for shared in self._shared for name, both in shared.shaken.items()}
 
     def run(self, trials: Sequence[Trial]) -> list[list[Finding]]:
-        """Run every model of each trial's scene, equal work once, and return the findings in the order of the trials.
+        """Run every model of each trial's scene, equal work once, at every corner of the uncertain inputs.
 
-        Every corner of the uncertain inputs is looked at, as in the findings that the measure is to mend.
+        Parameters
+        ----------
+        trials : sequence of Trial
+
+        Returns
+        -------
+        list of list of Finding
+            Those of each trial, in the order of the trials.
         """
         out: list[list[Finding]] = [[] for _ in trials]
         groups: dict[int, list[int]] = {}
@@ -182,27 +219,38 @@ class Bench:
                 out[at] = findings
         return out
 
-    def carried(self, kind: str) -> list[Carried]:
+    def isolated(self, kind: str) -> list[IsolatorResponse]:
         """Return the isolators of a kind that stand on the floor, by the length of their stroke."""
-        listed = self.means.of(kind)
-        fresh = [(g, isolator) for g in self._grounds for isolator in listed if isolator not in g.passed]
-        for (ground, isolator), one in zip(fresh, self._context.executor.map(_carry, fresh), strict=True):
-            ground.passed[isolator] = one
+        listed = self.catalogue(kind)
+        fresh = [(g, isolator) for g in self._shared for isolator in listed if isolator not in g.responses]
+        for (shared, isolator), one in zip(fresh, self._context.executor.map(_run_isolator, fresh), strict=True):
+            shared.responses[isolator] = one
         for isolator in listed:
-            if isolator not in self._carried:
-                each = {ground.level.name: ground.passed[isolator] for ground in self._grounds}
-                self._carried[isolator] = Carried(
+            if isolator not in self._isolated:
+                each = {shared.level.name: shared.responses[isolator] for shared in self._shared}
+                self._isolated[isolator] = IsolatorResponse(
                     isolator,
                     {name: one.stroke for name, one in each.items()},
                     {name: one.acceleration for name, one in each.items()},
                     tuple(one.shaking for one in each.values()),
                 )
-        return sorted((self._carried[isolator] for isolator in listed), key=lambda one: one.stroke)
+        return sorted((self._isolated[isolator] for isolator in listed), key=lambda one: one.stroke)
 
     def on_pad(self, pad: Isolator, bodies: Bodies) -> tuple[float, float]:
-        """Return the largest rotation [rad] of an object on a rotational pad, and A at its centre over A_max [-].
+        """Return how far an object turns on a rotational pad, and what it feels there.
 
-        bodies : what it may be; the largest of each output counts
+        Parameters
+        ----------
+        pad : Isolator
+        bodies : tuple of (float, float)
+            What the object may be; the largest of each output counts.
+
+        Returns
+        -------
+        rotation : float
+            Largest rotation [rad].
+        share : float
+            Largest acceleration of its centre of gravity over A_max [-].
         """
         if (pad, bodies) not in self._on_pads:
             self.on_pads(pad, [bodies])
@@ -211,7 +259,11 @@ class Bench:
     def on_pads(self, pad: Isolator, objects: Sequence[Bodies]) -> None:
         """Run many objects on a pad together, for `on_pad` to be asked about each: one by one costs ten times as much.
 
-        objects : what each may be
+        Parameters
+        ----------
+        pad : Isolator
+        objects : sequence of Bodies
+            What each may be.
         """
         fresh = list(dict.fromkeys(objects))
         if not fresh:
@@ -237,7 +289,7 @@ class Bench:
             self._on_pads[pad, one] = (turn, share)
 
 
-def _carry(task: tuple[Ground, Isolator]) -> Passed:
+def _run_isolator(task: tuple[SharedLevel, Isolator]) -> LevelResponse:
     level, isolator = task[0].level, task[1]
     names = {"frequency": isolator.frequency, "damping": isolator.damping, "friction": isolator.friction}
     given: dict[str, Any] = {"friction_static": isolator.friction} if isolator.kind == "friction_isolator" else names
@@ -246,12 +298,12 @@ def _carry(task: tuple[Ground, Isolator]) -> Passed:
     for motion in level.motions:
         # One pass without an error estimate: it only ranks, and its own model is run again with the rest.
         own = model.run(motion.excitation(None), prepare(model, given), 2, False)
-        passed = transmit(isolator.kind, motion, error=PASSED, **given)
+        passed = transmit(isolator.kind, motion, error=TRANSMITTED_ERROR, **given)
         strokes.append(float(own["displacement"][0]))
         accelerations.append(max(float(own["acceleration"][0]), largest_push(passed.excitation(None))))
-        passed_on.append(passed.scaled(HIDDEN, "for what its sampling may hide"))
+        passed_on.append(passed.scaled(SAMPLING_FACTOR, "for what its sampling may hide"))
     shaking = replace(level, motions=tuple(passed_on))
-    return Passed(level.combined(strokes), level.combined(accelerations), shaking)
+    return LevelResponse(level.combined(strokes), level.combined(accelerations), shaking)
 
 
 def _push(motion: Motion) -> float:

@@ -1,0 +1,262 @@
+"""The search for what helps: the least intrusive measure that passes when the models of the object are run again."""
+
+import re
+from collections.abc import Container, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from pipeline.analysis.context import Context
+from pipeline.analysis.figures import chart_key
+from pipeline.analysis.verdicts import LevelMotions
+from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
+from pipeline.mitigate.measures import Measure
+from pipeline.mitigate.measures.remove import LAST_RESORTS
+from pipeline.mitigate.proposals import Candidate, Deficiency, Option, Proposal, case_of, company
+from pipeline.mitigate.trials import TransmittedMotions, Trial, TrialRunner, checks, passes, why_not
+from pipeline.models import settled_by_room
+from pipeline.records import Check, Finding, Mark, Numerics, Recommendation, Scene, Verdict
+from pipeline.records.numerics import VERDICTS
+
+ONLY_HERE = "At another level of shaking it is not enough, and nothing that was tried is enough at all of them."
+"""Follows the sentence of a measure that holds at one level only."""
+
+Unit = tuple[Deficiency, ...]
+"""Objects that one measure is for: one, or all that share a support."""
+
+
+def advise(
+    scenes: Sequence[Scene],
+    findings: Sequence[Sequence[Finding]],
+    levels: Sequence[LevelMotions],
+    context: Context,
+    numerics: Numerics = VERDICTS,
+    *,
+    catalogue: MeasureCatalogue | None = None,
+    transmitted: TransmittedMotions | None = None,
+) -> list[list[Recommendation]]:
+    """Recommend a measure for each object and level at which something fails, or is open for want of room alone.
+
+    A measure is a changed scene, and it passes where every model of that scene passes under all motions of all levels,
+    by the best estimates and at every combination of the ends of its uncertain inputs.  So an object whose sliding
+    fails while its rocking is open is not told to keep clear: what is advised also keeps it from rocking.  And what is
+    advised for a weak level is built for the strong one too: one measure for all of them.  Only where there is none is
+    one sought for each level alone, and its sentence says so.  Where nothing fails and something else than room is
+    open, nothing is advised: a measurement may settle that (`pipeline.analysis.survey`).
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+    findings : sequence of sequence of Finding
+        Of each scene, under these levels.
+    levels : sequence of LevelMotions
+        Levels of shaking, with the motions that the findings were made under.
+    context : Context
+        Where trials are run, and who is told how far they are.
+    numerics : Numerics, optional
+        How finely: as the findings were made.
+    catalogue : MeasureCatalogue, optional
+        The measures and isolators that there are; Kouros's own where it is left out.
+    transmitted : TransmittedMotions, optional
+        What isolators pass on, kept from one call to the next.
+
+    Returns
+    -------
+    list of list of Recommendation
+        Those of each scene, in the order of the scenes and of the levels.
+    """
+    have = catalogue or own_catalogue()
+    transmitted = transmitted or TransmittedMotions()
+    unassessed = _unassessed(scenes, findings)
+    rounds = [tuple(levels), *((level,) for level in levels if len(levels) > 1)]
+    advised: dict[tuple[int, str], Recommendation] = {}
+    for at, some in enumerate(rounds):
+        # What holds at all levels stands; the others are looked at level by level.
+        stands = {key for key, found in advised.items() if found.measure not in LAST_RESORTS}
+        runner = TrialRunner(some, have.isolators, context, numerics, transmitted)
+        search = _Search(runner, _deficiencies(scenes, findings, some, stands), unassessed)
+        for done, measure in enumerate(have.measures, start=1):
+            search.tries(measure)
+            context.progress.step("recommendations", at * len(have.measures) + done, len(rounds) * len(have.measures))
+        alone = len(some) < len(levels)
+        advised |= {key: _alone(found) if alone else found for key, found in search.recommended.items()}
+    return [
+        [advised[index, level.name] for level in levels if (index, level.name) in advised]
+        for index in range(len(scenes))
+    ]
+
+
+def _alone(found: Recommendation) -> Recommendation:
+    return found if found.measure in LAST_RESORTS else replace(found, sentence=f"{found.sentence} {ONLY_HERE}")
+
+
+def _deficiencies(
+    scenes: Sequence[Scene],
+    findings: Sequence[Sequence[Finding]],
+    levels: Sequence[LevelMotions],
+    stands: Container[tuple[int, str]],
+) -> list[Deficiency]:
+    """Return the objects with findings at these levels; for those that stand already nothing more is wanted."""
+    names = [level.name for level in levels]
+    out = []
+    for index, (scene, found) in enumerate(zip(scenes, findings, strict=True)):
+        here = tuple(f for f in found if f.level in names)
+        wanted = [name for name in names if _wanted([f for f in here if f.level == name])] if _wanted(here) else []
+        if here:
+            out.append(Deficiency(index, scene, here, tuple(name for name in wanted if (index, name) not in stands)))
+    return out
+
+
+def _wanted(findings: Sequence[Finding]) -> bool:
+    return any(f.verdict is Verdict.FAIL for f in findings) or _for_room_alone(findings)
+
+
+def _for_room_alone(findings: Sequence[Finding]) -> bool:
+    still = [f for f in findings if f.verdict is Verdict.UNDETERMINED]
+    return bool(still) and all(settled_by_room(f.model) for f in still)
+
+
+def _unassessed(
+    scenes: Sequence[Scene], findings: Sequence[Sequence[Finding]]
+) -> Mapping[tuple[str, str], tuple[str, ...]]:
+    out: dict[tuple[str, str], tuple[str, ...]] = {}
+    for scene, found in zip(scenes, findings, strict=True):
+        case = case_of(scene)
+        if case is not None and not found:
+            out[case] = (*out.get(case, ()), scene.item.object_number)
+    return out
+
+
+@dataclass
+class _Search:
+    """The objects that still need something under the levels of a runner, and what was tried for them.
+
+    unassessed  : numbers of what no model could be run for, by the case that it stands in
+    recommended : by the place of the scene and the name of the level
+    """
+
+    runner: TrialRunner
+    objects: Sequence[Deficiency]
+    unassessed: Mapping[tuple[str, str], tuple[str, ...]]
+    recommended: dict[tuple[int, str], Recommendation] = field(default_factory=dict)
+    rejected: dict[int, list[str]] = field(default_factory=dict)
+    helped: set[int] = field(default_factory=set)
+
+    def tries(self, measure: Measure) -> None:
+        """Try a measure on everything that still needs one: all first candidates together, then all second ones."""
+        pending = [one for one in self.objects if one.wanted and one.index not in self.helped]
+        # What is only open for want of room is no reason to take it off display.
+        pending = [one for one in pending if measure.for_room or any(f.verdict is Verdict.FAIL for f in one.findings)]
+        measure.prepare(pending, self.runner)
+        open_: list[tuple[Unit, Proposal, Iterator[Candidate]]] = []
+        for unit in self._units(pending, measure):
+            proposal = (
+                measure.propose_shared(unit, self.runner) if measure.shared else measure.propose(unit[0], self.runner)
+            )
+            open_.append((unit, proposal, iter(proposal.candidates)))
+        last: dict[Unit, str] = {}
+        while open_:
+            open_ = self._round(open_, measure, last)
+
+    def _units(self, pending: Sequence[Deficiency], measure: Measure) -> list[Unit]:
+        if not measure.shared:
+            return [(one,) for one in pending]
+        cases = {case_of(one.scene) for one in pending} - {None}
+        units: list[Unit] = [tuple(one for one in self.objects if case_of(one.scene) == case) for case in cases]
+        units += [(one,) for one in pending if case_of(one.scene) is None]
+        return sorted(units, key=lambda unit: unit[0].index)
+
+    def _round(
+        self, units: Sequence[tuple[Unit, Proposal, Iterator[Candidate]]], measure: Measure, last: dict[Unit, str]
+    ) -> list[tuple[Unit, Proposal, Iterator[Candidate]]]:
+        asked = []
+        for unit, proposal, candidates in units:
+            candidate = next(candidates, None)
+            if candidate is None:
+                self._reject(unit, measure, proposal.reason or last.get(unit, "not enough"))
+            else:
+                asked.append((unit, proposal, candidates, candidate))
+        found = iter(self.runner.run([trial for *_, candidate in asked for trial in candidate.every]))
+        still = []
+        for unit, proposal, candidates, candidate in asked:
+            results = {id(trial): next(found) for trial in candidate.every}
+            options = [next((o for o in some if passes(results[id(o.trial)])), None) for _, some in candidate.options]
+            failing = [trial for trial in candidate.trials if not passes(results[id(trial)])]
+            held = all(check.passes for _, check in candidate.checks)
+            if not failing and held and all(option is not None for option in options):
+                self._recommend(unit, measure, candidate, [one for one in options if one is not None], results)
+                continue
+            last[unit] = _said(failing, candidate, results)
+            still.append((unit, proposal, candidates))
+        return still
+
+    def _reject(self, unit: Unit, measure: Measure, reason: str) -> None:
+        for one in unit:
+            if one.wanted and one.index not in self.helped:
+                self.rejected.setdefault(one.index, []).append(f"{measure.row.title}: {reason}")
+
+    def _recommend(
+        self,
+        unit: Unit,
+        measure: Measure,
+        candidate: Candidate,
+        options: Sequence[Option],
+        results: Mapping[int, Sequence[Finding]],
+    ) -> None:
+        """Record the measure for every object of the unit that needs one.
+
+        What a support does for one object it does for all on it: it takes the place of a lesser measure on each.
+        """
+        for at, one in enumerate(unit):
+            if not one.wanted:
+                continue
+            ran = [f for trial in candidate.trials for f in results[id(trial)]]
+            words = dict(candidate.words)
+            if options:
+                ran += results[id(options[at].trial)]
+                case = case_of(one.scene)
+                unknown = self.unassessed.get(case, ()) if case is not None else ()
+                words |= {"what": company(unit, one, unknown), "how": options[at].said}
+            numbers = {**candidate.numbers, **candidate.finish(ran)}
+            name, title, sentence = measure.called(one.scene.item)
+            self.helped.add(one.index)
+            for level in one.levels:
+                here = [f for f in ran if f.level == level]
+                before = [f for f in one.findings if f.level == level]
+                self.recommended[one.index, level] = Recommendation(
+                    object_number=one.number,
+                    gallery=one.scene.item.gallery,
+                    level=level,
+                    measure=name,
+                    title=title,
+                    sentence=_filled(sentence, words),
+                    parameters={key: value for key, (value, _) in numbers.items()},
+                    units={key: unit_ for key, (_, unit_) in numbers.items()},
+                    checks=(*(check for of, check in candidate.checks if of in ("", level)), *checks(here, before)),
+                    rejected=tuple(self.rejected.get(one.index, ())),
+                    mark=self._mark(candidate, here, measure.row.title, level),
+                    source=measure.row.source,
+                )
+
+    def _mark(self, candidate: Candidate, ran: Sequence[Finding], title: str, level: str) -> Mark | None:
+        if level in candidate.marks:
+            kind, x, y = candidate.marks[level]
+            motions = next(one.motions for one in self.runner.levels if one.name == level)
+            return Mark(chart_key(kind, motions[0]), x, y, title)
+        marks = [f.mark for f in ran if f.model == candidate.mark_of and f.mark is not None]
+        return replace(marks[0], label=title) if marks else None
+
+
+def _said(failing: Sequence[Trial], candidate: Candidate, results: Mapping[int, Sequence[Finding]]) -> str:
+    if failing:
+        return why_not(failing[0].scene, results[id(failing[0])])
+    short: list[Check] = [check for _, check in candidate.checks if not check.passes]
+    return f"{short[0].title.lower()} is not enough" if short else ""
+
+
+def _filled(sentence: str, words: Mapping[str, str]) -> str:
+    """Put words into a sentence, whose numbers are filled in later: a brace in them is no placeholder."""
+
+    def said(found: re.Match[str]) -> str:
+        text = words.get(found[1])
+        return found[0] if text is None else text.replace("{", "{{").replace("}", "}}")
+
+    return re.sub(r"{(\w+)}", said, sentence)
