@@ -20,7 +20,7 @@ from pipeline.quantities import G
 from pipeline.records import Item
 from pipeline.resources import resource
 from pipeline.settings import load_settings
-from tests.night.test_jobs import workspace
+from tests.museum import workspace
 from tests.packages import install
 
 ROOT = Path(__file__).resolve().parents[2]
