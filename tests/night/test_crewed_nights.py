@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 from distributed import LocalCluster
 
-from pipeline.night import scheduler as rounds
+from pipeline.night import scheduler
+from pipeline.night.tasks import Assessments
 from pipeline.settings import Settings
+from pipeline.store.results import Stored
 from tests.museum import found, museum_of, night, vases
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
@@ -27,9 +29,9 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> Settings:
 
 @pytest.fixture
 def shared(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two sheets a batch, and others do the work whatever its size."""
-    monkeypatch.setattr(rounds, "BATCH", 8)
-    monkeypatch.setattr(rounds, "FEW", 0)
+    """Four batches of about eight objects, and others do the work whatever its size."""
+    monkeypatch.setattr(scheduler, "BATCH", 8)
+    monkeypatch.setattr(scheduler, "FEW", 0)
 
 
 def files(settings: Settings) -> dict[str, bytes]:
@@ -98,14 +100,14 @@ def test_a_worker_that_is_killed_in_the_middle_of_a_night_loses_nothing(
     settings = settings.model_copy(update={"execution": execution})
     killed = []
 
-    def note(self: rounds.Round, piece: object, came: object) -> object:
+    def told(self: scheduler.NightRun, came: Assessments) -> list[Stored]:
         if not killed:
             killed.append(next(iter(cluster.workers.values())).process.pid)
             os.kill(killed[0], signal.SIGKILL)
-        return true(self, piece, came)
+        return true(self, came)
 
-    true = rounds.Round._note
-    monkeypatch.setattr(rounds.Round, "_note", note)
+    true = scheduler.NightRun._told
+    monkeypatch.setattr(scheduler.NightRun, "_told", told)
     assert night(settings).fresh == len(OBJECTS)
     assert killed
     assert found(settings).assessments == found(alone).assessments

@@ -16,9 +16,9 @@ from pipeline.motions import read_site
 from pipeline.motions.errors import MotionError
 from pipeline.night.run import Selection, run, summarise
 from pipeline.operations.workspace import LockedError, UsageError, locked
-from pipeline.report.pages.tallies import total
+from pipeline.report.pages.tallies import tally, total
 from pipeline.settings import SettingsError, load_settings
-from pipeline.store.results import known_to
+from pipeline.store.pages import load_page
 from pipeline.store.runs import list_runs, load_head, load_run
 from pipeline.tools.rerender import compare, render_again
 from tests.museum import ROWS, SILENT, own_site, workspace
@@ -27,12 +27,11 @@ from tests.museum import ROWS, SILENT, own_site, workspace
 def test_the_demonstration_accounts_for_every_object(demo_folder: Path) -> None:
     """2,000 rows: 1,374 on display in 34 galleries, 626 not; each in exactly one state."""
     engine = open_database(demo_folder / "kouros.sqlite")
-    head, sheets = load_head(engine)
+    head, pages = load_head(engine)
     record = load_run(engine)
-    kept = known_to(engine, [sheet.key for sheet in sheets])
-    summary = summarise(head, sheets, total(result.tally for result in kept.values()))
+    summary = summarise(head, pages, total(tally(load_page(engine, page.key)) for page in pages))
     assert head.assessments == ()
-    assert len(sheets) == len(kept) == 35  # what is not on display has a sheet of its own
+    assert len(pages) == len({page.key for page in pages}) == 35  # what is not on display has a page of its own
     assert (summary.objects, summary.on_display, summary.galleries) == (2000, 1374, 34)
     assert summary.act + summary.open + summary.safe + summary.cannot == 1374
     assert summary.assessed + summary.cannot == 1374
