@@ -20,7 +20,8 @@ SHARED = "KOUROS_TESTS_SHARED"
 LONGEST = frozenset(
     {
         "test_unchanged_nights.py",
-        "test_twins.py",
+        "test_alike.py",
+        "test_incremental.py",
         "test_examples.py",
         "test_motions_commands.py",
         "test_cli.py",

@@ -17,20 +17,19 @@ from pipeline.collection.database import open_database
 from pipeline.collection.record import plausible
 from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.night import assessment as assessing
-from pipeline.night import tasks as desk
+from pipeline.night import tasks
 from pipeline.night.run import run
 from pipeline.operations.event_log import journal
 from pipeline.operations.run_summary import Summary
 from pipeline.operations.workspace import open_workspace
 from pipeline.records import Decision, DecisionKind, Item, Support
-from pipeline.report.files.page_renderer import Pen
+from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.settings import Settings, load_settings, template
 from pipeline.settings.operations import Logs
 from pipeline.store.decisions import add_decision
 from pipeline.store.runs import load_run
 from pipeline.tools.doctor import diagnose
-from tests.cli.test_cli import kouros
-from tests.night.test_jobs import in_common
+from tests.museum import in_common, kouros
 
 NAMES = {
     "framed": "Painting", "relief": "Relief", "chandelier": "Chandelier", "wall_painting": "Fresco",
@@ -249,7 +248,7 @@ def test_a_fault_of_ours_costs_one_object_its_answer_for_one_night(
     settings = museum(tmp_path, few()).model_copy(update={"logs": Logs(file="log.jsonl")})
     with monkeypatch.context() as broken, journal(settings, str):
         for name in STAGES:
-            where = {"draw": Pen, "encode": desk}.get(name, assessing)
+            where = {"draw": PageRenderer, "encode": tasks, "neighbours": tasks}.get(name, assessing)
             broken.setattr(where, name, failing(name, getattr(where, name)))
         summary = night(settings)
     assert summary.faults == len(STAGES)

@@ -3,68 +3,25 @@
 import csv
 import json
 import shutil
-from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from random import Random
 
 import pytest
 from lxml import html
-from sqlalchemy import func, select
+from sqlalchemy import func, select, update
 
 from pipeline.analysis import demands
-from pipeline.cli.console import Console
 from pipeline.collection.database import open_database
 from pipeline.collection.listing import Listed, Listing, order
-from pipeline.night import units as sheets
+from pipeline.errors import DamageWarning
+from pipeline.night import scheduler
+from pipeline.night.paging import MOST, paged
 from pipeline.night.run import run
-from pipeline.night.units import LEAST, MOST, cut
-from pipeline.operations.run_summary import Summary
-from pipeline.records import RunRecord
 from pipeline.report.errors import ReportWarning
-from pipeline.resources import resource
-from pipeline.settings import Floors, Settings, load_settings, template
-from pipeline.store.runs import load_run
+from pipeline.settings import Floors, Settings, load_settings
 from pipeline.store.tables import RESULT
-
-COLUMNS = ("object_number", "title", "object_name", "gallery", "height_m", "width_m", "depth_m", "medium")
-
-
-def rows(galleries: int = 3, each: int = 4) -> list[dict[str, str]]:
-    """A few vases of different sizes in a few galleries."""
-    return [
-        {
-            "object_number": f"{g}.{n}",
-            "title": f"Vase {n}",
-            "object_name": "vase",
-            "gallery": f"Room {g}",
-            "height_m": str(round(0.2 + 0.1 * n, 3)),
-            "width_m": str(round(0.1 + 0.02 * g, 3)),
-            "depth_m": "0.12",
-            "medium": "earthenware",
-        }
-        for g in range(galleries)
-        for n in range(each)
-    ]
-
-
-def write(folder: Path, objects: list[dict[str, str]]) -> None:
-    with (folder / "collection.csv").open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.DictWriter(stream, COLUMNS)
-        writer.writeheader()
-        writer.writerows(objects)
-
-
-def museum(folder: Path, objects: list[dict[str, str]]) -> Settings:
-    folder.mkdir(parents=True)
-    write(folder, objects)
-    text = template(museum="Three rooms", source="collection.csv", mapping="kouros", site="site")
-    (folder / "kouros.toml").write_text(text, encoding="utf-8")
-    shutil.copytree(resource("site_motions", "demo"), folder / "site")
-    return load_settings(folder / "kouros.toml")
-
-
-def night(settings: Settings) -> Summary:
-    return run(settings, Console(quiet=True))
+from tests.museum import SILENT, found, museum_of, night, vases, write_collection
 
 
 def results(settings: Settings) -> int:
@@ -73,17 +30,10 @@ def results(settings: Settings) -> int:
         return connection.execute(select(func.count()).select_from(RESULT)).scalar_one()
 
 
-def found(settings: Settings) -> RunRecord:
-    """Return the last run without what tells one night from another, and one museum's history from another's."""
-    record = load_run(open_database(settings.database))
-    kept = {k: v for k, v in record.settings.items() if k not in ("survey_seconds", "inventory")}
-    return replace(record, run_id="", started="", finished="", settings=kept)
-
-
 @pytest.fixture(scope="module")
 def settings(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     """A museum after its first night."""
-    made = museum(tmp_path_factory.mktemp("nights") / "museum", rows())
+    made = museum_of(tmp_path_factory.mktemp("nights") / "museum", vases())
     assert night(made).fresh == 12
     return made
 
@@ -93,7 +43,7 @@ def test_an_unchanged_night_finds_nothing_anew_and_shows_the_same_files(settings
     summary = night(settings)
     assert summary.report is not None
     after = summary.report.parent
-    assert (summary.fresh, results(settings)) == (0, 3)
+    assert (summary.fresh, results(settings)) == (0, 12)
     assert len(list(before.glob("room-*.html"))) == 3
     own = {"index.html", "method.html", "motion.html", "summary.json", ".pages.json"}
     names = {p.relative_to(before).as_posix() for p in before.rglob("*") if p.is_file()}
@@ -104,16 +54,16 @@ def test_an_unchanged_night_finds_nothing_anew_and_shows_the_same_files(settings
     assert "Nothing has changed since" in (after / "index.html").read_text(encoding="utf-8")
 
 
-def test_one_changed_object_costs_its_own_sheet_and_the_rest_is_taken_over(settings: Settings, tmp_path: Path) -> None:
-    objects = rows()
+def test_one_changed_object_costs_only_itself_and_the_rest_is_taken_over(settings: Settings, tmp_path: Path) -> None:
+    objects = vases()
     objects[5]["height_m"] = "0.9"
-    write(settings.home, objects)
+    write_collection(settings.home, objects)
     summary = night(settings)
-    assert summary.fresh == 4  # those of its room
+    assert summary.fresh == 1
     assert summary.changes is not None
     assert [change.object_number for change in summary.changes.inputs] == ["1.1"]
     # A first night of the same museum shows the same, row for row.
-    again = museum(tmp_path / "again", objects)
+    again = museum_of(tmp_path / "again", objects)
     other = night(again)
     assert found(settings) == found(again)
     assert summary.report is not None
@@ -122,7 +72,7 @@ def test_one_changed_object_costs_its_own_sheet_and_the_rest_is_taken_over(setti
         with (summary.report.parent / name).open() as mine, (other.report.parent / name).open() as its:
             for one, same in zip(csv.DictReader(mine), csv.DictReader(its), strict=True):
                 assert one | {"run": ""} == same | {"run": ""}
-    write(settings.home, rows())
+    write_collection(settings.home, vases())
     # What was found on the first night is still there.
     assert night(settings).fresh == 0
 
@@ -141,47 +91,63 @@ def test_a_changed_motion_is_named_and_all_is_found_anew(settings: Settings) -> 
 
 def test_a_result_that_is_there_is_taken_up_by_a_run_that_was_cut_off(settings: Settings, tmp_path: Path) -> None:
     """What a run stored before it died needs not be found again, and the report is that of an undisturbed night."""
-    again = museum(tmp_path / "cut", rows())
+    again = museum_of(tmp_path / "cut", vases())
     night(again)
     engine = open_database(again.database)
     with engine.begin() as connection:
-        # As after a kill: a result and the run itself are not there, two results are.
+        # As after a kill: neither the run nor its pages are there, eleven of its results are.
         connection.exec_driver_sql("DELETE FROM run")
+        connection.exec_driver_sql("DELETE FROM page")
         connection.exec_driver_sql("DELETE FROM result WHERE key = (SELECT min(key) FROM result)")
     shutil.rmtree(again.path("reports"))
-    summary = run(again, Console(quiet=True), resume=True)
-    assert summary.fresh == 4
+    summary = run(again, SILENT, resume=True)
+    assert summary.fresh == 1
     assert found(again).assessments == found(settings).assessments
+
+
+@pytest.mark.parametrize("damage", [{"found": b"damaged"}, {"outline": "[]"}, {"made": "2000-01-01"}, None])
+def test_a_result_that_is_damaged_or_lost_is_found_again(damage: dict[str, object] | None, tmp_path: Path) -> None:
+    """Noticed where it is read: when its page is drawn again."""
+    made = museum_of(tmp_path / "damaged", vases(1, 4))
+    night(made)
+    before = found(made)
+    engine = open_database(made.database)
+    with engine.begin() as connection:
+        one = connection.execute(select(func.min(RESULT.c.key))).scalar_one()
+        row = RESULT.c.key == one
+        connection.execute(RESULT.delete().where(row) if damage is None else update(RESULT).where(row).values(damage))
+    shutil.rmtree(made.path("reports"))
+    if damage is None:
+        night(made)
+    else:
+        with pytest.warns(DamageWarning, match="1 result of the database changed since written"):
+            night(made)
+    assert found(made).assessments == before.assessments
+    assert results(made) == 4
+    assert night(made).fresh == 0
 
 
 def listed(number: int, case: str = "", gallery: str = "Store") -> Listed:
     return Listed(f"S.{number:05d}", gallery, case, True, "", "")
 
 
-def test_a_large_gallery_is_cut_where_its_own_objects_say() -> None:
-    plain = Settings()
-    everything = [listed(n) for n in range(6_000)]
-    whole = cut(Listing.of(everything), plain).parts
-    assert [part.number for part in whole] == list(range(1, len(whole) + 1))
-    assert {part.of for part in whole} == {len(whole)}
-    assert all(LEAST <= len(part.objects) <= MOST for part in whole[:-1])
-    assert [one for part in whole for one in part.objects] == everything
-    # An object less changes the sheet that it was on and leaves the others as they are.
-    fewer = cut(Listing.of(one for one in everything if one.object_number != "S.01234"), plain).parts
-    before, after = ({tuple(part.objects) for part in parts} for parts in (whole, fewer))
-    assert len(before - after) <= 2
+def test_a_large_gallery_is_cut_by_count() -> None:
+    everything = [listed(n) for n in range(2 * MOST + 1)]
+    parts = paged(Listing.of(everything), Settings())
+    assert [(part.number, part.of, len(part.objects)) for part in parts] == [(1, 3, MOST), (2, 3, MOST), (3, 3, 1)]
+    assert [one for part in parts for one in part.objects] == everything
 
 
 def test_a_case_is_never_cut() -> None:
     everything = [listed(n, case=f"case {n // 70:03d}") for n in range(3_000)]
     where: dict[str, set[int]] = {}
-    for part in cut(Listing.of(everything), Settings()).parts:
+    for part in paged(Listing.of(everything), Settings()):
         for one in part.objects:
             where.setdefault(one.case, set()).add(part.number)
     assert all(len(numbers) == 1 for numbers in where.values())
 
 
-def walked(members: list[Listed]) -> list[list[Listed]]:
+def walked(members: list[Listed], most: int) -> list[list[Listed]]:
     """Cut one group as one would by hand, company by company."""
     companies: list[list[Listed]] = []
     for one in members:
@@ -191,20 +157,15 @@ def walked(members: list[Listed]) -> list[list[Listed]]:
             companies.append([one])
     pieces: list[list[Listed]] = [[]]
     for company in companies:
-        full = len(pieces[-1]) + len(company) > sheets.MOST
-        chosen = len(pieces[-1]) >= sheets.LEAST and sheets._chosen(company[0])
-        if len(members) > sheets.MOST and pieces[-1] and (full or chosen):
+        if pieces[-1] and len(pieces[-1]) + len(company) > most:
             pieces.append([])
         pieces[-1] += company
     return pieces
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_sheets_are_cut_as_by_hand(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Galleries of all sizes, on two floors, with cases of up to more than a sheet holds."""
-    monkeypatch.setattr(sheets, "MOST", 30)
-    monkeypatch.setattr(sheets, "LEAST", 15)
-    monkeypatch.setattr(sheets, "_CHOSEN", 4)
+def test_pages_are_cut_as_by_hand(seed: int) -> None:
+    """Galleries of all sizes, on two floors, with cases of up to more than a page holds."""
     random = Random(seed)
     objects = []
     for n in range(random.choice([1, 40, 700])):
@@ -213,28 +174,24 @@ def test_sheets_are_cut_as_by_hand(seed: int, monkeypatch: pytest.MonkeyPatch) -
         objects.append(one._replace(on_display=random.random() < 0.5))
     objects.sort(key=order)
     settings = Settings(floors=Floors({"upper": ("Room 1",)}))
-    made = cut(Listing.of(objects), settings)
+    parts = paged(Listing.of(objects), settings, most=30)
     groups: dict[tuple[bool, str], list[Listed]] = {}
     for one in objects:
         upper = "upper" if one.gallery == "Room 1" else ""
         groups.setdefault((not one.on_display, one.gallery if one.on_display else upper), []).append(one)
-    by_hand = {group: walked(members) for group, members in groups.items()}
+    by_hand = {group: walked(members, 30) for group, members in groups.items()}
     expected = [piece for group in sorted(by_hand) for piece in by_hand[group]]
-    assert [list(part.objects) for part in made.parts] == expected
-    assert list(made.objects) == [one for piece in expected for one in piece]
+    assert [list(part.objects) for part in parts] == expected
     stored = sum(len(pieces) for (absent, _), pieces in by_hand.items() if absent)
-    for part in made.parts:
+    for part in parts:
         of = len(by_hand[False, part.gallery]) if part.on_display else stored
         assert (part.of, part.gallery != "") == (of, part.on_display)
-    asked = {one.object_number: one for one in objects[::3]}
-    found = made.holding({*asked, "none"})
-    assert found.keys() == asked.keys()
-    assert all(asked[number] in list(part.objects) for number, part in found.items())
+        assert part.floor == ("upper" if any(one.gallery == "Room 1" for one in part.objects) else "")
 
 
-def test_a_small_gallery_is_one_sheet_and_what_is_stored_shares_pages() -> None:
+def test_a_small_gallery_is_one_page_and_what_is_stored_shares_pages() -> None:
     stored = [listed(n, gallery=f"Store {n % 3}")._replace(on_display=False) for n in range(30)]
-    parts = cut(Listing.of([listed(100), *sorted(stored, key=order)]), Settings()).parts
+    parts = paged(Listing.of([listed(100), *sorted(stored, key=order)]), Settings())
     assert [(part.gallery, part.on_display, len(part.objects)) for part in parts] == [
         ("Store", True, 1),
         ("", False, 30),
@@ -243,14 +200,13 @@ def test_a_small_gallery_is_one_sheet_and_what_is_stored_shares_pages() -> None:
 
 def test_the_pages_of_a_cut_gallery_lead_to_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut at 12 instead of 1,000 objects, so that the test is quick."""
-    monkeypatch.setattr("pipeline.night.units.MOST", 12)
-    monkeypatch.setattr("pipeline.night.units.LEAST", 6)
-    made = museum(tmp_path / "large", rows(galleries=1, each=30))
+    monkeypatch.setattr(scheduler, "paged", partial(paged, most=12))
+    made = museum_of(tmp_path / "large", vases(galleries=1, each=30))
     summary = night(made)
     assert summary.report is not None
     folder = summary.report.parent
     pages = sorted(folder.glob("room-0-*.html"))
-    assert len(pages) >= 3
+    assert len(pages) == 3
     index = (folder / "index.html").read_text(encoding="utf-8")
     galleries = html.fromstring(index.encode()).xpath("//section[@aria-labelledby='galleries']//tbody/tr")
     assert len(galleries) == 1
@@ -273,7 +229,7 @@ def test_a_page_whose_report_was_tampered_with_is_drawn_again(settings: Settings
 
 def test_one_changed_motion_runs_its_own_histories_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of two motions one changes: no history of the other is run again, and a first night would find the same."""
-    made = museum(tmp_path / "two", rows())
+    made = museum_of(tmp_path / "two", vases())
     file = made.home / "kouros.toml"
     file.write_text(file.read_text(encoding="utf-8").replace('fragility = "auto"', "fragility = false"), "utf-8")
     made = load_settings(file)

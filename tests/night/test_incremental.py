@@ -1,0 +1,93 @@
+"""A night that finds only what changed equals a night from nothing, whatever changed, in whatever order."""
+
+import os
+from collections.abc import Callable
+from functools import cache, partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pipeline.execute import memory
+from pipeline.execute.pool import pool
+from pipeline.motions import site
+from pipeline.motions.pulses import WaveletPulse, shahi_baker_pulse
+from pipeline.night import scheduler, tasks
+from pipeline.night.context import RunContext
+from pipeline.night.paging import paged
+from pipeline.night.tasks import Assessments, UnitTask, assess_units
+from pipeline.report.files import page_renderer, report_writer
+from tests.night.changing import Changing, exported
+
+SEQUENCES = int(os.environ.get("KOUROS_SEQUENCES", "20"))
+FIRST = int(os.environ.get("KOUROS_FIRST", "0"))
+EDITS = int(os.environ.get("KOUROS_EDITS", "8" if "KOUROS_SEQUENCES" in os.environ else "3"))
+"""Changes of each sequence."""
+
+
+@cache
+def pulse(velocity: bytes, dt: float) -> WaveletPulse:
+    return shahi_baker_pulse(np.frombuffer(velocity).reshape(3, -1), dt)
+
+
+class Killed(BaseException):
+    """The night's process is gone."""
+
+
+@pytest.fixture(autouse=True)
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pages of five objects and batches of four, in this process, stored as they come.
+
+    What costs most and is not compared is left out: HTML, and looking for garbage.  A motion's pulse is found once.
+    """
+    monkeypatch.setattr(scheduler, "FEW", 4)
+    monkeypatch.setattr(scheduler, "BATCH", 4)
+    monkeypatch.setattr(scheduler, "_SECONDS", 0.0)
+    monkeypatch.setattr(scheduler, "pool", lambda **_: pool())
+    monkeypatch.setattr(scheduler, "paged", partial(paged, most=5))
+    monkeypatch.setattr(page_renderer, "fill", lambda *_: "")
+    monkeypatch.setattr(report_writer, "fill", lambda *_: "")
+    monkeypatch.setattr(site, "shahi_baker_pulse", lambda velocity, dt: pulse(velocity.tobytes(), dt))
+    for module in (scheduler, tasks, memory):
+        monkeypatch.setattr(module, "give_back", lambda: None)
+
+
+def cut_off(museum: Changing, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A night of a changed museum that ends at its second batch, and is taken up again."""
+    museum.other_scale()
+    museum.change_row()
+    done = []
+
+    def work(context: RunContext, task: UnitTask) -> Assessments:
+        done.append(task)
+        if len(done) > 1:
+            raise Killed
+        return assess_units(context, task)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(scheduler, "assess_units", work)
+        try:
+            museum.night()
+        except Killed:
+            pass
+        else:
+            return
+    museum.night(resume=True)
+
+
+@pytest.mark.parametrize("seed", range(FIRST, FIRST + SEQUENCES))
+def test_a_night_that_finds_only_what_changed_equals_one_from_nothing(
+    seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    museum = Changing.of(tmp_path / "museum", seed)
+    museum.night()
+    history = []
+    for number in range(EDITS):
+        edits: list[Callable[[], None]] = [*museum.edits(), partial(cut_off, museum, monkeypatch)]
+        change = museum.random.choice(edits)
+        history.append(getattr(change, "__name__", "cut_off"))
+        change()
+        after = exported(museum.night())
+        fresh = exported(museum.from_nothing(tmp_path / f"fresh-{number}"))
+        for name, rows in fresh.items():
+            assert after[name] == rows, (name, history)
