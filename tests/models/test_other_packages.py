@@ -19,8 +19,7 @@ from pipeline.operations.report_status import last_good
 from pipeline.quantities import G
 from pipeline.records import Item
 from pipeline.resources import resource
-from pipeline.settings import load_settings
-from tests.museum import workspace
+from pipeline.settings import load_settings, template
 from tests.packages import install
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -133,20 +132,56 @@ def test_it_is_listed_run_measured_and_tested(packages: Path, tmp_path: Path) ->
     ]
 
 
-def found(folder: Path, name: str) -> list[dict[str, str]]:
-    """The rows of an export of the last good report."""
+MAPPING = """
+[source]
+format = "csv"
+encoding = "utf-8"
+delimiter = ","
+[museum]
+name = "Test"
+[columns.object_number]
+column = "number"
+[columns.gallery]
+column = "gallery"
+[columns.title]
+column = "title"
+[columns.height_m]
+column = "height"
+unit = "m"
+[columns.width_m]
+column = "width"
+unit = "m"
+[columns.depth_m]
+column = "width"
+unit = "m"
+"""
+
+
+def museum(folder: Path, *rows: str) -> None:
+    """A museum of its own in a folder."""
+    (folder / "export.csv").write_text("\n".join(["number,gallery,title,height,width", *rows]) + "\n", encoding="utf-8")
+    (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
+    settings = template(museum="Test", source="export.csv", mapping="mapping.toml", site="demo")
+    (folder / "kouros.toml").write_text(settings, encoding="utf-8")
+
+
+def report(folder: Path) -> Path:
+    """The folder of the last good report."""
     settings = load_settings(folder / "kouros.toml")
     good = last_good(settings)
     assert good is not None
-    report = (settings.path(settings.report.folder) / good.report).parent
-    with (report / name).open(encoding="utf-8", newline="") as stream:
+    return (settings.path(settings.report.folder) / good.report).parent
+
+
+def found(folder: Path, name: str) -> list[dict[str, str]]:
+    """The rows of an export of the last good report."""
+    with (report(folder) / name).open(encoding="utf-8", newline="") as stream:
         return list(csv.DictReader(stream))
 
 
 def test_a_night_runs_it_on_the_objects_that_it_names(packages: Path, tmp_path: Path) -> None:
     """A vase gets it, with the grip that it assumes; a box of the same size does not; a new version is a new result."""
-    rows = ["1,A,Vase,0.4,0.2,0.2", "2,A,Box,0.4,0.2,0.2"]
-    workspace(tmp_path, rows)
+    museum(tmp_path, "1,A,Vase,0.4,0.2", "2,A,Box,0.4,0.2")
     install(packages, "kouros_toppling", TOPPLING, POINTS)
     asked = {"packages": packages, "folder": tmp_path}
     kouros("-q", "run", **asked)
@@ -160,7 +195,7 @@ def test_a_night_runs_it_on_the_objects_that_it_names(packages: Path, tmp_path: 
     pushes = [peak / G * 0.45 * 0.4 / (2.0 * 0.3 * 0.2) for peak in peaks]
     assert any(0.996 * push <= float(topples["demand"]) <= push for push in pushes)
     assert "grip of its foot: 2 (1.5 to 2.5), assumed" in topples["assumptions"]
-    (page,) = (tmp_path / "reports").glob("*/a-*.html")
+    (page,) = report(tmp_path).glob("a-*.html")
     assert "Toppling by West" in page.read_text(encoding="utf-8")
     told = kouros("-q", "run", "--explain", "2", **asked)
     assert "Toppling: not required: its name says that it is case furniture or a box (named 'box')\n" in told
@@ -197,7 +232,7 @@ def test_a_broken_one_is_said_and_left_out(packages: Path, tmp_path: Path, sourc
 
 
 def test_a_broken_one_stops_no_night(packages: Path, tmp_path: Path) -> None:
-    workspace(tmp_path, ["1,A,Vase,0.4,0.2,0.2"])
+    museum(tmp_path, "1,A,Vase,0.4,0.2")
     install(packages, "kouros_toppling", BROKEN, POINTS)
     done = python("from pipeline.cli import main; main()", "-q", "run", packages=packages, folder=tmp_path)
     assert done.returncode == 0, done.stderr

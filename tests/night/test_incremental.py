@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pipeline.night.tasks import Assessments, UnitTask, assess_units
 
 from pipeline.execute import memory
 from pipeline.execute.pool import pool
@@ -15,7 +16,6 @@ from pipeline.motions.pulses import WaveletPulse, shahi_baker_pulse
 from pipeline.night import scheduler, tasks
 from pipeline.night.context import RunContext
 from pipeline.night.paging import paged
-from pipeline.night.tasks import Assessments, UnitTask, assess_units
 from pipeline.report.files import page_renderer, report_writer
 from tests.night.changing import Changing, exported
 
