@@ -1,4 +1,4 @@
-"""What is compiled, the response models above all: SI arrays in, arrays out; no units, no defaults, no pandas.
+"""Compiled functions, the response models above all: SI arrays in, arrays out; no units, no defaults, no pandas.
 
 Each file holds the scalar integration of one object and the batch driver beside it.  Run with ``NUMBA_DISABLE_JIT=1``
 for coverage and debuggers.
