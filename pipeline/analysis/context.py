@@ -1,4 +1,4 @@
-"""What an analysis works with and its result does not depend on: where it runs, who is told, what is kept."""
+"""Surroundings of an analysis, on which its result does not depend: where it runs, who is told, what is kept."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

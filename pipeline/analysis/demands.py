@@ -1,4 +1,4 @@
-"""What is known of the demands of a work under one motion: bounds first, then charts, then histories."""
+"""Demands of a work under one motion: bounds first, then charts, then histories."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

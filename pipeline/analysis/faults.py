@@ -1,4 +1,4 @@
-"""What Kouros itself fails on costs one object its answer, never the night.
+"""Faults of Kouros itself: one costs one object its answer, never the night.
 
 Many objects are worked on together, which is quicker.  Where that fails, they are worked on in ever smaller parts until
 what fails is single objects: those cannot be assessed, and it is said why; all others are assessed as ever, to the same

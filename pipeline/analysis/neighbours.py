@@ -1,4 +1,4 @@
-"""Whether neighbours in a gallery can come together: both moving under one motion, not the sum of what each does."""
+"""Collisions of neighbours in a gallery: both moving under one motion, not the sum of what each does."""
 
 from collections import OrderedDict
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Which class an object's record names: the rows of tables/rules.csv, read from the top; the first that holds decides.
+"""Rules by which an object's record names its class: tables/rules.csv, read from the top; the first that holds decides.
 
 What a row asks of a record, cell by cell (several entries of a cell are parted by `|`; an empty cell asks nothing):
 

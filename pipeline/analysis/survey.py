@@ -1,4 +1,4 @@
-"""Which missing measurement would settle a verdict: the models are run at the ends of what is assumed.
+"""Survey of missing measurements that would settle a verdict: the models are run at the ends of what is assumed.
 
 A verdict is open because inputs are uncertain.  For each of them in turn, the object is assessed as if that one had
 been measured, as low, best and high; the others stay as uncertain as they are.  If the verdict stays open at all three,

@@ -1,4 +1,4 @@
-"""What a support, or a chain of supports, passes on of a motion to what stands on it."""
+"""Transmission of a motion by a support, or a chain of supports, to the objects on it."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -1,4 +1,4 @@
-"""What a person sees: progress bars on a terminal, plain lines elsewhere, one screen at the end."""
+"""Output to a person: progress bars on a terminal, plain lines elsewhere, one screen at the end."""
 
 import re
 import sys

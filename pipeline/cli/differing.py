@@ -1,4 +1,4 @@
-"""What changed between two runs, as lines or as JSON."""
+"""Changes between two runs, as lines or as JSON."""
 
 import json
 from collections.abc import Sequence

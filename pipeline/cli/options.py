@@ -1,4 +1,4 @@
-"""What all commands share: where the settings are, and how much is said."""
+"""Options of all commands: where the settings are, and how much is said."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

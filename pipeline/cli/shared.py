@@ -1,4 +1,4 @@
-"""What every verb takes besides its own options: how much is said, before the verb or after it; and --dry-run."""
+"""Options that every verb takes besides its own: how much is said, before the verb or after it; and --dry-run."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What can go wrong between a museum's records and the inventory; each error carries the command's exit code."""
+"""Errors between a museum's records and the inventory; each carries the command's exit code."""
 
 from pipeline.errors import InputError
 

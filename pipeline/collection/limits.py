@@ -1,4 +1,4 @@
-"""How much of a museum's records is accepted: beyond it a source is refused whole, and nothing of it is written."""
+"""Limits of a museum's records: beyond them a source is refused whole, and nothing of it is written."""
 
 from __future__ import annotations
 

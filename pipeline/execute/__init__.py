@@ -1,4 +1,4 @@
-"""Where work runs: in this process, on as many threads as there are cores (the kernels release the lock)."""
+"""Executors of work: this process, on as many threads as there are cores (the kernels release the lock)."""
 
 import os
 from collections.abc import Callable, Sequence

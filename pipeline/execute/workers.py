@@ -1,4 +1,4 @@
-"""What all worker pools are: results in the order of the tasks, bounded work ahead of them, and their errors."""
+"""Worker pools in general: results in the order of the tasks, bounded work ahead of them, and their errors."""
 
 from __future__ import annotations
 

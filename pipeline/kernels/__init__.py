@@ -1,4 +1,4 @@
-"""What is compiled, the response models above all: SI arrays in, arrays out; no units, no defaults, no pandas.
+"""Compiled functions, the response models above all: SI arrays in, arrays out; no units, no defaults, no pandas.
 
 Each file holds the scalar integration of one object and the batch driver beside it.  Run with ``NUMBA_DISABLE_JIT=1``
 for coverage and debuggers.
@@ -25,12 +25,28 @@ def samples(values: Array) -> Array:
     """Return samples of a motion as the kernels take them: contiguous and writable, a copy where they are not.
 
     For an array that may not be written numba compiles each kernel once more, a third of a first rocking body.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        In any unit, which stays.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Of float64, in the order of C.
     """
     return np.require(values, np.float64, ["C", "W"])
 
 
 def kernel_version() -> str:
-    """Return a hash of all kernel sources and of the compiler: the version that a stored result depends on."""
+    """Return a hash of all kernel sources and of the compiler: the version that a stored result depends on.
+
+    Returns
+    -------
+    str
+        Twelve hexadecimal digits of SHA-256.
+    """
     digest = hashlib.sha256(numba.__version__.encode())
     for source in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(source.name.encode())
@@ -39,7 +55,18 @@ def kernel_version() -> str:
 
 
 def user_cache(name: str) -> Path:
-    """Return a folder of this name in the user's cache, made where it is missing; a temporary one if none can be."""
+    """Return a folder of this name in the user's cache, made where it is missing; a temporary one if none can be.
+
+    Parameters
+    ----------
+    name : str
+        Of the folder itself, below ``kouros`` in KOUROS_CACHE, XDG_CACHE_HOME or ~/.cache.
+
+    Returns
+    -------
+    Path
+        A folder that the user can write and nobody else can.
+    """
     home = os.environ.get("KOUROS_CACHE") or os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     for base in (
         Path(home) / "kouros",

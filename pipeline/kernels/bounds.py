@@ -1,17 +1,29 @@
-"""How far a body on dry friction can slide at most and slides at least: sums along the record, without integration.
+r"""Bounds of the slip of a body on dry friction, above and below: sums along the record, without integration.
 
-**From above.** While it slips the speed s = |u'| obeys s' = -a_h . u'/s - mu_k N <= |a_h| - mu_k N, and at rest s =
-0, held as long as |a_h| <= mu_s N. Let W' = |a_h| - mu_k N, kept at or above 0, and held at 0 as long as |a_h| <=
-mu_s N. Then s <= W for all time: where s = W = 0 both are held by the same condition, or W may grow at once; and
-where s exceeded W, since the last time at which it did not, it would have slipped all the while with s' <= W'. So the
-path is at most the integral of W, and the displacement at most the path; where W = 0 the body rests. One direction's
-push is never larger than the resultant, so the bound of two directions holds for a body shaken along any one of them.
+With s = ``|u'|`` [m/s] the speed relative to the base, a_h [m/s2] the base's horizontal acceleration, N = max(0, g +
+a_z) [m/s2] and the friction mu_s at rest and mu_k while it slips [-],
 
-**From below.** Let the body rest at time t0. The friction never accelerates it by more than mu_s N, slipping or
-stuck. Relative to the ground it has thus moved, at time t, by at least |X(t)| - Q(t), X the ground's displacement
-since t0 in a frame that moves with the ground's velocity at t0, Q the double integral of mu_s N. A body whose
-position at t0 is not known has been half of that away from where it stood, before or after. A body that slips one way
-only, with mu_s = mu_k, is met exactly.
+.. math::
+
+    s' = -\frac{a_h \cdot u'}{s} - \mu_k N \le |a_h| - \mu_k N, \qquad
+    \text{at rest while } |a_h| \le \mu_s N
+
+**From above.** Let W' = ``|a_h|`` - mu_k N, kept at or above 0, and held at 0 as long as ``|a_h|`` <= mu_s N.  Then s
+<= W for all time: where s = W = 0 both are held by the same condition, or W may grow at once; and where s exceeded W,
+since the last time at which it did not, it would have slipped all the while with s' <= W'.  So the path is at most the
+integral of W, and the displacement at most the path; where W = 0 the body rests.  One direction's push is never larger
+than the resultant, so the bound of two directions holds for a body shaken along any one of them.
+
+**From below.** Let the body rest at time t0.  The friction never accelerates it by more than mu_s N, slipping or stuck.
+Relative to the ground it has thus moved, at time t, by at least
+
+.. math::
+
+    |X(t)| - Q(t), \qquad X'' = a_h, \quad Q'' = \mu_s N
+
+X [m] the ground's displacement since t0 in a frame that moves with the ground's velocity at t0, and Q [m] both zero at
+t0 with their rates.  A body whose position at t0 is not known has been half of that away from where it stood, before or
+after.  A body that slips one way only, with mu_s = mu_k, is met exactly.
 
 Both are guarded against rounding by being looser, and the upper one counts no friction in an interval in which the
 weight is lost or comes back.
@@ -72,13 +84,32 @@ def slip_bounds_one(
     tail: float,
     out: Array,
 ) -> None:
-    """Bound one body's response.
+    """Bound the response of one body on dry friction, by the two bounds derived above.
 
-    x, y, z, push  : (n,) m/s2, push = |a_h|;  pushes: block maxima of push
-    ratio, maxima  : from kernels.quiet, of this very motion
-    tail           : s after the record; below 0: until rest
-    out            : (4,) receives the least displacement [m], the longest path [m] (infinite where nothing stops it),
-                     the least and the largest horizontal acceleration passed on [m/s2]
+    Parameters
+    ----------
+    x, y, z : ndarray, shape (n,)
+        Acceleration of the base, m/s2.
+    push : ndarray, shape (n,)
+        ``|a_h|``, m/s2.
+    ratio, maxima : ndarray
+        From `pipeline.kernels.quiet`, of this very motion: `demand_ratio` (n,) [-], and its block maxima.
+    pushes : ndarray
+        Block maxima of push, m/s2.
+    dt : float
+        Time step, s.
+    mu_s, mu_k : float
+        Friction at rest and while slipping [-].
+    tail : float
+        Seconds after the record; below 0: until rest.
+    out : ndarray, shape (4,)
+        Receives the least displacement [m], the longest path [m] (infinite where nothing stops it), the least and the
+        largest horizontal acceleration passed on [m/s2].
+
+    References
+    ----------
+    Newmark, N. M. (1965). Effects of earthquakes on dams and embankments. Geotechnique 15: the block.  The bounds are
+    derived at the top of this module.
     """
     n = x.shape[0]
     out[:] = 0.0
@@ -176,6 +207,20 @@ def slip_bounds_batch(
     tail: float,
     results: Array,
 ) -> None:
-    """Fill results (m, 4) as in slip_bounds_one for m bodies."""
+    """Bound the responses of m bodies on dry friction.
+
+    Parameters
+    ----------
+    x, y, z, push, ratio, maxima, pushes, dt, tail
+        As in `slip_bounds_one`.
+    mu_s, mu_k : ndarray, shape (m,)
+        Friction at rest and while slipping [-].
+    results : ndarray, shape (m, 4)
+        Receives of each body what `slip_bounds_one` fills in: [m], [m], [m/s2], [m/s2].
+
+    References
+    ----------
+    As in `slip_bounds_one`.
+    """
     for k in range(mu_s.shape[0]):
         slip_bounds_one(x, y, z, push, ratio, maxima, pushes, dt, mu_s[k], mu_k[k], tail, results[k])

@@ -1,9 +1,22 @@
-"""A body on dry friction in one direction, with or without a spring and a dashpot: stick-slip in closed form.
+r"""Stick-slip of a body on dry friction in one direction, with or without a spring and a dashpot, in closed form.
 
-u'' + 2 zeta w u' + w^2 u + mu_k N sign(u') = -a while slipping, N = max(0, g + a_z); at rest while
-|a + w^2 u| <= mu_s N.  w = 0 is the free sliding block (Newmark 1965), w > 0 the horizontal isolator
-(Agbabian et al. 1991, sec. 2.6).  Within a sample interval excitation and normal force are linear, so each phase has a
-closed form; only the instants at which the velocity vanishes are found by iteration.
+.. math::
+
+    u'' + 2 \zeta w u' + w^2 u + \mu_k N \operatorname{sign}(u') = -a, \qquad N = \max(0, g + a_z)
+
+while it slips, and at rest while
+
+.. math::
+
+    |a + w^2 u| \le \mu_s N
+
+with u [m] the displacement relative to the base, a and a_z [m/s2] the horizontal and the vertical acceleration of the
+base, N [m/s2] the normal force per mass, mu_s and mu_k [-] the friction at rest and while slipping, w [rad/s] the
+angular frequency and zeta [-] the damping ratio of spring and dashpot.  w = 0 is the free sliding block (Newmark 1965),
+w > 0 the horizontal isolator (Agbabian et al. 1991, sec. 2.6).
+
+Within a sample interval excitation and normal force are linear, so each phase has a closed form; only the instants at
+which the velocity vanishes are found by iteration.
 """
 
 import math
@@ -385,13 +398,38 @@ def friction_line_batch(
     results: Array,
     history: Array,
 ) -> None:
-    """Fill results (m, 5): max |u|, residual |u|, path [m], max transmitted acceleration [m/s2], flags.
+    r"""Follow m bodies on dry friction in one direction.
 
-    x, z           : (n,) m/s2
-    ratio, maxima  : from kernels.quiet, of this very motion; pushes: block maxima of |x|
-    w, ... mu_k    : (m,)
-    history        : (k, 2) receives u and the absolute acceleration of a single body at the samples, as long as it is;
-                     rows after the record follow the body on without excitation
+    .. math::
+
+        u'' + 2 \zeta w u' + w^2 u + \mu_k N \operatorname{sign}(u') = -a, \qquad N = \max(0, g + a_z)
+
+    Parameters
+    ----------
+    x, z : ndarray, shape (n,)
+        Horizontal (a) and vertical (a_z) acceleration of the base, m/s2, linear between samples.
+    ratio, maxima : ndarray
+        From `pipeline.kernels.quiet`, of this very motion: `demand_ratio` (n,) [-], and its block maxima.
+    pushes : ndarray
+        Block maxima of ``|x|``, m/s2.
+    dt : float
+        Time step, s.
+    w, zeta, mu_s, mu_k : ndarray, shape (m,)
+        Angular frequency [rad/s], damping ratio, friction at rest and while slipping [-].
+    tail : float
+        Seconds to go on after the record; 0: none; below 0: until it rests for good, or CAP.
+    results : ndarray, shape (m, 5)
+        Receives the largest ``|u|`` [m], the residual ``|u|`` [m], the path [m], the largest acceleration passed on
+        [m/s2] and the flags (`pipeline.kernels.flags`).
+    history : ndarray, shape (k, 2)
+        Receives u [m] and the absolute acceleration [m/s2] of a single body at the samples, as long as it is; rows
+        after the record follow the body on without excitation.
+
+    References
+    ----------
+    Newmark, N. M. (1965). Effects of earthquakes on dams and embankments. Geotechnique 15.
+    Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+    methods for museum objects. Studies in Conservation 36. Sec. 2.6.
     """
     results[:, :] = 0.0
     if x.shape[0] < 2:

@@ -1,6 +1,10 @@
-"""A body on dry friction in two directions, with or without a spring and a dashpot.
+r"""Stick-slip of a body on dry friction in two directions, with or without a spring and a dashpot.
 
-u'' + 2 zeta w u' + w^2 u + mu_k N u'/|u'| = -a, N = max(0, g + a_z); at rest while |a + w^2 u| <= mu_s N.
+.. math::
+
+    u'' + 2 \zeta w u' + w^2 u + \mu_k N \frac{u'}{|u'|} = -a_h, \qquad \text{at rest while } |a_h + w^2 u| \le \mu_s N
+
+with u [m] and a_h [m/s2] in the plane, and the other symbols as in `pipeline.kernels.friction_line`.
 
 Slip is followed by an implicit Runge-Kutta method whose stages have closed forms (kernels.plane_step), one sample
 interval at a time because the excitation has a kink at every sample, in more steps where its error asks for them and
@@ -32,8 +36,6 @@ TRIALS = 60
 """Shorter and shorter steps that are tried before the body is taken to rest."""
 CRAWL = 1e-9
 """Speed, as a share of the scale of speeds, at which a body that will stop is taken to stop."""
-
-
 NEAR = 0.02
 """Share of the error that a velocity may have, below which a body that is slower may have come to rest, or one that
 has may not; the error is a bound, and mostly much smaller."""
@@ -436,18 +438,27 @@ def friction_plane_batch(
     results: Array,
     history: Array,
 ) -> None:
-    """Fill results (m, 7): max |u|, residual |u|, path [m], max transmitted acceleration [m/s2], flags.
+    """Follow m bodies on dry friction in two directions, by the equation at the top of this module.
 
-    The last two: what each step may have been off by, summed up, of u [m] and of that acceleration.
+    Parameters
+    ----------
+    x, y, z, ratio, maxima, dt, w, zeta, mu_s, mu_k, tail
+        As in `pipeline.kernels.friction_line.friction_line_batch`, y beside x.
+    push, pushes, peak : ndarray, shape (n,); ndarray; float
+        ``|a_h|``, its block maxima and the largest of it, m/s2.
+    rtol, longest : float
+        Tolerance of a step's velocity, relative to the scale of speeds; the longest step as a share of a sample
+        interval.
+    results : ndarray, shape (m, 7)
+        Receives the largest ``|u|``, the residual ``|u|``, the path [m], the largest acceleration passed on [m/s2], the
+        flags; and what each step may have been off by, summed up, of u [m] and of that acceleration [m/s2].
+    history : ndarray, shape (k, 4)
+        Receives ux, uy [m] and the absolute accelerations [m/s2] of a single body at the samples, as long as it is;
+        rows after the record follow the body on without excitation.
 
-
-    x, y, z        : (n,) m/s2;  peak: the largest of push = |a_h|;  pushes: block maxima of push
-    ratio, maxima  : from kernels.quiet, of this very motion
-    w, ... mu_k    : (m,)
-    rtol           : tolerance of the velocity in each step, relative to the scale of speeds
-    longest        : longest step as a share of a sample interval
-    history        : (k, 4) receives ux, uy and the absolute accelerations of a single body at the samples, as long as
-                     it is; rows after the record follow the body on without excitation
+    References
+    ----------
+    Newmark (1965) and Agbabian et al. (1991), as in `pipeline.kernels.friction_line.friction_line_batch`.
     """
     moving = x.shape[0] > 1 and peak > 0.0
     state, load, out = np.empty(11), np.empty(8), np.empty(6)

@@ -1,6 +1,11 @@
-"""A phase of slip in one direction, short against the body's period: its Taylor series and the instant of its stop.
+r"""Phase of slip in one direction, short against the body's period: its Taylor series and the instant of its stop.
 
-u'' + c u' + b u = f0 + f1 t, c = 2 zeta w, b = w^2; without a spring and a dashpot the series end and are exact.
+.. math::
+
+    u'' + c u' + b u = f_0 + f_1 t, \qquad c = 2 \zeta w, \quad b = w^2
+
+with u [m], f0 [m/s2] and f1 [m/s3] force per mass and its rate, c [1/s] and b [1/s2]; without a spring and a dashpot
+the series end and are exact.
 """
 
 import math
@@ -30,7 +35,22 @@ Body = tuple[float, float, float, float, float, float, float, float, float, floa
 
 @inner
 def make_body(w: float, zeta: float, mu_s: float, mu_k: float, step: float) -> Body:
-    """Return what a body is and what a whole step [s], its longest phase, does to it: the rows named above."""
+    """Return what a body is and what a whole step does to it: the rows named above.
+
+    Parameters
+    ----------
+    w, zeta : float
+        Angular frequency [rad/s] and damping ratio [-].
+    mu_s, mu_k : float
+        Friction at rest and while slipping [-].
+    step : float
+        Its longest phase, s.
+
+    Returns
+    -------
+    tuple of float
+        By W, ZETA, MU_S, ... SIZE.
+    """
     b, c = w * w, 2.0 * zeta * w
     uu, uv, u0, u1 = transition(w, zeta, step)
     ease = 1.0 / (1.0 - 0.5 * c * step - 0.125 * b * step * step)
@@ -45,9 +65,25 @@ def make_body(w: float, zeta: float, mu_s: float, mu_k: float, step: float) -> B
 
 @inlined
 def expand(u: float, v: float, f0: float, f1: float, body: Body, series: Array) -> None:
-    """Fill series (2, TERMS) with the Taylor series of velocity (row 0) and displacement (row 1) of a phase.
+    r"""Fill in the Taylor series of the velocity and the displacement of a phase.
 
-    u, v, f0, f1 : displacement [m], velocity [m/s], force per mass [m/s2] and its rate, at its beginning
+    Each further derivative follows from the two before it:
+
+    .. math::
+
+        u^{(k+2)} = -c u^{(k+1)} - b u^{(k)}, \qquad k \ge 2
+
+    Parameters
+    ----------
+    u, v : float
+        Displacement [m] and velocity [m/s] at its beginning.
+    f0, f1 : float
+        Force per mass [m/s2] and its rate [m/s3].
+    body : tuple of float
+        From `make_body`.
+    series : ndarray, shape (2, TERMS)
+        Receives the coefficients of the velocity (row 0, [m/s] per power of a second) and of the displacement since the
+        beginning over t (row 1, the same).
     """
     b, c = body[B], body[C]
     before, now = v, f0 - c * v - b * u
@@ -62,7 +98,22 @@ def expand(u: float, v: float, f0: float, f1: float, body: Body, series: Array) 
 
 @inlined
 def after(series: Array, size: float, t: float) -> tuple[float, float]:
-    """Return the velocity [m/s] after t seconds of a phase, and the displacement [m] during them."""
+    """Return velocity and displacement after a part of a phase, by its series.
+
+    Parameters
+    ----------
+    series : ndarray, shape (2, TERMS)
+        From `expand`.
+    size : float
+        How many of its terms there are.
+    t : float
+        Seconds since the beginning.
+
+    Returns
+    -------
+    tuple of float
+        The velocity then [m/s], and the displacement since the beginning [m].
+    """
     v, moved = 0.0, 0.0
     for k in range(int(size) - 1, -1, -1):
         v = v * t + series[0, k]
@@ -118,10 +169,24 @@ def _zero(
 def first_stop(
     u: float, v: float, s: float, f0: float, f1: float, body: Body, series: Array, span: float, un: float, vn: float
 ) -> tuple[float, float]:
-    """Return the first time [s] in (0, span] at which the velocity in direction s vanishes, and the displacement then.
+    """Return the first time at which the velocity in a direction vanishes, and the displacement then.
 
-    The time is -1 if it does not.  u, v, f0, f1: as in expand, which has filled series;  un, vn: after span.
-    span is at most a body's step, short against its period, so that the acceleration changes sign at most twice.
+    Parameters
+    ----------
+    u, v, f0, f1, body, series
+        As in `expand`, which has filled the series.
+    s : float
+        The direction, 1 or -1.
+    span : float
+        Length of the phase [s], at most a body's step: short against its period, so that the acceleration changes sign
+        at most twice.
+    un, vn : float
+        Displacement [m] and velocity [m/s] after span.
+
+    Returns
+    -------
+    tuple of float
+        The time in (0, span] [s], -1 if it does not vanish; and the displacement [m].
     """
     moving = s * v > 0.0
     first, half = s * series[0, 1], s * series[0, 2]
@@ -162,9 +227,29 @@ def passed_on(
     body: Body,
     most: float,
 ) -> float:
-    """Return the largest acceleration passed on [m/s2] so far (most) or in a slip of t s from u, v to un, vn.
+    r"""Return the largest acceleration passed on so far or in a slip.
 
-    f0, f1, lift0, lift1: force per mass and friction [m/s2] at its beginning, and their rates
+    .. math::
+
+        |c u' + b u + \text{lift}_0 + \text{lift}_1 t|
+
+    Parameters
+    ----------
+    u, v, un, vn : float
+        Displacement [m] and velocity [m/s] at its beginning and its end.
+    f0, f1, lift0, lift1 : float
+        Force per mass and friction [m/s2] at its beginning, and their rates [m/s3].
+    t : float
+        Length of the slip, s.
+    body : tuple of float
+        From `make_body`.
+    most : float
+        The largest so far, m/s2.
+
+    Returns
+    -------
+    float
+        In m/s2.
     """
     b, c = body[B], body[C]
     near = max(abs(c * v + b * u + lift0), abs(c * vn + b * un + lift0 + lift1 * t))

@@ -1,6 +1,11 @@
-"""The damped oscillator under a linearly varying force: closed form, for any damping and any step.
+r"""Damped oscillator under a linearly varying force: closed form, for any damping and any step.
 
-u'' + 2 zeta w u' + w^2 u = f0 + f1 t  (Nigam and Jennings 1969 for the piecewise-linear excitation)
+.. math::
+
+    u'' + 2 \zeta w u' + w^2 u = f_0 + f_1 t
+
+with u [m], w [rad/s], zeta [-], f0 [m/s2] and f1 [m/s3]; as Nigam and Jennings (1969) solve it for a piecewise-linear
+excitation.
 """
 
 import math
@@ -18,10 +23,32 @@ RECIPROCALS = np.array([0.0, *(1.0 / k for k in range(1, 46))])
 
 @bare
 def transition(w: float, zeta: float, t: float) -> tuple[float, float, float, float]:
-    """Return the responses after t to a unit displacement, velocity, step and ramp: (g, h, h1, h2).
+    r"""Return the responses of an oscillator to a unit displacement, velocity, step and ramp.
 
-    u(t) = u0 g + v0 h + f0 h1 + f1 h2 and u'(t) = -u0 w^2 h + v0 (g - 2 zeta w h) + f0 h + f1 h1.
-    w may be zero (a free mass).  Relative error about 1e-14 for any zeta >= 0.
+    .. math::
+
+        u(t) &= u_0 g + v_0 h + f_0 h_1 + f_1 h_2
+
+        u'(t) &= -u_0 w^2 h + v_0 (g - 2 \zeta w h) + f_0 h + f_1 h_1
+
+    Parameters
+    ----------
+    w : float
+        Angular frequency [rad/s]; may be zero (a free mass).
+    zeta : float
+        Damping ratio [-], not below zero.
+    t : float
+        Time, s.
+
+    Returns
+    -------
+    tuple of float
+        g [-], h [s], h1 [s2] and h2 [s3], with a relative error of about 1e-14.
+
+    References
+    ----------
+    Nigam, N. C. and Jennings, P. C. (1969). Calculation of response spectra from strong-motion earthquake records.
+    Bulletin of the Seismological Society of America 59.
     """
     x = w * t
     if x * (1.0 + zeta) < 0.5:
@@ -60,7 +87,26 @@ def transition(w: float, zeta: float, t: float) -> tuple[float, float, float, fl
 
 @bare
 def advance(u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: float) -> tuple[float, float]:
-    """Return displacement and velocity after t."""
+    """Return displacement and velocity of an oscillator after a time.
+
+    Parameters
+    ----------
+    u, v : float
+        Displacement [m] and velocity [m/s] at the beginning.
+    f0, f1 : float
+        Force per mass [m/s2] and its rate [m/s3].
+    w, zeta, t : float
+        As in `transition`.
+
+    Returns
+    -------
+    tuple of float
+        Displacement [m] and velocity [m/s].
+
+    References
+    ----------
+    Nigam and Jennings (1969), as in `transition`.
+    """
     g, h, h1, h2 = transition(w, zeta, t)
     return u * g + v * h + f0 * h1 + f1 * h2, -u * w * w * h + v * (g - 2.0 * zeta * w * h) + f0 * h + f1 * h1
 
@@ -69,7 +115,20 @@ def advance(u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: 
 def slope(
     u: float, v: float, f0: float, f1: float, w: float, zeta: float, t: float, c1: float, cu: float, cv: float
 ) -> float:
-    """Return the rate of y = c1 t + cu u + cv u' after t."""
+    """Return the rate of y = c1 t + cu u + cv u' after a time.
+
+    Parameters
+    ----------
+    u, v, f0, f1, w, zeta, t
+        As in `advance`.
+    c1, cu, cv : float
+        What y is made of.
+
+    Returns
+    -------
+    float
+        In y's unit per second.
+    """
     un, vn = advance(u, v, f0, f1, w, zeta, t)
     return c1 + cu * vn + cv * (f0 + f1 * t - 2.0 * zeta * w * vn - w * w * un)
 
@@ -149,9 +208,21 @@ def peak_inside(
     cu: float,
     cv: float,
 ) -> float:
-    """Return the largest |y| strictly inside (0, span) at a stationary point of y = c0 + c1 t + cu u + cv u', or 0.
+    """Return the largest ``|y|`` at a stationary point of y = c0 + c1 t + cu u + cv u' strictly inside a span.
 
-    span must be short against the period (w span < pi), so that y has at most two stationary points inside.
+    Parameters
+    ----------
+    u, v, f0, f1, w, zeta
+        As in `advance`.
+    span : float
+        Seconds, short against the period (w span < pi), so that y has at most two stationary points inside.
+    c0, c1, cu, cv : float
+        What y is made of.
+
+    Returns
+    -------
+    float
+        In y's unit; 0 where there is none.
     """
     low = 0.0
     begin = slope(u, v, f0, f1, w, zeta, 0.0, c1, cu, cv)

@@ -1,4 +1,4 @@
-"""Piecewise cubic interpolation: what makes a lookup in a response chart cost less than a hundred nanoseconds."""
+"""Piecewise cubic interpolation, by which a lookup in a response chart costs less than a hundred nanoseconds."""
 
 import numpy as np
 
@@ -17,7 +17,19 @@ CUBIC = 4
 
 @kernel
 def cubic_weights(t: float, weights: Array) -> None:
-    """Fill the weights (4,) of the nodes 0, 1, 2, 3 of a cubic at t; at a node they are exactly 0 and 1."""
+    r"""Fill in the weights of the nodes 0, 1, 2, 3 of a cubic (Lagrange); at a node they are exactly 0 and 1.
+
+    .. math::
+
+        w_j(t) = \prod_{k \ne j} \frac{t - k}{j - k}
+
+    Parameters
+    ----------
+    t : float
+        Place, in steps between nodes [-].
+    weights : ndarray, shape (4,)
+        Receives them [-].
+    """
     a, b, c = t - 1.0, t - 2.0, t - 3.0
     weights[0] = -a * b * c / 6.0
     weights[1] = 0.5 * t * b * c
@@ -27,13 +39,20 @@ def cubic_weights(t: float, weights: Array) -> None:
 
 @kernel
 def lookup_batch(at: Array, edges: Array, values: Array, columns: Array, cell: Array) -> None:
-    """Interpolate n points; no output is below zero.
+    """Interpolate at n points; no output is below zero.
 
-    at     : (n,), between the first and the last edge
-    edges  : (cells + 1,), rising
-    values : (cells, 7, outputs) at nodes that divide a cell evenly
-    columns: filled, (outputs, n)
-    cell   : filled, (n,) int64: in which cell a point lies
+    Parameters
+    ----------
+    at : ndarray, shape (n,)
+        Points, between the first and the last edge, in the edges' unit.
+    edges : ndarray, shape (cells + 1,)
+        Rising.
+    values : ndarray, shape (cells, 7, outputs)
+        At nodes that divide a cell evenly, each output in its own unit.
+    columns : ndarray, shape (outputs, n)
+        Receives the outputs.
+    cell : ndarray of int, shape (n,)
+        Receives in which cell a point lies.
     """
     weights = np.empty(CUBIC)
     for i in range(at.shape[0]):

@@ -1,9 +1,16 @@
-"""Linear oscillators on a shaking base: exact recursion for piecewise-linear input, peaks found between the samples.
+r"""Linear oscillators on a shaking base: exact recursion for piecewise-linear input, peaks found between the samples.
 
-u'' + 2 zeta w u' + w^2 u = -a, and y = a + share u'' beside u.  Oscillators run in lanes, however stiff one step a
-sample.  Of each stretch of samples only a rigorous bound of what lies in it is kept; the few stretches whose bound
-exceeds the largest value at a sample are walked again one oscillator at a time, and the few of their intervals that can
-hold the peak are searched by closed form.  Lanes do not mix: a result is the same to the last bit in any company.
+.. math::
+
+    u'' + 2 \zeta w u' + w^2 u = -a, \qquad y = a + \text{share} \cdot u''
+
+with u [m] the displacement relative to the base, a [m/s2] the acceleration of the base, w [rad/s], zeta [-], and y
+[m/s2] beside u: with a share of 1 the absolute acceleration of the mass.
+
+Oscillators run in lanes, however stiff one step a sample.  Of each stretch of samples only a rigorous bound of what
+lies in it is kept; the few stretches whose bound exceeds the largest value at a sample are walked again one oscillator
+at a time, and the few of their intervals that can hold the peak are searched by closed form.  Lanes do not mix: a
+result is the same to the last bit in any company.
 
 The bound: between two samples a is linear, so that f = u'' obeys f'' + 2 zeta w f' + w^2 f = 0, whose energy
 f^2 + (f' / w)^2 cannot grow.  At a sample f' jumps by as much as the slope of a.
@@ -362,11 +369,31 @@ def _coast(
 def oscillator_batch(
     base: Array, dt: float, w: Array, zeta: Array, share: Array, tail: float, max_u: Array, max_y: Array
 ) -> None:
-    """Fill max_u (m,) m and max_y (m,) m/s2 for m oscillators under one base motion.
+    r"""Find the peaks of m oscillators under one base motion.
 
-    base  : (n,) m/s2, excitation between the first and the last sample, none outside
-    share : (m,) y = a + share u'': 1 for the absolute acceleration of the mass; another one is a lever ratio
-    tail  : s to go on after the record, or -1: until past the peaks
+    .. math::
+
+        u'' + 2 \zeta w u' + w^2 u = -a, \qquad y = a + \text{share} \cdot u''
+
+    Parameters
+    ----------
+    base : ndarray, shape (n,)
+        a, m/s2: excitation between the first and the last sample, none outside.
+    dt : float
+        Time step, s.
+    w, zeta : ndarray, shape (m,)
+        Angular frequency [rad/s] and damping ratio [-].
+    share : ndarray, shape (m,)
+        Of u'' in y [-]: 1 for the absolute acceleration of the mass; another one is a lever ratio.
+    tail : float
+        Seconds to go on after the record, or -1: until past the peaks.
+    max_u, max_y : ndarray, shape (m,)
+        Receive the largest ``|u|`` [m] and ``|y|`` [m/s2], between the samples too.
+
+    References
+    ----------
+    Nigam, N. C. and Jennings, P. C. (1969). Calculation of response spectra from strong-motion earthquake records.
+    Bulletin of the Seismological Society of America 59: the recursion from sample to sample.
     """
     n, m = base.shape[0], w.shape[0]
     max_u[:], max_y[:] = 0.0, 0.0
@@ -400,9 +427,26 @@ def oscillator_batch(
 
 @bare
 def oscillator_history(base: Array, dt: float, w: float, zeta: float, share: float, history: Array) -> None:
-    """Fill history (m, 2) with u [m] and y = a + share u'' [m/s2] of one oscillator at the samples.
+    r"""Fill in the history of one oscillator at the samples.
 
-    base : (n,) m/s2; rows of the history after the record follow the free decay
+    .. math::
+
+        u'' + 2 \zeta w u' + w^2 u = -a, \qquad y = a + \text{share} \cdot u''
+
+    Parameters
+    ----------
+    base : ndarray, shape (n,)
+        a, m/s2.
+    dt : float
+        Time step, s.
+    w, zeta, share : float
+        As in `oscillator_batch`, of one.
+    history : ndarray, shape (k, 2)
+        Receives u [m] and y [m/s2]; rows after the record follow the free decay.
+
+    References
+    ----------
+    Nigam and Jennings (1969), as in `oscillator_batch`.
     """
     n = base.shape[0]
     g, h, h1, h2 = transition(w, zeta, dt)

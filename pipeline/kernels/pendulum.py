@@ -1,7 +1,12 @@
-"""A rigid pendulum swinging in one vertical plane, its pivot shaken horizontally and vertically.
+r"""Rigid pendulum swinging in one vertical plane, its pivot shaken horizontally and vertically.
 
-theta'' + 2 zeta w theta' + ((g + a_z) / L) sin theta = -(a / L) cos theta,  w = sqrt(g / L)
-(Agbabian et al. 1991, sec. 2.4: viscous damping and in-plane vertical excitation included).
+.. math::
+
+    \theta'' + 2 \zeta w \theta' + \frac{g + a_z}{L} \sin\theta = -\frac{a}{L} \cos\theta, \qquad w = \sqrt{g / L}
+
+with theta [rad] from the vertical, a and a_z [m/s2] the horizontal and the vertical acceleration of the pivot, L [m]
+the length of the equivalent simple pendulum, zeta [-] (Agbabian et al. 1991, sec. 2.4: viscous damping and in-plane
+vertical excitation included).
 
 Classical Runge-Kutta steps of fourth order that end at every sample, where the excitation has its kinks.  Sine and
 cosine of theta are integrated along with it (s' = c theta', c' = -s theta'), so that a step has no transcendental
@@ -202,9 +207,23 @@ def _coast(
 
 @bare
 def substeps(length: float, zeta: float, peak: float, dt: float) -> int:
-    """Return how many steps a sample interval takes, 0 for more than are taken.
+    """Return how many steps a sample interval takes.
 
-    peak: the largest acceleration of the pivot [m/s2]
+    Parameters
+    ----------
+    length : float
+        L, m.
+    zeta : float
+        Damping ratio [-].
+    peak : float
+        The largest acceleration of the pivot, m/s2.
+    dt : float
+        Sample interval, s.
+
+    Returns
+    -------
+    int
+        0 for more than are taken.
     """
     steps = math.sqrt((G + peak) / length) * (1.0 + 2.0 * zeta) * dt / STEP
     return max(1, math.ceil(steps)) if steps <= MOST_STEPS else 0
@@ -223,12 +242,37 @@ def pendulum_batch(
     results: Array,
     history: Array,
 ) -> None:
-    """Fill results (m, 2): max |theta| [rad], flags; NaN where it is not followed.
+    r"""Follow m pendulums in one vertical plane.
 
-    x, z    : (n,) m/s2;  peak: the largest acceleration of the pivot
-    history : (k, 1) receives theta of a single pendulum at the samples, as long as it is
+    .. math::
+
+        \theta'' + 2 \zeta w \theta' + \frac{g + a_z}{L} \sin\theta = -\frac{a}{L} \cos\theta, \qquad w = \sqrt{g / L}
 
     Lanes do not mix: a result is the same to the last bit in any company.
+
+    Parameters
+    ----------
+    x, z : ndarray, shape (n,)
+        Horizontal (a) and vertical (a_z) acceleration of the pivot, m/s2, linear between samples.
+    dt : float
+        Time step, s.
+    peak : float
+        The largest acceleration of the pivot, m/s2.
+    length, zeta : ndarray, shape (m,)
+        L [m] and damping ratio [-].
+    tail : float
+        Seconds to go on after the record; below 0: until past the peak, or CAP.
+    refine : int
+        By what the standard step is divided; the error falls with its fourth power.
+    results : ndarray, shape (m, 2)
+        Receives the largest ``|theta|`` [rad] and the flags (`pipeline.kernels.flags`); NaN where it is not followed.
+    history : ndarray, shape (k, 1)
+        Receives theta [rad] of a single pendulum at the samples, as long as it is.
+
+    References
+    ----------
+    Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+    methods for museum objects. Studies in Conservation 36. Sec. 2.4.
     """
     m = length.shape[0]
     results[:, :] = 0.0

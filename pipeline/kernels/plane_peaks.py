@@ -1,4 +1,13 @@
-"""The largest radius and acceleration passed on inside a step of a body slipping in two directions, and at samples."""
+r"""Peaks of a body slipping in two directions: the largest radius and acceleration inside a step; and its samples.
+
+Passed on is, with the symbols of `pipeline.kernels.plane_step`,
+
+.. math::
+
+    f = b u + c u' + \mu_k N \frac{u'}{|u'|}
+
+in m/s2.
+"""
 
 import math
 
@@ -15,7 +24,18 @@ TRIALS = 12
 
 @inner
 def felt(ux: float, uy: float, vx: float, vy: float, ex: float, ey: float, grip: float, b: float, c: float) -> float:
-    """Return the absolute acceleration of a slipping body [m/s2]: what spring, dashpot and friction push it with."""
+    """Return the absolute acceleration of a slipping body: what spring, dashpot and friction push it with.
+
+    Parameters
+    ----------
+    ux, uy, vx, vy, ex, ey, grip, b, c : float
+        As in `pipeline.kernels.plane_step.plane_step`.
+
+    Returns
+    -------
+    float
+        ``|f|``, m/s2.
+    """
     if b == 0.0:
         return grip
     fx, fy = b * ux + c * vx + grip * ex, b * uy + c * vy + grip * ey
@@ -72,9 +92,21 @@ def inner_radius(
     end: float,
     most: float,
 ) -> float:
-    """Return the largest |u|^2 [m2] inside a step of h from u, v, or 0 where it cannot exceed ``most``.
+    """Return the largest square of the radius inside a step, where the body turns back.
 
-    begin > 0 > end: u.v at the ends of the step; the other arguments as in plane_step
+    Parameters
+    ----------
+    ux, uy, vx, vy, ex, ey, speed, ax, ay, a1x, a1y, grip, grip1, b, c, h
+        As in `pipeline.kernels.plane_step.plane_step`.
+    begin, end : float
+        u . v at the ends of the step [m2/s]: begin > 0 > end.
+    most : float
+        The largest so far, m2.
+
+    Returns
+    -------
+    float
+        ``|u|^2`` [m2], or 0 where it cannot exceed ``most``.
     """
     reach = math.sqrt(ux * ux + uy * uy) + h * speed
     if reach * reach <= most:
@@ -105,10 +137,24 @@ def inner_radius(
 
 @inner
 def stop_radius(ux: float, uy: float, wx: float, wy: float, dx: float, dy: float) -> float:
-    """Return the largest |u|^2 [m2] on the way d to rest from u: at the beginning, inside or at the end.
+    """Return the largest square of the radius on the way to rest: at the beginning, inside or at the end.
 
-    w     : the velocity there times the time to rest [m]
-    error : of the cubic that begins at u with w and ends at u + d at rest, a share of what it rises above both ends
+    The way is taken for the cubic that begins at u with the velocity there and ends at u + d at rest; it is off by a
+    share of what it rises above both ends.
+
+    Parameters
+    ----------
+    ux, uy : float
+        Where the way begins, m.
+    wx, wy : float
+        The velocity there times the time to rest, m.
+    dx, dy : float
+        The way, m.
+
+    Returns
+    -------
+    float
+        ``|u|^2`` [m2].
     """
     best = 0.0
     for k in range(STATIONS + 1):
@@ -145,9 +191,21 @@ def inner_felt(
     dy: float,
     pace: float,
 ) -> float:
-    """Return the largest absolute acceleration [m/s2] at a stationary point inside a step of h, or 0.
+    """Return the largest absolute acceleration at a stationary point inside a step.
 
-    u, v, e, speed: at its beginning; w, s, d, pace: at its end; the other arguments as in plane_step
+    Parameters
+    ----------
+    ux, uy, vx, vy, ex, ey, speed : float
+        At its beginning, as in `pipeline.kernels.plane_step.plane_step`.
+    ax, ay, a1x, a1y, grip, grip1, b, c, h : float
+        As there.
+    wx, wy, sx, sy, dx, dy, pace : float
+        Displacement [m], velocity [m/s], its direction and size at its end.
+
+    Returns
+    -------
+    float
+        In m/s2; 0 where there is none.
     """
     begin = _felt_rate(ux, uy, vx, vy, ex, ey, speed, ax, ay, grip, grip1, b, c)
     end = _felt_rate(wx, wy, sx, sy, dx, dy, pace, ax + a1x * h, ay + a1y * h, grip + grip1 * h, grip1, b, c)
@@ -192,9 +250,26 @@ def note(
     c: float,
     slipping: bool,
 ) -> None:
-    """Fill history[i] with ux, uy [m] and the absolute acceleration [m/s2] at a sample.
+    """Fill in a sample of a history.
 
-    state  : as in friction_plane, ux, uy, vx, vy first;  a: base acceleration;  weight: N
+    Parameters
+    ----------
+    history : ndarray, shape (k, 4)
+        Receives in row i ux, uy [m] and the absolute acceleration along both [m/s2].
+    i : int
+        The sample.
+    state : ndarray
+        As in `pipeline.kernels.friction_plane`: ux, uy [m], vx, vy [m/s] first.
+    ax, ay : float
+        Acceleration of the base, m/s2.
+    mu_s, mu_k : float
+        Friction at rest and while slipping [-].
+    weight : float
+        N, m/s2.
+    b, c : float
+        w^2 [1/s2] and 2 zeta w [1/s].
+    slipping : bool
+        Whether it slips.
     """
     history[i, 0], history[i, 1] = state[0], state[1]
     speed = math.hypot(state[2], state[3])

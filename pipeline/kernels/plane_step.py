@@ -1,8 +1,19 @@
-"""One implicit Runge-Kutta step of a body slipping on dry friction in two directions, each stage in closed form.
+r"""Implicit Runge-Kutta step of a body slipping on dry friction in two directions, each stage in closed form.
 
-The direction of friction relaxes at the rate mu N / |u'|: infinitely fast where the body starts or turns.  A diagonally
-implicit method of order 4 with an explicit first stage (Kennedy and Carpenter 2003, ARK4(3)6L[2]SA) stays stable there
-and costs no more than an explicit one: a stage of length h g ends at the velocity V for which D V = W - h g mu N V/|V|,
+.. math::
+
+    u'' = -a - c u' - b u - \mu_k N \frac{u'}{|u'|}, \qquad c = 2 \zeta w, \quad b = w^2
+
+with u [m], the base's acceleration a [m/s2] and the grip mu_k N [m/s2] linear in time, c [1/s], b [1/s2].
+
+The direction of friction relaxes at the rate mu N / ``|u'|``: infinitely fast where the body starts or turns.  A
+diagonally implicit method of order 4 with an explicit first stage (Kennedy and Carpenter 2003, ARK4(3)6L[2]SA) stays
+stable there and costs no more than an explicit one: a stage of length h gamma ends at the velocity V for which
+
+.. math::
+
+    D V = W - h \gamma \mu_k N \frac{V}{|V|}
+
 with W all that is known and D a number, so V is parallel to W and shorter by what friction takes.
 """
 
@@ -51,13 +62,38 @@ def plane_step(
     c: float,
     h: float,
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:
-    """Take one step of h > 0 seconds; return ux, uy, vx, vy, ex, ey, speed, the path, the error, the least speed.
+    """Take one step.
 
-    u, v, e      : displacement [m], velocity [m/s] and its direction (from rest: that of the push);  speed: |v|
-    a, a1        : base acceleration and its rate [m/s2, m/s3];  grip, grip1: mu_k N and its rate
-    b, c         : w^2 [1/s2], 2 zeta w [1/s]
-    error        : of the velocity, against the embedded method of order 3 [m/s]
-    least speed  : of the stages; below zero friction would have reversed the body: the step is too long
+    Parameters
+    ----------
+    ux, uy, vx, vy : float
+        Displacement [m] and velocity [m/s].
+    ex, ey, speed : float
+        Direction of the velocity [-] (from rest: that of the push), and its size [m/s].
+    ax, ay, a1x, a1y : float
+        Acceleration of the base [m/s2] and its rate [m/s3].
+    grip, grip1 : float
+        mu_k N [m/s2] and its rate [m/s3].
+    b, c : float
+        w^2 [1/s2] and 2 zeta w [1/s].
+    h : float
+        Length of the step, s, above 0.
+
+    Returns
+    -------
+    ux, uy, vx, vy, ex, ey, speed : float
+        At its end.
+    path : float
+        In the step, m.
+    error : float
+        Of the velocity, against the embedded method of order 3, m/s.
+    least : float
+        The least speed of the stages [m/s]; below zero friction would have reversed the body: the step is too long.
+
+    References
+    ----------
+    Kennedy, C. A. and Carpenter, M. H. (2003). Additive Runge-Kutta schemes for convection-diffusion-reaction
+    equations. Applied Numerical Mathematics 44, 139-181.
     """
     # Everything that does not wait for the stage before is set apart: the stages are a chain of roots and quotients.
     # z is the velocity that a stage's acceleration makes in h / 4.

@@ -1,7 +1,12 @@
-"""How a body that slips in two directions comes to rest: instants and ways in closed form.
+r"""Stop of a body that slips in two directions: instants and ways in closed form.
 
-Under a constant push q = -(a + b u + c u') and a constant grip g = mu_k N (a block on an incline) the quantity
-g |u'| + q.u' falls at the constant rate g^2 - q^2 and vanishes with the velocity, and the way that is left is a
+Under a constant push q = -(a + b u + c u') [m/s2] and a constant grip g = mu_k N [m/s2] (a block on an incline)
+
+.. math::
+
+    u'' = q - g \frac{u'}{|u'|}, \qquad \frac{d}{dt} \left(g |u'| + q \cdot u'\right) = -(g^2 - |q|^2)
+
+so that g ``|u'|`` + q . u' falls at a constant rate and vanishes with the velocity, and the way that is left is a
 quadratic form of the velocity.  On a straight line a push that changes linearly has a closed form, too.
 """
 
@@ -49,7 +54,16 @@ def _plane_stop(
 ) -> float:
     """Return the time [s] in (0, span] at which the body comes to rest, or NEVER.
 
-    q, q1: the push [m/s2] and its rate, whose change along the way is taken to first order
+    Parameters
+    ----------
+    speed, vx, vy : float
+        Of the body, m/s.
+    qx, qy, q1x, q1y : float
+        The push [m/s2] and its rate [m/s3], whose change along the way is taken to first order.
+    grip, grip1 : float
+        mu_k N [m/s2] and its rate [m/s3].
+    span : float
+        Seconds.
     """
     level = grip * speed + qx * vx + qy * vy
     if level <= 0.0:
@@ -127,15 +141,29 @@ def come_to_rest(
     stiff: float,
     crawls: bool,
 ) -> tuple[float, float, float, float, float]:
-    """Return the time to rest [s], the way (x, y) and the path [m] to there, and the way's error [m].
+    """Return when and where a slipping body comes to rest, if that can be said now.
 
-    A time below zero says: not now.
+    Parameters
+    ----------
+    speed, vx, vy, ex, ey : float
+        Size of the velocity, the velocity [m/s] and its direction [-].
+    qx, qy, q1x, q1y : float
+        The push -(a + b u + c u') [m/s2] and its rate [m/s3].
+    load : ndarray, shape (8,)
+        As in `pipeline.kernels.friction_plane`: excitation, grip and hold with their rates.
+    t, left : float
+        The instant in the stretch on which the load is linear, and what is left of the stretch, s.
+    change : float
+        Share of push and grip that may change on the way, where they are held constant.
+    stiff : float
+        b + c^2 [1/s2], by which spring and dashpot bend the push.
+    crawls : bool
+        Whether it is so slow that any way to rest will do.
 
-    e            : direction of v;  q, q1: the push -(a + b u + c u') and its rate
-    load, t, left: as in friction_plane: the instant, and what is left of the stretch on which the load is linear
-    change       : share of push and grip that may change on the way, where they are held constant
-    stiff        : b + c^2 [1/s2], by which spring and dashpot bend the push
-    crawls       : it is so slow that any way to rest will do
+    Returns
+    -------
+    tuple of float
+        The time to rest [s], below zero for not now; the way (x, y), the path to there, and the way's error [m].
     """
     grip, grip1 = load[4] + load[5] * t, load[5]
     loss, loss1 = grip - qx * ex - qy * ey, grip1 - q1x * ex - q1y * ey

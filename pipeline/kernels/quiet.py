@@ -1,6 +1,12 @@
-"""When nothing can move: the ratio of horizontal to available vertical acceleration, and stretches of proven rest.
+r"""Rest of an object: the ratio of horizontal to available vertical acceleration, and stretches of proven rest.
 
-|a_h| - mu (g + a_z) is convex between samples, so the samples alone decide whether a resting object stays at rest.
+At rest is what has
+
+.. math::
+
+    |a_h| - \mu_s (g + a_z) \le 0
+
+which is convex between samples, so the samples alone decide whether a resting object stays at rest.
 """
 
 import math
@@ -16,7 +22,22 @@ BLOCK = 64
 
 @kernel
 def demand_ratio(x: Array, y: Array, z: Array) -> Array:
-    """Return |a_h| / max(0, g + a_z) at each sample (n,): infinite where contact is lost."""
+    r"""Return the friction that would hold an object at each sample.
+
+    .. math::
+
+        \frac{|a_h|}{\max(0, g + a_z)}
+
+    Parameters
+    ----------
+    x, y, z : ndarray, shape (n,)
+        Acceleration of the base, m/s2.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Dimensionless; infinite where contact is lost.
+    """
     n = x.shape[0]
     ratio = np.empty(n)
     for i in range(n):
@@ -28,7 +49,18 @@ def demand_ratio(x: Array, y: Array, z: Array) -> Array:
 
 @kernel
 def block_maxima(values: Array) -> Array:
-    """Return the maxima of consecutive blocks of BLOCK values."""
+    """Return the maxima of consecutive blocks of BLOCK values.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        In any unit.
+
+    Returns
+    -------
+    ndarray
+        One for each block, the last of which may be shorter.
+    """
     n = values.shape[0]
     blocks = (n + BLOCK - 1) // BLOCK
     out = np.empty(blocks)
@@ -42,7 +74,24 @@ def block_maxima(values: Array) -> Array:
 
 @bare
 def next_above(values: Array, maxima: Array, start: int, limit: float) -> int:
-    """Return the first index >= start whose value exceeds the limit, or len(values)."""
+    """Return the first index from a start on whose value exceeds the limit.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        In any unit.
+    maxima : ndarray
+        Their block maxima.
+    start : int
+        Where to begin.
+    limit : float
+        In the same unit.
+
+    Returns
+    -------
+    int
+        n where there is none.
+    """
     n = values.shape[0]
     i = start
     while i < n:
@@ -57,7 +106,22 @@ def next_above(values: Array, maxima: Array, start: int, limit: float) -> int:
 
 @bare
 def largest(x: Array, maxima: Array, begin: int, end: int) -> float:
-    """Return the largest |x| from begin up to end, given the block maxima of |x|."""
+    """Return the largest absolute value of a stretch.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        In any unit.
+    maxima : ndarray
+        Block maxima of ``|x|``.
+    begin, end : int
+        From which index up to which, without the last.
+
+    Returns
+    -------
+    float
+        In the same unit; 0 for nothing.
+    """
     best = 0.0
     i = begin
     while i < end:

@@ -1,9 +1,16 @@
-"""Rocking and overturning of a rigid body about two edges (Housner 1963), impacts located in time.
+r"""Rocking and overturning of a rigid body about two edges (Housner 1963), impacts located in time.
 
-With s = +1 on the edge towards +axis and -1 on the other, and phi = s theta >= 0:
-phi'' = c_s (-N sin(alpha_s - phi) - s a cos(alpha_s - phi)),  c_s = R_s / (rho^2 + R_s^2),  N = max(0, g + a_z).
-At phi = 0 the body lands on the other edge and its rate is multiplied by the restitution.  Classical Runge-Kutta steps
-of fourth order, which end at every sample, lift-off and landing, so that the order holds through the impacts.
+With s = +1 on the edge towards +axis and -1 on the other, and phi = s theta >= 0 [rad],
+
+.. math::
+
+    \phi'' = -c_s \left[N \sin(\alpha_s - \phi) + s a \cos(\alpha_s - \phi)\right], \qquad
+    c_s = \frac{R_s}{\rho^2 + R_s^2}, \quad N = \max(0, g + a_z)
+
+with alpha_s [rad] the slenderness towards an edge, R_s [m] its distance from the centre of gravity, rho [m] the radius
+of gyration, a and a_z [m/s2] the horizontal and the vertical acceleration of the base.  At phi = 0 the body lands on
+the other edge and its rate is multiplied by the restitution.  Classical Runge-Kutta steps of fourth order, which end at
+every sample, lift-off and landing, so that the order holds through the impacts.
 """
 
 import math
@@ -383,17 +390,48 @@ def rocking_batch(
     results: Array,
     history: Array,
 ) -> None:
-    """Fill results (m, 8) of m bodies.
+    r"""Follow m rocking bodies.
 
-    x, z           : (n,) m/s2;  peak: the largest |x|
-    ratio, maxima  : from kernels.quiet, of this very motion
-    bodies         : (m, 6): alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]; 1 is the edge towards +axis
-    initial        : (m,) rad, released from rest
-    until          : (m,) s, after which a body that has calmed down is no longer followed; infinite: it always is
-    rest           : REST, or less for a body whose rests matter
-    results        : max ratio, overturned (0, 1), time of overturning, time of uplift [s] (-1: never), impacts, flags,
-                     the last time above NEAR [s] (to a sample or a step), whether (0, 1) an edge lifted
-                     again before the impacts that a rest cut off would have ended
+    .. math::
+
+        \phi'' = -c_s \left[N \sin(\alpha_s - \phi) + s a \cos(\alpha_s - \phi)\right], \qquad
+        \phi'_+ = -e \phi'_- \text{ at each landing}
+
+    Parameters
+    ----------
+    x, z : ndarray, shape (n,)
+        Horizontal (a) and vertical (a_z) acceleration of the base, m/s2, linear between samples.
+    ratio, maxima : ndarray
+        From `pipeline.kernels.quiet`, of this very motion: `demand_ratio` (n,) [-], and its block maxima.
+    dt : float
+        Time step, s.
+    peak : float
+        The largest ``|x|``, m/s2.
+    bodies : ndarray, shape (m, 6)
+        alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]; 1 is the edge towards +axis.
+    initial : ndarray, shape (m,)
+        Rotation from which it is released at rest, rad.
+    tail : float
+        Seconds to go on after the record; below 0: until it rests or lies, or CAP.
+    until : ndarray, shape (m,)
+        Time after which a body that has calmed down is no longer followed, s; infinite: it always is.
+    refine : int
+        By what the standard step is divided; the error falls with its fourth power.
+    rest : float
+        REST, or less for a body whose rests matter.
+    results : ndarray, shape (m, 8)
+        Receives the largest phi / alpha_s [-], whether it overturned (0, 1), the times of overturning and of uplift [s]
+        (-1: never), the number of impacts, the flags (`pipeline.kernels.flags`), the last time above NEAR [s] (to a
+        sample or a step), and whether (0, 1) an edge lifted again before the impacts that a rest cut off would have
+        ended.
+    history : ndarray, shape (k, 1)
+        Receives theta = s phi [rad] of a single body at the samples, as long as it is.
+
+    References
+    ----------
+    Housner, G. W. (1963). The behavior of inverted pendulum structures during earthquakes. Bulletin of the
+    Seismological Society of America 53. Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991).
+    Evaluation of earthquake damage mitigation methods for museum objects. Studies in Conservation 36. Sec. 2.1.
     """
     state = np.empty(6)
     for k in range(bodies.shape[0]):

@@ -10,12 +10,36 @@ from pipeline.quantities import Array
 
 @kernel
 def rotated_peaks(u: Array, bend: Array, steps: Array, normals: Array, parts: int, peaks: Array) -> float:
-    """Raise the peaks |u . n| of each direction by a history that is a cubic between its nodes; return the peak |u|.
+    r"""Raise the peaks of each direction by a history that is a cubic between its nodes, and return the peak of all.
 
-    u, bend : (2, n) the history at its nodes and its second derivative there; steps: (n - 1,) s between them
-    normals : (2, m) unit vectors; peaks: (m,) receives, and may hold peaks that are known already
-    parts   : points at which an interval that may hold a peak is looked at
-    error   : of the cubic with the right second derivatives at both ends: 5/384 (w h)^4
+    .. math::
+
+        \max_t |u(t) \cdot n_k|
+
+    The cubic with the right second derivatives at both ends is off by 5/384 (w h)^4 of an oscillation at w [rad/s].
+
+    Parameters
+    ----------
+    u, bend : ndarray, shape (2, n)
+        The history at its nodes and its second derivative there, in u's unit and that per s2.
+    steps : ndarray, shape (n - 1,)
+        Time between nodes, s.
+    normals : ndarray, shape (2, m)
+        Unit vectors.
+    parts : int
+        Points at which an interval that may hold a peak is looked at.
+    peaks : ndarray, shape (m,)
+        Receives, and may hold, peaks that are known already.
+
+    Returns
+    -------
+    float
+        The peak ``|u|``, in u's unit.
+
+    References
+    ----------
+    Boore, D. M. (2010). Orientation-independent, nongeometric-mean measures of seismic intensity from two horizontal
+    components of motion. Bulletin of the Seismological Society of America 100: RotD50 and RotD100.
     """
     n, m = u.shape[1], normals.shape[1]
     far = 0.0
@@ -61,9 +85,16 @@ def rotated_peaks(u: Array, bend: Array, steps: Array, normals: Array, parts: in
 
 @kernel
 def first_guess(u: Array, normals: Array, peaks: Array) -> None:
-    """Fill the peaks (m,) of each direction with those of the farthest node of each sector: never above the truth.
+    """Fill in the peaks of each direction with those of the farthest node of each sector: never above the truth.
 
-    u : (2, n); normals : (2, m), unit vectors at equal angles over half a turn, the first along x
+    Parameters
+    ----------
+    u : ndarray, shape (2, n)
+        The history at its nodes.
+    normals : ndarray, shape (2, m)
+        Unit vectors at equal angles over half a turn, the first along x.
+    peaks : ndarray, shape (m,)
+        Receives them, in u's unit.
     """
     m = normals.shape[1]
     best, where = np.zeros(m), np.full(m, -1)

@@ -1,7 +1,13 @@
-"""A rigid pendulum free to swing in all directions, such as a chandelier, without a singularity at rest.
+r"""Rigid pendulum free to swing in all directions, such as a chandelier, without a singularity at rest.
 
-q is the unit vector from the pivot to the mass: q'' = -|q'|^2 q + (I - q q^T) f - 2 zeta w q',
-f = -(a_x, a_y, g + a_z) / L,  w = sqrt(g / L).  Classical Runge-Kutta steps of fourth order that end at every sample.
+With q [-] the unit vector from the pivot to the mass,
+
+.. math::
+
+    q'' = -|q'|^2 q + (I - q q^T) f - 2 \zeta w q', \qquad f = -\frac{(a_x, a_y, g + a_z)}{L}, \quad w = \sqrt{g / L}
+
+with a [m/s2] the acceleration of the pivot, L [m] the length of the equivalent simple pendulum and zeta [-] the damping
+ratio.  Classical Runge-Kutta steps of fourth order that end at every sample.
 """
 
 import math
@@ -216,12 +222,26 @@ def spherical_batch(
     results: Array,
     history: Array,
 ) -> None:
-    """Fill results (m, 2): max horizontal displacement / L [-], flags; NaN where it is not followed.
-
-    x, y, z : (n,) m/s2;  peak: the largest acceleration of the pivot
-    history : (k, 2) receives the horizontal displacement / L of a single pendulum at the samples, as long as it is
+    """Follow m pendulums that swing in all directions, by the equation at the top of this module.
 
     Lanes do not mix: a result is the same to the last bit in any company.
+
+    Parameters
+    ----------
+    x, y, z : ndarray, shape (n,)
+        Acceleration of the pivot, m/s2, linear between samples.
+    dt, peak, length, zeta, tail, refine
+        As in `pipeline.kernels.pendulum.pendulum_batch`.
+    results : ndarray, shape (m, 2)
+        Receives the largest horizontal displacement over L [-] and the flags (`pipeline.kernels.flags`); NaN where it
+        is not followed.
+    history : ndarray, shape (k, 2)
+        Receives the horizontal displacement over L [-] of a single pendulum at the samples, as long as it is.
+
+    References
+    ----------
+    Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+    methods for museum objects. Studies in Conservation 36. Sec. 2.4: the pendulum in one plane.
     """
     m = length.shape[0]
     results[:, :] = 0.0

@@ -1,4 +1,4 @@
-"""Which points of a line its picture needs, by Douglas and Peucker (1973): a report has hundreds of such lines."""
+"""Simplification of a line to the points that its picture needs (Douglas and Peucker 1973): a report has hundreds."""
 
 import math
 
@@ -10,9 +10,24 @@ from pipeline.quantities import Array
 
 @kernel
 def needed(x: Array, y: Array, tolerance: float) -> Array:
-    """Return 1 for points (n,) that a line must keep so that none lies farther from what is left than the tolerance.
+    """Return which points a line must keep so that none lies farther from what is left than the tolerance.
 
-    x, y : (n,), in the tolerance's unit; the first and the last point are kept
+    Parameters
+    ----------
+    x, y : ndarray, shape (n,)
+        In the tolerance's unit; the first and the last point are kept.
+    tolerance : float
+        The largest distance.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        1 for those that it must keep, else 0.
+
+    References
+    ----------
+    Douglas, D. H. and Peucker, T. K. (1973). Algorithms for the reduction of the number of points required to represent
+    a digitized line or its caricature. The Canadian Cartographer 10, 112-122.
     """
     n = x.shape[0]
     keep = np.zeros(n)

@@ -1,4 +1,4 @@
-"""What a museum can do: its measures, least intrusive first, and its catalogue of isolators."""
+"""Catalogue of a museum's measures, least intrusive first, and of its isolators."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a measure proposes for an object, or for all that share a support, before it is run."""
+"""Proposals of a measure for an object, or for all that share a support, before it is run."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

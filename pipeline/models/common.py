@@ -1,4 +1,4 @@
-"""What several generic models share: flags in words, excitations prepared once, error floors."""
+"""Parts that several generic models share: flags in words, excitations prepared once, error floors."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

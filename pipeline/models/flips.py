@@ -1,4 +1,4 @@
-"""Whether a rocking body stands or falls: asked again at other amplitudes of its motion, up to 1 % more and less.
+"""Robustness of a rocking body's fate: asked again at other amplitudes of its motion, up to 1 % more and less.
 
 Overturning is not monotone in the amplitude: islands of another outcome lie as close together as one looks.  They lie
 where the response jumps from one amplitude to the next: there a body lands before or after a push, or just fails to

@@ -1,4 +1,4 @@
-"""What the three models on dry friction share: sliding, the friction isolator, the horizontal isolator."""
+"""Parts that the three models on dry friction share: sliding, the friction isolator, the horizontal isolator."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

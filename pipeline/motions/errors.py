@@ -1,4 +1,4 @@
-"""How a refused motion is told, and what a person may overrule."""
+"""Errors of a refused motion, and the refusals that a person may overrule."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What is done to a record before anything is shaken by it; every step is written down with its parameters."""
+"""Processing of a record before anything is shaken by it; every step is written down with its parameters."""
 
 from __future__ import annotations
 

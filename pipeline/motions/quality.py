@@ -1,4 +1,4 @@
-"""What an engineer must be told about a record before its shaking is believed: flat tops, and ends amid the shaking."""
+"""Warnings about a record, for an engineer before its shaking is believed: flat tops, and ends amid the shaking."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What goes on around a night: workspace, status, log, hooks, retention."""
+"""Operation around a night: workspace, status, log, hooks, retention."""

@@ -1,4 +1,4 @@
-"""What goes on around a night: the log, the mark on the last report, the hooks, and tidying up after a good one."""
+"""Monitor of a night: the log, the mark on the last report, the hooks, and tidying up after a good one."""
 
 import logging
 import sys

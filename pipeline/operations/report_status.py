@@ -1,4 +1,4 @@
-"""How the last report stands: good, being renewed, or stale because tonight's run failed; for programs and for people.
+"""Status of the last report: good, being renewed, or stale because tonight's run failed; for programs and for people.
 
 A published report is never touched again, so that this is said beside it: in reports/status.json, and on the landing
 page reports/index.html, which links to the last good report.

@@ -1,4 +1,4 @@
-"""What a night came to, for programs: the document of `kouros run --json`, of summary.json and of the hooks."""
+"""Summary of a night, for programs: the document of `kouros run --json`, of summary.json and of the hooks."""
 
 import errno
 import json

@@ -1,4 +1,4 @@
-"""What must never be said: passwords and tokens, wherever the environment keeps them."""
+"""Secrets, which must never be said: passwords and tokens, wherever the environment keeps them."""
 
 import os
 import re

@@ -1,4 +1,4 @@
-"""Where a job works: settings, database, lock."""
+"""Workspace of a job: settings, database, lock."""
 
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager

@@ -1,1 +1,1 @@
-"""What stands behind the other verbs: decisions, doctor, explanations, the seismologist's verbs."""
+"""Tools behind the other verbs: decisions, doctor, explanations, the seismologist's verbs."""

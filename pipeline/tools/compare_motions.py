@@ -1,4 +1,4 @@
-"""What would change if other motions took the place of a site's: measures, and the verdicts of the last run."""
+"""Comparison with other motions in the place of a site's: measures, and the verdicts of the last run."""
 
 import tempfile
 from collections import Counter

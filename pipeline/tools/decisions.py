@@ -1,4 +1,4 @@
-"""What people decide: writing it down, and what it does to the next run."""
+"""Decisions of people: writing them down, and their effect on the next run."""
 
 import getpass
 import os

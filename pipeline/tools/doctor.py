@@ -1,4 +1,4 @@
-"""Whether the next night can run, and what to mend if not."""
+"""Check whether the next night can run, and what to mend if not."""
 
 import hashlib
 from collections.abc import Callable, Sequence

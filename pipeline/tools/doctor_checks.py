@@ -1,4 +1,4 @@
-"""What a doctor looks at besides the inputs: the last good night, the lock, room, permissions, hooks, compiled code."""
+"""Checks of a doctor besides the inputs: the last good night, the lock, room, permissions, hooks, compiled code."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""Why one object was judged as it was: every step from its record to its advice, and nothing stored."""
+"""Explanation of a verdict on one object: every step from its record to its advice, and nothing stored."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""What to measure first, as a workbook to print, fill in and import again."""
+"""Survey workbook of what to measure first, to print, fill in and import again."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a case of the self-test gave."""
+"""Outcome of a case of the self-test."""
 
 from dataclasses import dataclass
 

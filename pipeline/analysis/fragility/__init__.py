@@ -1,1 +1,1 @@
-"""From what shaking on objects fail (`objects`, `scaling`, `curve`), how often (`hazard`), and what others found."""
+"""Fragility curves (`objects`, `scaling`, `curve`), annual rates of failure (`hazard`), and published medians."""

@@ -1,4 +1,4 @@
-"""How often a floor shakes how strongly, by the levels' return periods, and how often something fails therefore."""
+"""Hazard curve of a floor through the levels' return periods, and the annual rate of failure that follows from it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

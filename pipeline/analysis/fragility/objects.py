@@ -1,4 +1,4 @@
-"""From what shaking on each object fails: fragility curves, and how often that happens."""
+"""Fragility curves of objects, and the annual rates of their failures."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

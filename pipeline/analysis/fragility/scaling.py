@@ -1,4 +1,4 @@
-"""At which multiple of a motion an object fails: incremental dynamic analysis (Vamvatsikos and Cornell 2002)."""
+"""Incremental dynamic analysis (Vamvatsikos and Cornell 2002): the multiple of a motion at which an object fails."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

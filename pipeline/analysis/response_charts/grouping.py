@@ -1,4 +1,4 @@
-"""Which rows of a call are looked up in which charts."""
+"""Groups of the rows of a call by the charts in which they are looked up."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Which of a text's numbers are the object's own extents, its base and its mass (`choose`)."""
+"""Choice among a text's numbers: the object's own extents, its base and its mass (`choose`)."""
 
 from __future__ import annotations
 

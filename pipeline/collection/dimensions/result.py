@@ -1,4 +1,4 @@
-"""What a dimension text says: parts with their values, notes on what was judged, and the object's extents."""
+"""Result of reading a dimension text: parts with their values, notes on what was judged, and the object's extents."""
 
 from __future__ import annotations
 

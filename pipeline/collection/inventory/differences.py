@@ -1,4 +1,4 @@
-"""What an import changes in the inventory, object by object."""
+"""Differences that an import makes in the inventory, object by object."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What people measured for Kouros's own sheets: kept apart, and laid over the museum's records at every import."""
+"""Measurements made for Kouros's own sheets: kept apart, and laid over the museum's records at every import."""
 
 from __future__ import annotations
 

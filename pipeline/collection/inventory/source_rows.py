@@ -1,4 +1,4 @@
-"""What is known of the rows of the museum's source: by it a night reads only those that are not as they were.
+"""Digests of the rows of the museum's source: by them a night reads only those that are not as they were.
 
 A row is known by the digest of its cells with the header (`reading.row_digest`).  All of it holds only for the version
 of the inventory, the mapping, the code and the limits that it was written with; else the source is read from scratch.

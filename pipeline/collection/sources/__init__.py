@@ -1,1 +1,1 @@
-"""Where records come from: delimited text, spreadsheets, LIDO, databases; each gives the same rows of texts."""
+"""Sources of records: delimited text, spreadsheets, LIDO, databases; each gives the same rows of texts."""

@@ -1,4 +1,4 @@
-"""What a source of records is: the contract that each of them keeps, Kouros's own and those of other packages."""
+"""Contract that each source of records keeps, Kouros's own and those of other packages."""
 
 from __future__ import annotations
 

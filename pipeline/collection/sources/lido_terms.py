@@ -1,4 +1,4 @@
-"""What the words and concept addresses in LIDO files mean: kinds of measurements, parts of an object, units, events."""
+"""Meanings of the words and concept addresses in LIDO files: kinds of measurements, parts of an object, units, events."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every source gives: rows of texts, and how a typed value becomes the text that a file would hold."""
+"""Rows of texts, which every source gives, and how a typed value becomes the text that a file would hold."""
 
 from __future__ import annotations
 

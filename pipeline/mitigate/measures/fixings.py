@@ -1,4 +1,4 @@
-"""What a fixing at the base must hold: force and moment, and the shares of both that several measures tell."""
+"""Force and moment that a fixing at the base must hold, and the shares of both that several measures tell."""
 
 from collections.abc import Sequence
 from itertools import product

@@ -1,4 +1,4 @@
-"""What the readers share: lines with their numbers, blocks of numbers, and traces that say what they are."""
+"""Tools that the readers share: lines with their numbers, blocks of numbers, and traces that say what they are."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was found about a page's objects becomes the view of it, and all pages' entries become the index."""
+"""Composition of pages: findings about a page's objects become its view, and all pages' entries become the index."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What people decided, in words and in the reader's units."""
+"""Decisions of people, in words and in the reader's units."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What the page of a gallery and the index show, put together of the views of their parts."""
+"""Views of the page of a gallery and of the index, put together of the views of their parts."""
 
 from dataclasses import dataclass, field
 

@@ -1,4 +1,4 @@
-"""What settled the verdicts of a run, and how large its numerical errors are."""
+"""Numerical errors of a run, and what settled its verdicts."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

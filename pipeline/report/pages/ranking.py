@@ -1,4 +1,4 @@
-"""Which object comes first."""
+"""Order of objects, the worst first."""
 
 from math import inf, isnan
 

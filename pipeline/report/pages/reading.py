@@ -1,4 +1,4 @@
-"""What was refused or is doubted of the museum's records: a line of the index, a page, and the list for programs."""
+"""Refused and doubted records of the museum: a line of the index, a page, and the list for programs."""
 
 import csv
 from collections import Counter

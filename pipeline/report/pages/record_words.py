@@ -1,4 +1,4 @@
-"""What is said of an inspected record, on its page and on the terminal."""
+"""Words about an inspected record, on its page and on the terminal."""
 
 from pipeline.motions.inspection import Inspection
 from pipeline.motions.pulses import WaveletPulse

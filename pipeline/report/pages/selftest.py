@@ -1,4 +1,4 @@
-"""What the method page says of the last numerical self-test."""
+"""Last numerical self-test, as the method page tells it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What changed since the run before, as the index page says it."""
+"""Changes since the run before, as the index page says them."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What is worth measuring, in words: for one object, for a gallery as errands, for the museum in a sentence."""
+"""Survey in words, what is worth measuring: for one object, for a gallery as a list, for the museum in a sentence."""
 
 from collections.abc import Iterable, Mapping, Sequence
 

@@ -1,4 +1,4 @@
-"""What a page shows, as plain data in the reader's units: the museum, a gallery, an object, a finding, a measure."""
+"""Views, plain data of a page in the reader's units: the museum, a gallery, an object, a finding, a measure."""
 
 from dataclasses import dataclass
 from enum import StrEnum
