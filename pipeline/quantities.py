@@ -22,13 +22,35 @@ MASSES = {"kg": 1.0, "g": 0.001, "lb": 0.45359237, "oz": 0.028349523125}
 
 
 def real_number(value: object) -> float:
-    """Return a finite real number, Python's own or numpy's, as a float; NaN for whatever else it is."""
+    """Return a finite real number, Python's own or numpy's, as a float.
+
+    Parameters
+    ----------
+    value : object
+        Anything.
+
+    Returns
+    -------
+    float
+        NaN for whatever else it is.
+    """
     array = real_array(value)
     return float(array) if array is not None and array.ndim == 0 and np.isfinite(array) else np.nan
 
 
 def real_array(value: object) -> Array | None:
-    """Return real numbers as an array of floats, None for texts, truth values, complex numbers and the like."""
+    """Return real numbers as an array of floats.
+
+    Parameters
+    ----------
+    value : object
+        Anything.
+
+    Returns
+    -------
+    ndarray or None
+        None for texts, truth values, complex numbers and the like.
+    """
     try:
         array = np.asarray(value)
     except ValueError:  # rows of different lengths
@@ -48,8 +70,18 @@ def real_array(value: object) -> Array | None:
 class Quantity:
     """A named number with its unit and the hard limits outside of which it means nothing.
 
-    ``optional`` quantities may be left out; ``default`` is then used, or, where it is None, the model derives it.
-    ``exclusive`` says that the lower limit itself is not allowed (a length is above zero, a damping may be zero).
+    Attributes
+    ----------
+    name, unit, meaning : str
+        Of it; the unit is SI, or "-".
+    low, high : float
+        The limits, in that unit.
+    exclusive : bool
+        Whether the lower limit itself is not allowed (a length is above zero, a damping may be zero).
+    optional : bool
+        Whether it may be left out.
+    default : float or None
+        What is then used; where it is None, the model derives it.
     """
 
     name: str
@@ -64,8 +96,15 @@ class Quantity:
     def check(self, values: Array) -> None:
         """Refuse values that are not numbers or lie outside the hard limits.
 
-        values : array of any shape, in this quantity's unit
-        raises : ValueError naming the quantity, the first bad value, its place and what is allowed
+        Parameters
+        ----------
+        values : ndarray
+            Of any shape, in this quantity's unit.
+
+        Raises
+        ------
+        InputError
+            Naming the quantity, the first bad value, its place and what is allowed.
         """
         bad = ~np.isfinite(values) | (values < self.low) | (values > self.high)
         if self.exclusive:
@@ -88,7 +127,19 @@ class Quantity:
 def counted(number: int, one: str, many: str = "") -> str:
     """Return a number with its noun: "1 run", "2,000 runs".
 
-    many : the plural, where it is not the singular with an s
+    Parameters
+    ----------
+    number : int
+        How many.
+    one : str
+        The noun in the singular.
+    many : str
+        The plural, where it is not the singular with an s.
+
+    Returns
+    -------
+    str
+        With commas between thousands.
     """
     return f"{number:,} {one if number == 1 else many or f'{one}s'}"
 
@@ -98,9 +149,26 @@ SMALLEST_STEP = 0.1
 
 
 def checked(angle: object, tail: object, azimuth_step: object) -> tuple[float | None, float | None, float]:
-    """Return angle, tail and azimuth step as numbers, None where they may be.
+    """Return angle, tail and azimuth step as numbers.
 
-    raises : ValueError naming the one that is not what it must be
+    Parameters
+    ----------
+    angle : object
+        A direction in degrees, or None for RotD100.
+    tail : object
+        Seconds after the record, or None for until rest.
+    azimuth_step : object
+        Degrees between directions, SMALLEST_STEP to 90.
+
+    Returns
+    -------
+    tuple
+        The three, None where they may be.
+
+    Raises
+    ------
+    InputError
+        Naming the one that is not what it must be.
     """
     # numpy's own numbers are taken for what they are; the angle's size is what it was given as.
     after, step = real_number(tail), real_number(azimuth_step)
@@ -114,9 +182,22 @@ def checked(angle: object, tail: object, azimuth_step: object) -> tuple[float | 
 
 
 def finite_angle(angle: object) -> float:
-    """Return an angle in degrees.
+    """Return an angle.
 
-    raises : ValueError for what is no number
+    Parameters
+    ----------
+    angle : object
+        In degrees.
+
+    Returns
+    -------
+    float
+        In degrees.
+
+    Raises
+    ------
+    InputError
+        For what is no number.
     """
     degrees = real_number(angle)
     if np.isnan(degrees):
@@ -127,7 +208,20 @@ def finite_angle(angle: object) -> float:
 def some_error(error: object) -> float:
     """Return an error that is granted.
 
-    raises : ValueError for what is no number above 0
+    Parameters
+    ----------
+    error : object
+        Relative [-].
+
+    Returns
+    -------
+    float
+        The same.
+
+    Raises
+    ------
+    InputError
+        For what is no number above 0.
     """
     some = real_number(error)
     if not some > 0.0:

@@ -1,4 +1,4 @@
-"""What changed from one run to another, and why."""
+"""Changes from one run to another, and their causes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,13 @@ from pipeline.records.result import Verdict
 
 @dataclass(frozen=True, slots=True)
 class ObjectPlace:
-    """An object and the gallery it is in, or was in where it is gone."""
+    """An object and the gallery it is in, or was in where it is gone.
+
+    Attributes
+    ----------
+    object_number, gallery : str
+        As the inventory has them.
+    """
 
     object_number: str
     gallery: str
@@ -20,7 +26,15 @@ class ObjectPlace:
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """An object of both runs that changed its gallery."""
+    """An object of both runs that changed its gallery.
+
+    Attributes
+    ----------
+    object_number : str
+        As the inventory has it.
+    before, after : str
+        Its galleries.
+    """
 
     object_number: str
     before: str
@@ -29,7 +43,15 @@ class Move:
 
 @dataclass(frozen=True, slots=True)
 class FieldChange:
-    """A named value before and after, JSON-ready; None where there was none."""
+    """A named value before and after.
+
+    Attributes
+    ----------
+    name : str
+        Of the field, setting or version.
+    before, after : Any
+        JSON-ready; None where there was none.
+    """
 
     name: str
     before: Any
@@ -40,8 +62,13 @@ class FieldChange:
 class InputChange:
     """An object of both runs whose record or estimates differ.
 
-    fields : of the item by their names; of the scene as "scene.support", its parameters as "parameters.half_width"; the
-             gallery is not among them (see `Move`), nor the floor that follows from it
+    Attributes
+    ----------
+    object_number, gallery : str
+        As the inventory has them.
+    fields : tuple of FieldChange
+        Of the item by their names; of the scene as "scene.support", its parameters as "parameters.half_width"; the
+        gallery is not among them (see `Move`), nor the floor that follows from it.
     """
 
     object_number: str
@@ -51,9 +78,15 @@ class InputChange:
 
 @dataclass(frozen=True, slots=True)
 class MotionChange:
-    """A motion of a level on a floor whose samples changed; None on the side where there was none of that name.
+    """A motion of a level on a floor whose samples changed.
 
-    before, after : hashes of the samples, in order, where one name stands for several motions of the level
+    Attributes
+    ----------
+    level, floor, name : str
+        Where it is felt ("" for the ground), and what it is called.
+    before, after : tuple of str or None
+        Hashes of the samples, in order, where one name stands for several motions of the level; None on the side where
+        there was none of that name.
     """
 
     level: str
@@ -64,7 +97,7 @@ class MotionChange:
 
 
 class CauseKind(StrEnum):
-    """Why a verdict may have changed, in the order in which causes are named."""
+    """Kind of a cause why a verdict may have changed, in the order in which causes are named."""
 
     INPUT = "input"
     DECISION = "decision"
@@ -76,7 +109,15 @@ class CauseKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """One thing that changed and that a verdict rests on: ``what`` names the field, motion, setting or decision."""
+    """One thing that changed and that a verdict rests on.
+
+    Attributes
+    ----------
+    kind : CauseKind
+        Of what kind it is.
+    what : str
+        The field, motion, setting or decision.
+    """
 
     kind: CauseKind
     what: str
@@ -84,10 +125,18 @@ class Cause:
 
 @dataclass(frozen=True, slots=True)
 class VerdictChange:
-    """A verdict of an object of both runs that changed; None on the side where the model gave no finding.
+    """A verdict of an object of both runs that changed.
 
     Where a model gives several findings at a level (tension, shear), its verdict is the worst of them.
-    causes : all that changed of what the verdict rests on; empty where nothing that the runs keep differs
+
+    Attributes
+    ----------
+    object_number, gallery, model, level : str
+        Which verdict.
+    before, after : Verdict or None
+        None on the side where the model gave no finding.
+    causes : tuple of Cause
+        All that changed of what the verdict rests on; empty where nothing that the runs keep differs.
     """
 
     object_number: str
@@ -111,7 +160,15 @@ class VerdictChange:
 
 @dataclass(frozen=True, slots=True)
 class DecisionChange:
-    """A decision that is new in force (``new``), or no longer in force."""
+    """A decision that is new in force, or no longer in force.
+
+    Attributes
+    ----------
+    decision : Decision
+        The decision itself.
+    new : bool
+        Whether it is new.
+    """
 
     decision: Decision
     new: bool
@@ -121,8 +178,26 @@ class DecisionChange:
 class RunChanges:
     """All that changed from one run to another, each in the order of gallery and object number.
 
-    settings, versions : of the runs themselves, by name, those only that verdicts rest on
-    started            : when the older run began (ISO 8601)
+    Attributes
+    ----------
+    old, new : str
+        The runs' names.
+    added, removed : tuple of ObjectPlace
+        Objects of one run alone.
+    moved : tuple of Move
+        Objects in another gallery.
+    inputs : tuple of InputChange
+        Objects with other records or estimates.
+    verdicts : tuple of VerdictChange
+        Verdicts that differ.
+    motions : tuple of MotionChange
+        Motions that differ.
+    decisions : tuple of DecisionChange
+        Decisions that are new, or no longer in force.
+    settings, versions : tuple of FieldChange
+        Of the runs themselves, by name, those only that verdicts rest on.
+    started : str
+        When the older run began (ISO 8601).
     """
 
     old: str

@@ -1,4 +1,4 @@
-"""What people decided about an object: who, when, why, and on which findings it rested."""
+"""Decisions of people about an object: who, when, why, and on which findings each rested."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pipeline.records.result import Verdict
 
 
 class DecisionKind(StrEnum):
-    """What a person may decide; a withdrawal ends an earlier decision."""
+    """Kind of a decision; a withdrawal ends an earlier decision."""
 
     ACCEPT = "accept"
     INSTALLED = "installed"
@@ -21,7 +21,23 @@ class DecisionKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Basis:
-    """A finding that a decision rested on, as it was when the decision was made; demand and capacity in ``unit``."""
+    """A finding that a decision rested on, as it was when the decision was made.
+
+    Attributes
+    ----------
+    model, title, level : str
+        Of the finding.
+    demand, capacity : float or None
+        In ``unit``.
+    unit : str
+        Of both.
+    utilisation : float or None
+        Demand over capacity [-].
+    verdict : Verdict
+        What it said.
+    motion, motion_hash : str
+        Name and hash of the motion that governed it.
+    """
 
     model: str
     title: str
@@ -39,15 +55,42 @@ class Basis:
 class Decision:
     """One row of the log of decisions, which is only ever added to.
 
-    id           : counts up; 0 before it is stored
-    date         : the day it was made (ISO 8601), as the person says;  recorded : when it was written down, UTC
-    model, level : what is accepted or overruled; "" for all of them
-    until        : the last day on which an accepted risk is accepted; "" for no end
-    measure      : row of tables/measures.csv that is installed, with its parameters (SI), their units and its product
-    object_class : row of tables/classes.csv that an object is said to be
-    verdict      : what takes the place of the computed one in the person's eyes; the computed one stays
-    withdraws    : id of the decision that this one ends
-    run, digest, basis : the run that was looked at, the digest of the object's record, and the findings
+    Attributes
+    ----------
+    id : int
+        Counts up; 0 before it is stored.
+    object_number : str
+        The object that it is about.
+    kind : DecisionKind
+        What is decided.
+    who, why : str
+        The person, and the reason.
+    date : str
+        The day it was made (ISO 8601), as the person says.
+    recorded : str
+        When it was written down, UTC.
+    model, level : str
+        What is accepted or overruled; "" for all of them.
+    until : str
+        The last day on which an accepted risk is accepted; "" for no end.
+    measure : str
+        Row of tables/measures.csv that is installed.
+    parameters : mapping of str to float
+        Of that measure, SI.
+    units : mapping of str to str
+        Of the parameters.
+    product : str
+        What was installed, by its name.
+    object_class : str
+        Row of tables/classes.csv that an object is said to be.
+    verdict : Verdict or None
+        What takes the place of the computed one in the person's eyes; the computed one stays.
+    withdraws : int or None
+        Id of the decision that this one ends.
+    run, digest : str
+        The run that was looked at, and the digest of the object's record.
+    basis : tuple of Basis
+        The findings that it rested on.
     """
 
     id: int
@@ -102,7 +145,15 @@ class Decision:
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """A decision in force at the time of a run; ``doubts`` say why it must be looked at again, if it must."""
+    """A decision in force at the time of a run.
+
+    Attributes
+    ----------
+    decision : Decision
+        The decision itself.
+    doubts : tuple of str
+        Why it must be looked at again, if it must.
+    """
 
     decision: Decision
     doubts: tuple[str, ...] = ()
@@ -118,7 +169,16 @@ def in_force(log: Iterable[Decision]) -> tuple[Decision, ...]:
     """Return the decisions of a log that are neither withdrawn nor replaced by a later one of the same matter.
 
     A decision that was replaced stays so: the withdrawal of the later one does not bring it back.
-    log : in the order of the ids
+
+    Parameters
+    ----------
+    log : iterable of Decision
+        In the order of the ids.
+
+    Returns
+    -------
+    tuple of Decision
+        In the order of the ids.
     """
     rows = list(log)
     withdrawn = {row.withdraws for row in rows}

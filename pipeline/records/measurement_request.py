@@ -9,12 +9,24 @@ from dataclasses import dataclass
 class MeasurementRequest:
     """A quantity of one object that nobody recorded, and what recording it would do.
 
-    field   : of the object record, such as friction
-    low, best, high : what is assumed instead, in ``unit``; None where nothing can be assumed
-    reason  : what is assumed and by which source, or that it is not recorded
-    open    : verdicts that are undetermined now and that it takes part in
-    settles : how many of them it would settle, the mean over its being measured as low, best and high
-    unlocks : models that cannot be run without it
+    Attributes
+    ----------
+    object_number, gallery, title : str
+        The object.
+    field : str
+        Of the object record, such as friction.
+    unit : str
+        Of the values.
+    low, best, high : float or None
+        What is assumed instead, in ``unit``; None where nothing can be assumed.
+    reason : str
+        What is assumed and by which source, or that it is not recorded.
+    open : int
+        Verdicts that are undetermined now and that it takes part in.
+    settles : float
+        How many of them it would settle, the mean over its being measured as low, best and high.
+    unlocks : int
+        Models that cannot be run without it.
     """
 
     object_number: str

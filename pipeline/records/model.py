@@ -22,10 +22,15 @@ Columns = dict[str, Array]
 
 @dataclass(frozen=True)
 class Bounds:
-    """What the outputs of a model lie between, for certain.
+    """Bounds between which the outputs of a model lie for certain.
 
-    outputs : output name -> (low, high), (n,) each, of the first output always; a yes or no is bounded by 0 and 1
-    note    : (n,) bit flags, see models.common.NOTES
+    Attributes
+    ----------
+    outputs : mapping of str to (ndarray, ndarray)
+        Output name -> (low, high), (n,) each in the output's unit, of the first output always; a yes or no is bounded
+        by 0 and 1.
+    note : ndarray, shape (n,)
+        Bit flags, see models.common.NOTES.
     """
 
     outputs: Mapping[str, tuple[Array, Array]]
@@ -38,12 +43,21 @@ class ChartAxis:
 
     All other parameters are fixed for a chart: where they differ there is another one.
 
-    low, high : where charts are made, above zero, nodes evenly in the logarithm at first; what lies outside is
-                integrated
-    nodes     : analyses that a chart good enough to tell verdicts takes under strong shaking: fewer sets are integrated
-    absent    : optional parameters; a set that has one of them is not on the chart
-    settled   : (excitation) -> value from which on the response no longer changes; None: it always does
-    leads     : whether verdicts rest on the first output alone, so that a chart for them need not follow the others
+    Attributes
+    ----------
+    name : str
+        Of the parameter.
+    low, high : float
+        Where charts are made, above zero, in the parameter's unit (SI), nodes evenly in the logarithm at first; what
+        lies outside is integrated.
+    nodes : int
+        Analyses that a chart good enough to tell verdicts takes under strong shaking: fewer sets are integrated.
+    absent : tuple of str
+        Optional parameters; a set that has one of them is not on the chart.
+    settled : callable, optional
+        (excitation) -> value from which on the response no longer changes; None: it always does.
+    leads : bool
+        Whether verdicts rest on the first output alone, so that a chart for them need not follow the others.
     """
 
     name: str
@@ -59,11 +73,17 @@ class ChartAxis:
 class Trials:
     """The objects that a model's error and cost are measured on, and at which the self-test tries to break it.
 
-    ranges   : each parameter that it must be given -> (low, high) in SI, drawn from in equal ratios where the
-               collection has no object of it (`kouros tradeoff`)
-    extremes : parameter -> values, columns of one length; empty: a closed form, with no time steps to break
-    sample   : an object that time steps of 0.5 to 40 ms must not trouble; empty: the self-test asks of none
-    promised : relative error of `history` on the sample, against `reference`
+    Attributes
+    ----------
+    ranges : mapping of str to (float, float)
+        Each parameter that it must be given -> (low, high) in SI, drawn from in equal ratios where the collection has
+        no object of it (`kouros tradeoff`).
+    extremes : mapping of str to sequence of float
+        Parameter -> values (SI), columns of one length; empty: a closed form, with no time steps to break.
+    sample : mapping of str to float
+        An object (SI) that time steps of 0.5 to 40 ms must not trouble; empty: the self-test asks of none.
+    promised : float
+        Relative error of `history` on the sample, against `reference`.
     """
 
     ranges: Mapping[str, tuple[float, float]]
@@ -76,8 +96,12 @@ class Trials:
 class Figure:
     """A picture of a motion's effect by closed forms and histories.
 
-    kind : how its key begins, which marks refer to
-    draw : (key, motion) -> the picture
+    Attributes
+    ----------
+    kind : str
+        How its key begins, which marks refer to.
+    draw : callable
+        (key, motion) -> the picture.
     """
 
     kind: str
@@ -90,11 +114,22 @@ class ChartFigure:
 
     What the charts are made of and how far off they may be is added to the caption.
 
-    kind         : how its key begins, which marks refer to
-    curves       : what each is called -> the parameters that its chart has fixed
-    low          : where the chart begins; None: as the model's charts do
-    azimuth_step : degrees between the directions of which the worst is shown; None: as verdicts ask for them
-    decides      : whether it is drawn from the very charts that verdicts are found by
+    Attributes
+    ----------
+    kind : str
+        How its key begins, which marks refer to.
+    title, caption, source : str
+        As the picture shows them.
+    x, y : Axis
+        Of the picture.
+    curves : mapping of str to mapping
+        What each is called -> the parameters (SI) that its chart has fixed.
+    low : float or None
+        Where the chart begins (SI); None: as the model's charts do.
+    azimuth_step : float or None
+        Degrees between the directions of which the worst is shown; None: as verdicts ask for them.
+    decides : bool
+        Whether it is drawn from the very charts that verdicts are found by.
     """
 
     kind: str
@@ -315,12 +350,36 @@ class Model:
         return (*(q.name for q in self.needs), *own)
 
     def error_of(self, output: str) -> str:
-        """Return the name of the column that holds the error of an output."""
+        """Return the name of the column that holds the error of an output.
+
+        Parameters
+        ----------
+        output : str
+            Its name.
+
+        Returns
+        -------
+        str
+            A key of what `run` returns.
+        """
         return self.errors.get(output, "error")
 
     def output(self, name: str) -> Quantity:
         """Return the output of that name.
 
-        raises : KeyError
+        Parameters
+        ----------
+        name : str
+            One of `gives`.
+
+        Returns
+        -------
+        Quantity
+            With its unit.
+
+        Raises
+        ------
+        StopIteration
+            For a name that is not one of them.
         """
         return next(q for q in self.gives if q.name == name)

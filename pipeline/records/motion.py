@@ -1,4 +1,4 @@
-"""A motion, what a model is shaken by, and what a report shows of it."""
+"""Motion of a base, its excitation of a model, and its summary in a report."""
 
 from __future__ import annotations
 
@@ -115,7 +115,23 @@ class Motion:
         return digest.hexdigest()
 
     def along(self, angle: float) -> Array:
-        """Return the horizontal acceleration (n,) m/s2 along ``angle`` degrees from x towards y."""
+        """Return the horizontal acceleration along a direction.
+
+        Parameters
+        ----------
+        angle : float
+            Degrees from x towards y.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            In m/s2.
+
+        Raises
+        ------
+        InputError
+            For what is no number.
+        """
         # Exact zeros at multiples of 90 degrees: cos(pi/2) is 6e-17, which would wake an object that must stay at rest.
         degrees = real_number(angle)
         if np.isnan(degrees):
@@ -131,9 +147,19 @@ class Motion:
         return np.ascontiguousarray(c * x + s * y)
 
     def excitation(self, angle: float | None, tail: float | None = None) -> Excitation:
-        """Return what a model is shaken by: along ``angle`` degrees from x towards y, or (None) in both directions.
+        """Return what a model is shaken by.
 
-        tail : s after the record; None: until rest or past the peak
+        Parameters
+        ----------
+        angle : float or None
+            Degrees from x towards y of its only direction; None: both.
+        tail : float, optional
+            Seconds after the record; None: until rest or past the peak.
+
+        Returns
+        -------
+        Excitation
+            Always the same one for both directions and no tail.
         """
         if angle is None:
             return self._both if tail is None else replace(self._both, tail=tail)
@@ -150,7 +176,22 @@ class Motion:
         return Excitation(self.dt, x, y, z, None, self.start[:2], self.v_max)
 
     def changed(self, acceleration: ArrayLike, step: str, dt: float | None = None) -> Motion:
-        """Return the motion with other samples (and time step), and what was done recorded as its last step."""
+        """Return the motion with other samples (and time step), and what was done recorded as its last step.
+
+        Parameters
+        ----------
+        acceleration : array_like, shape (3, n)
+            In m/s2, rows x, y, z.
+        step : str
+            What was done.
+        dt : float, optional
+            The time step in s; None: its own.
+
+        Returns
+        -------
+        Motion
+            Of the same name, source, start and v_max.
+        """
         return Motion(
             self.dt if dt is None else dt,
             acceleration,
@@ -168,7 +209,22 @@ class Motion:
     def scaled(self, factor: float, why: str) -> Motion:
         """Return the motion with all three components multiplied by one factor, and the step recorded.
 
-        raises : ValueError for a factor that is not a finite number
+        Parameters
+        ----------
+        factor : float
+            Dimensionless; the start and v_max are multiplied, too.
+        why : str
+            The reason, for the step.
+
+        Returns
+        -------
+        Motion
+            Of the same name and source.
+
+        Raises
+        ------
+        InputError
+            For a factor that is not a finite number.
         """
         if np.isnan(real_number(factor)):
             raise InputError(f"the factor of a motion must be a finite number, not {factor!r}")
@@ -185,12 +241,20 @@ class Motion:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Excitation:
-    """What a one-direction or two-direction model is shaken by.
+    """The shaking of a one-direction or two-direction model.
 
-    dt, x, y, z : s and (n,) m/s2; y is None for a one-direction model
-    tail        : s of rest after the record; None means until rest or past the peak, capped
-    start       : m/s, horizontal velocity that the record starts with (along x, and along y)
-    v_max       : m/s, the velocity of the overturning criterion where the manifest says it; None: the peak velocity
+    Attributes
+    ----------
+    dt : float
+        Time step, s.
+    x, y, z : ndarray, shape (n,)
+        Acceleration of the base, m/s2; y is None for a one-direction model.
+    tail : float or None
+        Seconds of rest after the record; None means until rest or past the peak, capped.
+    start : (float, float)
+        Horizontal velocity that the record starts with (along x, and along y), m/s.
+    v_max : float or None
+        The velocity of the overturning criterion where the manifest says it, m/s; None: the peak velocity.
     """
 
     dt: float
@@ -206,7 +270,24 @@ class Excitation:
 class MotionSummary:
     """A motion as the report shows it: measures in SI, processing steps, and thinned series for its picture.
 
-    floor : on which it is felt; "" for the ground
+    Attributes
+    ----------
+    name, hash, level, source : str
+        Of the motion, and the level of shaking that it is of.
+    dt : float
+        Time step, s.
+    samples : int
+        Of each component.
+    measures : mapping of str to float
+        By name, SI.
+    steps : tuple of str
+        What was done to the record, in order.
+    approved_by, approved_on, licence : str
+        As the manifest says.
+    floor : str
+        On which it is felt; "" for the ground.
+    series : mapping of str to tuple of float
+        By name, SI, thinned.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""How finely demands are found: what a result depends on besides the object, its model and its motion."""
+"""Numerics: the fineness at which demands are found, which a result depends on besides object, model and motion."""
 
 from __future__ import annotations
 
@@ -19,13 +19,19 @@ AZIMUTH_STEP = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Numerics:
-    """How finely demands are found.
+    """The fineness at which demands are found.
 
-    fidelity     : of one run "screen", "bound", "chart", "history" or "reference"; of verdicts besides the last three
-                   "auto", which goes from bounds over charts to histories as far as each verdict needs
-    azimuth_step : degrees between the directions of which the worst counts, above 0 and at most 90
-    tolerance    : of a chart's interpolation, relative to max(value, 1 % of the largest value on the chart)
-    first        : whether that tolerance is asked of the model's first output alone
+    Attributes
+    ----------
+    fidelity : str
+        Of one run "screen", "bound", "chart", "history" or "reference"; of verdicts besides the last three "auto",
+        which goes from bounds over charts to histories as far as each verdict needs.
+    azimuth_step : float
+        Degrees between the directions of which the worst counts, above 0 and at most 90.
+    tolerance : float
+        Of a chart's interpolation, relative to max(value, 1 % of the largest value on the chart).
+    first : bool
+        Whether that tolerance is asked of the model's first output alone.
     """
 
     fidelity: str = AUTO

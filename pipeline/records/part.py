@@ -1,4 +1,4 @@
-"""What a run finds: results, one for each object whatever it is called; and the pages on which objects are shown."""
+"""Results of a run, one for each object whatever it is called; and the pages on which objects are shown."""
 
 from __future__ import annotations
 
@@ -15,8 +15,16 @@ from pipeline.records.scene import Estimate, Support
 class Found:
     """Everything that was found about some objects.
 
-    wishes  : what is worth measuring; None where the run did not ask
-    needing : by object number and name of the model, for how many of its analyses any history was run
+    Attributes
+    ----------
+    assessments : tuple of Assessment
+        One for each object.
+    wishes : tuple of MeasurementRequest or None
+        What is worth measuring; None where the run did not ask.
+    spacings : tuple of Spacing
+        Of the neighbours among them.
+    needing : mapping of str to mapping
+        By object number and name of the model, for how many of its analyses any history was run.
     """
 
     assessments: tuple[Assessment, ...]
@@ -27,12 +35,22 @@ class Found:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What was found about one object, whatever its number, its place and its title, which are empty in all of it.
+    """Findings about one object, whatever its number, its place and its title, which are empty in all of it.
 
-    object_class, rule, support, models, parameters, assumptions, missing, skipped, floor : see `Scene`
-    needing : by name of the model, for how many of its analyses any history was run
-    wishes  : what is worth measuring on it; None where the run did not ask
-    fault, aside : see `Assessment`
+    Attributes
+    ----------
+    object_class, rule, support, models, parameters, assumptions, missing, skipped, floor
+        See `Scene`.
+    findings : tuple of Finding
+        One for each demand and level.
+    recommendations : tuple of Recommendation
+        What would help.
+    fragilities, fault, aside
+        See `Assessment`.
+    needing : mapping of str to int
+        By name of the model, for how many of its analyses any history was run.
+    wishes : tuple of MeasurementRequest or None
+        What is worth measuring on it; None where the run did not ask.
     """
 
     object_class: str
@@ -55,9 +73,16 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class Urgent:
-    """An object on display that fails, as a list of the worst shows it, with the key that sorts it among others.
+    """An object on display that fails, as a list of the worst shows it.
 
-    open : model and level of each of its findings that does not pass
+    Attributes
+    ----------
+    order : tuple
+        The key that sorts it among others.
+    object_number, title, gallery, outcome : str
+        As the list shows them.
+    open : tuple of (str, str)
+        Model and level of each of its findings that does not pass.
     """
 
     order: tuple[int, bool, bool, str, float, str, str]
@@ -70,9 +95,16 @@ class Urgent:
 
 @dataclass(frozen=True, slots=True)
 class Errors:
-    """Numerical errors of verdicts of one kind: how many verdicts, and the relative errors that are known.
+    """Numerical errors of verdicts of one kind.
 
-    sizes : error over demand, in two digits as "1.2e-05" -> how often
+    Attributes
+    ----------
+    verdicts : int
+        How many verdicts.
+    sizes : mapping of str to int
+        Error over demand [-], in two digits as "1.2e-05" -> how often; of those that are known.
+    worst : float
+        The largest of them [-].
     """
 
     verdicts: int
@@ -82,19 +114,38 @@ class Errors:
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """What a page adds to the totals of a run.
+    """A page's share of the totals of a run.
 
-    states   : objects on display by state: act, open, unknown (cannot be assessed), safe
-    measures : recommendations for them by title
-    missing  : why they could not be assessed, with how many of each
-    first    : the worst objects on display, the worst first
-    efforts  : by the title of each model, by what its verdicts were decided
-    worth, waste, wished : measurements that would settle something, that would not, and the objects of the former
-    faults   : objects that Kouros itself failed on
-    stored   : objects that are not on display by state, "aside" for those that were not assessed
-    stored_measures : recommendations for them by title
-    findings, stored_findings : how many there are, of objects that are on display and that are not
-    verdicts : of all objects, by what they are
+    Attributes
+    ----------
+    states : mapping of str to int
+        Objects on display by state: act, open, unknown (cannot be assessed), safe.
+    measures : mapping of str to int
+        Recommendations for them by title.
+    missing : mapping of str to int
+        Why they could not be assessed, with how many of each.
+    first : tuple of Urgent
+        The worst objects on display, the worst first.
+    decided : mapping of str to Errors
+        Errors of their verdicts, by what these were decided.
+    fidelities : mapping of str to int
+        Verdicts by fidelity.
+    efforts : mapping of str to mapping
+        By the title of each model, by what its verdicts were decided.
+    surveyed : bool
+        Whether measurements were asked for.
+    worth, waste, wished : int
+        Measurements that would settle something, that would not, and the objects of the former.
+    faults : int
+        Objects that Kouros itself failed on.
+    stored : mapping of str to int
+        Objects that are not on display by state, "aside" for those that were not assessed.
+    stored_measures : mapping of str to int
+        Recommendations for them by title.
+    findings, stored_findings : int
+        How many there are, of objects that are on display and that are not.
+    verdicts : mapping of str to int
+        Of all objects, by what they are.
     """
 
     states: Mapping[str, int]
@@ -120,8 +171,14 @@ class Tally:
 class Outline:
     """One object in as much as two runs are compared by.
 
-    item, scene : digests of the record, and of what else it was run with
-    verdicts    : model, level and the worst verdict of each
+    Attributes
+    ----------
+    object_number, gallery, floor : str
+        Which object, and where it stands.
+    item, scene : str
+        Digests of the record, and of what else it was run with.
+    verdicts : tuple of (str, str, str)
+        Model, level and the worst verdict of each.
     """
 
     object_number: str
@@ -136,10 +193,18 @@ class Outline:
 class Page:
     """A page of a run: which objects are shown on it, in which order.
 
-    key          : digest of its objects' numbers, places, records and results
-    gallery      : "" for objects that are not on display
-    number, of   : which of its gallery's pages it is, from 1, and how many there are
-    run, made    : the run that found the newest of its results, perhaps an earlier one, and when (ISO 8601, UTC)
+    Attributes
+    ----------
+    key : str
+        Digest of its objects' numbers, places, records and results.
+    gallery : str
+        "" for objects that are not on display.
+    on_display : bool
+        Whether its objects are.
+    number, of : int
+        Which of its gallery's pages it is, from 1, and how many there are.
+    run, made : str
+        The run that found the newest of its results, perhaps an earlier one, and when (ISO 8601, UTC).
     """
 
     key: str

@@ -7,7 +7,17 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """An axis of a chart: its label, SI unit of the data, and "linear" or "log"."""
+    """An axis of a chart.
+
+    Attributes
+    ----------
+    label : str
+        As it is written beside it.
+    unit : str
+        SI unit of the data.
+    scale : str
+        "linear" or "log".
+    """
 
     label: str
     unit: str
@@ -16,7 +26,15 @@ class Axis:
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """A line of a chart; x and y in the axes' units."""
+    """A line of a chart.
+
+    Attributes
+    ----------
+    label : str
+        In the legend.
+    x, y : tuple of float
+        In the axes' units.
+    """
 
     label: str
     x: tuple[float, ...]
@@ -25,7 +43,17 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Zone:
-    """A labelled region of a chart: a closed polygon and how it is judged ("safe", "warn", "danger")."""
+    """A labelled region of a chart.
+
+    Attributes
+    ----------
+    label : str
+        What is written in it.
+    x, y : tuple of float
+        Corners of a closed polygon, in the axes' units.
+    tone : str
+        How it is judged: "safe", "warn", "danger".
+    """
 
     label: str
     x: tuple[float, ...]
@@ -37,8 +65,20 @@ class Zone:
 class Chart:
     """A picture of one motion's effect, shared by all objects marked on it.
 
-    key   : identity within a run, such as "stability:<motion hash>"
-    equal : the two axes share one scale (a path on the floor)
+    Attributes
+    ----------
+    key : str
+        Identity within a run, such as "stability:<motion hash>".
+    title, caption, source : str
+        As they are shown with it.
+    x, y : Axis
+        Its axes, with the units of everything on it.
+    curves : tuple of Curve
+        Its lines.
+    zones : tuple of Zone
+        Its regions.
+    equal : bool
+        Whether the two axes share one scale (a path on the floor).
     """
 
     key: str
@@ -54,7 +94,17 @@ class Chart:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """Where an object lies on a chart (x, y in the axes' units)."""
+    """Place of an object on a chart.
+
+    Attributes
+    ----------
+    chart : str
+        The chart's key.
+    x, y : float
+        In the axes' units.
+    label : str
+        What is written beside it.
+    """
 
     chart: str
     x: float

@@ -1,4 +1,4 @@
-"""What lower floors are handed from above: where work runs, and who is told how far it is."""
+"""Protocols of what lower floors are handed from above: the executor of work, and the progress that is told."""
 
 from __future__ import annotations
 
@@ -10,12 +10,31 @@ Answer = TypeVar("Answer")
 
 
 class Executor(Protocol):
-    """Where independent pieces of work run, on so many workers."""
+    """Place where independent pieces of work run.
+
+    Attributes
+    ----------
+    workers : int
+        On how many at once.
+    """
 
     workers: int
 
     def map(self, work: Callable[[Task], Answer], tasks: Sequence[Task]) -> list[Answer]:
-        """Run the work on each task and return the answers in the order of the tasks."""
+        """Run the work on each task.
+
+        Parameters
+        ----------
+        work : callable
+            task -> answer.
+        tasks : sequence
+            What it is called with.
+
+        Returns
+        -------
+        list
+            The answers in the order of the tasks.
+        """
         ...
 
 
@@ -23,7 +42,15 @@ class Progress(Protocol):
     """Tells the person who waits how far the work is."""
 
     def step(self, what: str, done: int, total: int) -> None:
-        """Report that ``done`` of ``total`` pieces of ``what`` are finished."""
+        """Report how far a kind of work is.
+
+        Parameters
+        ----------
+        what : str
+            The work.
+        done, total : int
+            Pieces that are finished, and all.
+        """
         ...
 
 

@@ -1,4 +1,4 @@
-"""What became of the rows behind an inventory: how many were refused or are doubted, and which."""
+"""Account of the rows behind an inventory: how many were refused or are doubted, and which."""
 
 from __future__ import annotations
 
@@ -12,8 +12,16 @@ REFUSED, SOURCE, SHEET, DOUBTFUL = "refused", "source", "sheet", "doubtful"
 class Doubt:
     """Something that reading refused or doubts.
 
-    what      : one of the four above
-    row, line : of the source, row 1 the first below the header; None where it is of no row, or not known of which
+    Attributes
+    ----------
+    what : str
+        One of the four above.
+    row, line : int or None
+        Of the source, row 1 the first below the header; None where it is of no row, or not known of which.
+    object_number, field : str
+        What it is about.
+    message, remedy : str
+        What is wrong, and what mends it.
     """
 
     what: str
@@ -27,13 +35,24 @@ class Doubt:
 
 @dataclass(frozen=True, slots=True)
 class Account:
-    """What became of the rows behind a version of the inventory.
+    """Account of the rows behind a version of the inventory.
 
-    refused    : rows that became no object
-    doubtful   : objects of which a value was refused or is doubted
-    sheets     : rows and cells of sheets of our own that were not used
-    suspicions : what the whole source seems to have wrong, with what mends it
-    flagged    : whether a column of the source says what is on display
+    Attributes
+    ----------
+    source : str
+        Where they come from.
+    rows : int
+        How many there are.
+    refused : int
+        Rows that became no object.
+    doubtful : int
+        Objects of which a value was refused or is doubted.
+    sheets : int
+        Rows and cells of sheets of our own that were not used.
+    suspicions : tuple of (str, str, str)
+        What the whole source seems to have wrong, with what mends it.
+    flagged : bool
+        Whether a column of the source says what is on display.
     """
 
     source: str

@@ -1,4 +1,4 @@
-"""What a run finds and advises."""
+"""Findings and advice of a run."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pipeline.records.scene import Origin, Scene
 
 
 class Verdict(StrEnum):
-    """What a finding says."""
+    """Verdict of a finding."""
 
     PASS = "pass"  # noqa: S105
     FAIL = "fail"
@@ -27,13 +27,53 @@ DEMANDS, BOUNDS = "demands", "bounds"
 class Finding:
     """One demand set against one capacity (contract "A finding").
 
-    low, high : the range of the demand over the best estimates and all corners of the uncertain inputs
-    range_is  : "demands" where low and high are; "bounds" where these lie between low and high for certain and were
-                not looked for, because nothing hangs on them
-    outcome   : what the object does by the best estimates beyond its capacity ("rocks"); "" where it stays within
-    sentence  : what it means, with {demand}, {capacity}, {low} and {high} to be filled in the reader's units
-    title     : the failure in the field's words ("Rocking", "Sliding")
-    screen    : the paper's closed-form criterion in words; reported, never deciding
+    Attributes
+    ----------
+    object_number, gallery, level, model : str
+        Of what it is a finding.
+    title : str
+        The failure in the field's words ("Rocking", "Sliding").
+    demand_name : str
+        The output of the model.
+    demand : float or None
+        In ``unit``; None where it could not be computed.
+    unit : str
+        Of demand, low, high, capacity and error.
+    low, high : float or None
+        The range of the demand over the best estimates and all corners of the uncertain inputs.
+    capacity : float or None
+        In ``unit``; None where it is not known.
+    capacity_origin : Origin or None
+        Where the capacity comes from.
+    utilisation : float or None
+        Demand over capacity [-].
+    verdict : Verdict
+        What follows.
+    fidelity : str
+        At which the demand was found, see `Numerics`.
+    error : float or None
+        Numerical error of the demand, estimated, in ``unit``; of a bound, how much less it may be.
+    decided_by : str
+        By what the verdict was settled.
+    motion, motion_hash : str
+        Name and hash of the motion that governs.
+    sentence : str
+        What it means, with {demand}, {capacity}, {low} and {high} to be filled in the reader's units.
+    screen : str
+        The paper's closed-form criterion in words; reported, never deciding.
+    outcome : str
+        What the object does by the best estimates beyond its capacity ("rocks"); "" where it stays within.
+    note : str
+        What a reader should know.
+    assumptions : tuple of str
+        What was assumed for it.
+    mark : Mark or None
+        Its place on a chart.
+    range_is : str
+        "demands" where low and high are; "bounds" where these lie between low and high for certain and were not looked
+        for, because nothing hangs on them.
+    version : str
+        Of Kouros, by which it was found.
     """
 
     object_number: str
@@ -69,8 +109,22 @@ class Finding:
 class Check:
     """One model run again on the changed chain, as evidence that a recommendation works.
 
-    demand : after the measure
-    before : the demand of the same model without it; None where the model had nothing to say then
+    Attributes
+    ----------
+    model, title : str
+        The model, and the failure in words.
+    demand : float
+        After the measure, in ``unit``.
+    unit : str
+        Of demand, capacity and before.
+    capacity : float
+        In ``unit``.
+    utilisation : float
+        Demand over capacity [-].
+    passes : bool
+        Whether the measure works against it.
+    before : float or None
+        The demand of the same model without it; None where the model had nothing to say then.
     """
 
     model: str
@@ -87,11 +141,28 @@ class Check:
 class Recommendation:
     """A measure for one object, with the evidence of the models run again on the changed chain.
 
-    measure    : identity of the row in tables/measures.csv
-    parameters : what to build or buy, by name with unit, such as {"clearance_m": 0.14}
-    sentence   : the advice in words, with {parameter} placeholders to be filled in the reader's units
-    checks     : the models run again; every one passes, except for removal, which has none
-    rejected   : the less intrusive measures that were tried or do not apply, and why not
+    Attributes
+    ----------
+    object_number, gallery, level : str
+        For what it is advised.
+    measure : str
+        Identity of the row in tables/measures.csv.
+    title : str
+        Of the measure, in words.
+    sentence : str
+        The advice in words, with {parameter} placeholders to be filled in the reader's units.
+    parameters : mapping of str to float
+        What to build or buy, by name with unit, such as {"clearance_m": 0.14}.
+    units : mapping of str to str
+        Of the parameters.
+    checks : tuple of Check
+        The models run again; every one passes, except for removal, which has none.
+    rejected : tuple of str
+        The less intrusive measures that were tried or do not apply, and why not.
+    mark : Mark or None
+        Its place on a chart.
+    source : str
+        Who says so.
     """
 
     object_number: str
@@ -112,9 +183,20 @@ class Recommendation:
 class Assessment:
     """One object with everything that was found about it.
 
-    fragilities : one for each way to fail, what fails first to begin with; none where they were not asked for
-    fault       : where Kouros itself failed on the object, what went wrong and where; "" where it did not
-    aside       : whether it was left aside, because it is not on display: nothing of it was computed
+    Attributes
+    ----------
+    scene : Scene
+        The object where it stands.
+    findings : tuple of Finding
+        One for each demand and level.
+    recommendations : tuple of Recommendation
+        What would help.
+    fragilities : tuple of Fragility
+        One for each way to fail, what fails first to begin with; none where they were not asked for.
+    fault : str
+        Where Kouros itself failed on the object, what went wrong and where; "" where it did not.
+    aside : bool
+        Whether it was left aside, because it is not on display: nothing of it was computed.
     """
 
     scene: Scene
@@ -132,16 +214,33 @@ class Assessment:
 
 @dataclass(frozen=True, slots=True)
 class Spacing:
-    """Two neighbours under one level of shaking; lengths in m.
+    """Two neighbours under one level of shaking.
 
-    gap        : between their outlines, along the line between their centres
-    needed     : by how much they come closer along that line at most, moving together under one motion; None where
-                 only their bound was needed or can be had
-    low, high  : its range over their uncertain measures
-    radial     : their largest displacement relative to each other in any direction
-    together   : the sum of how far each of them moves at most: they never come closer than by this
-    decided_by : "bound" where the gap is at least ``together``, else "history"
-    note       : what a reader should know
+    Attributes
+    ----------
+    gallery, level : str
+        Where they stand, and how it is shaken.
+    first, second : str
+        Their object numbers.
+    gap : float
+        Between their outlines, along the line between their centres, m.
+    needed : float or None
+        By how much they come closer along that line at most, moving together under one motion, m; None where only their
+        bound was needed or can be had.
+    low, high : float or None
+        Its range over their uncertain measures, m.
+    radial : float or None
+        Their largest displacement relative to each other in any direction, m.
+    together : float
+        The sum of how far each of them moves at most, m: they never come closer than by this.
+    verdict : Verdict
+        Whether the gap is enough.
+    decided_by : str
+        "bound" where the gap is at least ``together``, else "history".
+    motion : str
+        Name of the motion that governs.
+    note : str
+        What a reader should know.
     """
 
     gallery: str

@@ -17,9 +17,34 @@ from pipeline.records.result import Assessment, Spacing
 class RunRecord:
     """A whole run, as the store gives it back: all that the reports need, and nothing is computed again.
 
-    decisions : those in force about its objects, and about objects that the inventory has no more
-    wishes    : what is worth measuring, what settles most first; None where the run did not ask
-    spacings  : of the neighbours in the galleries whose places are known
+    Attributes
+    ----------
+    run_id : str
+        Its name.
+    started, finished : str
+        ISO 8601.
+    version : str
+        Of the code.
+    site, museum : str
+        As the settings name them.
+    level_notes : tuple of str
+        What a reader should know of the levels of shaking.
+    settings : mapping
+        Those it was run with.
+    assessments : tuple of Assessment
+        One for each object.
+    charts : mapping of str to Chart
+        By key.
+    motions : tuple of MotionSummary
+        Of all levels and floors.
+    demonstration : bool
+        Whether it is of the bundled collection.
+    decisions : tuple of Standing
+        Those in force about its objects, and about objects that the inventory has no more.
+    wishes : tuple of MeasurementRequest or None
+        What is worth measuring, what settles most first; None where the run did not ask.
+    spacings : tuple of Spacing
+        Of the neighbours in the galleries whose places are known.
     """
 
     run_id: str

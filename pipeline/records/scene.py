@@ -1,4 +1,4 @@
-"""An object of the collection, and where it stands with the estimates its models are run with."""
+"""Object of the collection, and the scene in which it stands with the estimates its models are run with."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from enum import StrEnum
 
 
 class Support(StrEnum):
-    """How an object is held."""
+    """Way in which an object is held."""
 
     FREESTANDING = "freestanding"
     FASTENED = "fastened"
@@ -18,7 +18,7 @@ class Support(StrEnum):
 
 
 class Origin(StrEnum):
-    """Where a number comes from."""
+    """Origin of a number."""
 
     MEASURED = "measured"
     DERIVED = "derived"
@@ -35,7 +35,13 @@ SECTION_SHAPES: Mapping[str, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """Something wrong with a record: which field, what is wrong, and what mends it."""
+    """Something wrong with a record.
+
+    Attributes
+    ----------
+    field, message, remedy : str
+        Which field, what is wrong, and what mends it.
+    """
 
     field: str
     message: str
@@ -44,12 +50,18 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
-    """Where one quantity of a record comes from.
+    """Provenance of one quantity of a record.
 
-    field   : the quantity, such as height_m
-    origin  : measured (the museum recorded it) or derived (from another of its measurements)
-    written : the characters it was read from, with their unit, such as "8 1/2 in"
-    note    : which part it is of, or what it was derived from
+    Attributes
+    ----------
+    field : str
+        The quantity, such as height_m.
+    origin : Origin
+        Measured (the museum recorded it) or derived (from another of its measurements).
+    written : str
+        The characters it was read from, with their unit, such as "8 1/2 in".
+    note : str
+        Which part it is of, or what it was derived from.
     """
 
     field: str
@@ -60,11 +72,47 @@ class Provenance:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """One object of the collection.  Lengths in m, mass in kg, stress in Pa, frequency in Hz; None where not recorded.
+    """One object of the collection; None and "" where the museum recorded nothing.
 
     Everything recorded here was measured or stated by the museum, as ``provenance`` tells of each quantity; what Kouros
-    assumes lives in the scene.  ``dimensions`` is the museum's own text where they were read from one.  ``problems``
-    keeps what the import could not accept or doubts, so that nothing is lost and nothing silently defaulted.
+    assumes lives in the scene.  schemas/item.schema.json says what each field may hold.
+
+    Attributes
+    ----------
+    object_number, gallery, title, object_name, classification, medium, aat : str
+        As the museum names, places and classes it; aat are identifiers of the Getty AAT.
+    dimensions : str
+        The museum's own text where they were read from one.
+    case : str
+        The display case or plinth that it stands in or on.
+    position_x_m, position_y_m, orientation_deg : float or None
+        In the gallery, m towards east and north, and the direction of its width, degrees clockwise from north.
+    support, isolator : Support or None, str
+        How it is held, and by which isolator.
+    height_m, base_width_m, base_depth_m, width_m, depth_m, cg_height_m : float or None
+        Extents, those of the footing, and the height of the centre of gravity above the base, m.
+    mass_kg : float or None
+        In kg.
+    material, base_material, surface_material : str
+        Of the object, its base, and what it stands on.
+    friction, frequency_hz, damping : float or None
+        Static friction [-], lowest frequency [Hz], damping ratio [-].
+    suspension_length_m, wall_surface, back_surface : float or None, str, str
+        Of what hangs: its length [m], and the surfaces of the wall and of its back.
+    section_shape, section_width_m, section_depth_m, section_wall_m, section_height_m, section_count
+        Weakest cross-section: its shape, sizes and height [m], and how many there are.
+    allowable_stress_pa : float or None
+        In Pa.
+    condition : float or None
+        From 0 (ruin) to 1 (sound).
+    clearance_m : float or None
+        To the nearest neighbour or edge, m.
+    susceptible, value_class, on_display : bool or None, str, bool
+        Whether rocking itself damages it, the museum's class of value, and whether it is on display.
+    provenance : tuple of Provenance
+        Of each quantity.
+    problems : tuple of Problem
+        What the import could not accept or doubts, so that nothing is lost and nothing silently defaulted.
     """
 
     object_number: str
@@ -120,8 +168,20 @@ ITEM_FIELDS = tuple(f.name for f in fields(Item))
 class Estimate:
     """A number with its range and where it comes from.
 
-    ``low`` and ``high`` span what the number may be; a measured number has no span.  ``note`` names the field it was
-    derived from or the default that was assumed; ``source`` says who says so.
+    Attributes
+    ----------
+    value : float
+        The best, in ``unit``.
+    unit : str
+        SI, or "-".
+    origin : Origin
+        Whether it was measured, derived or assumed.
+    low, high : float
+        What the number may be between, in ``unit``; a measured number has no span.
+    note : str
+        The field it was derived from or the default that was assumed.
+    source : str
+        Who says so.
     """
 
     value: float
@@ -134,7 +194,22 @@ class Estimate:
 
     @classmethod
     def measured(cls, value: float, unit: str, note: str = "") -> Estimate:
-        """Return a number that the museum recorded."""
+        """Return a number that the museum recorded.
+
+        Parameters
+        ----------
+        value : float
+            In that unit.
+        unit : str
+            SI, or "-".
+        note : str
+            See the class.
+
+        Returns
+        -------
+        Estimate
+            Without a span.
+        """
         return cls(value, unit, Origin.MEASURED, value, value, note)
 
 
@@ -142,10 +217,26 @@ class Estimate:
 class Scene:
     """An object where it stands: its class, its support, and the estimates its models are run with.
 
-    parameters : by name (SI), for example half_width, cg_height, friction_static, length, clearance
-    missing    : the fields without which no model can be run, in the museum's words
-    skipped    : models that do not apply, with the reason
-    floor      : of the building that it stands on; "" for the ground
+    Attributes
+    ----------
+    item : Item
+        Its record.
+    object_class, rule : str
+        Row of tables/classes.csv, and the rule of tables/rules.csv by which it is that.
+    support : Support
+        How it is held.
+    models : tuple of str
+        Those that are run on it.
+    parameters : mapping of str to Estimate
+        By name (SI), for example half_width, cg_height, friction_static, length, clearance.
+    assumptions : tuple of str
+        In words.
+    missing : tuple of str
+        The fields without which no model can be run, in the museum's words.
+    skipped : mapping of str to str
+        Models that do not apply, with the reason.
+    floor : str
+        Of the building that it stands on; "" for the ground.
     """
 
     item: Item

@@ -21,10 +21,20 @@ __all__ = ["SUPPORTS", "TRANSMITTED", "SupportModel", "refined", "resampled", "s
 
 @dataclass(frozen=True)
 class SupportModel:
-    """A support: its parameters, how it passes a motion on, and the model of its own demand (None: it has none).
+    """A support: its parameters, how it passes a motion on, and the model of its own demand.
 
-    transmit : motion, parameters, and the samples of the output for each of the input
-    refines  : parameters -> whether more samples make the output more accurate; False: it is exact
+    Attributes
+    ----------
+    name : str
+        As it is asked for.
+    needs : tuple of Quantity
+        Its parameters, with their units.
+    transmit : callable
+        (motion, parameters in SI, samples of the output for each of the input) -> the motion passed on.
+    model : Model or None
+        Of its own demand; None: it has none.
+    refines : callable
+        parameters -> whether more samples make the output more accurate; False: it is exact.
     """
 
     name: str
@@ -119,7 +129,20 @@ SUPPORTS: tuple[SupportModel, ...] = (
 def support_named(name: str) -> SupportModel:
     """Return the support of that name.
 
-    raises : ValueError naming the supports there are
+    Parameters
+    ----------
+    name : str
+        One of those in SUPPORTS.
+
+    Returns
+    -------
+    SupportModel
+        The row of it.
+
+    Raises
+    ------
+    InputError
+        Naming the supports there are.
     """
     for support in SUPPORTS:
         if support.name == name:

@@ -33,14 +33,35 @@ def carried(
     modes: int | None = None,
     refine: int = 1,
 ) -> Motion:
-    """Return a motion of the ground as a floor feels it: by modes where damping, stiffness and modes are given, else by
-    the factor of the code.
+    """Return a motion of the ground as a floor feels it: by modes where they are given, else by the code's factor.
 
-    height_ratio, period, damping : as `floor_motion`; stiffness_ratio : alpha0 of `beam_modes`
-    refine : samples of the output for each that it has at least: those of the ground, and by modes MODE_POINTS in a
-             period of the highest
-    error  : by the factor none; by modes see `floor_motion`, and `refined` for how finely an error asks for
-    raises : ValueError for a parameter outside its range, or where the method is only half described
+    Parameters
+    ----------
+    motion : Motion
+        Of the ground.
+    height_ratio, period, damping : float
+        As `floor_motion`.
+    stiffness_ratio : float, optional
+        alpha0 of `beam_modes` [-].
+    modes : int, optional
+        How many; by modes where damping, stiffness_ratio and modes are given.
+    refine : int
+        Samples of the output for each that it has at least: those of the ground, and by modes MODE_POINTS in a period
+        of the highest.
+
+    Returns
+    -------
+    Motion
+        By the factor without an error; by modes see `floor_motion`, and `refined` for how finely an error asks for.
+
+    Raises
+    ------
+    InputError
+        For a parameter outside its range, or where the method is only half described.
+
+    References
+    ----------
+    ASCE/SEI 7-22 as `floor_factor`, or Miranda and Taghavi (2005) as `beam_modes`.
     """
     given = [value is not None for value in (damping, stiffness_ratio, modes)]
     if not any(given):
@@ -55,13 +76,35 @@ def carried(
 
 
 def floor_factor(height_ratio: float, period: float | None = None) -> float:
-    """Return the amplification of the ground's horizontal acceleration at a height in a building [-].
+    r"""Return the amplification of the ground's horizontal acceleration at a height in a building.
 
-    height_ratio : z/h, 0 at the base to 1 at the roof
-    period       : s, the building's approximate fundamental period; None where it is unknown
-    raises       : ValueError for a ratio outside 0 to 1 or a period that is not above 0
-    source       : ASCE/SEI 7-22, 13.3.1.1: H_f = 1 + a1 (z/h) + a2 (z/h)^10 with a1 = min(1/T_a, 2.5) and
-                   a2 = max(0, 1 - (0.4/T_a)^2); 1 + 2.5 z/h where the period is unknown
+    .. math::
+
+        H_f = 1 + a_1 \frac{z}{h} + a_2 \left(\frac{z}{h}\right)^{10}, \qquad
+        a_1 = \min\left(\frac{1}{T_a}, 2.5\right), \quad a_2 = \max\left(0, 1 - \left(\frac{0.4}{T_a}\right)^2\right)
+
+    and 1 + 2.5 z/h where the period is unknown.
+
+    Parameters
+    ----------
+    height_ratio : float
+        z/h, 0 at the base to 1 at the roof.
+    period : float, optional
+        T_a, the building's approximate fundamental period, s; None where it is unknown.
+
+    Returns
+    -------
+    float
+        H_f, dimensionless.
+
+    Raises
+    ------
+    InputError
+        For a ratio outside 0 to 1 or a period that is not above 0.
+
+    References
+    ----------
+    ASCE/SEI 7-22, Minimum design loads and associated criteria for buildings and other structures, 13.3.1.1.
     """
     if not 0.0 <= height_ratio <= 1.0:
         raise InputError(f"height_ratio must be from 0 (base) to 1 (roof), not {height_ratio!r}")
@@ -76,7 +119,26 @@ def floor_factor(height_ratio: float, period: float | None = None) -> float:
 def scale_to_floor(motion: Motion, height_ratio: float, period: float | None = None) -> Motion:
     """Return the motion of a floor by the factor method: horizontals times `floor_factor`, the vertical as it is.
 
-    raises : ValueError, as `floor_factor`
+    Parameters
+    ----------
+    motion : Motion
+        Of the ground.
+    height_ratio, period : float
+        As `floor_factor`.
+
+    Returns
+    -------
+    Motion
+        Exact by the code; the factor is in its last step.
+
+    Raises
+    ------
+    InputError
+        As `floor_factor`.
+
+    References
+    ----------
+    ASCE/SEI 7-22, as `floor_factor`.
     """
     factor = floor_factor(height_ratio, period)
     known = "unknown" if period is None else f"{period:g} s"
@@ -94,10 +156,16 @@ def scale_to_floor(motion: Motion, height_ratio: float, period: float | None = N
 class BeamModes:
     """Modes of a uniform cantilever that bends and shears (Miranda and Taghavi 2005).
 
-    alpha0        : H sqrt(GA/EI), 0 pure bending, above 20 nearly pure shear
-    gamma         : (m,) eigenvalues
-    period_ratios : (m,), period of each mode over that of the first
-    participation : (m,), Gamma_i for the shapes of `shapes`
+    Attributes
+    ----------
+    alpha0 : float
+        H sqrt(GA/EI) [-], 0 pure bending, above 20 nearly pure shear.
+    gamma : ndarray, shape (m,)
+        Eigenvalues [-].
+    period_ratios : ndarray, shape (m,)
+        Period of each mode over that of the first [-].
+    participation : ndarray, shape (m,)
+        Gamma_i for the shapes of `shapes` [-].
     """
 
     alpha0: float
@@ -106,22 +174,66 @@ class BeamModes:
     participation: Array
 
     def shapes(self, height_ratio: float | Array) -> Array:
-        """Return the mode shapes at z/h, (m, k), with the top at 1."""
+        """Return the mode shapes.
+
+        Parameters
+        ----------
+        height_ratio : float or ndarray, shape (k,)
+            z/h.
+
+        Returns
+        -------
+        ndarray, shape (m, k)
+            With the top at 1.
+        """
         return _shapes(self.alpha0, self.gamma, np.atleast_1d(np.asarray(height_ratio, dtype=np.float64)))
 
 
 def beam_modes(alpha0: float, modes: int) -> BeamModes:
-    """Return the first modes of a shear-flexural cantilever of uniform mass and stiffness.
+    r"""Return the first modes of a shear-flexural cantilever of uniform mass and stiffness.
 
-    alpha0 : 0 to 650, stiffness ratio: up to 1.5 a building bends (shear walls), 5 to 20 is braced or dual, above it
-             deflects in shear (moment-resisting frames); modes : 1 to 30
-    raises : ValueError outside these
-    error  : eigenvalues 1e-12; participation factors 1e-10 (Gauss-Legendre quadrature of smooth shapes)
-    source : Miranda, E. and Taghavi, S. (2005), Approximate floor acceleration demands in multistory buildings, I:
-             formulation, J. Struct. Eng. 131, 203-211.  phi'''' - alpha0^2 phi'' = lambda phi, fixed at the base, free
-             at the top: phi = sin(gx) - (g/b) sinh(bx) + eta (cosh(bx) - cos(gx)) with b^2 = g^2 + alpha0^2,
-             eta = (g^2 sin g + g b sinh b) / (g^2 cos g + b^2 cosh b), and
-             2 + (2 + alpha0^4/(g b)^2) cos g cosh b + (alpha0^2/(g b)) sin g sinh b = 0; T_i/T_1 = g_1 b_1/(g_i b_i)
+    .. math::
+
+        \phi'''' - \alpha_0^2 \phi'' = \lambda \phi
+
+    fixed at the base, free at the top, x = z/h, is solved by
+
+    .. math::
+
+        \phi = \sin \gamma x - \frac{\gamma}{\beta} \sinh \beta x + \eta (\cosh \beta x - \cos \gamma x), \qquad
+        \beta^2 = \gamma^2 + \alpha_0^2, \quad
+        \eta = \frac{\gamma^2 \sin\gamma + \gamma \beta \sinh\beta}{\gamma^2 \cos\gamma + \beta^2 \cosh\beta}
+
+    with the eigenvalues gamma from
+
+    .. math::
+
+        2 + \left(2 + \frac{\alpha_0^4}{\gamma^2 \beta^2}\right) \cos\gamma \cosh\beta
+        + \frac{\alpha_0^2}{\gamma \beta} \sin\gamma \sinh\beta = 0, \qquad
+        \frac{T_i}{T_1} = \frac{\gamma_1 \beta_1}{\gamma_i \beta_i}
+
+    Parameters
+    ----------
+    alpha0 : float
+        0 to 650, stiffness ratio [-]: up to 1.5 a building bends (shear walls), 5 to 20 is braced or dual, above it
+        deflects in shear (moment-resisting frames).
+    modes : int
+        1 to 30.
+
+    Returns
+    -------
+    BeamModes
+        Eigenvalues to 1e-12; participation factors to 1e-10 (Gauss-Legendre quadrature of smooth shapes).
+
+    Raises
+    ------
+    InputError
+        For values outside these.
+
+    References
+    ----------
+    Miranda, E. and Taghavi, S. (2005). Approximate floor acceleration demands in multistory buildings, I: formulation.
+    Journal of Structural Engineering 131, 203-211.
     """
     from scipy.optimize import brentq
 
@@ -162,17 +274,45 @@ def floor_motion(
     modes: int,
     tail: float | None = None,
 ) -> Motion:
-    """Return the motion of a floor by modal analysis: ground + sum of Gamma_i phi_i(z/h) u_i''.
+    r"""Return the motion of a floor by modal analysis.
 
-    height_ratio : z/h, 0 to 1; period : s, of the first mode; damping : ratio, of every mode
-    alpha0, modes: as `beam_modes`
-    tail         : s that the building goes on swinging after the record; None: until its first mode has decayed to 1 %
-    error        : exact in time at the samples for the ground's polygon (which goes to zero in one step after the
-                   record where a tail is added); what is left out above the last mode moves with the ground.  Between
-                   the samples the floor is taken as a polygon, whose error falls with the square of the step:
-                   resample the ground first (`resampled`), as `refined` does until an error is met.
-    raises       : ValueError for a parameter outside its range
-    source       : Miranda and Taghavi (2005), as `beam_modes`; both horizontals alike, the vertical as on the ground
+    .. math::
+
+        a_{floor} = a_{ground} + \sum_i \Gamma_i \phi_i(z/h) u_i''
+
+    with u_i [m] the displacement of an oscillator of the period and the damping of mode i on the ground.
+
+    Parameters
+    ----------
+    motion : Motion
+        Of the ground.
+    height_ratio : float
+        z/h, 0 to 1.
+    period : float
+        Of the first mode, s.
+    damping : float
+        Ratio, of every mode [-].
+    alpha0, modes : float, int
+        As `beam_modes`.
+    tail : float, optional
+        Seconds that the building goes on swinging after the record; None: until its first mode has decayed to 1 %.
+
+    Returns
+    -------
+    Motion
+        Both horizontals alike, the vertical as on the ground.  Exact in time at the samples for the ground's polygon
+        (which goes to zero in one step after the record where a tail is added); what is left out above the last mode
+        moves with the ground.  Between the samples the floor is taken as a polygon, whose error falls with the square
+        of the step: resample the ground first (`resampled`), as `refined` does until an error is met.
+
+    Raises
+    ------
+    InputError
+        For a parameter outside its range.
+
+    References
+    ----------
+    Miranda and Taghavi (2005), as `beam_modes`.
     """
     if not 0.0 <= height_ratio <= 1.0:
         raise InputError(f"height_ratio must be from 0 (base) to 1 (roof), not {height_ratio!r}")

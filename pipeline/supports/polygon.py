@@ -16,9 +16,24 @@ PASSES = 2
 
 
 def resampled(motion: Motion, refine: int) -> Motion:
-    """Return the same polygon with ``refine`` samples for each of its own: the excitation does not change.
+    """Return the same polygon with more samples: the excitation does not change.
 
-    raises : ValueError for a refinement below 1
+    Parameters
+    ----------
+    motion : Motion
+        Linear between samples.
+    refine : int
+        Samples for each of its own.
+
+    Returns
+    -------
+    Motion
+        With a time step that is by that much smaller.
+
+    Raises
+    ------
+    ValueError
+        For a refinement below 1.
     """
     if refine < 1:
         raise ValueError(f"refine must be at least 1, not {refine}")
@@ -32,21 +47,39 @@ def resampled(motion: Motion, refine: int) -> Motion:
 
 
 def conserving(base: Array, felt: Array, moved: Array, weight: Array, dt: float) -> Array:
-    """Return the corners (2, m) m/s2 of a polygon that hands on the momentum of an absolute acceleration.
+    """Return the corners of a polygon that hands on the momentum of an absolute acceleration.
 
-    base   : (2, n) m/s2, acceleration of the ground along x and y, a polygon that ends with its last sample
-    felt   : (2, m) m/s2, absolute acceleration at the samples, which may jump anywhere between them; m >= n
-    moved  : (2, m + 1) m, displacement relative to the ground, from rest, at one sample more
-    weight : (m,) m/s2, g + a_z
-    error  : the integral is exact to rounding for what starts from rest and comes to rest.  An oscillator on top of it
-             is off by the square of the step (on the samples of `felt`: by the step), by its cube where nothing jumps.
-             As a share of the weight, which is what lifts and shifts an object, no corner is larger than both `felt`
-             and its mean are at one of the three samples around it.
-    source : flux-corrected transport (Zalesak 1979, J. Comput. Phys. 31, 335-362; for vectors with a convex limit
-             Guermond, Popov and Tomas 2019, Comput. Methods Appl. Mech. Eng. 347, 143-175).  The means of the
-             acceleration under the hat functions of the samples, which are second differences of the displacement,
-             keep momentum and range but are blunt; what sharpens them to the samples flows between neighbours, as far
-             as the range allows.
+    The means of the acceleration under the hat functions of the samples, which are second differences of the
+    displacement, keep momentum and range but are blunt; what sharpens them to the samples flows between neighbours, as
+    far as the range allows (flux-corrected transport, with a convex limit for vectors).
+
+    Parameters
+    ----------
+    base : ndarray, shape (2, n)
+        Acceleration of the ground along x and y, m/s2, a polygon that ends with its last sample.
+    felt : ndarray, shape (2, m)
+        Absolute acceleration at the samples, m/s2, which may jump anywhere between them; m >= n.
+    moved : ndarray, shape (2, m + 1)
+        Displacement relative to the ground, from rest, at one sample more, m.
+    weight : ndarray, shape (m,)
+        g + a_z, m/s2.
+    dt : float
+        Time step, s.
+
+    Returns
+    -------
+    ndarray, shape (2, m)
+        In m/s2.  The integral is exact to rounding for what starts from rest and comes to rest.  An oscillator on top
+        of it is off by the square of the step (on the samples of `felt`: by the step), by its cube where nothing jumps.
+        As a share of the weight, which is what lifts and shifts an object, no corner is larger than both `felt` and its
+        mean are at one of the three samples around it.
+
+    References
+    ----------
+    Zalesak, S. T. (1979). Fully multidimensional flux-corrected transport algorithms for fluids. Journal of
+    Computational Physics 31, 335-362. Guermond, J.-L., Popov, B. and Tomas, I. (2019). Invariant domain preserving
+    discretization-independent schemes and convex limiting for hyperbolic systems. Computer Methods in Applied Mechanics
+    and Engineering 347, 143-175.
     """
     n, m = base.shape[1], felt.shape[1]
     if m < 2:

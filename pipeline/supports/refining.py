@@ -1,4 +1,4 @@
-"""How finely a support's output is sampled: until what may stand on the support no longer feels the difference."""
+"""Refinement of a support's output: until what may stand on the support no longer feels the difference."""
 
 from collections.abc import Callable
 
@@ -25,13 +25,22 @@ MOST_SAMPLES = 4_000_000
 
 
 def refined(passed: Callable[[int], Motion], error: float) -> Motion:
-    """Return what a support passes on at the coarsest step at which what stands on it is off by at most ``error``.
+    """Return what a support passes on at the coarsest step at which what stands on it is off by at most an error.
 
-    passed : the motion passed on, at so many samples for each of the input
-    error  : largest difference of the displacement of any oscillator of BANK over the largest displacement of it
     The step is halved until the oscillators agree.  As the error falls at least with the step, the finer motion is off
-    by no more than the two differ, and the coarser by no more than twice that.  The last step of the result says so,
-    and where the limits above end the search, what is left.
+    by no more than the two differ, and the coarser by no more than twice that.
+
+    Parameters
+    ----------
+    passed : callable
+        The motion passed on, at so many samples for each of the input.
+    error : float
+        Largest difference of the displacement of any oscillator of BANK over the largest displacement of it [-].
+
+    Returns
+    -------
+    Motion
+        Its last step says so, and where the limits above end the search, what is left.
     """
     refine = 1
     coarse = passed(refine)
@@ -55,9 +64,17 @@ def _told(motion: Motion, off: float, error: float) -> Motion:
 
 
 def difference(coarse: Motion, fine: Motion) -> float:
-    """Return how far the oscillators of BANK on two motions are apart, as a share of their largest displacement.
+    """Return how far the oscillators of BANK on two motions are apart.
 
-    The step of the coarse motion is a whole multiple of that of the fine one; both horizontal directions count.
+    Parameters
+    ----------
+    coarse, fine : Motion
+        The step of the coarse one is a whole multiple of that of the fine one; both horizontal directions count.
+
+    Returns
+    -------
+    float
+        As a share of their largest displacement [-].
     """
     return _apart(_responses(coarse), _responses(fine), round(coarse.dt / fine.dt))
 

@@ -23,7 +23,15 @@ class TableError(InputError):
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """A value with its range and source, as a table's row states it."""
+    """A value with its range and source, as a table's row states it.
+
+    Attributes
+    ----------
+    value, low, high : float
+        In the unit that the table's column names.
+    source : str
+        Who says so.
+    """
 
     value: float
     low: float
@@ -33,9 +41,24 @@ class Range:
 
 @cache
 def table(name: str) -> tuple[Row, ...]:
-    """Return the rows of a table, by column.
+    """Return the rows of one of Kouros's own tables, by column.
 
-    raises : TableError for a row of another length than the header, FileNotFoundError for an unknown table
+    Parameters
+    ----------
+    name : str
+        Of the file, without ".csv".
+
+    Returns
+    -------
+    tuple of Row
+        In the order of the file.
+
+    Raises
+    ------
+    TableError
+        For a row of another length than the header.
+    FileNotFoundError
+        For an unknown table.
     """
     return read_table(FOLDER / f"{name}.csv")
 
@@ -47,6 +70,11 @@ def read_table(path: Path) -> tuple[Row, ...]:
     ----------
     path : Path
         A file of the museum's, or of Kouros's own; no larger than what a person writes (`pipeline.resources.SMALL`).
+
+    Returns
+    -------
+    tuple of Row
+        In the order of the file.
 
     Raises
     ------
@@ -84,7 +112,24 @@ def _read(path: Path) -> tuple[Row, ...]:
 def number(row: Row, column: str, where: str) -> float:
     """Return a cell as a number.
 
-    raises : TableError naming table, row and column
+    Parameters
+    ----------
+    row : Row
+        Of a table.
+    column : str
+        Of the cell.
+    where : str
+        Table and row, for the message.
+
+    Returns
+    -------
+    float
+        In the column's unit.
+
+    Raises
+    ------
+    TableError
+        Naming table, row and column.
     """
     try:
         return float(row[column])
@@ -95,7 +140,24 @@ def number(row: Row, column: str, where: str) -> float:
 def spread(row: Row, value: str, low: str, high: str, where: str) -> Range:
     """Return value, low and high of a row as one range.
 
-    raises : TableError where they are no numbers or not in order
+    Parameters
+    ----------
+    row : Row
+        Of a table.
+    value, low, high : str
+        The columns.
+    where : str
+        Table and row, for the message.
+
+    Returns
+    -------
+    Range
+        In the columns' unit, with the row's source.
+
+    Raises
+    ------
+    TableError
+        Where they are no numbers or not in order.
     """
     out = Range(number(row, value, where), number(row, low, where), number(row, high, where), row.get("source", ""))
     if not out.low <= out.value <= out.high:
@@ -115,15 +177,39 @@ def _materials() -> tuple[tuple[re.Pattern[str], Row], ...]:
 
 @lru_cache(maxsize=65536)
 def material_in(text: str) -> Row | None:
-    """Return the row of materials.csv for the material that stands first in a text, None where there is none."""
+    """Return the row of materials.csv for the material that stands first in a text.
+
+    Parameters
+    ----------
+    text : str
+        In the museum's words.
+
+    Returns
+    -------
+    Row or None
+        None where there is none.
+    """
     found = [(match.start(), row) for pattern, row in _materials() if (match := pattern.search(text))]
     return min(found, key=lambda pair: pair[0])[1] if found else None
 
 
 def friction_of(object_material: str = "", surface_material: str = "") -> Range:
-    """Return the friction of a pair (paper's Table 3): the median and the span of all rows that are not ruled out.
+    """Return the friction of a pair: the median and the span of all rows that are not ruled out.
 
-    An empty name rules nothing out; a name that the table does not know leaves the other one to decide.
+    Parameters
+    ----------
+    object_material, surface_material : str
+        An empty name rules nothing out; a name that the table does not know leaves the other one to decide.
+
+    Returns
+    -------
+    Range
+        Coefficient of friction [-].
+
+    References
+    ----------
+    Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
+    methods for museum objects. Studies in Conservation 36. Table 3.
     """
     rows = _matching("friction", {"object_material": object_material, "surface_material": surface_material})
     # Special surfaces are chosen on purpose, never met by chance.
@@ -135,9 +221,23 @@ def friction_of(object_material: str = "", surface_material: str = "") -> Range:
 
 
 def damping_of(wall_surface: str = "", back_surface: str = "") -> Range:
-    """Return the damping of a painting against its wall (paper's Table 4).
+    """Return the damping of a painting against its wall.
 
     With nothing known the lowest damping counts, the painting's bare wood on paint; the span is the table's.
+
+    Parameters
+    ----------
+    wall_surface, back_surface : str
+        As in `friction_of`.
+
+    Returns
+    -------
+    Range
+        Damping ratio [-].
+
+    References
+    ----------
+    Agbabian et al. (1991), as in `friction_of`, Table 4.
     """
     rows = _matching("damping", {"wall_surface": wall_surface, "back_surface": back_surface})
     out = _span(rows, "damping")

@@ -50,6 +50,11 @@ def checked(
     context : mapping, optional
         What validators of the model ask for.
 
+    Returns
+    -------
+    tuple
+        In the order of the file.
+
     Raises
     ------
     TableError
@@ -84,6 +89,13 @@ def _short(cell: object) -> str:
 
 def once(values: Iterable[str], column: str, file: str) -> None:
     """Refuse a value that stands in a column twice.
+
+    Parameters
+    ----------
+    values : iterable of str
+        Of the column, the first on line 2.
+    column, file : str
+        For the message.
 
     Raises
     ------

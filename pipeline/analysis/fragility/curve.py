@@ -26,11 +26,16 @@ ROUNDS, SETTLED = 500, 1e-10
 
 @dataclass(frozen=True)
 class Fit:
-    """Medians and dispersions from record to record, (m,) each.
+    """Medians and dispersions from record to record.
 
-    median     : in the unit of the capacities
-    dispersion : of ln, as measured; NaN where fewer than two motions tell it
-    bound      : (m,) "" where the median is known, else "above" or "below": it is only known to be that
+    Attributes
+    ----------
+    median : ndarray, shape (m,)
+        In the unit of the capacities.
+    dispersion : ndarray, shape (m,)
+        Of ln, as measured [-]; NaN where fewer than two motions tell it.
+    bound : sequence of str, (m,)
+        "" where the median is known, else "above" or "below": it is only known to be that.
     """
 
     median: Array
@@ -42,21 +47,50 @@ class Fit:
 def stated(name: str) -> Range:
     """Return a dispersion of tables/dispersion.csv.
 
-    raises : KeyError for a name that the table does not have
+    Parameters
+    ----------
+    name : str
+        Of the row.
+
+    Returns
+    -------
+    Range
+        Standard deviation of ln [-].
+
+    Raises
+    ------
+    KeyError
+        For a name that the table does not have.
     """
     rows = {row["name"]: row for row in table("dispersion")}
     return spread(rows[name], "value", "low", "high", f"dispersion.csv, {name}")
 
 
 def fit(capacity: Array, least: Array, most: Array) -> Fit:
-    """Fit a lognormal to the intensities at which an object failed, motion by motion.
+    """Fit a lognormal to the intensities at which objects failed, motion by motion.
 
-    capacity : (m, n), n motions; 0 where it failed at the least that was tried, infinite where at nothing
-    least, most : (n,) intensities between which each motion was scaled
     A motion that was not scaled far enough still counts: maximum likelihood for censored samples, by the EM algorithm.
     With less than half of the motions telling where, and with fewer than two of several, the median is only bounded.
-    source   : Baker (2015), Efficient analytical fragility function fitting (truncated IDA); Dempster, Laird and Rubin
-               (1977)
+
+    Parameters
+    ----------
+    capacity : ndarray, shape (m, n)
+        Of m objects under n motions, in m/s2 or any other unit; 0 where it failed at the least that was tried, infinite
+        where at nothing.
+    least, most : ndarray, shape (n,)
+        Intensities between which each motion was scaled, in the same unit.
+
+    Returns
+    -------
+    Fit
+        Of each object.
+
+    References
+    ----------
+    Baker, J. W. (2015). Efficient analytical fragility function fitting using dynamic structural analysis. Earthquake
+    Spectra 31, 579-599 (truncated IDA).
+    Dempster, A. P., Laird, N. M. and Rubin, D. B. (1977). Maximum likelihood from incomplete data via the EM algorithm.
+    Journal of the Royal Statistical Society B 39, 1-38.
     """
     with np.errstate(divide="ignore"):
         logs = np.log(capacity)
@@ -103,5 +137,16 @@ def _censored(held: Array, short: Array, far: Array) -> tuple[Array, Array]:
 
 
 def from_span(low: float | Array, high: float | Array) -> Array:
-    """Return the dispersion of a quantity whose ln lies between two values in 9 of 10 cases."""
+    """Return the dispersion of a quantity whose ln lies between two values in 9 of 10 cases.
+
+    Parameters
+    ----------
+    low, high : float or ndarray
+        The two values of ln [-].
+
+    Returns
+    -------
+    ndarray
+        Standard deviation of ln [-].
+    """
     return np.asarray(np.abs(np.asarray(high) - np.asarray(low)) / (2.0 * NINETY))

@@ -20,8 +20,12 @@ class NoHazardError(InputError):
 class Hazard:
     """Annual rate of exceeding an intensity: straight between its points in logarithms of both.
 
-    intensity : (n,) rising, m/s2
-    rate      : (n,) falling, 1/year
+    Attributes
+    ----------
+    intensity : ndarray, shape (n,)
+        Rising, m/s2.
+    rate : ndarray, shape (n,)
+        Falling, 1/year.
     """
 
     intensity: Array
@@ -34,10 +38,26 @@ class Hazard:
 
     @classmethod
     def of(cls, intensities: Sequence[float], periods: Sequence[float], extended: float = EXTENDED) -> "Hazard":
-        """Return the curve through levels of intensity [m/s2] and return period [years].
+        """Return the curve through levels of shaking.
 
-        extended : factor by which it is drawn out at both ends
-        raises   : NoHazardError for fewer than two return periods, or where a rarer level does not shake more
+        Parameters
+        ----------
+        intensities : sequence of float
+            Of the levels, m/s2.
+        periods : sequence of float
+            Their return periods, years.
+        extended : float
+            Factor by which it is drawn out at both ends [-].
+
+        Returns
+        -------
+        Hazard
+            With a point at each end besides those given.
+
+        Raises
+        ------
+        NoHazardError
+            For fewer than two return periods, or where a rarer level does not shake more.
         """
         order = np.argsort(periods, kind="stable")
         x, years = np.asarray(intensities, dtype=float)[order], np.asarray(periods, dtype=float)[order]
@@ -54,11 +74,34 @@ class Hazard:
         )
 
     def failures(self, median: float, dispersion: float) -> float:
-        """Return the annual rate of failure of a lognormal fragility: the hazard, averaged over its failure intensity.
+        r"""Return the annual rate of failure of a lognormal fragility: the hazard, averaged over its failure intensity.
 
-        Exact for each straight piece.  Below the curve the rate is taken as that at its lower end and above it as none,
-        so that the result is a lower bound; it is close where the median lies well inside.
-        source : Jalayer and Cornell (2003), lambda = k0 m^-k exp(k^2 beta^2 / 2) for a curve without ends
+        On a straight piece of the curve, without ends, it is
+
+        .. math::
+
+            \lambda = k_0 m^{-k} \exp\left(\tfrac{1}{2} k^2 \beta^2\right), \qquad \text{rate} = k_0 x^{-k}
+
+        with m the median and beta the dispersion.  Exact for each straight piece.  Below the curve the rate is taken as
+        that at its lower end and above it as none, so that the result is a lower bound; it is close where the median
+        lies well inside.
+
+        Parameters
+        ----------
+        median : float
+            Of the intensity at failure, m/s2.
+        dispersion : float
+            Standard deviation of its ln [-].
+
+        Returns
+        -------
+        float
+            In 1/year.
+
+        References
+        ----------
+        Jalayer, F. and Cornell, C. A. (2003). A technical framework for probability-based demand and capacity factor
+        design (DCFD) seismic formulations. PEER Report 2003/08.
         """
         from scipy.special import ndtr
 

@@ -26,9 +26,16 @@ FINELY = Numerics("history", DIRECTIONS)
 
 @dataclass(frozen=True)
 class Stripe:
-    """A level of shaking as fragilities see it: its motions, the intensity of each, and how rarely it comes.
+    """A level of shaking as fragilities see it.
 
-    intensities : (n,) m/s2, peak horizontal acceleration of the floor that objects stand on
+    Attributes
+    ----------
+    motions : tuple of Motion
+        Those of the level.
+    intensities : tuple of float
+        Of each, peak horizontal acceleration of the floor that objects stand on, m/s2.
+    return_period_years : float or None
+        How rarely it comes, years.
     """
 
     motions: tuple[Motion, ...]
@@ -198,8 +205,14 @@ def _inputs(factors: Array, starts: Indices, lengths: Indices) -> Array:
     Over all corners of the inputs the variance is the sum of the squares of what each of them does, halved, on its own
     and of what several do together beyond that (a two-level factorial design: Box, Hunter and Hunter 2005); with one
     input it is the square of half its span.
-    factors : (v + 2m, n) as `Questions.of` orders them.  What never fails, or fails at once, is taken at the end of
-              the scaling, so that the dispersion is not too large
+
+    Parameters
+    ----------
+    factors : ndarray, shape (v + 2m, n)
+        As `Questions.of` orders them.  What never fails, or fails at once, is taken at the end of the scaling, so that
+        the dispersion is not too large.
+    starts, lengths : ndarray, shape (m,)
+        Of each analysis's parameter sets among the v.
     """
     count = starts.size
     logs: Array = np.log(np.clip(factors, FACTORS[0], FACTORS[-1]))

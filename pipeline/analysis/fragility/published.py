@@ -16,7 +16,23 @@ from pipeline.tables.rows import Number, checked
 
 @dataclass(frozen=True)
 class Published:
-    """A published fragility: median [m/s2], dispersion, what it is of, and who says so."""
+    """A published fragility.
+
+    Attributes
+    ----------
+    what : str
+        What it is of.
+    median : float
+        In m/s2; the table has it in g.
+    dispersion : float
+        Standard deviation of ln [-].
+    support : str
+        How the object is held.
+    friction_below : float
+        It is of objects with less friction than this [-].
+    source : str
+        Who says so.
+    """
 
     what: str
     median: Annotated[Number, Field(alias="median_g"), AfterValidator(lambda g: g * G)]
@@ -30,13 +46,32 @@ class Published:
 def all_published() -> Sequence[Published]:
     """Return the rows of the table.
 
-    raises : TableError for what is no number
+    Returns
+    -------
+    sequence of Published
+        In its order.
+
+    Raises
+    ------
+    TableError
+        For what is no number.
     """
     return checked(Published, table("fragility"), "fragility.csv", named="what")
 
 
 def published(scene: Scene) -> Published | None:
-    """Return what a scene is set beside: the row of its support with the least friction that it is below, or None."""
+    """Return what a scene is set beside: the row of its support with the least friction that it is below.
+
+    Parameters
+    ----------
+    scene : Scene
+        The object as it stands.
+
+    Returns
+    -------
+    Published or None
+        None where there is none, or where its friction is not known.
+    """
     friction = scene.parameters.get("friction_static")
     if friction is None:
         return None

@@ -25,11 +25,18 @@ STEEP = 2.0
 
 @dataclass(frozen=True)
 class Questions:
-    """Demands against capacities, (v,) of them: which parameter sets, which output, how much is allowed.
+    """Demands against capacities, v of them: which parameter sets, which output, how much is allowed.
 
-    rows     : (v, a) rows of the work's values, of which the larger demand counts
-    output   : of the model
-    capacity : (v,)
+    Attributes
+    ----------
+    work : Work
+        Whose values are meant.
+    output : str
+        Of the model.
+    rows : ndarray of int, shape (v, a)
+        Rows of the work's values, of which the larger demand counts.
+    capacity : ndarray, shape (v,)
+        In the output's unit.
     """
 
     work: Work
@@ -42,6 +49,22 @@ class Questions:
         """Return, for some analyses of a work, all their parameter sets, then the best ones at both ends of capacity.
 
         The sets of an analysis come as in the work: the best one first, then the corners of its uncertain inputs.
+
+        Parameters
+        ----------
+        work : Work
+            Of the plan.
+        output : str
+            Of its model.
+        members : ndarray of int, shape (m,)
+            Which analyses.
+        capacities : sequence of Estimate
+            Of each, in the output's unit.
+
+        Returns
+        -------
+        Questions
+            (v + 2m,) of them.
         """
         spans = work.spans.take(members)
         low, best, high = (np.array([getattr(c, end) for c in capacities]) for end in ("low", "value", "high"))
@@ -77,9 +100,14 @@ class Questions:
 
 @dataclass(frozen=True)
 class Found:
-    """The factors at which each question fails first, (v,): 0 where at the least one, infinite where at none.
+    """The factors at which each question fails first.
 
-    returns : whether it stood again at a larger one; only a yes or no is followed beyond its first failure
+    Attributes
+    ----------
+    factor : ndarray, shape (v,)
+        Of the motion [-]: 0 where at the least one, infinite where at none.
+    returns : ndarray of bool, shape (v,)
+        Whether it stood again at a larger one; only a yes or no is followed beyond its first failure.
     """
 
     factor: Array
