@@ -158,7 +158,7 @@ def test_a_line_joins_neighbours_whose_gap_is_too_small(tmp_path: Path) -> None:
     index = render(record, tmp_path / "r")
     museum = shown(record, Units())
     greek = next(g for g in museum.galleries if g.name == builder.GREEK)
-    page = etree.parse(str(index.parent / greek.page))
+    page = etree.parse(str(index.parent / greek.page.file))
     (drawing,) = (e for e in page.iter("svg") if e.get("class") == "plan")
     lines = [e for e in drawing.iter("path") if (e.get("class") or "").startswith("gap ")]
     assert [e.get("class") for e in lines] == ["gap act", "gap open"]
@@ -184,7 +184,7 @@ def test_numbers_that_stand_twice_have_no_line() -> None:
     record = replace(builder.record(twin), spacings=(builder.gap("79.AA.143", "82.AB.7", Verdict.FAIL),))
     greek = next(g for g in shown(record, Units()).galleries if g.name == builder.GREEK)
     assert greek.plan is not None
-    assert greek.plan.tight(greek.spacings) == ()
+    assert greek.plan.tight == ()
 
 
 def test_a_plan_of_one_object_says_one() -> None:

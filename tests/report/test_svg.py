@@ -9,8 +9,10 @@ from lxml import etree
 
 from pipeline.records import Axis, Chart, Curve, Zone
 from pipeline.report import ReportError, Units
-from pipeline.report.plots.scales import Scale, _all_inside, inside, linear_ticks, log_between, log_ticks, roomy, thin
-from pipeline.report.plots.svg import Drawing, Spot
+from pipeline.report.plots.chart import Drawing, Spot
+from pipeline.report.plots.labels import _all_inside, inside, roomy
+from pipeline.report.plots.scales import Scale, linear_ticks, log_between, log_ticks
+from pipeline.report.plots.svg import element, text, thin, write
 from pipeline.report.plots.traces import trace
 
 from . import builder
@@ -24,6 +26,15 @@ SQUARE = Chart(
     (Curve("a line", (0.01, 0.1, 1.0), (0.0, 4.903325, 9.80665)),),
     (Zone("falls <i>", (0.01, 1.0, 1.0, 0.01), (0.0, 0.0, 4.0, 4.0), "danger"),),
 )
+
+
+def test_whatever_an_element_holds_stays_text() -> None:
+    hostile = "</text><script>'\"&amp;"
+    drawn = etree.fromstring(write(element("g", text(hostile, 1.25, 3.0, hostile), element("use"), aria_label=hostile)))
+    (words, _use) = drawn
+    assert [e.tag for e in drawn.iter()] == ["g", "text", "use"]
+    assert (words.text, words.get("class"), drawn.get("aria-label")) == (hostile, hostile, hostile)
+    assert (float(words.get("x")), words.get("y")) == (pytest.approx(1.25, abs=0.051), "3")
 
 
 def test_log_scale_halves_at_the_geometric_mean() -> None:
@@ -113,9 +124,9 @@ def _figure(*spots: Spot, units: Units | None = None) -> etree._Element:
 def test_a_mark_is_drawn_where_the_data_say() -> None:
     drawing = Drawing(SQUARE, Units(), "c0")
     circle = next(_figure(Spot(0.1, 4.903325, "it")).iter("circle"))
-    middle = (drawing.x.start + drawing.x.end) / 2  # 0.1 is the geometric mean of the limits 0.01 and 1
+    middle = (drawing.panel.x.start + drawing.panel.x.end) / 2  # 0.1 is the geometric mean of the limits 0.01 and 1
     assert float(circle.get("cx")) == pytest.approx(middle, abs=0.06)  # written with one digit
-    assert float(circle.get("cy")) == pytest.approx((drawing.y.start + drawing.y.end) / 2, abs=0.06)
+    assert float(circle.get("cy")) == pytest.approx((drawing.panel.y.start + drawing.panel.y.end) / 2, abs=0.06)
 
 
 def test_the_text_alternative_names_the_mark_in_numbers_and_its_zone() -> None:
@@ -144,8 +155,8 @@ def test_an_unknown_place_is_said_and_not_drawn() -> None:
 def test_equal_axes_share_one_scale() -> None:
     path = next(c for c in builder.charts().values() if c.equal)
     drawing = Drawing(path, Units(), "c0")
-    across = (drawing.x.end - drawing.x.start) / (drawing.x.high - drawing.x.low)
-    up = (drawing.y.start - drawing.y.end) / (drawing.y.high - drawing.y.low)
+    across = (drawing.panel.x.end - drawing.panel.x.start) / (drawing.panel.x.high - drawing.panel.x.low)
+    up = (drawing.panel.y.start - drawing.panel.y.end) / (drawing.panel.y.high - drawing.panel.y.low)
     assert across == pytest.approx(up, rel=1e-12)
 
 

@@ -18,7 +18,7 @@ from pipeline.report.pages.environment import environment, fill
 from pipeline.report.pages.notes import page_notes
 from pipeline.report.pages.tallies import tally
 from pipeline.report.pages.views import Entry, FigureView, State
-from pipeline.report.plots.svg import PATTERNS, Drawing
+from pipeline.report.plots.chart import PATTERNS, Drawing
 from pipeline.report.units import Units
 from pipeline.resources import resource
 
@@ -129,12 +129,12 @@ class PageRenderer:
 def drawn(keys: Sequence[str], drawings: Mapping[str, Drawing]) -> dict[str, Any]:
     """Return what a page needs to show these charts: their symbols, the charts themselves, and the marking of them."""
     mine = {key: drawings[key] for key in keys}
-    symbols = PATTERNS + "".join(d.symbol() for d in mine.values())
+    symbols = Markup("").join((PATTERNS, *(d.symbol() for d in mine.values())))
 
     def figure(view: FigureView, subject: str) -> Markup:
-        return Markup(mine[view.chart].figure(view.spots, subject))  # noqa: S704
+        return mine[view.chart].figure(view.spots, subject)
 
     def bare(key: str) -> Markup:
-        return Markup(mine[key].figure((), ""))  # noqa: S704
+        return mine[key].figure((), "")
 
-    return {"drawings": mine, "symbols": Markup(symbols), "figure": figure, "bare": bare}  # noqa: S704
+    return {"drawings": mine, "symbols": symbols, "figure": figure, "bare": bare}

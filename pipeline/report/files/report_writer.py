@@ -14,8 +14,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from markupsafe import Markup
-
 from pipeline.records import Page, RunChanges, RunRecord, Standing, Tally
 from pipeline.report.errors import ReportError
 from pipeline.report.files.concatenation import concatenate
@@ -227,7 +225,7 @@ class ReportWriter:
             further, left_out = further_pages(env, head, tally, entries)
             shared: dict[str, Any] = {"museum": museum, "units": units, "State": State, "further": further}
             traces = {
-                view.anchor: Markup(trace(motion, units, view.anchor))  # noqa: S704 - svg.py escapes all text itself
+                view.anchor: trace(motion, units, view.anchor)
                 for view, motion in zip(museum.motions, head.motions, strict=True)
             }
             shaken = drawn([key for motion in museum.motions for key in motion.charts], drawings)

@@ -98,6 +98,7 @@ def compose(record: RunRecord, page: Page, units: Units, *, several: bool) -> Co
     describer = Describer(record, units)
     members = sorted(record.assessments, key=urgency)
     file = page_name(page.gallery, page.number, on_display=page.on_display)
+    spacings = spacing_views(record.spacings, units) if page.on_display else ()
     views = [describer.object(a, file) for a in members]
     pairs = list(zip(members, views, strict=True))
     by_state = Counter(v.state for v in views)
@@ -114,8 +115,8 @@ def compose(record: RunRecord, page: Page, units: Units, *, several: bool) -> Co
         several_levels=several,
         survey=errands(pairs, describer.wishes),
         surveyed=describer.surveyed,
-        plan=plan_view(pairs, units),
-        spacings=spacing_views(record.spacings, units) if page.on_display else (),
+        plan=plan_view(pairs, spacings, units),
+        spacings=spacings,
         rooms=room_views(members, units) if page.on_display else (),
         shaking=shaking_view(members) if page.on_display else None,
         decisions=decisions_view([(v.decisions, v.settled, pointer(v)) for v in views if v.decisions]),

@@ -37,7 +37,7 @@ from pipeline.report.pages.views import (
     ObjectView,
     State,
 )
-from pipeline.report.plots.svg import Spot
+from pipeline.report.plots.chart import Spot
 from pipeline.report.text import clean, digest, plain, short, words
 from pipeline.report.units import Units, ratio
 

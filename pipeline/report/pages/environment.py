@@ -55,7 +55,6 @@ def environment(language: Language | None = None) -> Environment:
     env.globals["_"] = lru_cache(maxsize=1024)(lambda text: Markup(phrases.gettext(text)))  # noqa: S704
     env.globals["language"] = spoken
     env.filters["plain"] = plain
-    env.filters["drawn"] = Markup  # of a drawing of ours, which escapes all text itself
     env.filters["thousands"] = count
     return env
 

@@ -3,15 +3,20 @@
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
 from math import cos, hypot, isfinite, radians, sin
+
+from markupsafe import Markup
 
 from pipeline.quantities import LENGTHS
 from pipeline.records import Assessment, Item
 from pipeline.report.language import _, ngettext
+from pipeline.report.pages.judging import SpacingView
 from pipeline.report.pages.plan_views import PlaceView, PlanView
 from pipeline.report.pages.views import STATES, ObjectView, State
-from pipeline.report.plots.scales import nice_step
+from pipeline.report.plots import svg
+from pipeline.report.plots.panel import Panel
+from pipeline.report.plots.scales import Scale, nice_step
+from pipeline.report.plots.svg import Element, Point
 from pipeline.report.text import count, plain, short
 from pipeline.report.units import Units
 
@@ -23,10 +28,8 @@ _POINT = 0.12
 """Half the side in m of the cross that stands for an object whose footprint is not recorded."""
 
 PLAN_PATTERNS = (
-    '<pattern id="po" width="6" height="6" patternUnits="userSpaceOnUse" patternTransform="rotate(45)">'
-    '<rect width="6" height="6" fill="#fff"/><path d="M0 0V6" stroke="#1c1b1a" stroke-width="2"/></pattern>'
-    '<pattern id="pu" width="6" height="6" patternUnits="userSpaceOnUse">'
-    '<rect width="6" height="6" fill="#fff"/><circle cx="3" cy="3" r="1.1" fill="#5c5853"/></pattern>'
+    svg.hatch("po", 6, "#fff", svg.stripe(6, "#1c1b1a", 2), turn=45),
+    svg.hatch("pu", 6, "#fff", svg.element("circle", cx=3, cy=3, r=1.1, fill="#5c5853")),
 )
 """Fills that a grey print tells apart: open is hatched, not assessed is dotted; acting is solid, safe is empty."""
 
@@ -52,17 +55,34 @@ class _Place:
         return hypot(*(self.half or (_POINT, _POINT))) + self.need
 
 
-def plan_view(pairs: Sequence[tuple[Assessment, ObjectView]], units: Units) -> PlanView | None:
-    """Return the plan of the objects whose positions are recorded; None where there is not one.
+def plan_view(
+    pairs: Sequence[tuple[Assessment, ObjectView]], spacings: Sequence[SpacingView], units: Units
+) -> PlanView | None:
+    """Return the plan of the objects whose positions are recorded.
 
-    pairs : the objects of a gallery, the most urgent first: their numbers on the plan count in this order
+    Parameters
+    ----------
+    pairs : sequence of (Assessment, ObjectView)
+        The objects of a gallery, the most urgent first: their numbers on the plan count in this order.
+    spacings : sequence of SpacingView
+        What is known of neighbours, the worst first.
+    units : Units
+        The reader's.
+
+    Returns
+    -------
+    PlanView or None
+        None where no position is recorded.
     """
     stand = [(a, view) for a, view in pairs if a.scene.item.on_display and _position(a.scene.item) is not None]
     if not stand:
         return None
     places = [_place(number, a, view) for number, (a, view) in enumerate(stand, start=1)]
     rows = tuple(_row(place, a, units) for place, (a, _view) in zip(places, stand, strict=True))
-    return _draw(places, units, rows, len(pairs) - len(stand))
+    standing = Counter(p.view.number for p in places)
+    # Of a number that stands twice nobody knows which is meant.
+    tight = tuple(s for s in _tight(spacings) if standing[s.first] == standing[s.second] == 1)
+    return PlanView(_draw(places, tight, units), rows, len(pairs) - len(stand), tight)
 
 
 def needed_clearance(assessment: Assessment) -> float:
@@ -118,97 +138,99 @@ def _row(place: _Place, assessment: Assessment, units: Units) -> PlaceView:
     )
 
 
-def _draw(places: Sequence[_Place], units: Units, rows: tuple[PlaceView, ...], missing: int) -> PlanView:
+def _tight(spacings: Sequence[SpacingView]) -> list[SpacingView]:
+    """Return the neighbours that may meet, each pair as it stands at its worst level, the worst first."""
+    return list({(s.first, s.second): s for s in reversed(spacings) if s.state != State.SAFE}.values())[::-1]
+
+
+def _draw(places: Sequence[_Place], tight: Sequence[SpacingView], units: Units) -> Markup:
     west, east = min(p.x - p.reach for p in places), max(p.x + p.reach for p in places)
     south, north = min(p.y - p.reach for p in places), max(p.y + p.reach for p in places)
     across, up = max(east - west, 1.0), max(north - south, 1.0)
     scale = min((WIDTH - 2 * _MARGIN) / across, (_TALLEST - _MARGIN - _FOOT) / up)
     height = up * scale + _MARGIN + _FOOT
     left = 0.5 * (WIDTH - across * scale)
+    panel = Panel(
+        Scale(west, west + across, left, left + across * scale), Scale(north - up, north, height - _FOOT, _MARGIN)
+    )
+    at = {p.number: panel.at(p.x, p.y) for p in places}
+    centres = {p.view.number: at[p.number] for p in places}
+    drawn = [
+        svg.element("defs", *PLAN_PATTERNS),
+        *(_ring(p, *at[p.number], scale) for p in places if p.need),
+        *(_gap(s, (centres[s.first], centres[s.second])) for s in tight),
+        # The least urgent are drawn first, so that what must be acted on is never hidden.
+        *(_shape(p, *at[p.number], scale) for p in reversed(places)),
+        *_bar(scale, height, units),
+        *_north(height),
+    ]
+    told = _told(places, units.text(across, "m"), units.text(up, "m"))
+    title = _("Plan of the gallery, to scale")
+    return svg.picture("plan", WIDTH, round(height), title, told, drawn, "plan", role="group")
 
-    def at(x: float, y: float) -> tuple[float, float]:
-        return left + (x - west) * scale, _MARGIN + (north - y) * scale
 
-    rings = "".join(_ring(p, *at(p.x, p.y), scale) for p in places if p.need)
-    # The least urgent are drawn first, so that what must be acted on is never hidden.
-    shapes = "".join(_shape(p, *at(p.x, p.y), scale) for p in reversed(places))
+def _told(places: Sequence[_Place], across: str, up: str) -> str:
     tally = {state: sum(p.view.state is state for p in places) for state in STATES}
     phrase = ngettext(
         "%(count)s object at its recorded position, north up; the plan shows %(width)s by %(depth)s.",
         "%(count)s objects at their recorded positions, north up; the plan shows %(width)s by %(depth)s.",
         len(places),
     )
-    size = {"count": count(len(places)), "width": units.text(across, "m"), "depth": units.text(up, "m")}
+    size = {"count": count(len(places)), "width": across, "depth": up}
     states = _("%(act)s to act on, %(open)s open, %(unknown)s cannot be assessed, %(safe)s safe.")
     verdicts = states % {state.value: count(number) for state, number in tally.items()}
-    told = " ".join((phrase % size, verdicts, _("The table below says the same.")))
-    heading = escape(_("Plan of the gallery, to scale"))
-    ground = (
-        f'<svg class="plan" viewBox="0 0 {WIDTH:.0f} {height:.0f}" role="group" aria-labelledby="plant pland">'
-        f'<title id="plant">{heading}</title><desc id="pland">{escape(told)}</desc>'
-        f"<defs>{PLAN_PATTERNS}</defs>{rings}"
-    )
-    twice = Counter(p.view.number for p in places)
-    centres = {p.view.number: at(p.x, p.y) for p in places if twice[p.view.number] == 1}
-    objects = f"{shapes}{_bar(scale, height, units)}{_north(height)}</svg>"
-    return PlanView(ground, objects, rows, missing, centres)
+    return " ".join((phrase % size, verdicts, _("The table below says the same.")))
 
 
-def _ring(place: _Place, x: float, y: float, scale: float) -> str:
+def _ring(place: _Place, x: float, y: float, scale: float) -> Element:
     # The exact set of points within the needed room of a rectangle is that rectangle with round corners.
-    half = place.half or (0.0, 0.0)
     need = place.need * scale
-    w, h = half[0] * scale + need, half[1] * scale + need
-    return (
-        f'<rect class="rg"{_turned(place, x, y)} x="{x - w:.1f}" y="{y - h:.1f}" width="{2 * w:.1f}" '
-        f'height="{2 * h:.1f}" rx="{need:.1f}"/>'
-    )
+    w, h = (half * scale + need for half in place.half or (0.0, 0.0))
+    return svg.rect("rg", x - w, y - h, 2 * w, 2 * h, turned=_turned(place, x, y), round_=need)
 
 
-def _turned(place: _Place, x: float, y: float) -> str:
+def _turned(place: _Place, x: float, y: float) -> str | None:
     # With the clock, as SVG turns and as azimuths count.
-    return f' transform="rotate({place.turn:.6g} {x:.1f} {y:.1f})"' if place.turn and place.half else ""
+    return f"rotate({place.turn:.6g} {svg.number(x)} {svg.number(y)})" if place.turn and place.half else None
 
 
-def _shape(place: _Place, x: float, y: float, scale: float) -> str:
+def _gap(spacing: SpacingView, ends: Sequence[Point]) -> Element:
+    meet = _("their gap is too small") if spacing.state == State.ACT else _("whether their gap is wide enough is open")
+    told = f"{plain(spacing.first)}, {plain(spacing.second)}: {meet} ({spacing.gap})"
+    return svg.path(f"gap {spacing.state}", svg.through(ends), svg.element("title", told), role="img")
+
+
+def _shape(place: _Place, x: float, y: float, scale: float) -> Element:
     kind = {State.ACT: "pa", State.OPEN: "po", State.UNKNOWN: "pu", State.SAFE: "ps"}[place.view.state]
+    half = place.half or (_POINT, _POINT)
     if place.half is None:
         r = _POINT * scale
-        box = f'<path class="{kind} pc" d="M{x - r:.1f} {y:.1f}H{x + r:.1f}M{x:.1f} {y - r:.1f}V{y + r:.1f}"/>'
+        box = svg.path(f"{kind} pc", svg.level(y, x - r, x + r) + svg.upright(x, y - r, y + r))
     else:
-        w, h = (max(half * scale, 1.5) for half in place.half)
-        box = (
-            f'<rect class="{kind}"{_turned(place, x, y)} x="{x - w:.1f}" y="{y - h:.1f}" '
-            f'width="{2 * w:.1f}" height="{2 * h:.1f}"/>'
-        )
+        w, h = (max(side * scale, 1.5) for side in half)
+        box = svg.rect(kind, x - w, y - h, 2 * w, 2 * h, turned=_turned(place, x, y))
     name = plain(short(f"{place.number}: {place.view.number} {place.view.short}", 70))
     # The number stands beside the footprint, where its own size does not depend on the object's.
     turn = radians(place.turn)
-    half = place.half or (_POINT, _POINT)
     beside = x + (abs(half[0] * cos(turn)) + abs(half[1] * sin(turn))) * scale + 3
-    return (
-        f'<a href="#{place.view.anchor}" aria-label="{escape(name)}">{box}'
-        f'<text class="pn" x="{beside:.1f}" y="{y + 4:.1f}">{place.number}</text></a>'
-    )
+    words = svg.text(str(place.number), beside, y + 4, "pn")
+    return svg.element("a", box, words, href=f"#{place.view.anchor}", aria_label=name)
 
 
-def _bar(scale: float, height: float, units: Units) -> str:
+def _bar(scale: float, height: float, units: Units) -> list[Element]:
     feet = units.length in ("in", "ft")
     unit, metres = (_("ft"), LENGTHS["ft"]) if feet else (_("m"), 1.0)
     # About a fifth of the drawing, a round number of metres or feet.
     length = nice_step(0.14 * WIDTH / (scale * metres))
-    pixels, y = length * metres * scale, height - 18
-    end, middle = _MARGIN + pixels, _MARGIN + 0.5 * pixels
-    ticks = f"M{_MARGIN} {y - 5:.1f}V{y:.1f}H{end:.1f}V{y - 5:.1f}M{middle:.1f} {y - 3:.1f}V{y:.1f}"
-    return (
-        f'<path class="pb" d="{ticks}"/>'
-        f'<text class="pl" x="{_MARGIN + pixels + 6:.1f}" y="{y + 2:.1f}">{length:g} {escape(unit)}</text>'
-    )
+    y, end = height - 18, _MARGIN + length * metres * scale
+    ends = f"{svg.upright(_MARGIN, y - 5, y)}H{svg.number(end)}V{svg.number(y - 5)}"
+    return [
+        svg.path("pb", ends + svg.upright(0.5 * (_MARGIN + end), y - 3, y)),
+        svg.text(f"{length:g} {unit}", end + 6, y + 2, "pl"),
+    ]
 
 
-def _north(height: float) -> str:
-    x, y, told = WIDTH - _MARGIN, height - 14, escape(_("North"))
-    return (
-        f'<path class="pz" d="M{x:.0f} {y - 26:.0f}L{x + 7:.0f} {y:.0f}L{x:.0f} {y - 6:.0f}L{x - 7:.0f} {y:.0f}Z"/>'
-        f'<text class="pl e" x="{x - 12:.0f}" y="{y:.0f}">{told}</text>'
-    )
+def _north(height: float) -> list[Element]:
+    x, y = round(WIDTH - _MARGIN), height - 14
+    arrow = [(x, round(y - 26)), (x + 7, round(y)), (x, round(y - 6)), (x - 7, round(y))]
+    return [svg.path("pz", svg.through(arrow) + "Z"), svg.text(_("North"), x - 12, round(y), "pl e")]

@@ -13,13 +13,16 @@ from pipeline.records import Assessment, Finding, Fragility, Spacing, Support, V
 from pipeline.records.fragility import ABOVE, BELOW
 from pipeline.records.result import BOUNDS
 from pipeline.report.language import _, ngettext, said
-from pipeline.report.plots.svg import path
+from pipeline.report.plots.panel import Panel
+from pipeline.report.plots.scales import Scale
+from pipeline.report.plots.svg import path, picture, text, through, upright
 from pipeline.report.text import clean, count
 from pipeline.report.units import Units, significant
 
-_WIDE, _HIGH, _FLOOR = 220.0, 72.0, 58.0
 _MOST = 2.0 * G
 """Right end of the picture's axis, m/s2."""
+
+_PANEL = Panel(Scale(0.0, _MOST, 10, 200), Scale(0.0, 1.0, 58, 6))
 _POINTS = 13
 
 _TOLD = (0.25 * G, 0.5 * G, G)
@@ -153,28 +156,20 @@ def _picture(f: Fragility, number: str) -> Markup:
     """Return the probability of failing against the peak acceleration of the floor, 0 to 2 g."""
     # Closer together where curves are steep.
     steps = [_MOST * (i / (_POINTS - 1)) ** 2 for i in range(_POINTS)]
-    points = [(round(_across(a)), round(_FLOOR - 52.0 * f.probability(a))) for a in steps]
+    points = [(round(x), round(y)) for x, y in (_PANEL.at(a, f.probability(a)) for a in steps)]
     # From where it is certain on it is one line.
     rising = next((i for i, (_x, y) in enumerate(points) if y == points[-1][1]), len(points) - 1) + 1
-    curve = path([*points[:rising], points[-1]] if rising < len(points) else points)
-    beside = f"M{_across(f.published_median):.0f} 6V{_FLOOR:.0f}" if f.published_median is not None else ""
-    title = f"{clean(number)}: {said(clean(f.title))}"
+    drawn = [_PANEL.axes()]
+    if f.published_median is not None:
+        drawn.append(path("gd", upright(round(_PANEL.x.at(f.published_median)), _PANEL.y.end, _PANEL.y.start)))
+    drawn.append(path("cu", through([*points[:rising], points[-1]] if rising < len(points) else points)))
+    drawn.append(text("2 g", 216, 68, "ty"))
     at = [
         _("%(probability)s at %(acceleration)s") % {"probability": f"{f.probability(a):.0%}", "acceleration": in_g(a)}
         for a in _TOLD
     ]
-    told = _("Probability of failure:") + " " + ", ".join(at)
-    return Markup(
-        '<svg class="chart curve" viewBox="0 0 {wide} {high}" role="img"><title>{title}</title><desc>{told}.</desc>'
-        '<path class="ax" d="M10 6V{floor}H200"/>'
-    ).format(wide=int(_WIDE), high=int(_HIGH), floor=int(_FLOOR), title=title, told=told) + Markup(  # noqa: S704
-        (f'<path class="gd" d="{beside}"/>' if beside else "")
-        + f'<path class="cu" d="{curve}"/><text class="ty" x="216" y="68">2 g</text></svg>'
-    )
-
-
-def _across(acceleration: float) -> float:
-    return 10.0 + 190.0 * min(acceleration / _MOST, 1.0)
+    told = _("Probability of failure:") + " " + ", ".join(at) + "."
+    return picture("chart curve", 220, 72, f"{clean(number)}: {said(clean(f.title))}", told, drawn)
 
 
 def shaking_view(members: Sequence[Assessment]) -> ShakingView | None:

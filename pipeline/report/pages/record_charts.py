@@ -1,12 +1,12 @@
 """The drawings of an inspected record: histories, Fourier amplitude, response spectra, the pulse."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import pi
 
 import numpy as np
+from markupsafe import Markup
 
 from pipeline.motions.inspection import Inspection
 from pipeline.motions.intensity import integrate, strong_part
@@ -14,8 +14,9 @@ from pipeline.motions.manifest import TargetTable
 from pipeline.motions.spectra import fourier_amplitude
 from pipeline.quantities import Array, G
 from pipeline.report.pages.record_words import measured
-from pipeline.report.plots.scales import Scale, linear_ticks, log_between, log_ticks, thin
-from pipeline.report.plots.svg import frame, path
+from pipeline.report.plots.panel import Panel, legend
+from pipeline.report.plots.scales import Scale
+from pipeline.report.plots.svg import Element, picture
 from pipeline.report.text import plain, short
 from pipeline.report.units import Units
 
@@ -49,9 +50,6 @@ _NARROW, _WIDE = (64, 324), (64, 424)
 _Curve = tuple[str, str, Array, Array]
 """A kind of line, its name, x and y."""
 
-_LETTER = 6.7
-"""Mean width in pixels of a letter at the 12 pixel size of chart text."""
-
 
 @dataclass(frozen=True, slots=True)
 class Drift:
@@ -72,91 +70,8 @@ def usable_period(inspection: Inspection) -> float | None:
     return None if corner is None else 1.0 / (USABLE * corner)
 
 
-# -- panels -----------------------------------------------------------------------------------------------------------
-
-
-class _Panel:
-    """A frame with curves in it, clipped to it."""
-
-    def __init__(self, ident: str, x: Scale, y: Scale, numbers: str = "xy", about: int = 6) -> None:
-        self.x, self.y, self._ident, self._drawn = x, y, ident, [""]
-        self._frame = frame(x, y, _ticks(x, 6), _ticks(y, about), numbers)
-        fine = "".join(f"M{x.at(v):.1f} {y.start}V{y.end}" for v in log_between(x.low, x.high)) if x.log else ""
-        fine += "".join(f"M{x.start} {y.at(v):.1f}H{x.end:.1f}" for v in log_between(y.low, y.high)) if y.log else ""
-        self._fine = f'<path class="fine" d="{fine}"/>' if fine else ""
-        self._over: list[str] = []
-
-    def band(self, low: float, high: float) -> None:
-        """Shade what lies between two values of x."""
-        a, b = self.x.at(low), self.x.at(high)
-        self._drawn[0] += (
-            f'<rect class="band" x="{a:.1f}" y="{self.y.end}" width="{b - a:.1f}" height="{self.height}"/>'
-        )
-
-    @property
-    def height(self) -> float:
-        return self.y.start - self.y.end
-
-    def curve(self, x: Array, y: Array, kind: str) -> None:
-        """Draw a line of a kind, which is the class of its style."""
-        points = list(zip(self.x.pixels(x).tolist(), self.y.pixels(y).tolist(), strict=True))
-        self._drawn.append(f'<path class="ln {kind}" d="{path(thin(points, 0.2))}"/>')
-
-    def upright(self, at: float, label: str, kind: str, line: int = 0) -> None:
-        """Draw a vertical line with its label beside it, on the side that has room."""
-        x, y = self.x.at(at), self.y.end + 13 + 15 * line
-        left = x + len(label) * _LETTER + 6 > self.x.end
-        self._over.append(f'<path class="{kind}" d="M{x:.1f} {self.y.start}V{self.y.end}"/>')
-        side, dx = ("cl e", -5) if left else ("cl", 5)
-        self._over.append(f'<text class="{side}" x="{x + dx:.1f}" y="{y}">{escape(label)}</text>')
-
-    def note(self, text: str, *, right: bool = False) -> None:
-        """Write a word into the upper corner."""
-        side, x = ("cl e", self.x.end - 4) if right else ("cl", self.x.start + 5)
-        self._over.append(f'<text class="{side}" x="{x:.1f}" y="{self.y.end + 12}">{escape(text)}</text>')
-
-    def label(self, text: str) -> None:
-        """Name the axis of y."""
-        middle = (self.y.start + self.y.end) / 2
-        self._over.append(f'<text class="al" transform="translate(12 {middle:.0f})rotate(-90)">{escape(text)}</text>')
-
-    def svg(self) -> str:
-        x, y, clip = self.x, self.y, f"{self._ident}k"
-        return (
-            f'<clipPath id="{clip}"><rect x="{x.start}" y="{y.end}" width="{x.end - x.start:.1f}" '
-            f'height="{self.height}"/></clipPath>{self._drawn[0]}{self._fine}{"".join(self._frame)}'
-            f'<g clip-path="url(#{clip})">{"".join(self._drawn[1:])}</g>{"".join(self._over)}'
-        )
-
-
-def _ticks(scale: Scale, about: int) -> list[float]:
-    return log_ticks(scale.low, scale.high) if scale.log else linear_ticks(scale.low, scale.high, about)
-
-
-def _svg(ident: str, width: float, height: float, title: str, said: str, parts: Iterable[str]) -> str:
-    return (
-        f'<svg class="chart" viewBox="0 0 {width:g} {height:g}" role="img" aria-labelledby="{ident}t {ident}d">'
-        f'<title id="{ident}t">{escape(plain(title))}</title><desc id="{ident}d">{escape(plain(said))}</desc>'
-        f"{''.join(parts)}</svg>"
-    )
-
-
-def _under(panel: _Panel, label: str) -> str:
-    middle = (panel.x.start + panel.x.end) / 2
-    return f'<text class="al" x="{middle:.0f}" y="{panel.y.start + 36:.0f}">{escape(label)}</text>'
-
-
-def _legend(entries: Sequence[tuple[str, str]], left: float, top: float, right: float) -> tuple[str, float]:
-    """Return the samples of kinds of lines with their names, in as many rows as they need, and the last row's y."""
-    parts, x, y = [], left, top
-    for kind, name in entries:
-        wide = 30 + len(name) * _LETTER + 14
-        if x > left and x + wide > right + 14:
-            x, y = left, y + 17
-        parts.append(f'<path class="ln {kind}" d="M{x:.0f} {y - 4:.0f}h24"/>')
-        parts.append(f'<text x="{x + 30:.0f}" y="{y:.0f}">{escape(name)}</text>')
-        x += wide
-    return "".join(parts), y
+def _picture(width: int, height: float, title: str, told: str, drawn: Sequence[Element], ident: str) -> Markup:
+    return picture("chart", width, height, plain(title), plain(told), drawn, ident)
 
 
 def _even(peak: float) -> tuple[float, float]:
@@ -165,7 +80,24 @@ def _even(peak: float) -> tuple[float, float]:
 
 
 def envelope(values: Array, dt: float, points: int = POINTS) -> tuple[Array, Array]:
-    """Return times [s] and values of a history with few enough points to draw: of each bin its smallest and largest."""
+    """Return few enough points of a history to draw it: of each bin its smallest and largest.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        The history.
+    dt : float
+        Time step in s.
+    points : int, optional
+        Roughly how many are wanted.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        Times in s.
+    ndarray, shape (k,)
+        The values then.
+    """
     n = values.size
     if n <= points:
         return np.asarray(np.arange(n) * dt, dtype=np.float64), values
@@ -180,15 +112,59 @@ def envelope(values: Array, dt: float, points: int = POINTS) -> tuple[Array, Arr
 # -- figure 1: histories ----------------------------------------------------------------------------------------------
 
 
-def histories(one: Inspection, names: Mapping[str, str], units: Units, ident: str) -> tuple[list[str], list[Drift]]:
-    """Return one SVG a component (acceleration, velocity, displacement before and after), and what they cut off.
+def histories(one: Inspection, names: Mapping[str, str], units: Units, ident: str) -> tuple[list[Markup], list[Drift]]:
+    """Draw acceleration, velocity and displacement against time, before (where something was done here) and after.
 
-    names : of the axes "x", "y", "z", for the headings
-    The three SVGs share their scales.  Before is drawn only where something was done here.
+    Parameters
+    ----------
+    one : Inspection
+        The record.
+    names : mapping of str to str
+        Of the axes "x", "y", "z", for the headings.
+    units : Units
+        The reader's.
+    ident : str
+        Begins the ids of the pictures within their page.
+
+    Returns
+    -------
+    list of Markup
+        One picture a component; the three share their scales.
+    list of Drift
+        What they cut off.
     """
     after = dict(zip((name for name, *_ in ROWS), (one.motion.acceleration, *integrate(one.motion)), strict=True))
     raw = dict(zip(after, (one.before.acceleration, *integrate(one.before)), strict=True)) if one.filtered else {}
-    drifts, scales, row_height, top = [], {}, 108, 8
+    scales, drifts = _history_scales(one, units)
+    seconds = Scale(0.0, max(one.motion.duration, one.motion.dt), *_NARROW)
+    pictures = []
+    for component, axis in enumerate("xyz"):
+        drawn, said = [], []
+        for name, title, unit, stem in ROWS:
+            panel, factor = Panel(seconds, scales[name]), units.factor(unit)
+            lines = [(*envelope(raw[name][component], one.before.dt), "was")] if raw else []
+            lines.append((*envelope(after[name][component], one.motion.dt), f"c{axis}"))
+            peak = f"{measured(one.measures[f'{stem}_{axis}'], unit, units)} {units.symbol(unit)}"
+            said.append(f"{name} with a peak of {peak}")
+            drawn += panel.drawn(
+                f"{ident}{axis}{name[0]}",
+                under=[panel.band(*strong_part(one.motion))],
+                lines=[panel.line(kind, t, v * factor) for t, v, kind in lines],
+                over=[panel.note(peak, right=True), panel.name_y(f"{title} ({units.symbol(unit)})")],
+                numbers="xy" if name == ROWS[-1][0] else "y",
+                about=4,
+            )
+        drawn.append(panel.name_x("Time (s)"))
+        compared = " Before the processing in grey." if raw else ""
+        told = f"Against time, 0 to {one.motion.duration:.4g} s: {', '.join(said)}.{compared}"
+        heading = f"{short(one.motion.name, 60)}, {names[axis]}: acceleration, velocity and displacement"
+        pictures.append(_picture(340, panel.y.start + 42, heading, told, drawn, f"{ident}{axis}"))
+    return pictures, drifts
+
+
+def _history_scales(one: Inspection, units: Units) -> tuple[dict[str, Scale], list[Drift]]:
+    """Return the vertical scale of each row of the histories, and what does not fit into them."""
+    scales, drifts, height, top = {}, [], 108, 8
     for row, (name, _, unit, stem) in enumerate(ROWS):
         peak = max(one.measures[f"{stem}_{axis}"] for axis in "xyz")
         earlier = {axis: one.measures_before[f"{stem}_{axis}"] for axis in "xyz"} if one.filtered else {}
@@ -196,35 +172,10 @@ def histories(one: Inspection, names: Mapping[str, str], units: Units, ident: st
         if peak > 0.0 and most > ROOM_BEFORE * peak:
             axes = tuple(axis for axis, value in earlier.items() if value > 1.12 * ROOM_BEFORE * peak)
             drifts += [Drift(name, unit, axes, most)] if axes else []
-        foot = top + row * (row_height + 12) + row_height
+        foot = top + row * (height + 12) + height
         reach = _even(max(peak, min(most, ROOM_BEFORE * peak)) * units.factor(unit))
-        scales[name] = Scale(*reach, foot, foot - row_height)
-    seconds = Scale(0.0, max(one.motion.duration, one.motion.dt), *_NARROW)
-    svgs = []
-    for component, axis in enumerate("xyz"):
-        parts, said = [], []
-        for name, title, unit, stem in ROWS:
-            last = name == ROWS[-1][0]
-            panel = _Panel(f"{ident}{axis}{name[0]}", seconds, scales[name], "xy" if last else "y", about=4)
-            panel.band(*strong_part(one.motion))
-            if raw:
-                t, v = envelope(raw[name][component], one.before.dt)
-                panel.curve(t, v * units.factor(unit), "was")
-            t, v = envelope(after[name][component], one.motion.dt)
-            panel.curve(t, v * units.factor(unit), f"c{axis}")
-            peak_text = f"{measured(one.measures[f'{stem}_{axis}'], unit, units)} {units.symbol(unit)}"
-            panel.note(peak_text, right=True)
-            panel.label(f"{title} ({units.symbol(unit)})")
-            said.append(f"{name} with a peak of {peak_text}")
-            parts.append(panel.svg())
-            if last:
-                parts.append(_under(panel, "Time (s)"))
-        compared = " Before the processing in grey." if raw else ""
-        told = f"Against time, 0 to {one.motion.duration:.4g} s: {', '.join(said)}.{compared}"
-        heading = f"{short(one.motion.name, 60)}, {names[axis]}: acceleration, velocity and displacement"
-        height = scales["displacement"].start + 42
-        svgs.append(_svg(f"{ident}{axis}", 340, height, heading, told, parts))
-    return svgs, drifts
+        scales[name] = Scale(*reach, foot, foot - height)
+    return scales, drifts
 
 
 # -- figure 2: Fourier amplitude --------------------------------------------------------------------------------------
@@ -235,10 +186,27 @@ def konno_ohmachi(
 ) -> tuple[Array, Array]:
     """Smooth Fourier amplitudes with the main lobe of the window of Konno and Ohmachi (1998), b = 40.
 
-    frequency : (m,) Hz, the lines of a transform, from 0; amplitude : (3, m)
-    first     : Hz, where the smoothed spectrum begins, or at the first line above 0
-    returns   : centres (k,), which are lines, at most ``points``; smoothed amplitudes (3, k)
-    source    : Konno and Ohmachi (1998), BSSA 88, 228-241: weight (sin x / x)^4, x = b log10(f / fc)
+    Parameters
+    ----------
+    frequency : ndarray, shape (m,)
+        The lines of a transform in Hz, from 0.
+    amplitude : ndarray, shape (3, m)
+        Of each component.
+    first : float
+        Where the smoothed spectrum begins in Hz, or at the first line above 0.
+    points : int, optional
+        Most centres.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        Centres, which are lines.
+    ndarray, shape (3, k)
+        Smoothed amplitudes.
+
+    References
+    ----------
+    Konno and Ohmachi (1998), BSSA 88, 228-241: weight (sin x / x)^4, x = b log10(f / fc).
     """
     begin = max(1, int(np.searchsorted(frequency, first)))
     wanted = np.geomspace(frequency[begin], frequency[-1], points) / frequency[1]
@@ -263,38 +231,52 @@ def amplitudes(one: Inspection) -> list[tuple[Array, Array]]:
 
 def fourier(
     one: Inspection, shown: Sequence[tuple[Array, Array]], names: Mapping[str, str], units: Units, ident: str
-) -> list[str]:
-    """Return one SVG a component: Fourier amplitude before and after against frequency, with the corners.
+) -> list[Markup]:
+    """Draw the Fourier amplitude before and after against frequency, with the corners.
 
-    shown : of `amplitudes`
+    Parameters
+    ----------
+    one : Inspection
+        The record.
+    shown : sequence of (ndarray, ndarray)
+        Of `amplitudes`.
+    names : mapping of str to str
+        Of the axes "x", "y", "z", for the headings.
+    units : Units
+        The reader's.
+    ident : str
+        Begins the ids of the pictures within their page.
+
+    Returns
+    -------
+    list of Markup
+        One picture a component.
     """
     factor = units.factor("m/s")
-    after = shown[-1]
+    lines, after = shown[-1]
     top = max(float(values.max()) for _, values in shown) * factor or 1.0
     x = Scale(FOURIER_FROM, max(float(frequency[-1]) for frequency, _ in shown), *_NARROW, log=True)
     # The room above the curves is for the names of the corners.
-    y = Scale(top / 10.0**DECADES, 8.0 * top, 228, 8, log=True)
-    svgs = []
+    panel = Panel(x, Scale(top / 10.0**DECADES, 8.0 * top, 228, 8, log=True))
+    corners = zip(one.corners, ("high-pass", "low-pass"), strict=True)
+    filters = [(row, corner, what) for row, (corner, what) in enumerate(corners) if corner is not None]
+    told = " and ".join(f"{what} corner at {corner:.3g} Hz" for _, corner, what in filters)
+    uprights = [panel.upright(corner, f"{what} {corner:.3g} Hz", "corner", row) for row, corner, what in filters]
+    over = [*chain.from_iterable(uprights), panel.name_y(f"Fourier amplitude ({units.symbol('m/s')})")]
+    pictures = []
     for component, axis in enumerate("xyz"):
-        panel = _Panel(f"{ident}{axis}", x, y)
-        for (frequency, values), kind in zip(shown, ("was", f"c{axis}")[-len(shown) :], strict=True):
-            panel.curve(frequency, values[component] * factor, kind)
-        told = []
-        for line, (corner, what) in enumerate(zip(one.corners, ("high-pass", "low-pass"), strict=True)):
-            if corner is not None:
-                panel.upright(corner, f"{what} {corner:.3g} Hz", "corner", line)
-                told.append(f"{what} corner at {corner:.3g} Hz")
-        panel.label(f"Fourier amplitude ({units.symbol('m/s')})")
-        largest = int(np.argmax(after[1][component]))
+        kinds = ("was", f"c{axis}")[-len(shown) :]
+        curves = [panel.line(k, f, v[component] * factor) for k, (f, v) in zip(kinds, shown, strict=True)]
+        largest = int(np.argmax(after[component]))
         said = (
             f"Against frequency from {x.low:g} to {x.high:g} Hz, both logarithmic; largest after the processing "
-            f"{units.text(float(after[1][component][largest]), 'm/s')} at {after[0][largest]:.3g} Hz; "
-            f"{' and '.join(told) or 'no filter was applied here'}."
+            f"{units.text(float(after[component][largest]), 'm/s')} at {lines[largest]:.3g} Hz; "
+            f"{told or 'no filter was applied here'}."
         )
         heading = f"{short(one.motion.name, 60)}, {names[axis]}: Fourier amplitude"
-        parts = [panel.svg(), _under(panel, "Frequency (Hz)")]
-        svgs.append(_svg(f"{ident}{axis}", 340, 270, heading, said, parts))
-    return svgs
+        drawn = [*panel.drawn(f"{ident}{axis}", (), curves, over), panel.name_x("Frequency (Hz)")]
+        pictures.append(_picture(340, 270, heading, said, drawn, f"{ident}{axis}"))
+    return pictures
 
 
 # -- figure 3: response spectra ---------------------------------------------------------------------------------------
@@ -313,8 +295,23 @@ def target_name(target: TargetTable) -> str:
     return f"{target.component.replace('rotd', 'RotD')} {100.0 * target.damping:g} %"
 
 
-def response(one: Inspection, names: Mapping[str, str], ident: str) -> list[str]:
-    """Return two SVGs of PSA [g] against period: the horizontal motion with its target, and before beside after."""
+def response(one: Inspection, names: Mapping[str, str], ident: str) -> list[Markup]:
+    """Draw PSA in g against period: the horizontal motion with its target, and before beside after.
+
+    Parameters
+    ----------
+    one : Inspection
+        The record.
+    names : mapping of str to str
+        Of the axes "x", "y", "z".
+    ident : str
+        Begins the ids of the pictures within their page.
+
+    Returns
+    -------
+    list of Markup
+        Two pictures.
+    """
     spectra, both = one.spectra, one.spectra["rotd100"]
     at = row_at(both.damping, AT)
     kept = f"{100.0 * float(both.damping[at]):g} %"
@@ -348,61 +345,71 @@ def response(one: Inspection, names: Mapping[str, str], ident: str) -> list[str]
     ]
 
 
-def _spectra(ident: str, title: str, curves: Sequence[_Curve], one: Inspection, reach: tuple[float, float]) -> str:
+def _spectra(ident: str, title: str, curves: Sequence[_Curve], one: Inspection, reach: tuple[float, float]) -> Markup:
     x = Scale(float(min(p[0] for _, _, p, _ in curves)), float(max(p[-1] for _, _, p, _ in curves)), *_WIDE, log=True)
-    panel = _Panel(ident, x, Scale(*reach, 280, 8, log=True))
-    longest = usable_period(one)
-    beyond = longest is not None and longest < x.high
-    if longest is not None and beyond:
-        panel.band(longest, x.high)
-    for kind, _, periods, values in curves:
-        panel.curve(periods, values, kind)
-    if longest is not None and beyond:
-        panel.upright(longest, f"usable to {longest:.3g} s", "corner")
-    panel.label("Pseudo-acceleration (g)")
+    panel, longest = Panel(x, Scale(*reach, 280, 8, log=True)), usable_period(one)
+    beyond = [] if longest is None or longest >= x.high else [longest]
+    uprights = [panel.upright(period, f"usable to {period:.3g} s", "corner") for period in beyond]
+    drawn = panel.drawn(
+        ident,
+        under=[panel.band(period, x.high) for period in beyond],
+        lines=[panel.line(kind, periods, values) for kind, _, periods, values in curves],
+        over=[*chain.from_iterable(uprights), panel.name_y("Pseudo-acceleration (g)")],
+    )
     told = [
         f"{label} largest {values.max():.3g} g at {periods[int(np.argmax(values))]:.3g} s"
         for kind, label, periods, values in curves
         if kind != "was"
     ]
     said = f"PSA in g against period from {x.low:g} to {x.high:g} s, both logarithmic: {'; '.join(told)}."
-    names = list(dict.fromkeys((kind, label) for kind, label, _, _ in curves))
-    legend, foot = _legend(names, 20, 340, 424)
-    return _svg(ident, 440, foot + 10, title, said, [panel.svg(), _under(panel, "Period (s)"), legend])
+    names, foot = legend(dict.fromkeys((kind, label) for kind, label, _, _ in curves), 20, 340, 424)
+    return _picture(440, foot + 10, title, said, [*drawn, panel.name_x("Period (s)"), *names], ident)
 
 
 # -- figure 4: the pulse ----------------------------------------------------------------------------------------------
 
 
-def pulse(one: Inspection, units: Units, ident: str) -> str:
-    """Return an SVG of the velocity in the pulse's direction with the pulse over it, and of what is left without it."""
+def pulse(one: Inspection, units: Units, ident: str) -> Markup:
+    """Draw the velocity in the pulse's direction with the pulse over it, and what is left without it.
+
+    Parameters
+    ----------
+    one : Inspection
+        The record.
+    units : Units
+        The reader's.
+    ident : str
+        Begins the ids of the picture within its page.
+
+    Returns
+    -------
+    Markup
+        One picture; nothing where no pulse was looked for.
+    """
     found = one.pulse
     if found is None:
-        return ""
+        return Markup("")
     factor, dt = units.factor("m/s"), one.motion.dt
     first, last = strong_part(one.motion)
     begin = max(0.0, min(first, found.time - 2.0 * found.period) - 3.0)
     end = min(one.motion.duration, max(last, found.time + 2.0 * found.period) + 3.0)
     a, b = int(begin / dt), int(np.ceil(end / dt)) + 1
-    legend, foot = _legend([("vel", "velocity"), ("cx", "extracted pulse"), ("rest", "residue")], 64, 14, 424)
+    drawn, foot = legend([("vel", "velocity"), ("cx", "extracted pulse"), ("rest", "residue")], _WIDE[0], 14, _WIDE[1])
     x = Scale(a * dt, max(end, (a + 1) * dt), *_WIDE)
     peak = max(float(np.abs(row[a:b]).max()) for row in (found.velocity, found.pulse, found.residual))
-    parts, height, top = [legend], 150, round(foot + 12)
+    height, top = 150, round(foot + 12)
     for row, curves in enumerate((((found.velocity, "vel"), (found.pulse, "cx")), ((found.residual, "rest"),))):
         at = top + row * (height + 14)
-        panel = _Panel(f"{ident}{row}", x, Scale(*_even(peak * factor), at + height, at), "xy" if row else "y", about=5)
-        for values, kind in curves:
-            t, v = envelope(values[a:b], dt)
-            panel.curve(t + a * dt, v * factor, kind)
-        panel.label(f"Velocity ({units.symbol('m/s')})")
-        parts.append(panel.svg())
-        if row:
-            parts.append(_under(panel, "Time (s)"))
+        panel = Panel(x, Scale(*_even(peak * factor), at + height, at))
+        points = [(*envelope(values[a:b], dt), kind) for values, kind in curves]
+        lines = [panel.line(kind, t + a * dt, v * factor) for t, v, kind in points]
+        over = [panel.name_y(f"Velocity ({units.symbol('m/s')})")]
+        drawn += panel.drawn(f"{ident}{row}", (), lines, over, "xy" if row else "y", about=5)
+    drawn.append(panel.name_x("Time (s)"))
     said = (
         f"Velocity in the pulse's direction, peak {units.text(found.pgv, 'm/s')}; the pulse, peak "
         f"{units.text(found.pulse_pgv, 'm/s')}, period {found.period:.3g} s, centred at {found.time:.3g} s; below, "
         f"the residue, peak {units.text(found.pgv * found.pgv_ratio, 'm/s')}."
     )
-    return _svg(
-        ident, 440, top + 2 * height + 56, f"{short(one.motion.name, 60)}: velocity pulse and residue", said, parts
-    )
+    title = f"{short(one.motion.name, 60)}: velocity pulse and residue"
+    return _picture(440, top + 2 * height + 56, title, said, drawn, ident)

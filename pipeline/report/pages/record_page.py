@@ -128,27 +128,23 @@ def record_view(one: Inspection, units: Units, ident: str) -> RecordView:
         accepted=accepted(one),
         columns=(*names.values(), "Resultant"),
         measures=tuple(_measures(one, units)),
-        histories=tuple(_drawn(svg) for svg in pictures),
+        histories=tuple(svg for svg in pictures),
         drifts=tuple(_drifted(drift, units) for drift in drifts),
-        fourier=tuple(_drawn(svg) for svg in fourier(one, smooth, names, units, f"{ident}f")),
+        fourier=tuple(svg for svg in fourier(one, smooth, names, units, f"{ident}f")),
         fourier_caption=f"Smoothed amplitude in {units.symbol('m/s')} at the lines nearest to round frequencies",
         fourier_rows=tuple(_fourier(smooth, units)),
-        response=tuple(_drawn(svg) for svg in response(one, names, f"{ident}s")),
+        response=tuple(svg for svg in response(one, names, f"{ident}s")),
         usable="" if longest is None else f"{number(longest)} s",
         spectrum_columns=_spectrum_columns(one),
         spectrum=tuple(_spectrum(one)),
         compared=_compared(one),
         verdict=verdict(one.pulse, units),
-        pulse=_drawn(pulse(one, units, f"{ident}p")),
+        pulse=pulse(one, units, f"{ident}p"),
         pulse_facts=tuple(_pulse_facts(one, units)),
         cycle_columns=("Start (s)", "Duration (s)", f"Peak ({units.symbol('m/s')})", f"Area ({units.symbol('m')})"),
         cycles=tuple(_cycles(one, names, units)),
         steps=tuple(clean(step) for step in one.motion.steps),
     )
-
-
-def _drawn(svg: str) -> Markup:
-    return Markup(svg)  # noqa: S704 - record_charts.py escapes all text itself
 
 
 def _measures(one: Inspection, units: Units) -> list[Row]:

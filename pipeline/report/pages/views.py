@@ -5,7 +5,7 @@ from enum import StrEnum
 from itertools import groupby
 
 from pipeline.report.pages.judging import FragilityView
-from pipeline.report.plots.svg import Spot
+from pipeline.report.plots.chart import Spot
 
 
 class State(StrEnum):

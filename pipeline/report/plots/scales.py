@@ -6,7 +6,6 @@ from math import ceil, floor, isfinite, isnan, log10
 
 import numpy as np
 
-from pipeline.kernels.thinning import needed
 from pipeline.quantities import Array
 from pipeline.report.errors import ReportError
 
@@ -85,7 +84,26 @@ def nice_step(rough: float) -> float:
 def limits(values: Sequence[float], log: bool, what: str, *, tight: bool = False) -> tuple[float, float]:
     """Return the limits of an axis: round numbers for a linear one unless tight, with zero where zero is near.
 
-    raises : ReportError if no value can be drawn, naming ``what``
+    Parameters
+    ----------
+    values : sequence of float
+        What is to be drawn; what is not finite, and on a logarithmic axis not positive, does not count.
+    log : bool
+        Whether the axis is logarithmic.
+    what : str
+        Names the axis in an error.
+    tight : bool, optional
+        Whether a linear axis ends where its values end.
+
+    Returns
+    -------
+    float, float
+        The lower and the upper one; they differ.
+
+    Raises
+    ------
+    ReportError
+        If no value can be drawn.
     """
     drawn = [v for v in values if isfinite(v) and (v > 0.0 or not log)]
     if not drawn:
@@ -102,58 +120,3 @@ def limits(values: Sequence[float], log: bool, what: str, *, tight: bool = False
     if tight:
         return low, high
     return floor(low / step + 1e-9) * step, ceil(high / step - 1e-9) * step
-
-
-def inside(x: float, y: float, px: Sequence[float], py: Sequence[float]) -> bool:
-    """Say whether a point lies in a closed polygon (even-odd rule)."""
-    within = False
-    for i in range(len(px)):
-        x0, y0, x1, y1 = px[i - 1], py[i - 1], px[i], py[i]
-        if (y0 > y) != (y1 > y) and x < (x1 - x0) * (y - y0) / (y1 - y0) + x0:
-            within = not within
-    return within
-
-
-def roomy(px: Sequence[float], py: Sequence[float], half: float) -> list[tuple[float, float]]:
-    """Return places for a label in a polygon, the one farthest from its sides first.
-
-    half    : half the label's width in pixels
-    returns : grid points where the whole label lies inside; none for a polygon that is too thin
-    """
-    across = np.linspace(min(px), max(px), 26)[1:-1]
-    up = np.linspace(min(py), max(py), 26)[1:-1]
-    x, y = (grid.ravel() for grid in np.meshgrid(across, up, indexing="ij"))
-    held = np.ones(x.size, bool)
-    for dx in (-half, 0.0, half):
-        for dy in (-7.0, 7.0):
-            held &= _all_inside(x + dx, y + dy, np.array(px), np.array(py))
-    places: list[tuple[float, float, float]] = []
-    for a, b in zip(x[held].tolist(), y[held].tolist(), strict=True):
-        room = min(_distance((a, b), (px[i - 1], py[i - 1]), (px[i], py[i])) for i in range(len(px)))
-        if room > 8.0:
-            places.append((-room, a, b))
-    return [(a, b) for _, a, b in sorted(places)]
-
-
-def _all_inside(x: Array, y: Array, px: Array, py: Array) -> Array:
-    """Return which points (m,) lie in a closed polygon of n corners, as `inside` says of one."""
-    x0, y0 = np.roll(px, 1), np.roll(py, 1)
-    crosses = (y0 > y[:, None]) != (py > y[:, None])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        where = (px - x0) * (y[:, None] - y0) / (py - y0) + x0
-    within: Array = np.count_nonzero(crosses & (x[:, None] < where), axis=1) % 2 == 1
-    return within
-
-
-def thin(points: Sequence[tuple[float, float]], tolerance: float = 0.3) -> list[tuple[float, float]]:
-    """Drop points that lie within the tolerance (pixels) of the line through their neighbours (Douglas and Peucker)."""
-    x, y = np.array(points, np.float64).reshape(-1, 2).T
-    return [points[i] for i in np.flatnonzero(needed(x.copy(), y.copy(), tolerance)).tolist()]
-
-
-def _distance(point: tuple[float, float], start: tuple[float, float], end: tuple[float, float]) -> float:
-    (x, y), (x0, y0), (x1, y1) = point, start, end
-    dx, dy = x1 - x0, y1 - y0
-    square = dx * dx + dy * dy
-    share = min(1.0, max(0.0, ((x - x0) * dx + (y - y0) * dy) / square)) if square else 0.0
-    return float(np.hypot(x - x0 - share * dx, y - y0 - share * dy))
