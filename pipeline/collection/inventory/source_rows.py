@@ -125,9 +125,8 @@ def known_rows(engine: Engine, key: SourceKey) -> dict[str, KnownRow] | None:
 def damaged_source_rows(engine: Engine) -> Iterator[str]:
     """Yield the digests of the rows of the source of which what is known is not what was written."""
     with engine.connect() as connection:
-        for digest, *told, checksum in connection.execute(
-            select(*SOURCE_ROW.c), execution_options={"yield_per": _CHUNK}
-        ):
+        rows = connection.execute(select(*SOURCE_ROW.c), execution_options={"yield_per": _CHUNK})
+        for digest, *told, checksum in rows:
             if _checksum(digest, *told) != checksum:
                 yield str(digest)
 
