@@ -16,7 +16,7 @@ from sqlalchemy.exc import DBAPIError
 
 from pipeline.collection.inventory.differences import fields_changed
 from pipeline.collection.inventory.source_rows import forget_source
-from pipeline.collection.inventory.tables import IMPORT_BATCH, INDEXED, ITEM, current, item_seal, numbered
+from pipeline.collection.inventory.tables import IMPORT_BATCH, INDEXED, ITEM, current, item_seal, newest, numbered
 from pipeline.collection.record import KINDS, assessment_digest_of, digest_of, to_items
 from pipeline.errors import DamageWarning, KourosError
 from pipeline.records import ITEM_FIELDS, Item
@@ -330,6 +330,9 @@ def repair(engine: Engine, numbers: Sequence[str]) -> None:
     with engine.begin() as connection:
         for some in numbered(numbers):
             connection.execute(update(ITEM).where(current(), some).values(digest=""))
+        # What is of now came with some version that there is: one from after the newest would be in none.
+        last = newest(connection) or 0
+        connection.execute(update(ITEM).where(current(), ITEM.c.since > last).values(since=last))
         forget_source(connection)
 
 
