@@ -252,7 +252,7 @@ def test_another_value_in_any_column_is_found(museum: Path, tmp_path: Path) -> N
 
 
 def another(value: object) -> object:
-    """Return a value that is nearly this one."""
+    """Return another value of the same kind."""
     if isinstance(value, str | bytes) and value:
         return value[:-1] + value[:1] * 2
-    return value + 1 if isinstance(value, int | float) else 7
+    return value + 1000 if isinstance(value, int | float) else 7
