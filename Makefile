@@ -45,6 +45,7 @@ bench: $(PEERS)  ## costs beside peers and beside C, ns per object and sample of
 soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for two minutes each, fifty nights killed, every call disturbed
 	KOUROS_FUZZ_SECONDS=120 $(BIN)/python -m pytest --numprocesses 2 tests/motions/formats/test_fuzz.py -k damage
 	KOUROS_KILLS=50 $(BIN)/python -m pytest --numprocesses 2 tests/operations/test_interruptions.py -k kill
+	KOUROS_DAMAGES=1000 $(BIN)/python -m pytest tests/operations/test_damage.py
 	KOUROS_CALLS=1 $(BIN)/python -m pytest -s tests/operations/test_every_call.py
 	KOUROS_OBJECTS=8 $(BIN)/python -m pytest tests/test_faults.py
 	KOUROS_GRID=1 $(BIN)/python -m pytest tests/models/test_bounded_work.py

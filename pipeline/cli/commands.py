@@ -116,16 +116,24 @@ def survey(options: Options, galleries: tuple[str, ...], out: Path | None, dry_r
 
 @click.command()
 @click.option("--numerics", is_flag=True, help="Run the models at their extremes instead, against exact limits.")
+@click.option("--deep", is_flag=True, help="Compare all that is kept with what was written instead; nothing changes.")
 @as_json
 @click.pass_obj
-def check(options: Options, numerics: bool, as_json: bool) -> None:
+def check(options: Options, numerics: bool, deep: bool, as_json: bool) -> None:
     """Look at settings, database, mapping, motions, clock and disk, and say what to mend.
 
     With --numerics: whether this machine's compiled code is right at the extremes; exit code 1 if not.  Beside a
     kouros.toml the result is kept, and the next report shows it.
 
+    With --deep: whether database, cache and last report are what was written; exit code 1 if not.
+
     Example: kouros check
     """
+    if numerics and deep:
+        raise click.UsageError("--numerics or --deep, one at a time")
+    if deep:
+        _check_deep(options, as_json)
+        return
     if numerics:
         _check_numerics(options, as_json)
         return
@@ -139,6 +147,22 @@ def check(options: Options, numerics: bool, as_json: bool) -> None:
             click.echo(f"{d.state:<8} {d.what:<11} {d.message}")
     if any(d.state == "wrong" for d in found):
         raise click.exceptions.Exit(2)
+
+
+def _check_deep(options: Options, as_json: bool) -> None:
+    from pipeline.tools.deep_check import examine
+
+    with options.console() as console:
+        found = list(examine(options.settings(), console))
+    if as_json:
+        click.echo(json.dumps([asdict(one) for one in found], indent=2))
+    else:
+        for one in found:
+            click.echo(f"{'damaged':<8} {one.where}{': ' if one.why else ''}{one.why}; {one.remedy}")
+        if not found:
+            click.echo("database, cache and last report are what was written")
+    if found:
+        raise click.exceptions.Exit(1)
 
 
 def _check_numerics(options: Options, as_json: bool) -> None:

@@ -2,14 +2,17 @@
 
 import errno
 import os
+import re
 import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
 from sqlalchemy import Engine, MetaData, create_engine, event
 from sqlalchemy.engine import URL, ExceptionContext, make_url
-from sqlalchemy.exc import ArgumentError
+from sqlalchemy.exc import ArgumentError, OperationalError
 from sqlalchemy.pool import NullPool
 
 from pipeline.errors import InputError, KourosError
@@ -68,12 +71,81 @@ class DatabaseFileError(KourosError):
     exit_code = 1
 
 
+class DamagedDatabaseError(KourosError):
+    """The file of the database is damaged, so that SQLite itself cannot make sense of it."""
+
+    exit_code = 5
+
+
+def _damaged(file: str, problem: object) -> DamagedDatabaseError:
+    return DamagedDatabaseError(
+        f"the database {file} is damaged ({problem}): restore it from a backup, and see whether the disk is sound; "
+        "what Kouros finds it finds again, but nobody else knows your decisions and your own measurements"
+    )
+
+
+_NO_SCHEMA = re.compile(r"no such (table|column)|could not decode to UTF-8|has no column named", re.IGNORECASE)
+"""What SQLite says where its file holds other tables, or other bytes, than were written."""
+
+
+def verify_file(engine: Engine, *, whole: bool = False) -> None:
+    """Have SQLite look at the structure of its file; a server looks after its own.
+
+    Parameters
+    ----------
+    engine : Engine
+        Kouros's own database.
+    whole : bool, optional
+        Also whether every index of the large tables says what its table says, which takes twice as long.
+
+    Raises
+    ------
+    DamagedDatabaseError
+        Saying what is wrong.
+    """
+    if engine.dialect.name != "sqlite":
+        return
+    with engine.connect() as connection, damage_told(str(engine.url.database)):
+        looks = ["integrity_check"] if whole else ["quick_check", *(f"integrity_check('{name}')" for name in _SMALL)]
+        for look in looks:
+            said = connection.exec_driver_sql(f"PRAGMA {look}").scalars().all()
+            if said != ["ok"]:
+                raise _damaged(str(engine.url.database), "; ".join(map(str, said[:3])))
+
+
+@contextmanager
+def damage_told(where: str | Path) -> Iterator[None]:
+    """Turn what SQLite says of tables and texts that are not what was written into a `DamagedDatabaseError`."""
+    try:
+        yield
+    except OperationalError as problem:
+        if "://" in str(where) or not _NO_SCHEMA.search(str(problem.orig)):
+            raise
+        raise _damaged(str(where), problem.orig) from problem
+
+
+_SMALL = (
+    "item",
+    "import_batch",
+    "supplement",
+    "decision",
+    "run",
+    "run_motion",
+    "run_decision",
+    "run_page",
+    "run_chart",
+)
+"""Tables that are found by their indexes where nobody would miss a row; results and pages are made again."""
+
+
 def _say_no_room(context: ExceptionContext) -> None:
-    """Raise what a full disk is everywhere else for what SQLite says of it."""
+    """Raise what a full disk is everywhere else for what SQLite says of it, and what is damage."""
     problem, engine = context.original_exception, context.engine
     file = "" if engine is None else engine.url.database or ""
     # Of the extended codes the last eight bits are the kind.
     kind = getattr(problem, "sqlite_errorcode", 0) & 0xFF
+    if kind in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB):
+        raise _damaged(file, problem) from problem
     if kind == sqlite3.SQLITE_FULL:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), file) from problem
     if kind in (sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN) and os.access(file, os.R_OK | os.W_OK):
@@ -85,7 +157,9 @@ def open_for_reading(url: URL) -> Engine:
     """Open a database that is there so that nothing can be written to it, whoever tries."""
     if url.get_backend_name() == "sqlite":
         where = f"file:{quote(str(Path(str(url.database)).resolve()))}?mode=ro"
-        return create_engine(url, poolclass=NullPool, creator=lambda: sqlite3.connect(where, uri=True, timeout=10.0))
+        lite = create_engine(url, poolclass=NullPool, creator=lambda: sqlite3.connect(where, uri=True, timeout=10.0))
+        event.listen(lite, "handle_error", _say_no_room)
+        return lite
     engine = create_engine(url, poolclass=NullPool)
 
     @event.listens_for(engine, "connect")

@@ -5,12 +5,22 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
-from sqlalchemy import Engine, select
+from sqlalchemy import Engine, func, select
+from sqlalchemy.exc import DBAPIError
 
-from pipeline.collection.inventory.records import NUMBER_AT, rows_where, shown, sound
-from pipeline.collection.inventory.tables import ITEM, newest, numbered, state_at
+from pipeline.collection.inventory.records import (
+    NUMBER_AT,
+    DamagedRecordError,
+    damaged_now,
+    require_all,
+    rows_where,
+    shown,
+    sound,
+)
+from pipeline.collection.inventory.tables import ITEM, item_seal, newest, numbered, state_at
 from pipeline.collection.listing import Listed, Listing
 from pipeline.records import Item
 
@@ -34,6 +44,10 @@ class ObjectIndex:
     engine: Engine
     version: int
     objects: Listing
+
+    @cached_property
+    def _numbers(self) -> frozenset[str]:
+        return frozenset(one.object_number for one in self.objects)
 
     def items(self, numbers: Sequence[str]) -> dict[str, Item]:
         """Return the records of some objects, by number, as they were in this version.
@@ -75,6 +89,10 @@ class ObjectIndex:
         with self.engine.connect() as connection:
             for some in numbered(numbers):
                 found |= {row[NUMBER_AT]: list(row) for row in rows_where(connection, state_at(self.version) & some)}
+        lost = [number for number in numbers if number not in found and number in self._numbers]
+        if lost:
+            # The listing came from the table, the records by its index: which is damaged.
+            raise DamagedRecordError(lost, shown(self.engine))
         told = [shown(self.engine), [found[number] for number in numbers]]
         return json.dumps(told, separators=(",", ":")).encode()
 
@@ -91,10 +109,39 @@ def read_packed(records: bytes) -> list[Item]:
     return sound(rows, database)
 
 
-def object_index(engine: Engine) -> ObjectIndex:
-    """Return the objects of the inventory as it is now."""
+def verify_count(engine: Engine) -> None:
+    """Refuse an inventory that has not as many objects as were imported.
+
+    Raises
+    ------
+    LostRecordsError
+    """
     with engine.connect() as connection:
         version = newest(connection) or 0
-        rows = connection.execute(select(*_COLUMNS).where(state_at(version))).all()
+        there = connection.execute(select(func.count()).select_from(ITEM).where(state_at(version))).scalar_one()
+        require_all(connection, version, there)
+
+
+def object_index(engine: Engine) -> ObjectIndex:
+    """Return the objects of the inventory as it is now.
+
+    Raises
+    ------
+    DamagedRecordError
+        Where what they are told apart by is not what was written, or where some are lost.
+    """
+    with engine.connect() as connection:
+        version = newest(connection) or 0
+        try:
+            rows = connection.execute(select(*_COLUMNS, ITEM.c.seal).where(state_at(version))).all()
+        except DBAPIError as problem:
+            broken = damaged_now(connection)
+            if not broken:
+                raise
+            raise DamagedRecordError(sorted(broken), shown(engine)) from problem
+        damaged = [str(row[0]) for row in rows if item_seal(*row[:-1]) != row[-1]]
+        if damaged:
+            raise DamagedRecordError(damaged, shown(engine))
+        require_all(connection, version, len(rows))
     # Sorted here and not in SQL: servers collate by the locale of their country.
-    return ObjectIndex(engine, version, Listing.of(rows).sorted())
+    return ObjectIndex(engine, version, Listing.of([row[:-1] for row in rows]).sorted())

@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 from typing import Any, Protocol, TypeVar
 
 from pipeline.analysis.faults import LIKE
+from pipeline.collection.database import Database, damage_told, verify_file
 from pipeline.collection.inventory import latest_import
 from pipeline.collection.inventory.records import DamagedRecordError, repair
 from pipeline.collection.listing import Listing
@@ -24,7 +25,7 @@ from pipeline.operations.report_status import Status, last_good, mark_good, mark
 from pipeline.operations.run_summary import SUMMARY, Stores, Summary, summary_text
 from pipeline.operations.stopping import uninterrupted
 from pipeline.operations.workspace import UsageError, Workspace, locked, near, open_workspace, tidy
-from pipeline.records import Page, Progress, RunRecord, Tally, Urgent
+from pipeline.records import Page, Progress, RunChanges, RunRecord, Tally, Urgent
 from pipeline.report import lasting_name, publish
 from pipeline.report.pages.decided import by_object
 from pipeline.report.pages.reading import READING
@@ -33,8 +34,10 @@ from pipeline.report.pages.tallies import counts
 from pipeline.report.pages.views import State
 from pipeline.settings import Settings
 from pipeline.store.decisions import decisions_in_force
+from pipeline.store.results import DamagedRunError
 from pipeline.store.reuse import SELECTION, whole_runs
 from pipeline.store.runs import commit_run, compare_runs, mark_finished
+from pipeline.store.sound import comparable
 
 
 @dataclass(frozen=True)
@@ -66,7 +69,7 @@ def run(
     resume  : go on where a run was cut off: with the inventory as that run had read it, if it got so far
     raises  : errors with an `exit_code`: settings 2, motions 4, collection 5, lock 6, shrunk 7
     """
-    with rehearsed(settings, dry_run) as lent:
+    with rehearsed(settings, dry_run) as lent, damage_told(settings.database):
         return _run(lent, progress, selection or Selection(), dry_run=dry_run, resume=resume, strict=strict)
 
 
@@ -79,6 +82,7 @@ def _run(
         if not (chosen or dry_run):
             mark_running(settings)
         workspace = open_workspace(settings)
+        verify_file(workspace.engine)
         shown = last_good(settings)
         if shown is not None and not dry_run:
             # A run that was cut off when its report was shown already, and that the database did not hear of.
@@ -128,12 +132,12 @@ def _hold(night: NightRun, progress: Progress, chosen: Selection, *, dry_run: bo
         _stand_by(night, found)
         head = _ended(night, chosen)
         # A part is not compared: what was left out of it has not changed.
-        before = [] if chosen else whole_runs(engine)[:1]
+        before = None if chosen else comparable(engine, whole_runs(engine))
         strangers = night.strangers(whole=not chosen)
         whole = replace(head, decisions=(*head.decisions, *strangers))
         told = counts(found)
         commit_run(engine, whole, night.pages, night.rows(), counts=told, damaged=night.damaged, published=False)
-        changes = compare_runs(engine, before[0], head.run_id) if before else None
+        changes = _since(engine, before, head.run_id)
         progress.step("report", 0, 1)
         # A part of the collection is worth a report, but not the name of the museum's latest one.
         latest = None if chosen else lasting_name(workspace.reports)
@@ -153,6 +157,17 @@ def _hold(night: NightRun, progress: Progress, chosen: Selection, *, dry_run: bo
             mark_good(workspace.settings, summary)
     progress.step("report", 1, 1)
     return summary
+
+
+def _since(engine: Database, before: str | None, run_id: str) -> RunChanges | None:
+    """Return what changed since an earlier run; None where there is none, or none that can be believed."""
+    if before is None:
+        return None
+    try:
+        return compare_runs(engine, before, run_id)
+    except DamagedRunError as problem:
+        warnings.warn(f"{problem}: what changed since run {before} is not known", DamageWarning, stacklevel=2)
+        return None
 
 
 def _stand_by(night: NightRun, found: Tally) -> None:

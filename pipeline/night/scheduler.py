@@ -44,7 +44,7 @@ from pipeline.report.pages.since import mentioned
 from pipeline.report.pages.tallies import total
 from pipeline.report.pages.views import Pointer
 from pipeline.store.pages import Members, Shown, fetch_pages, found_of, page_digest, page_row
-from pipeline.store.results import Kept, Stored, copy, fetch, forget, keep, known, stamps
+from pipeline.store.results import Kept, Stored, copy, fetch, forget, keep, known
 
 FEW = 5_000
 """Objects to be assessed or shown for which other processes do not pay: they take seconds to start."""
@@ -318,12 +318,15 @@ class NightRun:
                 galleries.setdefault(page.spacings, []).append(page)
         there = known(self.workspace.engine, galleries)
         for key in galleries.keys() - there:
-            # Of all its pages, those that are as they were among them: their results are there.
-            pages = [page for page in self._pages if page.spacings == key]
-            members = tuple(replace(self._members(page), spacings="") for page in pages)
-            results = self._results([k for one in members for k in one.keys])
-            task = GalleryTask(key, pages[0].part.floor, members, {k: one.found for k, one in results.items()})
-            self._keep(self._told(find_neighbours(self.context, task)))
+            self._gaps(key)
+
+    def _gaps(self, key: str) -> None:
+        # Of all its pages, those that are as they were among them: their results are there.
+        pages = [page for page in self._pages if page.spacings == key]
+        members = tuple(replace(self._members(page), spacings="") for page in pages)
+        results = self._results([k for one in members for k in one.keys])
+        task = GalleryTask(key, pages[0].part.floor, members, {k: one.found for k, one in results.items()})
+        self._keep(self._told(find_neighbours(self.context, task)))
 
     def _members(self, page: _Shown) -> Members:
         if page.kept is not None:
@@ -359,6 +362,9 @@ class NightRun:
         for one in work.values():
             came = assess_units(self.context, self._task(one, list(one.units.values()), None))
             self._keep([*self._told(came)])
+        for key in {page.spacings for page in self._pages}:
+            if self._names.get(key, key) in keys:
+                self._gaps(key)
         found, _ = fetch(self.workspace.engine, keys) if self._memory is None else (self._memory, [])
         return {key: found[key] for key in keys if key in found}
 
@@ -377,10 +383,7 @@ class NightRun:
 
     def _newest(self, keys: Sequence[str]) -> tuple[str, str]:
         """Return when the newest of some results was made, and by which run."""
-        mine = self._memory or {}
-        there = stamps(self.workspace.engine, [key for key in keys if key not in mine])
-        here = [(mine[key].made, mine[key].run) for key in keys if key in mine]
-        return max([*there, *here])
+        return max((one.made, one.run) for one in self._results(keys).values())
 
     def _standing(self, found: Found, decisions: Sequence[Any]) -> tuple[Standing, ...]:
         digests = {number: self._digests[number] for number in {d.object_number for d in decisions}}

@@ -23,7 +23,7 @@ from pipeline.records import (
 from pipeline.store import codec
 from pipeline.store.causes import Causes, MotionKey
 from pipeline.store.pages import Members, found_of, load_members
-from pipeline.store.results import fetch, outline_of, outlines
+from pipeline.store.results import DamagedRunError, fetch, outline_of, outlines
 from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES
 from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_PAGE
 
@@ -143,7 +143,9 @@ class _Comparison:
         pages = {id(places[number][0]): places[number][0] for number in sorted(numbers)}
         found: dict[str, Scene] = {}
         for members in pages.values():
-            kept, _ = fetch(self.connection, [*members.keys, *filter(None, [members.spacings])])
+            kept, broken = fetch(self.connection, [*members.keys, *filter(None, [members.spacings])])
+            if broken:
+                raise DamagedRunError(f"result {broken[0][:12]} changed in the database since it was written")
             scenes = (a.scene for a in found_of(members, {k: one.found for k, one in kept.items()}).assessments)
             found |= {scene.item.object_number: scene for scene in scenes if scene.item.object_number in numbers}
         return found

@@ -6,6 +6,7 @@ from dataclasses import fields, replace
 from sqlalchemy import Engine, insert, select
 from sqlalchemy.exc import IntegrityError
 
+from pipeline.collection.sealing import require_sound, write_seals
 from pipeline.records import Basis, Decision, in_force
 from pipeline.store.codec import StoreError
 from pipeline.store.pages import load_members, load_page
@@ -20,12 +21,15 @@ def add_decision(engine: Engine, decision: Decision) -> Decision:
 
     engine  : from `collection.database.open_database`, brought to head by `migrate.upgrade`
     returns : the decision with its id
+    raises  : DamagedRowsError where the log so far is not what was written
     raises  : StoreError for a withdrawal of what is withdrawn already, and for text that is not Unicode
     """
     values = {name: getattr(decision, name) for name in _NAMES if name != "id"}
     try:
         with engine.begin() as connection:
+            require_sound(connection, DECISION)
             made: int = connection.execute(insert(DECISION).values(values).returning(DECISION.c.id)).scalar_one()
+            write_seals(connection, DECISION, DECISION.c.id == made)
     except IntegrityError as error:
         raise StoreError(
             f"decision {decision.withdraws} is withdrawn already; `kouros decide --list` shows what is in force"
@@ -34,12 +38,16 @@ def add_decision(engine: Engine, decision: Decision) -> Decision:
 
 
 def read_decisions(engine: Engine, object_number: str | None = None) -> tuple[Decision, ...]:
-    """Return the log, of one object or of all, in the order in which it was written."""
+    """Return the log, of one object or of all, in the order in which it was written.
+
+    raises : DamagedRowsError where any of it is not what was written: nobody knows then whom it is about
+    """
     wanted = select(*(DECISION.c[name] for name in _NAMES)).order_by(DECISION.c.id)
-    if object_number is not None:
-        wanted = wanted.where(DECISION.c.object_number == object_number)
     with engine.connect() as connection:
-        return tuple(Decision(*row) for row in connection.execute(wanted))
+        require_sound(connection, DECISION)
+        found = [Decision(*row) for row in connection.execute(wanted)]
+    # Found by reading all of them: an index that is damaged would leave some out.
+    return tuple(one for one in found if object_number in (None, one.object_number))
 
 
 InForce = Mapping[str, tuple[Decision, ...]]

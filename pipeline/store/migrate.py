@@ -68,6 +68,23 @@ def upgrade(engine: Engine) -> None:
         ) from error
 
 
+class OtherVersionError(StoreError):
+    """The tables are those of another version of Kouros."""
+
+
+def require_head(engine: Engine) -> None:
+    """Refuse a database whose tables are not those of this version, without changing it.
+
+    raises : OtherVersionError
+    """
+    known, there = revisions(), current(engine)
+    if there != known[-1]:
+        raise OtherVersionError(
+            f"{_where(engine)} has tables of revision {there}, this version of Kouros has {known[-1]}: `kouros check` "
+            "brings them up to date; keep a copy of the database"
+        )
+
+
 def refuse_newer(engine: Engine, revision: str | None, known: tuple[str, ...]) -> str | None:
     """Return the revision of the database, if this version knows it, or there is none.
 

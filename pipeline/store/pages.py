@@ -12,10 +12,10 @@ from sqlalchemy import Connection, Engine, insert, select, update
 from pipeline.analysis.faults import with_fault
 from pipeline.analysis.survey import in_order
 from pipeline.collection.object_index import read_packed
+from pipeline.collection.sealing import damaged_rows, seal, sealed, sound_rows
 from pipeline.records import ITEM_FIELDS, Found, Item, Page
 from pipeline.store.codec import StoreError
-from pipeline.store.results import decode, decode_spacings, fetch, of_object
-from pipeline.store.sealing import seal
+from pipeline.store.results import DamagedRunError, decode, decode_spacings, fetch, of_object
 from pipeline.store.tables import PAGE
 
 NAMED = 500
@@ -166,9 +166,7 @@ def page_digest(digests: Sequence[str], results: Sequence[tuple[str, int]], spac
 
 def page_row(page: Page, members: Members) -> dict[str, Any]:
     """Return a page as a row of its table."""
-    content = members.packed()
-    whole = seal(page.key, page.run, page.made, content)
-    return {"key": page.key, "run_id": page.run, "made": page.made, "members": content, "seal": whole}
+    return sealed(PAGE, {"key": page.key, "run_id": page.run, "made": page.made, "members": members.packed()})
 
 
 def add_pages(connection: Connection, rows: Iterable[Mapping[str, Any]], damaged: Collection[str] = ()) -> None:
@@ -192,11 +190,9 @@ def fetch_pages(database: Engine | Connection, keys: Collection[str]) -> tuple[d
     found: dict[str, Shown] = {}
     damaged: list[str] = []
     for some in _some(keys):
-        for row in database.execute(select(PAGE).where(PAGE.c.key.in_(some))):
-            if _sound(row):
-                found[row.key] = Shown(row.run_id, row.made, Members.of_packed(bytes(row.members)))
-            else:
-                damaged.append(row.key)
+        rows, broken = sound_rows(database, PAGE, PAGE.c.key.in_(some))
+        found |= {row.key: Shown(row.run_id, row.made, Members.of_packed(bytes(row.members))) for row in rows}
+        damaged += broken
     return found, damaged
 
 
@@ -205,13 +201,13 @@ def load_members(connection: Connection, key: str) -> Members:
 
     Raises
     ------
-    StoreError
+    DamagedRunError
         Where there is no such page, or where it is damaged.
     """
     found, damaged = fetch_pages(connection, [key])
     if key not in found:
         why = "is damaged: the database was changed by hand or is broken" if damaged else "was pruned while it was read"
-        raise StoreError(f"page {key[:12]} {why}; choose another run")
+        raise DamagedRunError(f"page {key[:12]} {why}; choose another run")
     return found[key].members
 
 
@@ -240,16 +236,10 @@ def load_page(database: Engine | Connection, key: str) -> Found:
 def damaged_pages(engine: Engine) -> Iterator[str]:
     """Yield the keys of all pages that are not what was written."""
     with engine.connect() as connection:
-        for row in connection.execute(select(PAGE), execution_options={"yield_per": NAMED}):
-            if not _sound(row):
-                yield row.key
+        yield from damaged_rows(connection, PAGE)
 
 
 def _some(keys: Collection[str]) -> Iterator[list[str]]:
     listed = list(keys)
     for start in range(0, len(listed), NAMED):
         yield listed[start : start + NAMED]
-
-
-def _sound(row: Any) -> bool:
-    return bool(row.seal == seal(row.key, row.run_id, row.made, bytes(row.members)))

@@ -12,10 +12,10 @@ from typing import Any
 
 from sqlalchemy import Connection, Engine, delete, insert, select
 
+from pipeline.collection.sealing import damaged_rows, sealed, sound_rows
 from pipeline.records import Assessment, Item, MeasurementRequest, Outline, Result, Scene, Spacing, Verdict
 from pipeline.store import codec
 from pipeline.store.codec import StoreError
-from pipeline.store.sealing import seal
 from pipeline.store.speaking import speaking
 from pipeline.store.tables import RESULT
 
@@ -23,6 +23,10 @@ NAMED = 500
 """Keys in one statement: databases bound the number of parameters."""
 
 _SEVERITY = {Verdict.PASS: 0, Verdict.UNDETERMINED: 1, Verdict.FAIL: 2}
+
+
+class DamagedRunError(StoreError):
+    """An earlier run cannot be compared with: something of it is not what was written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,14 +195,7 @@ def add(connection: Connection, run_id: str, made: str, stored: Iterable[Stored]
     wanted = {one.key: one for one in stored}
     there = _known(connection, wanted)
     rows = [
-        {
-            "key": key,
-            "run_id": run_id,
-            "made": made,
-            "outline": one.outline,
-            "found": one.found,
-            "seal": seal(key, run_id, made, one.outline, one.found),
-        }
+        sealed(RESULT, {"key": key, "run_id": run_id, "made": made, "outline": one.outline, "found": one.found})
         for key, one in wanted.items()
         if key not in there
     ]
@@ -236,40 +233,32 @@ def fetch(database: Engine | Connection, keys: Collection[str]) -> tuple[dict[st
     found: dict[str, Kept] = {}
     damaged: list[str] = []
     for some in _some(keys):
-        for row in database.execute(select(RESULT).where(RESULT.c.key.in_(some))):
-            if _sound(row):
-                found[row.key] = Kept(row.run_id, row.made, row.outline, bytes(row.found))
-            else:
-                damaged.append(row.key)
+        rows, broken = sound_rows(database, RESULT, RESULT.c.key.in_(some))
+        found |= {row.key: Kept(row.run_id, row.made, row.outline, bytes(row.found)) for row in rows}
+        damaged += broken
     return found, damaged
 
 
-def stamps(engine: Engine, keys: Collection[str]) -> list[tuple[str, str]]:
-    """Return when the results under some keys were made, and by which run."""
-    found: list[tuple[str, str]] = []
-    with engine.connect() as connection:
-        for some in _some(keys):
-            rows = connection.execute(select(RESULT.c.made, RESULT.c.run_id).where(RESULT.c.key.in_(some)).distinct())
-            found += [(row.made, row.run_id) for row in rows]
-    return found
-
-
 def outlines(connection: Connection, keys: Collection[str]) -> dict[str, tuple[Digests, ...]]:
-    """Return the outlines of the results that are kept under some keys."""
-    found: dict[str, tuple[Digests, ...]] = {}
-    for some in _some(keys):
-        columns = (RESULT.c.key, RESULT.c.outline)
-        for row in connection.execute(select(*columns).where(RESULT.c.key.in_(some))):
-            found[row.key] = codec.of_json(_OUTLINES, row.outline)
-    return found
+    """Return the outlines of the results that are kept under some keys.
+
+    Raises
+    ------
+    DamagedRunError
+        Where one of them is gone, or is not what was written.
+    """
+    found, broken = fetch(connection, keys)
+    lost = set(keys) - found.keys()
+    if lost:
+        why = "changed in the database since it was written" if broken else "is gone"
+        raise DamagedRunError(f"result {min(lost)[:12]} {why}")
+    return {key: codec.of_json(_OUTLINES, one.outline) for key, one in found.items()}
 
 
 def damaged(engine: Engine) -> Iterator[str]:
     """Yield the keys of all rows that are not what was written."""
     with engine.connect() as connection:
-        for row in connection.execute(select(RESULT), execution_options={"yield_per": NAMED}):
-            if not _sound(row):
-                yield row.key
+        yield from damaged_rows(connection, RESULT)
 
 
 def forget(engine: Engine, keys: Collection[str]) -> None:
@@ -293,10 +282,6 @@ def _some(keys: Collection[str]) -> Iterator[list[str]]:
     listed = list(keys)
     for start in range(0, len(listed), NAMED):
         yield listed[start : start + NAMED]
-
-
-def _sound(row: Any) -> bool:
-    return bool(row.seal == seal(row.key, row.run_id, row.made, row.outline, bytes(row.found)))
 
 
 def _digests(result: Result) -> Digests:

@@ -1,10 +1,14 @@
 """What an earlier run computed and a later one may take over: charts of the same motion by the same kernels."""
 
+import warnings
 from collections.abc import Iterable
 
 from sqlalchemy import Engine, select
 
+from pipeline.collection.sealing import damaged_rows, told
+from pipeline.errors import DamageWarning
 from pipeline.records import Chart
+from pipeline.store.sound import damaged_heads, runs_but
 from pipeline.store.tables import RUN, RUN_CHART
 
 KERNELS = "kernels"
@@ -37,8 +41,10 @@ SELECTION = "selection"
 
 def whole_runs(engine: Engine) -> list[str]:
     """Return the finished runs of the whole collection, the newest first."""
-    finished = select(RUN.c.run_id, RUN.c.settings).where(RUN.c.status == "finished").order_by(RUN.c.started.desc())
     with engine.connect() as connection:
+        sound = runs_but(damaged_heads(connection))
+        finished = select(RUN.c.run_id, RUN.c.settings).where(RUN.c.status == "finished", sound)
+        finished = finished.order_by(RUN.c.started.desc())
         return [row.run_id for row in connection.execute(finished) if not row.settings.get(SELECTION)]
 
 
@@ -49,12 +55,15 @@ def stored_charts(engine: Engine, keys: Iterable[str], version: str) -> dict[str
     version : of the kernels and the code that draw them
     """
     wanted = set(keys)
-    newest = (
-        select(RUN.c.run_id, RUN.c.settings).where(RUN.c.status == "finished").order_by(RUN.c.started.desc()).limit(1)
-    )
     with engine.connect() as connection:
+        finished = (RUN.c.status == "finished") & runs_but(damaged_heads(connection))
+        newest = select(RUN.c.run_id, RUN.c.settings).where(finished).order_by(RUN.c.started.desc()).limit(1)
         row = connection.execute(newest).one_or_none()
         if row is None or row.settings.get(PICTURES) != version:
+            return {}
+        damaged = list(damaged_rows(connection, RUN_CHART, RUN_CHART.c.run_id == row.run_id))
+        if damaged:
+            warnings.warn(f"{told(RUN_CHART.name, damaged)}; they are drawn again", DamageWarning, stacklevel=2)
             return {}
         charts = connection.execute(select(RUN_CHART.c.chart).where(RUN_CHART.c.run_id == row.run_id)).scalars()
         return {chart.key: chart for chart in charts if chart.key in wanted}

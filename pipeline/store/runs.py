@@ -9,11 +9,13 @@ from typing import Any
 from sqlalchemy import Connection, Engine, Row, Table, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
+from pipeline.collection.sealing import damaged_rows, write_seals
 from pipeline.records import Chart, MotionSummary, Page, RunChanges, RunRecord, Standing
 from pipeline.store import codec
 from pipeline.store.changes import changes
 from pipeline.store.codec import StoreError
 from pipeline.store.pages import add_pages, load_page
+from pipeline.store.sound import damaged_heads, require_run, runs_but
 from pipeline.store.speaking import speaking, where_is
 from pipeline.store.tables import PAGE, RUN, RUN_CHART, RUN_DECISION, RUN_MOTION, RUN_PAGE
 
@@ -90,6 +92,7 @@ def commit_run(
                 waiting = iter(rows)
                 while chunk := list(islice(waiting, _CHUNK)):
                     connection.execute(insert(table), chunk)
+                write_seals(connection, table, table.c.run_id == head.run_id)
     except IntegrityError as error:
         raise StoreError(
             f"{failure}: there is a run of that id already, and runs are never overwritten, or a result of it is gone; "
@@ -104,7 +107,13 @@ def mark_finished(engine: Engine, run_id: str) -> None:
     """
     failure = f"run {run_id!a} has its report, but could not be marked as finished"
     with speaking(engine, failure), engine.begin() as connection:
-        connection.execute(update(RUN).where(RUN.c.run_id == run_id, RUN.c.status != FINISHED).values(status=FINISHED))
+        mine = (RUN.c.run_id == run_id) & (RUN.c.status != FINISHED)
+        if connection.execute(select(RUN.c.run_id).where(mine)).scalar() is None or any(
+            damaged_rows(connection, RUN, mine)
+        ):
+            return
+        connection.execute(update(RUN).where(mine).values(status=FINISHED))
+        write_seals(connection, RUN, RUN.c.run_id == run_id)
 
 
 def load_head(engine: Engine, run_id: str | None = None) -> tuple[RunRecord, tuple[Page, ...]]:
@@ -157,7 +166,8 @@ def list_runs(engine: Engine) -> tuple[RunSummary, ...]:
     """Return all runs, the last one that started first."""
     names = [field.name for field in fields(RunSummary)]
     with speaking(engine, "the runs could not be listed"), engine.connect() as connection:
-        rows = connection.execute(select(*(RUN.c[name] for name in names)).order_by(*_newest_first()))
+        sound = runs_but(damaged_heads(connection))
+        rows = connection.execute(select(*(RUN.c[name] for name in names)).where(sound).order_by(*_newest_first()))
         return tuple(RunSummary(*row) for row in rows)
 
 
@@ -243,12 +253,14 @@ def _newest_first() -> tuple[Any, ...]:
 
 
 def _latest(connection: Connection) -> str | None:
-    query = select(RUN.c.run_id).where(RUN.c.status == FINISHED).order_by(*_newest_first()).limit(1)
+    sound = runs_but(damaged_heads(connection))
+    query = select(RUN.c.run_id).where(RUN.c.status == FINISHED, sound).order_by(*_newest_first()).limit(1)
     newest: str | None = connection.execute(query).scalar()
     return newest
 
 
 def _head(connection: Connection, run_id: str) -> Mapping[str, Any]:
+    require_run(connection, run_id)
     row = connection.execute(select(RUN).where(RUN.c.run_id == run_id)).mappings().first()
     if row is None:
         known = connection.execute(select(RUN.c.run_id).order_by(*_newest_first())).scalars().all()

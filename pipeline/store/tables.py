@@ -29,6 +29,7 @@ from pipeline.collection.inventory import IMPORT_BATCH, ITEM
 from pipeline.collection.inventory.local_measurements import SUPPLEMENT
 from pipeline.collection.inventory.reading_report import READING
 from pipeline.collection.inventory.source_rows import SOURCE_ROW, SOURCE_STATE
+from pipeline.collection.sealing import seal_column
 from pipeline.records import Chart, Decision, MotionSummary, Standing
 from pipeline.store import codec
 
@@ -233,11 +234,12 @@ RUN = Table(
     Column("demonstration", Boolean(), nullable=False),
     Column("status", Words(), nullable=False),
     Column("counts", Json(dict[str, int]), nullable=False),
+    seal_column(),
     Index(None, "status", "started"),
 )
 """One row a run; status is "finished", or "unfinished" for a run without a time of finishing."""
 
-RUN_MOTION = Table("run_motion", METADATA, _of_run(), _position(), *_columns(MotionSummary))
+RUN_MOTION = Table("run_motion", METADATA, _of_run(), _position(), *_columns(MotionSummary), seal_column())
 """The motions of a run; measures, steps and series as JSON."""
 
 RUN_CHART = Table(
@@ -247,6 +249,7 @@ RUN_CHART = Table(
     Column("key", Words(), primary_key=True),
     Column("position", BigInteger(), nullable=False),
     Column("chart", Json(Chart), nullable=False),
+    seal_column(),
 )
 """The charts of a run by key; the chart itself as JSON."""
 
@@ -264,7 +267,7 @@ RESULT = Table(
 
 run_id  : the run that found it, which may be gone;  made : when, ISO 8601, UTC
 outline : of each object what comparisons need, JSON;  found : everything, compressed JSON (see `results`)
-seal    : of all the others (see `sealing`)
+seal    : of all the others (see `collection.sealing`)
 """
 
 PAGE = Table(
@@ -292,6 +295,7 @@ RUN_PAGE = Table(
     Column("on_display", Boolean(), nullable=False),
     Column("number", Integer(), nullable=False),
     Column("of", Integer(), nullable=False),
+    seal_column(),
     Index(None, "key"),
 )
 """The pages of a run; an unchanged one is that of an earlier run."""
@@ -301,6 +305,7 @@ DECISION = Table(
     METADATA,
     Column("id", Integer(), primary_key=True),
     *_columns(Decision, *(field.name for field in fields(Decision) if field.name != "id")),
+    seal_column(),
     UniqueConstraint("withdraws"),
     Index(None, "object_number"),
     sqlite_autoincrement=True,
@@ -314,6 +319,7 @@ RUN_DECISION = Table(
     _position(),
     Column("object_number", Words(), nullable=False),
     *_columns(Standing),
+    seal_column(),
     Index(None, "run_id", "object_number"),
 )
 """The decisions that were in force when a run was made, as they stood, with what was then to be doubted."""

@@ -27,6 +27,7 @@ from pipeline.collection.inventory import (
     verify_inventory,
 )
 from pipeline.collection.inventory.reading_report import doubts
+from pipeline.collection.inventory.records import LostRecordsError
 from pipeline.collection.inventory.source_rows import SourceKey, known_rows
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.object_index import object_index, read_packed
@@ -59,6 +60,9 @@ DAMAGE = {
     "a number": "object_number = 'B.2'",
 }
 
+LISTED = ("another gallery", "a flag", "the digest", "a number")
+"""Damage to what objects are told apart by without their records being read."""
+
 
 @pytest.fixture
 def engine(tmp_path: Path) -> Iterator[Engine]:
@@ -77,9 +81,12 @@ def damage(engine: Engine, what: str, number: str = "A.2") -> None:
 
 @pytest.mark.parametrize("what", DAMAGE)
 def test_a_damaged_record_is_not_read_and_the_next_import_writes_it_anew(what: str, engine: Engine) -> None:
+    index = object_index(engine)
     damage(engine, DAMAGE[what])
     number = "B.2" if what == "a number" else "A.2"
-    index = object_index(engine)
+    if what in LISTED:
+        with pytest.raises(DamagedRecordError, match=number):
+            object_index(engine)
     with pytest.raises(DamagedRecordError, match=number) as raised:
         read_packed(index.packed(["A.1", number, "A.3"]))
     assert raised.value.numbers == (number,)
@@ -181,3 +188,13 @@ def test_no_flipped_bit_of_a_record_goes_unnoticed(seed: int, tmp_path: Path) ->
         raw.close()
     assert noticed > 15
     engine.dispose()
+
+
+@pytest.mark.parametrize("what", ["until = 1", "since = 7"])
+def test_an_object_that_is_lost_is_missed(what: str, engine: Engine) -> None:
+    damage(engine, what)
+    with pytest.raises(LostRecordsError, match="2 objects where 3 were imported"):
+        object_index(engine)
+    repair(engine, ())
+    replace_inventory(engine, READING, key=KEY, shrink_limit=1.0)
+    assert len(object_index(engine).objects) == len(ITEMS)

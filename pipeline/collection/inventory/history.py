@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from sqlalchemy import Engine, RowMapping, func, select
 
 from pipeline.collection.inventory.tables import IMPORT_BATCH
+from pipeline.collection.sealing import require_sound
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,16 +32,30 @@ class ImportInfo:
 
 
 def versions(engine: Engine) -> list[ImportInfo]:
-    """Return all versions of the inventory, the newest first."""
+    """Return all versions of the inventory, the newest first.
+
+    Raises
+    ------
+    DamagedRowsError
+        Where what is noted of one of them is not what was written.
+    """
     with engine.connect() as connection:
+        require_sound(connection, IMPORT_BATCH)
         rows = connection.execute(select(IMPORT_BATCH).order_by(IMPORT_BATCH.c.id.desc())).mappings()
         return [_info(row) for row in rows]
 
 
 def latest_import(engine: Engine) -> ImportInfo | None:
-    """Return the newest version, or None where nothing was imported yet."""
+    """Return the newest version, or None where nothing was imported yet.
+
+    Raises
+    ------
+    DamagedRowsError
+        As `versions`.
+    """
     last = select(func.max(IMPORT_BATCH.c.id)).scalar_subquery()
     with engine.connect() as connection:
+        require_sound(connection, IMPORT_BATCH, IMPORT_BATCH.c.id == last)
         row = connection.execute(select(IMPORT_BATCH).where(IMPORT_BATCH.c.id == last)).mappings().one_or_none()
     return None if row is None else _info(row)
 
@@ -69,4 +84,5 @@ def held(engine: Engine, sha256: str) -> int | None:
 
 
 def _info(row: RowMapping) -> ImportInfo:
-    return ImportInfo(**{**dict(row), "rejected": len(row["rejected"])})
+    told = {field.name: row[field.name] for field in fields(ImportInfo)}
+    return ImportInfo(**{**told, "rejected": len(row["rejected"])})

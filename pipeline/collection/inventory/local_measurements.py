@@ -10,6 +10,7 @@ from sqlalchemy import JSON, Column, Connection, Index, Integer, Table, Text, in
 
 from pipeline.collection.database import METADATA
 from pipeline.collection.record import KINDS, to_items, to_records
+from pipeline.collection.sealing import require_sound, seal_column, write_seals
 from pipeline.records import ITEM_FIELDS, Item, Problem
 
 SUPPLEMENT = Table(
@@ -20,6 +21,7 @@ SUPPLEMENT = Table(
     Column("until", Integer(), nullable=True),
     Column("source", Text(), nullable=False),
     Column("record", JSON(), nullable=False),
+    seal_column(),
     Index(None, "until"),
 )
 """One row for each state of an object's own sheet; since and until are versions, as in the table item.
@@ -49,7 +51,14 @@ def filled_in(item: Item) -> dict[str, Any]:
 
 
 def current(connection: Connection, version: int | None = None) -> dict[str, tuple[str, dict[str, Any]]]:
-    """Return the sheets by object number, each with its source: those of now, or those of an earlier version."""
+    """Return the sheets by object number, each with its source: those of now, or those of an earlier version.
+
+    Raises
+    ------
+    DamagedRowsError
+        Where any of them, whatever version it is of, is not what was written.
+    """
+    require_sound(connection, SUPPLEMENT)
     wanted = select(SUPPLEMENT)
     if version is None:
         wanted = wanted.where(SUPPLEMENT.c.until.is_(None))
@@ -73,6 +82,8 @@ def store(connection: Connection, sheets: Mapping[str, tuple[str, dict[str, Any]
     ]
     if fresh:
         connection.execute(insert(SUPPLEMENT), fresh)
+    if fresh or ended:
+        write_seals(connection, SUPPLEMENT, (SUPPLEMENT.c.since == version) | (SUPPLEMENT.c.until == version))
 
 
 def laid_over(items: Sequence[Item], sheets: Mapping[str, tuple[str, dict[str, Any]]]) -> list[Item]:

@@ -6,6 +6,7 @@ Values that are doubted are problems of the objects themselves; the table `readi
 from __future__ import annotations
 
 import json
+import warnings
 import zlib
 from collections.abc import Collection, Iterable, Iterator
 from typing import Any
@@ -16,6 +17,8 @@ from pipeline.collection.database import METADATA
 from pipeline.collection.inventory.records import RECORD_COLUMNS, shown, sound
 from pipeline.collection.inventory.tables import IMPORT_BATCH, ITEM, doubted, newest
 from pipeline.collection.reading import Reading
+from pipeline.collection.sealing import damaged_rows, require_sound, seal_column, write_seals
+from pipeline.errors import DamageWarning
 from pipeline.records import Account, Doubt, Item
 from pipeline.records.reading import DOUBTFUL, REFUSED, SHEET, SOURCE
 
@@ -35,6 +38,7 @@ READING = Table(
     METADATA,
     Column("version", Integer(), ForeignKey("import_batch.id", ondelete="CASCADE"), primary_key=True),
     Column("told", LargeBinary(), nullable=False),
+    seal_column(),
 )
 """One row for each version of which it is known; told is compressed JSON.
 
@@ -70,6 +74,7 @@ def account(engine: Engine, version: int | None = None) -> Account | None:
         known = None if number is None else _told(connection, number)
         if known is None or known["base"] is None:
             return None
+        require_sound(connection, IMPORT_BATCH, IMPORT_BATCH.c.id == known["base"])
         row = connection.execute(select(IMPORT_BATCH).where(IMPORT_BATCH.c.id == known["base"])).mappings().one()
     return Account(
         source=row["source"],
@@ -204,13 +209,20 @@ def _sheets(connection: Connection, version: int | None) -> list[Cell]:
 
 def _write(connection: Connection, version: int, known: dict[str, Any]) -> None:
     content = zlib.compress(json.dumps(known, separators=(",", ":")).encode())
-    if connection.execute(select(READING.c.told).where(READING.c.version == version)).scalar() == content:
+    mine = READING.c.version == version
+    same = connection.execute(select(READING.c.told).where(mine)).scalar() == content
+    if same and not any(damaged_rows(connection, READING, mine)):
         return
     connection.execute(delete(READING).where(READING.c.version == version))
     connection.execute(insert(READING).values(version=version, told=content))
+    write_seals(connection, READING, READING.c.version == version)
 
 
 def _told(connection: Connection, version: int) -> dict[str, Any] | None:
-    """Return what is kept with a version; None where nothing is."""
+    """Return what is kept with a version; None where nothing is, or nothing that can be believed, which is said."""
+    if any(damaged_rows(connection, READING, READING.c.version == version)):
+        problem = "what was refused and doubted of the museum's records changed in the database since it was noted"
+        warnings.warn(f"{problem}: it is not known, import again", DamageWarning, stacklevel=3)
+        return None
     found = connection.execute(select(READING.c.told).where(READING.c.version == version)).scalar()
     return None if found is None else dict(json.loads(zlib.decompress(found)))

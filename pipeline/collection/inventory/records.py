@@ -7,6 +7,7 @@ A record that a disk or a hand has changed would be assessed as if the museum ha
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -15,9 +16,9 @@ from sqlalchemy.exc import DBAPIError
 
 from pipeline.collection.inventory.differences import fields_changed
 from pipeline.collection.inventory.source_rows import forget_source
-from pipeline.collection.inventory.tables import ITEM, current, numbered
+from pipeline.collection.inventory.tables import IMPORT_BATCH, INDEXED, ITEM, current, item_seal, newest, numbered
 from pipeline.collection.record import KINDS, assessment_digest_of, digest_of, to_items
-from pipeline.errors import KourosError
+from pipeline.errors import DamageWarning, KourosError
 from pipeline.records import ITEM_FIELDS, Item
 
 _LISTS = tuple(at for at, name in enumerate(ITEM_FIELDS) if KINDS[name] == "list")
@@ -40,8 +41,10 @@ _CHUNK = 1_000
 
 _STREAM = {"yield_per": _CHUNK}
 
-_HEAD = 3
+_HEAD = 4
 """Columns before those of a record, where states are verified."""
+
+_INDEXED_AT = tuple(ITEM_FIELDS.index(name) for name in INDEXED if name in ITEM_FIELDS)
 
 
 class DamagedRecordError(KourosError):
@@ -69,6 +72,27 @@ class DamagedRecordError(KourosError):
             f"{self.database}: {count:,} record{'s' if count != 1 else ''} of the inventory changed since written, in "
             f"which field is not known (object {shown}): see whether the disk is sound, and import the museum's "
             "records again (`kouros import`)"
+        )
+
+
+class LostRecordsError(DamagedRecordError):
+    """The inventory has not as many objects as were imported: which are lost, the database does not know.
+
+    Attributes
+    ----------
+    there, imported : int
+        How many it has, and how many it had.
+    """
+
+    def __init__(self, there: int, imported: int, database: str) -> None:
+        super().__init__((), database)
+        self.there, self.imported = there, imported
+        self.args = (there, imported, database)
+
+    def __str__(self) -> str:
+        return (
+            f"{self.database}: the inventory has {self.there:,} objects where {self.imported:,} were imported: see "
+            "whether the disk is sound, and import the museum's records again (`kouros import`)"
         )
 
 
@@ -188,6 +212,19 @@ def stored_records(connection: Connection, numbers: Sequence[str]) -> dict[str, 
     return found
 
 
+def require_all(connection: Connection, version: int, objects: int) -> None:
+    """Refuse a version of the inventory that has not as many objects as were imported.
+
+    Raises
+    ------
+    LostRecordsError
+        Where some are lost, or are there that had ended.
+    """
+    wanted = connection.execute(select(IMPORT_BATCH.c["items"]).where(IMPORT_BATCH.c.id == version)).scalar()
+    if wanted is not None and wanted != objects:
+        raise LostRecordsError(objects, wanted, shown(connection.engine))
+
+
 def read_inventory(engine: Engine) -> list[Item]:
     """Return all items, sorted by object number; floats are those that were written, bit by bit.
 
@@ -222,13 +259,28 @@ def object_numbers(engine: Engine) -> list[str]:
 
 
 def fields_since(engine: Engine, number: str, digest: str) -> tuple[str, ...]:
-    """Return the fields in which an object's record is not what it was at a digest; none where that is not known."""
+    """Return the fields in which an object's record is not what it was at a digest; none where that is not known.
+
+    Raises
+    ------
+    DamagedRecordError
+        Where the record of now is not what was written.
+
+    Warns
+    -----
+    DamageWarning
+        The record of then is not what was written.
+    """
     mine = ITEM.c.object_number == number
     last = select(*RECORD_COLUMNS).where(mine, ITEM.c.digest == digest).order_by(ITEM.c.since.desc()).limit(1)
     with engine.connect() as connection:
         then = checked(connection.execute(last).all())
-        now = stored_records(connection, [number])
-    return tuple(fields_changed(then[0], now[number])) if then and then[0] is not None and number in now else ()
+        now = read_records(connection, and_(current(), mine))
+    if then and then[0] is None:
+        problem = f"an earlier record of object {number!r} changed in the database since it was written"
+        warnings.warn(f"{problem}: what differs from it is not known", DamageWarning, stacklevel=2)
+        return ()
+    return tuple(fields_changed(then[0], now[0])) if then and then[0] is not None and now else ()
 
 
 def galleries(items: Iterable[Item]) -> dict[str, int]:
@@ -278,11 +330,14 @@ def repair(engine: Engine, numbers: Sequence[str]) -> None:
     with engine.begin() as connection:
         for some in numbered(numbers):
             connection.execute(update(ITEM).where(current(), some).values(digest=""))
+        # What is of now came with some version that there is: one from after the newest would be in none.
+        last = newest(connection) or 0
+        connection.execute(update(ITEM).where(current(), ITEM.c.since > last).values(since=last))
         forget_source(connection)
 
 
 def _damaged(connection: Connection, condition: ColumnElement[bool]) -> Iterator[DamagedRecord]:
-    wanted = select(ITEM.c.since, ITEM.c.until, ITEM.c.assessment_digest, *RECORD_COLUMNS).where(condition)
+    wanted = select(ITEM.c.since, ITEM.c.until, ITEM.c.assessment_digest, ITEM.c.seal, *RECORD_COLUMNS).where(condition)
     told = set()
     try:
         for some in connection.execute(wanted, execution_options=_STREAM).partitions(_CHUNK):
@@ -302,9 +357,10 @@ def _damaged(connection: Connection, condition: ColumnElement[bool]) -> Iterator
 
 def _mismatches(rows: Sequence[Sequence[Any]]) -> Iterator[DamagedRecord]:
     items = checked([row[_HEAD:] for row in rows])
-    for (since, until, assessed, *record), item in zip(rows, items, strict=True):
+    for (since, until, assessed, whole, *record), item in zip(rows, items, strict=True):
+        sealed = whole == item_seal(*(record[at] for at in _INDEXED_AT), record[-1], assessed)
         # Of states that ended before it was kept the second digest is not known.
-        if item is None or (assessed and assessment_digest_of(item) != assessed):
+        if item is None or not sealed or (assessed and assessment_digest_of(item) != assessed):
             yield DamagedRecord(str(record[NUMBER_AT]), since, until is None)
 
 

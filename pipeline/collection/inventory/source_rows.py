@@ -7,7 +7,7 @@ of the inventory, the mapping, the code and the limits that it was written with;
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from hashlib import blake2b
 
@@ -16,6 +16,7 @@ from sqlalchemy import Column, Connection, Engine, Integer, Table, Text, bindpar
 from pipeline.collection.database import METADATA
 from pipeline.collection.inventory.tables import newest
 from pipeline.collection.reading import KnownRow, Reading
+from pipeline.collection.sealing import damaged_rows, seal_column, write_seals
 
 _LOG = logging.getLogger(__name__)
 
@@ -45,6 +46,7 @@ SOURCE_STATE = Table(
     *(Column(name, Text(), nullable=False) for name in ("source", "sha256", "mapping", "code", "limits")),
     Column("version", Integer(), nullable=False),
     Column("rows", Integer(), nullable=False),
+    seal_column(),
 )
 """At most one row: of which source the inventory is the state, and how it was read.
 
@@ -120,6 +122,15 @@ def known_rows(engine: Engine, key: SourceKey) -> dict[str, KnownRow] | None:
     return None
 
 
+def damaged_source_rows(engine: Engine) -> Iterator[str]:
+    """Yield the digests of the rows of the source of which what is known is not what was written."""
+    with engine.connect() as connection:
+        rows = connection.execute(select(*SOURCE_ROW.c), execution_options={"yield_per": _CHUNK})
+        for digest, *told, checksum in rows:
+            if _checksum(digest, *told) != checksum:
+                yield str(digest)
+
+
 def store_source(connection: Connection, key: SourceKey, reading: Reading) -> None:
     """Take down what is known of the rows of a source, in the transaction that makes the inventory their state."""
     if reading.unread is None:
@@ -153,6 +164,9 @@ def forget_source(connection: Connection) -> None:
 
 def _state(connection: Connection, key: SourceKey) -> tuple[str, int] | None:
     """Return the digest of the source and how many of its rows are known; None where the key or the version differs."""
+    if any(damaged_rows(connection, SOURCE_STATE)):
+        _LOG.warning("what was known of the source is damaged: all of it is read again")
+        return None
     row = connection.execute(select(SOURCE_STATE)).mappings().one_or_none()
     if row is None or row["version"] != newest(connection):
         return None
@@ -164,6 +178,7 @@ def _store_state(connection: Connection, key: SourceKey, sha256: str, rows: int)
     connection.execute(delete(SOURCE_STATE))
     state = {"id": 1, **asdict(key), "sha256": sha256, "version": newest(connection) or 0, "rows": rows}
     connection.execute(insert(SOURCE_STATE), state)
+    write_seals(connection, SOURCE_STATE)
 
 
 def _checksum(*told: str | None) -> str:

@@ -22,6 +22,7 @@ from sqlalchemy import (
 
 from pipeline.collection.database import METADATA
 from pipeline.collection.record import KINDS
+from pipeline.collection.sealing import seal, seal_column
 from pipeline.records import ITEM_FIELDS
 
 NAMED = 500
@@ -48,6 +49,7 @@ ITEM = Table(
     Column("until", Integer(), nullable=True),
     Column("digest", Text(), nullable=False),
     Column("assessment_digest", Text(), nullable=False, server_default=""),
+    seal_column(),
 )
 """One row for each state of an object: a column for each field of Item, of the same name; lists as JSON.
 
@@ -55,7 +57,19 @@ since, until      : the imports that brought this state and that ended it; until
 digest            : `record.digest_of` the record: what changed is found by it, and a damaged record is recognised;
                     "" of a record that was found damaged and is to be read anew
 assessment_digest : `record.assessment_digest_of` the record; "" of states that ended before it was kept
+seal              : of INDEXED: by it the two digests are known to be those that were written with the record
 """
+
+INDEXED = ("object_number", "gallery", "case", "on_display", "digest", "assessment_digest")
+"""Columns of ITEM by which objects are found without reading their records."""
+
+
+def item_seal(*indexed: Any) -> str:
+    """Return the seal of a row of ITEM, from the values of INDEXED in their order."""
+    return seal(
+        *(one if isinstance(one, str) else str(int(one)) if isinstance(one, bool) else repr(one) for one in indexed)
+    )
+
 
 IMPORT_BATCH = Table(
     "import_batch",
@@ -75,6 +89,7 @@ IMPORT_BATCH = Table(
     Column("added", Integer(), nullable=False, server_default="0"),
     Column("removed", Integer(), nullable=False, server_default="0"),
     Column("changed", Integer(), nullable=False, server_default="0"),
+    seal_column(),
 )
 """One row for each version: imported_at is ISO 8601 in UTC, rejected a JSON list of the rows that were kept out.
 

@@ -13,11 +13,21 @@ from pipeline.collection.errors import CollectionError, ShrunkError
 from pipeline.collection.inventory import local_measurements, reading_report
 from pipeline.collection.inventory.differences import Difference, fields_changed
 from pipeline.collection.inventory.local_measurements import filled_in, laid_over
-from pipeline.collection.inventory.records import damaged_now, read_records, stored_records
+from pipeline.collection.inventory.records import damaged_now, read_records, require_all, stored_records
 from pipeline.collection.inventory.source_rows import SourceKey, store_source
-from pipeline.collection.inventory.tables import IMPORT_BATCH, ITEM, current, doubted, newest, numbered, state_at
+from pipeline.collection.inventory.tables import (
+    IMPORT_BATCH,
+    ITEM,
+    current,
+    doubted,
+    item_seal,
+    newest,
+    numbered,
+    state_at,
+)
 from pipeline.collection.reading import Reading, Unread
 from pipeline.collection.record import assessment_digest_of, digest_of, to_records
+from pipeline.collection.sealing import require_sound, write_seals
 from pipeline.errors import InputError
 from pipeline.records import Item
 
@@ -95,7 +105,7 @@ def replace_inventory(
         if base is None or version is None:
             version = _write(connection, items, digests, found, described | _stamp(moment))
         else:
-            _write_digests(connection, digests)
+            _write_digests(connection, items, digests)
         reading_report.note_import(connection, version, below, base or version, reading, _doubtful(connection))
         if key is not None:
             store_source(connection, key, reading)
@@ -195,12 +205,14 @@ def return_to(engine: Engine, version: int, *, when: datetime | None = None, dry
     """
     moment = _moment(when)
     with engine.begin() as connection:
+        require_sound(connection, IMPORT_BATCH, IMPORT_BATCH.c.id == version)
         row = connection.execute(select(IMPORT_BATCH).where(IMPORT_BATCH.c.id == version)).mappings().one_or_none()
         if row is None:
             known = connection.execute(select(IMPORT_BATCH.c.id).order_by(IMPORT_BATCH.c.id)).scalars().all()
             there = f"there are {known[0]} to {known[-1]}" if known else "nothing was imported yet"
             raise CollectionError(f"the inventory has no version {version}: {there}; `kouros import --versions` lists")
         items = read_records(connection, state_at(version))
+        require_all(connection, version, len(items))
         found, digests = _difference(connection, items)
         if dry_run:
             return found
@@ -259,10 +271,11 @@ def _write(
     counts = {"items": found.after, "added": len(found.added), "removed": len(found.removed)}
     record = {**batch, **counts, "changed": len(found.changed)}
     version: int = connection.execute(insert(IMPORT_BATCH).values(record).returning(IMPORT_BATCH.c.id)).scalar_one()
+    write_seals(connection, IMPORT_BATCH, IMPORT_BATCH.c.id == version)
     new = {*found.added, *found.changed}
     for some in numbered([*found.removed, *found.changed]):
         connection.execute(update(ITEM).where(current(), some).values(until=version))
-    _write_digests(connection, {number: both for number, both in digests.items() if number not in new})
+    _write_digests(connection, items, {number: both for number, both in digests.items() if number not in new})
     fresh = [item for item in items if item.object_number in new]
     for start in range(0, len(fresh), CHUNK):
         chunk = fresh[start : start + CHUNK]
@@ -270,17 +283,29 @@ def _write(
         for item, record in zip(chunk, records, strict=True):
             digest, assessed = digests[item.object_number]
             record |= {"since": version, "until": None, "digest": digest, "assessment_digest": assessed}
+            record["seal"] = _seal(item, digest, assessed)
         connection.execute(insert(ITEM), records)
     return version
 
 
-def _write_digests(connection: Connection, digests: Digests) -> None:
+def _seal(item: Item, digest: str, assessed: str) -> str:
+    return item_seal(item.object_number, item.gallery, item.case, item.on_display, digest, assessed)
+
+
+def _write_digests(connection: Connection, items: Sequence[Item], digests: Digests) -> None:
     """Write the digests of records that are the same, and of which the inventory has others."""
     if not digests:
         return
-    told = [{"number": number, "whole": whole, "assessed": assessed} for number, (whole, assessed) in digests.items()]
+    told = [
+        {"number": item.object_number, "whole": both[0], "assessed": both[1], "sealed": _seal(item, *both)}
+        for item in items
+        for both in (digests.get(item.object_number),)
+        if both is not None
+    ]
     mine = and_(current(), ITEM.c.object_number == bindparam("number"))
-    values = update(ITEM).values(digest=bindparam("whole"), assessment_digest=bindparam("assessed"))
+    values = update(ITEM).values(
+        digest=bindparam("whole"), assessment_digest=bindparam("assessed"), seal=bindparam("sealed")
+    )
     connection.execute(values.where(mine), told)
 
 
