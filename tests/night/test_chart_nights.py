@@ -14,21 +14,18 @@ from pipeline.analysis.plan import plan
 from pipeline.analysis.response import respond
 from pipeline.analysis.response_charts import ChartCache, ResponseChart
 from pipeline.cache import CHARTS, CacheWarning
-from pipeline.cli.console import Console
 from pipeline.collection.database import open_database
 from pipeline.execute import Threads
 from pipeline.motions.synthesis import band_limited_random
-from pipeline.night import units as sheets
+from pipeline.night import units
 from pipeline.night.run import run
 from pipeline.quantities import G
 from pipeline.records import Estimate, Finding, Item, Motion, Origin, Scene, Support, Verdict
 from pipeline.settings import Settings, load_settings
 from pipeline.store.runs import load_run
 from tests.analysis.test_assess import PAINTING, VASE
-from tests.cli.test_cli import kouros
-from tests.night.test_jobs import workspace
+from tests.museum import SILENT, kouros, workspace
 
-SILENT = Console(quiet=True)
 ROWS = [
     *(f"{n},A,Covered vase,{0.2 + 0.02 * n},0.2,0.2" for n in range(12)),
     *(f"p{n},B,Painting of a landscape,{0.5 + 0.1 * n},0.8,0.05" for n in range(6)),
@@ -81,13 +78,13 @@ def test_a_night_by_charts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     # A night of other code judges anew, reads the charts that the first one kept, and changes nothing of them.
     with monkeypatch.context() as patch:
         patch.setattr(ResponseChart, "build", refuse)
-        patch.setattr(sheets, "code_version", lambda: "other code")
+        patch.setattr(units, "code_version", lambda: "other code")
         assert findings(settings) == looked
     assert {file.name: file.read_bytes() for file in charts.iterdir()} == kept
     # A damaged chart is said, and the night goes on as if there were none.
     for file in charts.iterdir():
         file.write_bytes(b"damaged")
-    monkeypatch.setattr(sheets, "code_version", lambda: "another code again")
+    monkeypatch.setattr(units, "code_version", lambda: "another code again")
     with pytest.warns(CacheWarning, match="it is made again"):
         assert findings(settings) == looked
     assert "the response chart" in "".join(

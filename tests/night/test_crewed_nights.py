@@ -10,18 +10,17 @@ from distributed import LocalCluster
 
 from pipeline.night import scheduler as rounds
 from pipeline.settings import Settings
-
-from .test_unchanged_nights import found, museum, night, rows
+from tests.museum import found, museum_of, night, vases
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
 
-OBJECTS = rows(galleries=8, each=4)
+OBJECTS = vases(galleries=8, each=4)
 
 
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Settings:
     """The museum after a night of this process alone."""
-    settings = museum(tmp_path_factory.mktemp("crews") / "alone", OBJECTS)
+    settings = museum_of(tmp_path_factory.mktemp("crews") / "alone", OBJECTS)
     night(settings)
     return settings
 
@@ -49,7 +48,7 @@ def files(settings: Settings) -> dict[str, bytes]:
 
 @pytest.mark.usefixtures("shared")
 def test_two_processes_of_this_machine(alone: Settings, tmp_path: Path) -> None:
-    settings = museum(tmp_path / "two", OBJECTS)
+    settings = museum_of(tmp_path / "two", OBJECTS)
     execution = settings.execution.model_copy(update={"processes": 2})
     settings = settings.model_copy(update={"execution": execution})
     assert night(settings).fresh == len(OBJECTS)
@@ -66,7 +65,7 @@ def cluster() -> Iterator[LocalCluster]:
 
 def of_a_cluster(folder: Path, cluster: LocalCluster) -> Settings:
     """The museum after a night whose work a cluster did."""
-    settings = museum(folder, OBJECTS)
+    settings = museum_of(folder, OBJECTS)
     execution = settings.execution.model_copy(update={"cluster": cluster.scheduler_address})
     settings = settings.model_copy(update={"execution": execution})
     assert night(settings).fresh == len(OBJECTS)
@@ -94,7 +93,7 @@ def test_a_worker_that_is_killed_in_the_middle_of_a_night_loses_nothing(
     alone: Settings, cluster: LocalCluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Killed when the first results are stored, while both workers are at later ones."""
-    settings = museum(tmp_path / "killed", OBJECTS)
+    settings = museum_of(tmp_path / "killed", OBJECTS)
     execution = settings.execution.model_copy(update={"cluster": cluster.scheduler_address})
     settings = settings.model_copy(update={"execution": execution})
     killed = []

@@ -19,7 +19,7 @@ from pipeline.settings import Settings, load_settings
 from pipeline.store.runs import load_run
 from pipeline.tools.decisions import Wish, decide
 from tests.mitigate.scenes import TOWER, demo_motion, solve
-from tests.night.test_jobs import MAPPING, SILENT, workspace
+from tests.museum import MAPPING, SILENT, workspace
 
 SHOWN = "1,Hall,Vase,0.4,0.2,0.2,yes"
 ROWS = [SHOWN, "2,Cellar,Vase,0.5,0.2,0.2,no", "3,Cellar,Bowl,,0.2,0.2,no", "4,,Vase,0.6,0.2,0.2,"]

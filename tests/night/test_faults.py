@@ -29,8 +29,7 @@ from pipeline.settings.operations import Logs
 from pipeline.store.decisions import add_decision
 from pipeline.store.runs import load_run
 from pipeline.tools.doctor import diagnose
-from tests.cli.test_cli import kouros
-from tests.night.test_jobs import in_common
+from tests.museum import in_common, kouros
 
 NAMES = {
     "framed": "Painting", "relief": "Relief", "chandelier": "Chandelier", "wall_painting": "Fresco",

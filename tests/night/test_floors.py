@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.cli.console import Console
 from pipeline.collection.database import open_database
 from pipeline.motions.manifest import SiteTable
 from pipeline.motions.synthesis import half_sine_pulse
@@ -16,9 +15,8 @@ from pipeline.records import Motion, RunRecord
 from pipeline.settings import Settings, SettingsError, load_settings
 from pipeline.store.runs import load_run
 from pipeline.tools.doctor import diagnose
-from tests.night.test_jobs import own_site, workspace
+from tests.museum import SILENT, own_site, workspace
 
-SILENT = Console(quiet=True)
 SITE = SiteTable(name="Test", latitude=0.0, longitude=0.0)
 
 

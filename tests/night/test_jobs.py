@@ -2,7 +2,6 @@
 
 import csv
 import json
-import os
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -10,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.cache import CHARTS, MOTIONS, CacheWarning
-from pipeline.cli.console import Console
+from pipeline.cache import MOTIONS, CacheWarning
 from pipeline.collection.database import open_database
 from pipeline.collection.errors import ShrunkError
 from pipeline.motions import read_site
@@ -19,64 +17,11 @@ from pipeline.motions.errors import MotionError
 from pipeline.night.run import Selection, run, summarise
 from pipeline.operations.workspace import LockedError, UsageError, locked
 from pipeline.report.pages.tallies import total
-from pipeline.resources import resource
-from pipeline.settings import KEPT, Settings, SettingsError, load_settings, template
+from pipeline.settings import SettingsError, load_settings
 from pipeline.store.results import known_to
 from pipeline.store.runs import list_runs, load_head, load_run
 from pipeline.tools.rerender import compare, render_again
-from tests.conftest import SHARED
-
-SILENT = Console(quiet=True)
-COLUMNS = "object_number,gallery,title,height_m,width_m,depth_m"
-ROWS = ['1,"Gallery ""A"" <b>",<script>alert(1)</script>,0.4,0.2,0.2', "2,B,Plate,0.03,0.3,0.3", "3,B,Vase,,0.2,0.2"]
-MAPPING = """
-[source]
-format = "csv"
-encoding = "utf-8"
-delimiter = ","
-[museum]
-name = "Test"
-[columns.object_number]
-column = "object_number"
-[columns.gallery]
-column = "gallery"
-[columns.title]
-column = "title"
-[columns.height_m]
-column = "height_m"
-unit = "m"
-[columns.width_m]
-column = "width_m"
-unit = "m"
-[columns.depth_m]
-column = "depth_m"
-unit = "m"
-"""
-
-
-def in_common(folder: Path) -> None:
-    """Let a museum in a folder keep its response charts where all others do: each is the same whoever built it."""
-    charts = folder / KEPT / CHARTS
-    if not charts.exists():
-        charts.parent.mkdir()
-        common = Path(os.environ[SHARED]) / "charts"
-        common.mkdir(exist_ok=True)
-        charts.symlink_to(common, target_is_directory=True)
-
-
-def workspace(folder: Path, rows: list[str] | None = None, site: str = "demo") -> Settings:
-    """A small museum of its own in a folder; only the charts, which take most of a first night, it has in common."""
-    in_common(folder)
-    (folder / "export.csv").write_text("\n".join([COLUMNS, *(ROWS if rows is None else rows)]) + "\n", encoding="utf-8")
-    (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
-    file = folder / "kouros.toml"
-    file.write_text(template(museum="Test", source="export.csv", mapping="mapping.toml", site=site), encoding="utf-8")
-    return load_settings(file)
-
-
-def own_site(folder: Path) -> Path:
-    """A copy of the bundled site that a test may break."""
-    return Path(shutil.copytree(resource("site_motions", "demo"), folder / "site"))
+from tests.museum import ROWS, SILENT, own_site, workspace
 
 
 def test_the_demonstration_accounts_for_every_object(demo_folder: Path) -> None:

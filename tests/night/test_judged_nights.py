@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from pipeline.analysis.fragility.hazard import EXTENDED
-from pipeline.cli.console import Console
 from pipeline.collection.database import open_database
 from pipeline.motions.manifest import SiteTable
 from pipeline.motions.synthesis import half_sine_pulse
@@ -16,9 +15,8 @@ from pipeline.quantities import G
 from pipeline.records import Assessment, RunRecord, Verdict
 from pipeline.settings import Settings, load_settings
 from pipeline.store.runs import load_run
-from tests.night.test_jobs import workspace
+from tests.museum import SILENT, workspace
 
-SILENT = Console(quiet=True)
 EXTRA = """
 [columns.position_x_m]
 column = "x"

@@ -16,14 +16,14 @@ from pipeline.night.importing import import_collection
 from pipeline.operations.workspace import open_workspace
 from pipeline.records import Silent
 from pipeline.settings import Settings
-from tests.night.test_unchanged_nights import museum, rows, write
+from tests.museum import museum_of, vases, write_collection
 
-OBJECTS = rows(galleries=3, each=6)
+OBJECTS = vases(galleries=3, each=6)
 
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    return museum(tmp_path / "museum", OBJECTS)
+    return museum_of(tmp_path / "museum", OBJECTS)
 
 
 @pytest.fixture
@@ -67,7 +67,7 @@ def unread(reading: Reading | None) -> int:
 def test_after_a_change_only_its_row_is_read(settings: Settings, refresh: Refresh) -> None:
     assert unread(refresh()) == 0
     assert refresh() is None
-    write(settings.home, higher(9, "0.9")[:-1])
+    write_collection(settings.home, higher(9, "0.9")[:-1])
     changed = refresh()
     assert changed is not None
     assert [item.object_number for item in changed.items] == [OBJECTS[9]["object_number"]]
@@ -105,7 +105,7 @@ def test_a_museums_own_database_is_fetched_and_not_read_again(settings: Settings
 def test_what_a_person_imported_since_is_not_what_is_remembered(settings: Settings, refresh: Refresh) -> None:
     refresh()
     (settings.home / "other").mkdir()
-    write(settings.home / "other", higher(0, "0.44")[:9])
+    write_collection(settings.home / "other", higher(0, "0.44")[:9])
     workspace = open_workspace(settings)
     import_collection(workspace, settings.home / "other" / "collection.csv", "kouros", shrink_limit=1.0)
     assert len(inventory(settings)) == 9
@@ -119,14 +119,14 @@ def test_a_version_that_a_person_went_back_to_is_not_taken_for_the_sources_state
     settings: Settings, refresh: Refresh
 ) -> None:
     refresh()
-    write(settings.home, higher(0, "0.44"))
+    write_collection(settings.home, higher(0, "0.44"))
     refresh()
     return_to(open_workspace(settings).engine, 1)
     held = refresh()
     assert held is not None
     assert inventory(settings)["0.0"] == 0.2
     assert refresh() is None
-    write(settings.home, higher(0, "0.44")[:-1])
+    write_collection(settings.home, higher(0, "0.44")[:-1])
     assert unread(refresh()) == 0
     assert len(inventory(settings)) == len(OBJECTS) - 1
     assert inventory(settings)["0.0"] == 0.44
@@ -151,13 +151,13 @@ def test_what_is_damaged_or_of_other_code_is_not_known(damage: str, settings: Se
     refresh()
     with open_workspace(settings).engine.begin() as connection:
         assert connection.execute(text(damage)).rowcount > 0
-    write(settings.home, higher(4, "0.9")[:-2])
+    write_collection(settings.home, higher(4, "0.9")[:-2])
     again = refresh()
     assert again is not None
     assert again.unread is None
     assert len(inventory(settings)) == len(OBJECTS) - 2
     # All of it is known anew.
-    write(settings.home, higher(5, "0.9")[:-2])
+    write_collection(settings.home, higher(5, "0.9")[:-2])
     assert unread(refresh()) == len(OBJECTS) - 4
 
 
@@ -167,5 +167,5 @@ def test_an_import_by_hand_reads_everything_and_what_it_read_is_known(settings: 
     done = import_collection(workspace, settings.home / "collection.csv", "kouros", shrink_limit=1.0)
     assert (done.reading.unread, len(done.reading.items)) == (None, len(OBJECTS))
     assert refresh() is None
-    write(settings.home, higher(5, "0.9"))
+    write_collection(settings.home, higher(5, "0.9"))
     assert unread(refresh()) == len(OBJECTS) - 1

@@ -10,16 +10,14 @@ from sqlalchemy import create_engine, make_url, text
 from pipeline.analysis import classify
 from pipeline.cli.differing import plain_changes
 from pipeline.collection.database import database_url
-from pipeline.night import prepare as briefing
-from pipeline.night import units as sheets
+from pipeline.night import prepare, units
 from pipeline.night.run import run
 from pipeline.operations.workspace import open_workspace
 from pipeline.records import CauseKind, DecisionKind, Estimate, Origin, RunChanges
 from pipeline.settings import DATABASE_VARIABLE, Settings, load_settings
 from pipeline.tools.decisions import Wish, decide
 from pipeline.tools.rerender import compare
-from tests.cli.test_cli import kouros
-from tests.night.test_jobs import SILENT, workspace
+from tests.museum import SILENT, edit, kouros, short_site, workspace
 
 ROWS = ["1,A,Vase,0.4,0.2,0.2", "2,B,Vase,0.4,0.2,0.2", "3,B,Plate,0.03,0.3,0.3"]
 OWN = "rule,class,aat,classification,words,medium,shape,why\nours,bust,,,vase,,,our vases are busts\n"
@@ -49,21 +47,6 @@ def museum(folder: Path, rows: list[str] | None = None) -> Settings:
     return workspace(folder, rows or ROWS, site="site")
 
 
-def own_site(folder: Path) -> Path:
-    """A site of one short motion that a test may change: 7 m/s2 at 1.5 Hz, strong enough to tip the vases."""
-    words = ("sine", "amplitude=7", "frequency=1.5", "cycles=3", "--out", "site")
-    assert kouros("motions", "synthesise", *words, folder=folder).returncode == 0
-    manifest = folder / "site" / "manifest.toml"
-    edit(manifest, "processed = true", "processed = true\nscale = 1.0")
-    return manifest
-
-
-def edit(file: Path, before: str, after: str) -> None:
-    said = file.read_text(encoding="utf-8")
-    assert before in said
-    file.write_text(said.replace(before, after), encoding="utf-8")
-
-
 def night(folder: Path) -> RunChanges:
     """Run a night and return what changed since the one before."""
     changes = run(load_settings(folder / "kouros.toml"), SILENT).changes
@@ -79,7 +62,7 @@ def kinds(changes: RunChanges, number: str = "") -> set[tuple[CauseKind, ...]]:
 
 
 def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    manifest, toml = own_site(tmp_path), tmp_path / "kouros.toml"
+    manifest, toml = short_site(tmp_path), tmp_path / "kouros.toml"
     run(museum(tmp_path), SILENT)
 
     # Nothing: nothing.
@@ -150,9 +133,9 @@ def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.
     assert not changes.inputs
 
     # Version: another Kouros assumes other room.
-    monkeypatch.setattr(briefing, "__version__", "9.9")
-    monkeypatch.setattr(briefing, "code_version", lambda: "another")
-    monkeypatch.setattr(sheets, "code_version", lambda: "another")
+    monkeypatch.setattr(prepare, "__version__", "9.9")
+    monkeypatch.setattr(prepare, "code_version", lambda: "another")
+    monkeypatch.setattr(units, "code_version", lambda: "another")
     monkeypatch.setattr(
         classify, "_clearance_of", lambda _: Estimate(1e-9, "m", Origin.ASSUMED, 1e-9, 1e-9, "no room", "")
     )
@@ -167,7 +150,7 @@ def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.
 
 
 def test_the_order_is_stable_and_json_has_all(tmp_path: Path) -> None:
-    own_site(tmp_path)
+    short_site(tmp_path)
     settings = museum(tmp_path)
     run(settings, SILENT)
     museum(tmp_path, [*reversed(ROWS[1:]), "\U0001f3fa<b>,A,Vase,0.4,0.2,0.2", "4,A,Vase,0.4,0.2,0.2"])

@@ -31,7 +31,7 @@ from pipeline.store.migrate import upgrade
 from pipeline.tools.doctor import diagnose
 from pipeline.tools.rerender import render_again
 from pipeline.tools.survey import add_measurements
-from tests.night.test_jobs import SILENT, workspace
+from tests.museum import SILENT, workspace
 from tests.report import builder
 
 GOOD = ["1,A,Vase,0.4,0.2,0.2", "2,B,Plate,0.03,0.3,0.3"]

@@ -1,0 +1,145 @@
+"""Small museums that tests work with: settings, collections, sites and mappings; a night of theirs; the command."""
+
+import csv
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+from pipeline.cache import CHARTS
+from pipeline.cli.console import Console
+from pipeline.collection.database import open_database
+from pipeline.night.run import run
+from pipeline.operations.run_summary import Summary
+from pipeline.records import RunRecord
+from pipeline.resources import resource
+from pipeline.settings import KEPT, Settings, load_settings, template
+from pipeline.store.runs import load_run
+from tests.conftest import SHARED
+
+SILENT = Console(quiet=True)
+COLUMNS = "object_number,gallery,title,height_m,width_m,depth_m"
+ROWS = ['1,"Gallery ""A"" <b>",<script>alert(1)</script>,0.4,0.2,0.2', "2,B,Plate,0.03,0.3,0.3", "3,B,Vase,,0.2,0.2"]
+MAPPING = """
+[source]
+format = "csv"
+encoding = "utf-8"
+delimiter = ","
+[museum]
+name = "Test"
+[columns.object_number]
+column = "object_number"
+[columns.gallery]
+column = "gallery"
+[columns.title]
+column = "title"
+[columns.height_m]
+column = "height_m"
+unit = "m"
+[columns.width_m]
+column = "width_m"
+unit = "m"
+[columns.depth_m]
+column = "depth_m"
+unit = "m"
+"""
+VASE_COLUMNS = ("object_number", "title", "object_name", "gallery", "height_m", "width_m", "depth_m", "medium")
+
+
+def in_common(folder: Path) -> None:
+    """Let a museum in a folder keep its response charts where all others do: each is the same whoever built it."""
+    charts = folder / KEPT / CHARTS
+    if not charts.exists():
+        charts.parent.mkdir(exist_ok=True)
+        common = Path(os.environ[SHARED]) / "charts"
+        common.mkdir(exist_ok=True)
+        charts.symlink_to(common, target_is_directory=True)
+
+
+def workspace(folder: Path, rows: list[str] | None = None, site: str = "demo") -> Settings:
+    """A small museum of its own in a folder; only the charts, which take most of a first night, it has in common."""
+    in_common(folder)
+    (folder / "export.csv").write_text("\n".join([COLUMNS, *(ROWS if rows is None else rows)]) + "\n", encoding="utf-8")
+    (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
+    file = folder / "kouros.toml"
+    file.write_text(template(museum="Test", source="export.csv", mapping="mapping.toml", site=site), encoding="utf-8")
+    return load_settings(file)
+
+
+def own_site(folder: Path) -> Path:
+    """A copy of the bundled site that a test may break."""
+    return Path(shutil.copytree(resource("site_motions", "demo"), folder / "site"))
+
+
+def short_site(folder: Path) -> Path:
+    """The manifest of a site of one short motion: 7 m/s2 at 1.5 Hz, strong enough to tip vases; a test may edit it."""
+    words = ("sine", "amplitude=7", "frequency=1.5", "cycles=3", "--out", "site")
+    assert kouros("motions", "synthesise", *words, folder=folder).returncode == 0
+    manifest = folder / "site" / "manifest.toml"
+    edit(manifest, "processed = true", "processed = true\nscale = 1.0")
+    return manifest
+
+
+def edit(file: Path, before: str, after: str) -> None:
+    """Replace words of a file that must be there."""
+    said = file.read_text(encoding="utf-8")
+    assert before in said
+    file.write_text(said.replace(before, after), encoding="utf-8")
+
+
+def vases(galleries: int = 3, each: int = 4) -> list[dict[str, str]]:
+    """A few vases of different sizes in a few galleries, as rows of an export."""
+    return [
+        {
+            "object_number": f"{g}.{n}",
+            "title": f"Vase {n}",
+            "object_name": "vase",
+            "gallery": f"Room {g}",
+            "height_m": str(round(0.2 + 0.1 * n, 3)),
+            "width_m": str(round(0.1 + 0.02 * g, 3)),
+            "depth_m": "0.12",
+            "medium": "earthenware",
+        }
+        for g in range(galleries)
+        for n in range(each)
+    ]
+
+
+def write_collection(folder: Path, objects: list[dict[str, str]]) -> None:
+    """Write rows such as those of `vases` as the export of the museum in a folder."""
+    with (folder / "collection.csv").open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.DictWriter(stream, VASE_COLUMNS)
+        writer.writeheader()
+        writer.writerows(objects)
+
+
+def museum_of(folder: Path, objects: list[dict[str, str]]) -> Settings:
+    """A museum of rows such as those of `vases`, with a copy of the bundled site and charts of its own."""
+    folder.mkdir(parents=True)
+    write_collection(folder, objects)
+    text = template(museum="Three rooms", source="collection.csv", mapping="kouros", site="site")
+    (folder / "kouros.toml").write_text(text, encoding="utf-8")
+    own_site(folder)
+    return load_settings(folder / "kouros.toml")
+
+
+def night(settings: Settings) -> Summary:
+    """Run a night and tell nobody."""
+    return run(settings, SILENT)
+
+
+def found(settings: Settings) -> RunRecord:
+    """Return the last run without what tells one night from another, and one museum's history from another's."""
+    record = load_run(open_database(settings.database))
+    kept = {k: v for k, v in record.settings.items() if k not in ("survey_seconds", "inventory")}
+    return replace(record, run_id="", started="", finished="", settings=kept)
+
+
+def kouros(*words: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run the command in a folder, with the interpreter of the tests."""
+    program = "from pipeline.cli import main; main()"
+    return subprocess.run(
+        [sys.executable, "-c", program, *words], cwd=folder, capture_output=True, text=True, check=False
+    )
