@@ -158,7 +158,7 @@ def test_a_line_joins_neighbours_whose_gap_is_too_small(tmp_path: Path) -> None:
     index = render(record, tmp_path / "r")
     museum = shown(record, Units())
     greek = next(g for g in museum.galleries if g.name == builder.GREEK)
-    page = etree.parse(str(index.parent / greek.page))
+    page = etree.parse(str(index.parent / greek.page.file))
     (drawing,) = (e for e in page.iter("svg") if e.get("class") == "plan")
     lines = [e for e in drawing.iter("path") if (e.get("class") or "").startswith("gap ")]
     assert [e.get("class") for e in lines] == ["gap act", "gap open"]
