@@ -34,7 +34,7 @@ from pipeline.report.pages.views import State
 from pipeline.settings import Settings
 from pipeline.store.decisions import decisions_in_force
 from pipeline.store.reuse import SELECTION, whole_runs
-from pipeline.store.runs import commit_run, compare_runs, mark_finished
+from pipeline.store.runs import changes_since, commit_run, mark_finished
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ def _hold(night: NightRun, progress: Progress, chosen: Selection, *, dry_run: bo
         whole = replace(head, decisions=(*head.decisions, *strangers))
         told = counts(found)
         commit_run(engine, whole, night.pages, night.rows(), counts=told, damaged=night.damaged, published=False)
-        changes = compare_runs(engine, before[0], head.run_id) if before else None
+        changes = changes_since(engine, before[0], head.run_id) if before else None
         progress.step("report", 0, 1)
         # A part of the collection is worth a report, but not the name of the museum's latest one.
         latest = None if chosen else lasting_name(workspace.reports)

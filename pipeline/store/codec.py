@@ -29,6 +29,10 @@ class StoreError(InputError):
     """The store cannot do what it was asked to; the message says why and what mends it."""
 
 
+class LostError(StoreError):
+    """Something of a run is not what was written, or not there any more."""
+
+
 @cache
 def adapter(hint: Any) -> TypeAdapter[Any]:
     """Return what writes and reads values of one type hint; None is allowed too.

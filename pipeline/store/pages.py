@@ -13,7 +13,7 @@ from pipeline.analysis.faults import with_fault
 from pipeline.analysis.survey import in_order
 from pipeline.collection.object_index import read_packed
 from pipeline.records import ITEM_FIELDS, Found, Item, Page
-from pipeline.store.codec import StoreError
+from pipeline.store.codec import LostError
 from pipeline.store.results import decode, decode_spacings, fetch, of_object
 from pipeline.store.sealing import seal
 from pipeline.store.tables import PAGE
@@ -74,7 +74,7 @@ class Members:
 
         Raises
         ------
-        StoreError
+        LostError
             Where it is damaged.
         """
         try:
@@ -83,7 +83,7 @@ class Members:
             results = tuple((str(key), int(at)) for key, at in told["results"])
             return cls(items, tuple(told["digests"]), results, str(told["spacings"]), tuple(told["fields"]))
         except (zlib.error, ValueError, KeyError, TypeError) as error:
-            raise StoreError(f"a page is damaged: {error}; the database was changed by hand or is broken") from error
+            raise LostError(f"a page is damaged: {error}; the database was changed by hand or is broken") from error
 
     def read(self) -> list[Item]:
         """Return the records.
@@ -117,14 +117,14 @@ def found_of(members: Members, kept: Mapping[str, bytes]) -> Found:
 
     Raises
     ------
-    StoreError
+    LostError
         Where a result is not there, or damaged.
     """
     try:
         results = {key: decode(kept[key]) for key in members.keys}
         gaps, failed = decode_spacings(kept[members.spacings]) if members.spacings else ((), {})
     except KeyError as error:
-        raise StoreError(f"there is no result {error.args[0][:12]}; it was pruned while it was read") from error
+        raise LostError(f"there is no result {error.args[0][:12]}; it was pruned while it was read") from error
     pairs = [(results[key][at], item) for (key, at), item in zip(members.results, members.read(), strict=True)]
     assessments = tuple(of_object(result, item) for result, item in pairs)
     numbers = {item.object_number for _, item in pairs}
@@ -205,13 +205,13 @@ def load_members(connection: Connection, key: str) -> Members:
 
     Raises
     ------
-    StoreError
+    LostError
         Where there is no such page, or where it is damaged.
     """
     found, damaged = fetch_pages(connection, [key])
     if key not in found:
         why = "is damaged: the database was changed by hand or is broken" if damaged else "was pruned while it was read"
-        raise StoreError(f"page {key[:12]} {why}; choose another run")
+        raise LostError(f"page {key[:12]} {why}; choose another run")
     return found[key].members
 
 
@@ -220,7 +220,7 @@ def load_page(database: Engine | Connection, key: str) -> Found:
 
     Raises
     ------
-    StoreError
+    LostError
         Where there is no such page, or where something of it is gone or damaged.
     """
     if isinstance(database, Engine):
@@ -230,7 +230,7 @@ def load_page(database: Engine | Connection, key: str) -> Found:
     wanted = [*members.keys, *filter(None, [members.spacings])]
     kept, damaged = fetch(database, wanted)
     if damaged:
-        raise StoreError(
+        raise LostError(
             f"result {damaged[0][:12]} is damaged: the database was changed by hand or is broken; `kouros run` makes "
             "it again"
         )

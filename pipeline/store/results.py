@@ -14,7 +14,7 @@ from sqlalchemy import Connection, Engine, delete, insert, select
 
 from pipeline.records import Assessment, Item, MeasurementRequest, Outline, Result, Scene, Spacing, Verdict
 from pipeline.store import codec
-from pipeline.store.codec import StoreError
+from pipeline.store.codec import LostError
 from pipeline.store.sealing import seal
 from pipeline.store.speaking import speaking
 from pipeline.store.tables import RESULT
@@ -152,7 +152,7 @@ def decode(found: bytes) -> tuple[Result, ...]:
 
     Raises
     ------
-    StoreError
+    LostError
         Where they are damaged.
     """
     results: tuple[Result, ...] = _unpacked(_RESULTS, found)
@@ -255,12 +255,19 @@ def stamps(engine: Engine, keys: Collection[str]) -> list[tuple[str, str]]:
 
 
 def outlines(connection: Connection, keys: Collection[str]) -> dict[str, tuple[Digests, ...]]:
-    """Return the outlines of the results that are kept under some keys."""
+    """Return the outlines of the results that are kept under some keys.
+
+    Raises
+    ------
+    LostError
+        For a result that is damaged, or not there.
+    """
     found: dict[str, tuple[Digests, ...]] = {}
     for some in _some(keys):
-        columns = (RESULT.c.key, RESULT.c.outline)
-        for row in connection.execute(select(*columns).where(RESULT.c.key.in_(some))):
-            found[row.key] = codec.of_json(_OUTLINES, row.outline)
+        kept, _ = fetch(connection, some)
+        if lost := set(some) - kept.keys():
+            raise LostError(f"result {min(lost)[:12]} is damaged, or was pruned while it was read")
+        found |= {key: codec.of_json(_OUTLINES, one.outline) for key, one in kept.items()}
     return found
 
 
@@ -340,5 +347,5 @@ def _unpacked(hint: Any, content: bytes) -> Any:
     try:
         text = zlib.decompress(content).decode()
     except (zlib.error, UnicodeDecodeError) as error:
-        raise StoreError(f"a result is damaged: {error}; the database was changed by hand or is broken") from error
+        raise LostError(f"a result is damaged: {error}; the database was changed by hand or is broken") from error
     return codec.of_json(hint, text)

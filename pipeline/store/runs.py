@@ -1,5 +1,6 @@
 """Whole runs into the database and out of it again, exactly as they were."""
 
+import warnings
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import islice
@@ -9,10 +10,11 @@ from typing import Any
 from sqlalchemy import Connection, Engine, Row, Table, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
+from pipeline.errors import DamageWarning
 from pipeline.records import Chart, MotionSummary, Page, RunChanges, RunRecord, Standing
 from pipeline.store import codec
 from pipeline.store.changes import changes
-from pipeline.store.codec import StoreError
+from pipeline.store.codec import LostError, StoreError
 from pipeline.store.pages import add_pages, load_page
 from pipeline.store.speaking import speaking, where_is
 from pipeline.store.tables import PAGE, RUN, RUN_CHART, RUN_DECISION, RUN_MOTION, RUN_PAGE
@@ -21,6 +23,7 @@ __all__ = [
     "RunChanges",
     "RunSummary",
     "StoreError",
+    "changes_since",
     "commit_run",
     "compare_runs",
     "latest_run_id",
@@ -176,6 +179,22 @@ def compare_runs(engine: Engine, old: str, new: str) -> RunChanges:
         for run_id in (old, new):
             _head(connection, run_id)
         return changes(connection, old, new)
+
+
+def changes_since(engine: Engine, old: str, new: str) -> RunChanges | None:
+    """Return what changed since an earlier run; None where that run is damaged, which is no fault of the new one.
+
+    Warns
+    -----
+    DamageWarning
+        The earlier run is damaged.
+    """
+    try:
+        return compare_runs(engine, old, new)
+    except LostError as problem:
+        told = f"what changed since run {old!r} is not known, for it is damaged: {problem}"
+        warnings.warn(told, DamageWarning, stacklevel=2)
+        return None
 
 
 # ---------------------------------------------------------------------------------------------------------------------
