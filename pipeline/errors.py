@@ -25,7 +25,7 @@ class KourosError(Exception):
 
 
 class DamageWarning(UserWarning):
-    """Something that Kouros keeps is not what was written; it is made again."""
+    """Something that Kouros keeps is not what was written; what can be made again is."""
 
 
 class InputError(KourosError, ValueError):

@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from typing import Any, Protocol, TypeVar
 
 from pipeline.analysis.faults import LIKE
-from pipeline.collection.database import Database, damage_told, verify_file
+from pipeline.collection.database import damage_told, verify_file
 from pipeline.collection.inventory import latest_import
 from pipeline.collection.inventory.records import DamagedRecordError, repair
 from pipeline.collection.listing import Listing
@@ -25,7 +25,7 @@ from pipeline.operations.report_status import Status, last_good, mark_good, mark
 from pipeline.operations.run_summary import SUMMARY, Stores, Summary, summary_text
 from pipeline.operations.stopping import uninterrupted
 from pipeline.operations.workspace import UsageError, Workspace, locked, near, open_workspace, tidy
-from pipeline.records import Page, Progress, RunChanges, RunRecord, Tally, Urgent
+from pipeline.records import Page, Progress, RunRecord, Tally, Urgent
 from pipeline.report import lasting_name, publish
 from pipeline.report.pages.decided import by_object
 from pipeline.report.pages.reading import READING
@@ -34,9 +34,8 @@ from pipeline.report.pages.tallies import counts
 from pipeline.report.pages.views import State
 from pipeline.settings import Settings
 from pipeline.store.decisions import decisions_in_force
-from pipeline.store.results import DamagedRunError
 from pipeline.store.reuse import SELECTION, whole_runs
-from pipeline.store.runs import commit_run, compare_runs, mark_finished
+from pipeline.store.runs import changes_since, commit_run, mark_finished
 from pipeline.store.sound import comparable
 
 
@@ -137,7 +136,7 @@ def _hold(night: NightRun, progress: Progress, chosen: Selection, *, dry_run: bo
         whole = replace(head, decisions=(*head.decisions, *strangers))
         told = counts(found)
         commit_run(engine, whole, night.pages, night.rows(), counts=told, damaged=night.damaged, published=False)
-        changes = _since(engine, before, head.run_id)
+        changes = None if before is None else changes_since(engine, before, head.run_id)
         progress.step("report", 0, 1)
         # A part of the collection is worth a report, but not the name of the museum's latest one.
         latest = None if chosen else lasting_name(workspace.reports)
@@ -157,17 +156,6 @@ def _hold(night: NightRun, progress: Progress, chosen: Selection, *, dry_run: bo
             mark_good(workspace.settings, summary)
     progress.step("report", 1, 1)
     return summary
-
-
-def _since(engine: Database, before: str | None, run_id: str) -> RunChanges | None:
-    """Return what changed since an earlier run; None where there is none, or none that can be believed."""
-    if before is None:
-        return None
-    try:
-        return compare_runs(engine, before, run_id)
-    except DamagedRunError as problem:
-        warnings.warn(f"{problem}: what changed since run {before} is not known", DamageWarning, stacklevel=2)
-        return None
 
 
 def _stand_by(night: NightRun, found: Tally) -> None:

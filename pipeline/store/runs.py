@@ -1,5 +1,6 @@
 """Whole runs into the database and out of it again, exactly as they were."""
 
+import warnings
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import islice
@@ -10,11 +11,13 @@ from sqlalchemy import Connection, Engine, Row, Table, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
 from pipeline.collection.sealing import damaged_rows, write_seals
+from pipeline.errors import DamageWarning
 from pipeline.records import Chart, MotionSummary, Page, RunChanges, RunRecord, Standing
 from pipeline.store import codec
 from pipeline.store.changes import changes
 from pipeline.store.codec import StoreError
 from pipeline.store.pages import add_pages, load_page
+from pipeline.store.results import DamagedRunError
 from pipeline.store.sound import damaged_heads, require_run, runs_but
 from pipeline.store.speaking import speaking, where_is
 from pipeline.store.tables import PAGE, RUN, RUN_CHART, RUN_DECISION, RUN_MOTION, RUN_PAGE
@@ -175,6 +178,15 @@ def latest_run_id(engine: Engine) -> str | None:
     """Return the newest finished run, None where there is none."""
     with speaking(engine, "the runs could not be listed"), engine.connect() as connection:
         return _latest(connection)
+
+
+def changes_since(engine: Engine, old: str, new: str) -> RunChanges | None:
+    """Return what changed from one run to another; None, which is said, where something of them is damaged or gone."""
+    try:
+        return compare_runs(engine, old, new)
+    except DamagedRunError as problem:
+        warnings.warn(f"{problem}: what changed since run {old!r} is not known", DamageWarning, stacklevel=2)
+        return None
 
 
 def compare_runs(engine: Engine, old: str, new: str) -> RunChanges:

@@ -16,7 +16,7 @@ from pipeline.report.render import draw_all
 from pipeline.settings import Settings
 from pipeline.store.pages import load_page
 from pipeline.store.reuse import whole_runs
-from pipeline.store.runs import compare_runs, load_head
+from pipeline.store.runs import changes_since, compare_runs, load_head
 
 
 def render_again(settings: Settings, run_id: str | None) -> Path:
@@ -32,7 +32,7 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
         # As on the night itself: against the whole run before it, and a part of the collection against none.
         at = whole.index(head.run_id) if head.run_id in whole else len(whole)
         before = whole[at + 1 : at + 2]
-        changes = compare_runs(engine, before[0], head.run_id) if before else None
+        changes = changes_since(engine, before[0], head.run_id) if before else None
         found = ((page, load_page(engine, page.key)) for page in pages)
         told = workspace.reports / head.run_id / SUMMARY
         beside = {SUMMARY: told.read_text(encoding="utf-8")} if told.is_file() else {}

@@ -32,6 +32,8 @@ from tests.operations.conftest import museum as museum  # noqa: PLC0414 - fixtur
 from tests.operations.conftest import shaking as shaking  # noqa: PLC0414
 from tests.report.conftest import report as report  # noqa: PLC0414
 
+pytestmark = pytest.mark.slow_file
+
 PACKAGE = Path(__file__).parents[2] / "pipeline"
 
 RUNS_CODE = {"pickle", "cPickle", "dill", "cloudpickle", "marshal", "shelve", "joblib", "code", "pty"}
@@ -39,6 +41,12 @@ RUNS_CODE = {"pickle", "cPickle", "dill", "cloudpickle", "marshal", "shelve", "j
 
 CALLS = {"eval", "exec", "compile", "__import__", "read_pickle", "to_pickle", "system", "popen"}
 """Functions that do; `re.compile` is another one."""
+
+KNOWN = {
+    ("execute/processes.py", "pickle"): "between processes of our own, through pipes, never in a file",
+    ("collection/inventory/writing.py", "verify"): "of records against their digests, not of certificates",
+}
+"""What looks like it and is not, and why."""
 
 
 def trees() -> Iterator[tuple[str, ast.AST]]:
@@ -64,7 +72,7 @@ def test_nothing_that_is_stored_is_code() -> None:
                 )
                 found += [(name, word) for word in ("shell", "allow_pickle") if words.get(word)]
                 found += [(name, "verify")] if words.get("verify", True) is False else []
-    assert found == []
+    assert set(found) == KNOWN.keys()
 
 
 @trying(deadline=None, max_examples=500)
