@@ -190,7 +190,7 @@ def test_no_flipped_bit_of_a_record_goes_unnoticed(seed: int, tmp_path: Path) ->
     engine.dispose()
 
 
-@pytest.mark.parametrize("what", ["until = 1", "since = 7"])
+@pytest.mark.parametrize("what", ["until = 1", "until = 7", "since = 7"])
 def test_an_object_that_is_lost_is_missed(what: str, engine: Engine) -> None:
     damage(engine, what)
     with pytest.raises(LostRecordsError, match="2 objects where 3 were imported"):
