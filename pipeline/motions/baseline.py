@@ -431,7 +431,10 @@ def _bands(data: Array, dt: float, count: int) -> tuple[Array, Array]:
 def _unsettled(flat: Array, dt: float, corner: float, start: float) -> tuple[float, float, float]:
     """What is left in the filtered horizontal displacement of the worse component, relative to its peak.
 
-    returns : its largest value after a time, that of a polynomial fitted to all of it, and the larger PGV in m/s
+    Returns
+    -------
+    (float, float, float)
+        Its largest value after a time, that of a polynomial fitted to all of it, and the larger PGV in m/s.
     """
     # The pads belong to the filtered motion (Boore 2005): cut off, its displacement would drift from the first sample.
     n, pad = flat.shape[1], int(np.ceil(pad_seconds(corner) / dt))

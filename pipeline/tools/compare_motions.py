@@ -163,7 +163,10 @@ def _verdicts(
 def _assessed(workspace: Workspace, site: Site, name: str, engine: Database, progress: Progress) -> int:
     """Keep a run of the inventory on a site's motions in a database of its own; results that are there are taken over.
 
-    returns : how many objects had no result yet
+    Returns
+    -------
+    int
+        How many objects had no result yet.
     """
     everything = workspace.object_index()
     with pictures(workspace, site) as drawing:

@@ -1,4 +1,4 @@
-"""Meanings of the words and concept addresses in LIDO files: kinds of measurements, parts of an object, units, events."""
+"""Meanings of words and concept addresses in LIDO files: kinds of measurements, parts of an object, units, events."""
 
 from __future__ import annotations
 
