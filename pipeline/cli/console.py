@@ -25,7 +25,12 @@ _STEERING = re.compile(
 class Console:
     """Reports progress on standard error, so that standard output stays a result.
 
-    quiet : say nothing but errors;  verbose : a line for each step even on a terminal
+    Parameters
+    ----------
+    quiet : bool
+        Say nothing but errors.
+    verbose : bool
+        A line for each step even on a terminal.
     """
 
     def __init__(self, *, quiet: bool = False, verbose: bool = False) -> None:
@@ -53,7 +58,15 @@ class Console:
             self._bars.stop()
 
     def step(self, what: str, done: int, total: int) -> None:
-        """Show that ``done`` of ``total`` pieces of ``what`` are finished."""
+        """Show how much of a step is finished.
+
+        Parameters
+        ----------
+        what : str
+            The pieces that are worked on.
+        done, total : int
+            How many are finished, and of how many.
+        """
         if done in (0, total):
             note("step", what=what, done=done, total=total)
         if self.quiet:
@@ -201,7 +214,20 @@ def _short(text: str, most: int = 84) -> str:
 
 
 def tradeoff_lines(found: "Tradeoff", wanted: float) -> list[str]:
-    """Return the table of a measurement, and the cheapest setting of each model that keeps the wanted error."""
+    """Return the table of a measurement, and the cheapest setting of each model that keeps the wanted error.
+
+    Parameters
+    ----------
+    found : Tradeoff
+        The measurement.
+    wanted : float
+        Relative error.
+
+    Returns
+    -------
+    list of str
+        Lines.
+    """
     lines = [
         f"Relative error of the first output against ns per object and sample, under {', '.join(found.motions)}",
         f"{'':<34}{'ns':>10}{'median':>10}{'95 %':>10}{'worst':>10}{'wrong outcomes':>16}",
@@ -223,7 +249,17 @@ def tradeoff_lines(found: "Tradeoff", wanted: float) -> list[str]:
 
 
 def listed(title: str, lines: Sequence[str], most: int = 10) -> None:
-    """Print lines of one kind, the first of them only where they are many: JSON has all."""
+    """Print lines of one kind, the first of them only where they are many: JSON has all.
+
+    Parameters
+    ----------
+    title : str
+        What stands above them.
+    lines : sequence of str
+        What is listed.
+    most : int
+        How many are printed.
+    """
     for line in lines[:most]:
         print(f"  {title}: {printable(line)}")
     if len(lines) > most:
@@ -231,7 +267,22 @@ def listed(title: str, lines: Sequence[str], most: int = 10) -> None:
 
 
 def aligned(head: Sequence[str], cells: Sequence[Sequence[str]], words: Collection[int] = ()) -> list[str]:
-    """Return a table as lines: columns of numbers to the right, the columns ``words`` to the left."""
+    """Return a table as lines, its columns as wide as they need.
+
+    Parameters
+    ----------
+    head : sequence of str
+        The columns.
+    cells : sequence of sequence of str
+        The rows.
+    words : collection of int
+        Columns that are set to the left; numbers go to the right.
+
+    Returns
+    -------
+    list of str
+        Lines.
+    """
     widths = [max(map(len, column)) for column in zip(head, *cells, strict=True)]
     return [
         "  ".join(

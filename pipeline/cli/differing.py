@@ -12,7 +12,15 @@ from pipeline.records import FieldChange, RunChanges, VerdictChange
 
 
 def print_changes(changes: RunChanges, wanted_json: bool) -> None:
-    """Print what changed; lines show the first of each kind, JSON has all."""
+    """Print what changed; lines show the first of each kind, JSON has all.
+
+    Parameters
+    ----------
+    changes : RunChanges
+        Between two runs.
+    wanted_json : bool
+        JSON in place of lines.
+    """
     if wanted_json:
         click.echo(json.dumps(json_ready(plain_changes(changes)), indent=2))
         return

@@ -17,7 +17,19 @@ if TYPE_CHECKING:
 
 
 def print_explanation(settings: "Settings", number: str, options: Options, as_json: bool) -> None:
-    """Explain one object and print it; nothing is stored."""
+    """Explain one object and print it; nothing is stored.
+
+    Parameters
+    ----------
+    settings : Settings
+        Of the workspace.
+    number : str
+        The museum's number of the object.
+    options : Options
+        Those that all commands share.
+    as_json : bool
+        JSON in place of lines.
+    """
     from pipeline.operations.run_summary import json_ready
     from pipeline.operations.workspace import open_workspace
     from pipeline.tools.explain import explain

@@ -31,9 +31,14 @@ _FLAGS = {"true": True, "yes": True, "y": True, "1": True, "false": False, "no":
 class Cells:
     """The cells of one row on their way into a record.
 
-    decimal    : the source's decimal mark
-    provenance : gathers where each number comes from
-    problems   : gathers what is wrong; without the row's number, for a row that moves in its file is no other record
+    Attributes
+    ----------
+    decimal : str
+        The source's decimal mark.
+    provenance : list of Provenance
+        Gathers where each number comes from.
+    problems : list of Problem
+        Gathers what is wrong; without the row's number, for a row that moves in its file is no other record.
     """
 
     decimal: str = "."
@@ -41,7 +46,22 @@ class Cells:
     problems: list[Problem] = field(default_factory=list)
 
     def number(self, name: str, column: ColumnMap, texts: Sequence[str]) -> float | None:
-        """Return a number in SI units, or None where none is recorded or none can be accepted (then with a problem)."""
+        """Return a number in SI units.
+
+        Parameters
+        ----------
+        name : str
+            The field.
+        column : ColumnMap
+            What the mapping says of it, its unit included.
+        texts : sequence of str
+            The cells.
+
+        Returns
+        -------
+        float or None
+            In SI; None where none is recorded or none can be accepted (then with a problem).
+        """
         text = texts[0].strip(_SPACE)
         if _missing(text, column):
             return None
@@ -66,7 +86,18 @@ class Cells:
         return metric + 0.0
 
     def integer(self, name: str, column: ColumnMap, texts: Sequence[str]) -> int | None:
-        """Return a whole number, or None as `number` does."""
+        """Return a whole number.
+
+        Parameters
+        ----------
+        name, column, texts : str, ColumnMap, sequence of str
+            As of `number`.
+
+        Returns
+        -------
+        int or None
+            None as of `number`.
+        """
         value = self.number(name, column, texts)
         if value is not None and not value.is_integer():
             self._note(name, column, f"{_show(texts[0])} is not a whole number", "give a count")
@@ -78,6 +109,18 @@ class Cells:
         """Return the cells' text as it is: stripped, without control characters, capped; each change with a problem.
 
         A text that the mapping's ``values`` do not list stays as it is: they translate, they do not restrict.
+
+        Parameters
+        ----------
+        name, column, texts : str, ColumnMap, sequence of str
+            As of `number`.
+        limit : int
+            Most characters.
+
+        Returns
+        -------
+        str
+            "" where nothing is recorded.
         """
         parts = [self._clean(name, column, text) for text in texts]
         text = column.separator.join(part for part in parts if part)
@@ -92,7 +135,18 @@ class Cells:
         return text
 
     def choice(self, name: str, column: ColumnMap, texts: Sequence[str]) -> Support | None:
-        """Return how the object is held, or None where it is not recorded or no known word (then with a problem)."""
+        """Return how the object is held.
+
+        Parameters
+        ----------
+        name, column, texts : str, ColumnMap, sequence of str
+            As of `number`.
+
+        Returns
+        -------
+        Support or None
+            None where it is not recorded or no known word (then with a problem).
+        """
         text = texts[0].strip(_SPACE)
         if _missing(text, column):
             return None
@@ -106,7 +160,18 @@ class Cells:
         return Support(meaning)
 
     def flag(self, name: str, column: ColumnMap, texts: Sequence[str]) -> bool | None:
-        """Return yes or no, or None where it is not recorded or no known word (then with a problem)."""
+        """Return yes or no.
+
+        Parameters
+        ----------
+        name, column, texts : str, ColumnMap, sequence of str
+            As of `number`.
+
+        Returns
+        -------
+        bool or None
+            None where it is not recorded or no known word (then with a problem).
+        """
         text = texts[0].strip(_SPACE)
         if _missing(text, column):
             return None
@@ -118,7 +183,22 @@ class Cells:
         return meaning
 
     def plausible(self, name: str, value: float, written: str) -> bool:
-        """Say whether a number of a dimension text can be true; note it where it cannot."""
+        """Say whether a number of a dimension text can be true; note it where it cannot.
+
+        Parameters
+        ----------
+        name : str
+            The field.
+        value : float
+            In SI.
+        written : str
+            As it stands in the text.
+
+        Returns
+        -------
+        bool
+            False with a problem.
+        """
         reason = _implausible(name, value)
         if reason:
             message = f"{_show(written)} = {value:.6g} {plausible()[name].unit} {reason}"
@@ -126,7 +206,17 @@ class Cells:
         return not reason
 
     def refuse(self, name: str, column: ColumnMap, message: str, remedy: str) -> None:
-        """Note that a cell cannot be used, as its source says."""
+        """Note that a cell cannot be used, as its source says.
+
+        Parameters
+        ----------
+        name : str
+            The field.
+        column : ColumnMap
+            What the mapping says of it.
+        message, remedy : str
+            What is wrong, and what mends it.
+        """
         self._note(name, column, message, remedy)
 
     def _written(self, name: str, column: ColumnMap, text: str) -> float | None:

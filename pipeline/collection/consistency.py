@@ -18,9 +18,17 @@ _TOLERANCE = 1.03
 
 
 def contradictions(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
-    """Return what contradicts itself in a record: the field to leave out ("" where all is kept), and the problem.
+    """Return what contradicts itself in a record.
 
-    values : the fields of the record [SI]; None where not recorded
+    Parameters
+    ----------
+    values : mapping
+        The fields of the record in SI; None where not recorded.
+
+    Returns
+    -------
+    list of (str, Problem)
+        The field to leave out ("" where all is kept), and the problem.
     """
     out = []
     height = values.get("height_m")

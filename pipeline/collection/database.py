@@ -36,7 +36,20 @@ METADATA = MetaData(
 def database_url(where: str | Path) -> URL:
     """Turn a path or a URL into a database URL; a path means an SQLite file.
 
-    raises : InputError for what is no URL, and for one of a kind that Kouros does not keep its own tables in
+    Parameters
+    ----------
+    where : str or Path
+        The path, or the URL.
+
+    Returns
+    -------
+    sqlalchemy.URL
+        Of SQLite or PostgreSQL.
+
+    Raises
+    ------
+    InputError
+        For what is no URL, and for one of a kind that Kouros does not keep its own tables in.
     """
     text = str(where)
     try:

@@ -46,9 +46,14 @@ _SIXTEENTHS = re.compile(r"\d*[.,](?:0625|125|1875|3125|375|4375|5625|625|6875|8
 class Guess:
     """A proposed mapping: as TOML with comments, ready to be used, and what a person should look at.
 
-    text    : the mapping file
-    mapping : the same, ready to read with
-    doubts  : what was guessed without a sign of it in the file
+    Attributes
+    ----------
+    text : str
+        The mapping file.
+    mapping : Mapping
+        The same, ready to read with.
+    doubts : tuple of str
+        What was guessed without a sign of it in the file.
     """
 
     text: str
@@ -81,11 +86,24 @@ class _Column:
 def guess(where: str | Path, table: str | None = None) -> Guess:
     """Propose a mapping for a museum's file or database.
 
-    where  : path of a file, or the URL of a database, which is only read
-    table  : the sheet of a workbook, or the table, view or SELECT of a database; may be left out where there is one,
-             and of several sheets the one that looks most like an inventory is taken
-    raises : CollectionError for a source that cannot be read, that shows no column with the objects' numbers, or of
-             whose tables one must be named
+    Parameters
+    ----------
+    where : str or Path
+        Path of a file, or the URL of a database, which is only read.
+    table : str or None
+        The sheet of a workbook, or the table, view or SELECT of a database; may be left out where there is one, and of
+        several sheets the one that looks most like an inventory is taken.
+
+    Returns
+    -------
+    Guess
+        The mapping, and what to look at.
+
+    Raises
+    ------
+    CollectionError
+        For a source that cannot be read, that shows no column with the objects' numbers, or of whose tables one must be
+        named.
     """
     doubts: list[str] = []
     if is_address(where):

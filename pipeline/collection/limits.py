@@ -12,9 +12,14 @@ from pipeline.collection.errors import CollectionError
 class Limits:
     """How much of a source is accepted; `[limits]` in kouros.toml sets it.
 
-    bytes   : of a file, as it lies on the disk
-    rows    : below the header
-    seconds : that reading may take, from the opening on; what a mapping says of a database counts where it is less
+    Attributes
+    ----------
+    bytes : int
+        Of a file, as it lies on the disk.
+    rows : int
+        Below the header.
+    seconds : float
+        That reading may take, from the opening on; what a mapping says of a database counts where it is less.
     """
 
     bytes: int = 1 << 30
@@ -41,7 +46,15 @@ class Meter:
     def count(self, more: int = 1) -> None:
         """Count more rows.
 
-        raises : CollectionError beyond the limits, naming the source, the row and the remedy
+        Parameters
+        ----------
+        more : int
+            How many.
+
+        Raises
+        ------
+        CollectionError
+            Beyond the limits, naming the source, the row and the remedy.
         """
         self.rows += more
         if self.rows > self._limits.rows:

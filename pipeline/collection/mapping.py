@@ -225,7 +225,20 @@ class Mapping(_Part):
 
 
 def closest(word: str, words: Iterable[str]) -> str:
-    """Return " (did you mean 'x'?)" for the most similar of the words, or nothing where none is similar."""
+    """Return a question after the most similar of some words.
+
+    Parameters
+    ----------
+    word : str
+        The one that is not known.
+    words : iterable of str
+        Those that are.
+
+    Returns
+    -------
+    str
+        " (did you mean 'x'?)", or "" where none is similar.
+    """
     folded = {w.casefold(): w for w in words}
     near = get_close_matches(word.casefold(), folded, n=1)
     return f" (did you mean {folded[near[0]]!r}?)" if near else ""
@@ -242,10 +255,22 @@ def preset_file(name: str) -> Path:
 
 
 def load_mapping(path_or_preset_name: str | Path) -> Mapping:
-    """Read a mapping: the path of a TOML file, or the name of a preset such as "carnegie".
+    """Read a mapping.
 
-    raises : MappingError for neither, naming the presets, and for a file that cannot be used, naming the file, the key
-             and the remedy
+    Parameters
+    ----------
+    path_or_preset_name : str or Path
+        The path of a TOML file, or the name of a preset such as "carnegie".
+
+    Returns
+    -------
+    Mapping
+        Checked.
+
+    Raises
+    ------
+    MappingError
+        For neither, naming the presets, and for a file that cannot be used, naming the file, the key and the remedy.
     """
     wanted = str(path_or_preset_name)
     path = preset_file(wanted) if wanted in preset_names() else Path(wanted)
@@ -311,7 +336,19 @@ def mapping_schema() -> dict[str, Any]:
 def check_header(mapping: Mapping, file: str, header: Sequence[str]) -> None:
     """Refuse a file that lacks a column of the mapping, has one twice, or has unmapped ones that must not be.
 
-    raises : MappingError naming the mapping, the field, the column, the columns that are there and the closest of them
+    Parameters
+    ----------
+    mapping : Mapping
+        What is asked for.
+    file : str
+        The file's name in messages.
+    header : sequence of str
+        The columns that are there.
+
+    Raises
+    ------
+    MappingError
+        Naming the mapping, the field, the column, the columns that are there and the closest of them.
     """
     there = ", ".join(repr(name[:60]) for name in header[:80]) + (", ..." if len(header) > 80 else "")
     for key, source, optional in mapping.wanted():

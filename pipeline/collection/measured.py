@@ -56,8 +56,18 @@ def _joined(columns: tuple[str, ...]) -> ColumnMap:
 def fill(values: dict[str, Any], cells: Cells, mapping: Texts, texts: Sequence[str], decimal: str) -> None:
     """Fill what no column gives from the texts of a row; where both speak, say whether they agree.
 
-    values : of the record so far; changed in place, as are the cells' provenance and problems
-    texts  : of the mapping's columns, in its order; the first that says something counts
+    Parameters
+    ----------
+    values : dict
+        Of the record so far, in SI; changed in place, as are the cells' provenance and problems.
+    cells : Cells
+        Of the row.
+    mapping : Texts
+        What the mapping says of its texts.
+    texts : sequence of str
+        Of the mapping's columns, in its order; the first that says something counts.
+    decimal : {".", ","}
+        The source's decimal mark.
     """
     # Lines are how such texts are written, and no fault of theirs.
     lines = ["; ".join(filter(None, (line.strip() for line in text.splitlines()))) for text in texts]

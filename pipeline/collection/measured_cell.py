@@ -4,16 +4,41 @@ from pipeline.collection.dimensions import Dimensions, Part, parse
 
 
 def written(part: Part, read: Dimensions) -> str:
-    """Return the number of a part as it was written, with the unit that it is in."""
+    """Return the number of a part as it was written, with the unit that it is in.
+
+    Parameters
+    ----------
+    part : Part
+        Of the text.
+    read : Dimensions
+        The text that it is of, as it was read.
+
+    Returns
+    -------
+    str
+        The characters, and the unit where they do not hold it.
+    """
     characters = read.written(part)
     named = part.unit_text and part.unit_text.casefold() in characters.casefold()
     return characters if named else f"{characters} {part.unit}".strip()
 
 
 def of_cell(text: str, kind: str, decimal: str) -> tuple[float, str] | None:
-    """Return the value (SI) and the characters of a cell that holds one number with its unit; None where it does not.
+    """Return the value and the characters of a cell that holds one number with its unit.
 
-    kind : "m" for a length, "kg" for a mass
+    Parameters
+    ----------
+    text : str
+        The cell.
+    kind : {"m", "kg"}
+        A length or a mass.
+    decimal : {".", ","}
+        The source's decimal mark.
+
+    Returns
+    -------
+    (float, str) or None
+        In SI, and as written; None where it does not hold one number with its unit.
     """
     read = parse(text, decimal=decimal)
     parts = [part for part in read.parts if part.value is not None]

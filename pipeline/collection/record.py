@@ -101,7 +101,15 @@ class Plausible:
 def plausible() -> Mapping[str, Plausible]:
     """Return the plausible range of every numeric field and of diameter_m (tables/plausible.csv).
 
-    raises : TableError for a row that cannot be read
+    Returns
+    -------
+    mapping of str to Plausible
+        By field.
+
+    Raises
+    ------
+    TableError
+        For a row that cannot be read.
     """
     rows = table("plausible")
     limits = checked(Plausible, rows, "plausible.csv", named="field")
@@ -177,7 +185,20 @@ def assessment_digest_of(item: Item) -> str:
 def to_items(records: list[Any]) -> list[Item]:
     """Return the items of records that `to_records` made.
 
-    raises : pydantic.ValidationError (a ValueError) naming record and field
+    Parameters
+    ----------
+    records : list
+        Plain values.
+
+    Returns
+    -------
+    list of Item
+        In the same order.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        A ValueError, naming record and field.
     """
     return _items().validate_python(records)
 

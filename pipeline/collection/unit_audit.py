@@ -48,8 +48,12 @@ class Suspicion:
 class Evidence:
     """What records say about the units of their source; that of several parts of it adds up.
 
-    steps : by unit of length, how many numbers with a telling fraction are written in tenths, and in sixteenths
-    fills : by units of length and mass, what share of its box each object would fill with its own material
+    Attributes
+    ----------
+    steps : dict of str to list of int
+        By unit of length, how many numbers with a telling fraction are written in tenths, and in sixteenths.
+    fills : dict of (str, str) to list of float
+        By units of length and mass, what share of its box each object would fill with its own material.
     """
 
     steps: dict[str, list[int]] = field(default_factory=dict)
@@ -59,7 +63,15 @@ class Evidence:
     def of(cls, items: Iterable[Item]) -> Evidence:
         """Gather what some records say.
 
-        items : with provenance, which holds the numbers as they were written
+        Parameters
+        ----------
+        items : iterable of Item
+            With provenance, which holds the numbers as they were written.
+
+        Returns
+        -------
+        Evidence
+            Of all of them.
         """
         found = cls()
         for item in items:
@@ -83,7 +95,15 @@ class Evidence:
                     counts[1] += sixteenths
 
     def add(self, other: Evidence, times: int = 1) -> None:
-        """Add what another part of the source says, once or several times."""
+        """Add what another part of the source says.
+
+        Parameters
+        ----------
+        other : Evidence
+            Of that part.
+        times : int
+            How often it is added.
+        """
         for unit, (tenths, sixteenths) in other.steps.items():
             counts = self.steps.setdefault(unit, [0, 0])
             counts[0] += times * tenths
@@ -102,7 +122,20 @@ class Evidence:
     def of_plain(cls, plain: Sequence[Sequence[Sequence[Any]]]) -> Evidence:
         """Read what `plain` gave.
 
-        raises : ValueError or TypeError for anything else
+        Parameters
+        ----------
+        plain : sequence
+            JSON-ready.
+
+        Returns
+        -------
+        Evidence
+            The same.
+
+        Raises
+        ------
+        ValueError, TypeError
+            For anything else.
         """
         steps, fills = plain
         return cls(

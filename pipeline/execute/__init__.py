@@ -18,7 +18,22 @@ class Threads:
     def map(self, work: Callable[[Task], Answer], tasks: Sequence[Task]) -> list[Answer]:
         """Run the work on each task.
 
-        raises : whatever a task raises, the first in the order of the tasks; the others are not waited for
+        Parameters
+        ----------
+        work : callable
+            Takes a task and returns its answer.
+        tasks : sequence
+            Of which each thread takes the next.
+
+        Returns
+        -------
+        list
+            The answers, in the order of the tasks.
+
+        Raises
+        ------
+        Exception
+            Whatever a task raises, the first in the order of the tasks; the others are not waited for.
         """
         if len(tasks) <= 1 or self.workers == 1:
             return [work(task) for task in tasks]

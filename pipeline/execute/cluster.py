@@ -24,7 +24,18 @@ class ClusterPool:
         self._client, self.workers = client, workers
 
     def each(self, work: Callable[[Shared, Task], Result], shared: Shared, tasks: Iterable[Task]) -> Generator[Result]:
-        """Yield what the function returns for each task; see `pipeline.execute.workers.WorkerPool.each`."""
+        """Yield what the function returns for each task; see `pipeline.execute.workers.WorkerPool.each`.
+
+        Parameters
+        ----------
+        work, shared, tasks : callable, object, iterable
+            As of `WorkerPool.each`.
+
+        Yields
+        ------
+        object
+            The results, in the order of the tasks.
+        """
         # As a task, which is done again where the worker that held it died; what is scattered would be lost.
         everywhere = self._client.submit(_itself, shared, pure=False)
         waiting: deque[Pending[Result]] = deque()

@@ -21,7 +21,18 @@ class SerialPool:
     workers = 1
 
     def each(self, work: Callable[[Shared, Task], Result], shared: Shared, tasks: Iterable[Task]) -> Generator[Result]:
-        """Yield what the function returns for each task; see `WorkerPool.each`."""
+        """Yield what the function returns for each task; see `WorkerPool.each`.
+
+        Parameters
+        ----------
+        work, shared, tasks : callable, object, iterable
+            As of `WorkerPool.each`.
+
+        Yields
+        ------
+        object
+            The results, in the order of the tasks.
+        """
         for task in tasks:
             yield work(shared, task)
 

@@ -114,7 +114,18 @@ class ProcessPool:
             worker.close()
 
     def each(self, work: Callable[[Shared, Task], Result], shared: Shared, tasks: Iterable[Task]) -> Generator[Result]:
-        """Yield what the function returns for each task; see `pipeline.execute.workers.WorkerPool.each`."""
+        """Yield what the function returns for each task; see `pipeline.execute.workers.WorkerPool.each`.
+
+        Parameters
+        ----------
+        work, shared, tasks : callable, object, iterable
+            As of `WorkerPool.each`.
+
+        Yields
+        ------
+        object
+            The results, in the order of the tasks.
+        """
         call = _Call(pickle.dumps((work, shared), pickle.HIGHEST_PROTOCOL))
         waiting: deque[Pending[Result]] = deque()
 

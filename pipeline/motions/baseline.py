@@ -50,8 +50,12 @@ _LANCZOS_WIDTH = 30
 class Corner:
     """A corner for the high-pass of a record.
 
-    frequency : Hz
-    reason    : which of record length, noise and displacement tail decided, with what each of them asked for
+    Attributes
+    ----------
+    frequency : float
+        In Hz.
+    reason : str
+        Which of record length, noise and displacement tail decided, with what each of them asked for.
     """
 
     frequency: float
@@ -61,8 +65,22 @@ class Corner:
 def remove_pre_event_mean(motion: Motion, until: float) -> Motion:
     """Subtract from each component its mean over the samples before the event.
 
-    until  : s from the first sample to where the shaking starts
-    raises : ValueError unless at least two samples lie before it
+    Parameters
+    ----------
+    motion : Motion
+        A raw record.
+    until : float
+        In s from the first sample to where the shaking starts.
+
+    Returns
+    -------
+    Motion
+        With the step written into it.
+
+    Raises
+    ------
+    InputError
+        Unless at least two samples lie before it.
     """
     count = _samples_before(motion, until, "until")
     mean = motion.acceleration[:, :count].mean(axis=1)
@@ -75,11 +93,29 @@ def polynomial_baseline(
 ) -> Motion:
     """Subtract a least-squares polynomial from each component.
 
-    of     : "acceleration" fits and subtracts it there; "velocity" fits a polynomial without constant term to the
-             velocity from rest and subtracts its derivative from the acceleration, so that the motion still starts
-             from rest (as Boore, Stephens and Joyner 2002 do with a quadratic)
-    degree : of the fitted polynomial, 0 to 6 (1 to 6 for the velocity)
-    raises : ValueError for another degree or a record with no more samples than coefficients
+    Parameters
+    ----------
+    motion : Motion
+        A raw record.
+    degree : int
+        Of the fitted polynomial, 0 to 6 (1 to 6 for the velocity).
+    of : {"acceleration", "velocity"}
+        "acceleration" fits and subtracts it there; "velocity" fits a polynomial without constant term to the velocity
+        from rest and subtracts its derivative from the acceleration, so that the motion still starts from rest.
+
+    Returns
+    -------
+    Motion
+        With the step written into it.
+
+    Raises
+    ------
+    InputError
+        For another degree or a record with no more samples than coefficients.
+
+    References
+    ----------
+    Boore, D. M., Stephens, C. D. and Joyner, W. B. (2002), who fit a quadratic to the velocity.
     """
     least = 0 if of == "acceleration" else 1
     if isinstance(degree, bool) or not isinstance(degree, int) or not least <= degree <= 6:
@@ -112,13 +148,34 @@ def two_segment_baseline(
     constant am = (v0 + af t2) / (t2 - t1) between t1 and t2, which makes the two segments meet.  Remove the pre-event
     mean first.
 
-    t1, t2   : s; None: for each component the first and the last time that IWAN_THRESHOLD is exceeded, or, where it
-               never is, when 5 and 95 % of the Arias intensity of the horizontals have arrived
-    fit_from : s, start of the fitted end; None: t2
-    raises   : ValueError for times that are not in order, or an end with fewer than ten samples
-    error    : the permanent displacement depends on t1 and t2, which nothing in the record fixes (Boore 2001)
-    source   : Iwan, Moser and Peng (1985), BSSA 75, 1225-1246; Boore (2001), Effect of baseline corrections on
-               displacements and response spectra, BSSA 91, 1199-1211
+    Parameters
+    ----------
+    motion : Motion
+        A raw record.
+    t1, t2 : float or None
+        In s; None: for each component the first and the last time that IWAN_THRESHOLD is exceeded, or, where it never
+        is, when 5 and 95 % of the Arias intensity of the horizontals have arrived.
+    fit_from : float or None
+        In s, start of the fitted end; None: t2.
+
+    Returns
+    -------
+    Motion
+        With the step written into it.
+
+    Raises
+    ------
+    InputError
+        For times that are not in order, or an end with fewer than ten samples.
+
+    Notes
+    -----
+    Error: the permanent displacement depends on t1 and t2, which nothing in the record fixes (Boore 2001).
+
+    References
+    ----------
+    Iwan, W. D., Moser, M. A. and Peng, C.-Y. (1985), BSSA 75, 1225-1246.
+    Boore, D. M. (2001), Effect of baseline corrections on displacements and response spectra, BSSA 91, 1199-1211.
     """
     v, _ = integrate(motion)
     t = np.asarray(np.arange(motion.samples) * motion.dt, dtype=np.float64)
@@ -165,18 +222,41 @@ def choose_corner(
     The displacement is looked at in the horizontals only.  Of the vertical nothing but its acceleration is used, which
     a corner hardly changes; what would quiet its noisier displacement would take long periods from the horizontals.
 
-    pre_event : s of noise before the event at the start of the record; None: the record has none
-    cycles    : the record must hold so many periods of the corner
-    margin    : above the corner the Fourier amplitude is at least so many times that of the noise, in bands of a
-                third of an octave, down from the band where it is best; nothing is known below 1 / pre_event
-    tail_share: after the filter the horizontal displacement in the last tenth of the record stays below this share of
-                its peak
-    drift_share: and so does a polynomial fitted to that displacement, see DRIFT_SHARE
-    error     : a corner that is raised takes long-period velocity away with the noise, 12 % of the PGV of one
-                near-fault record (Meloland 1979): the reason says how much; where that matters, a person must judge
-    raises    : ValueError when a corner above HIGHEST_CORNER would be needed, or a parameter is not usable
-    source    : Boore and Bommer (2005), Processing of strong-motion accelerograms: needs, options and consequences,
-                SDEE 25, 93-115, for noise and displacement as guides; see DRIFT_SHARE for the polynomial
+    Parameters
+    ----------
+    motion : Motion
+        A raw record of at least 100 samples.
+    pre_event : float or None
+        Seconds of noise before the event at the start of the record; None: the record has none.
+    cycles : float
+        The record must hold so many periods of the corner.
+    margin : float
+        Above the corner the Fourier amplitude is at least so many times that of the noise, in bands of a third of an
+        octave, down from the band where it is best; nothing is known below 1 / pre_event.
+    tail_share : float
+        After the filter the horizontal displacement in the last tenth of the record stays below this share of its peak.
+    drift_share : float
+        And so does a polynomial fitted to that displacement, see DRIFT_SHARE.
+
+    Returns
+    -------
+    Corner
+        Its frequency in Hz, and what decided.
+
+    Raises
+    ------
+    InputError
+        When a corner above HIGHEST_CORNER would be needed, or a parameter is not usable.
+
+    Notes
+    -----
+    Error: a corner that is raised takes long-period velocity away with the noise, 12 % of the PGV of one near-fault
+    record (Meloland 1979): the reason says how much; where that matters, a person must judge.
+
+    References
+    ----------
+    Boore, D. M. and Bommer, J. J. (2005), Processing of strong-motion accelerograms: needs, options and consequences,
+    SDEE 25, 93-115, for noise and displacement as guides; see DRIFT_SHARE for the polynomial.
     """
     if not (cycles > 0.0 and margin >= 1.0 and 0.0 < tail_share < 1.0 and 0.0 < drift_share < 1.0):
         raise InputError("choose_corner: cycles must be above 0, margin at least 1, and both shares between 0 and 1")
@@ -219,12 +299,31 @@ def choose_corner(
 def resample(motion: Motion, dt: float, *, method: Literal["fft", "lanczos"] = "fft") -> Motion:
     """Return the motion on another time step, taken as band-limited between its samples.
 
-    method : "fft" goes through the Fourier transform of the record padded with zeros to twice its length (scipy) and
-             cuts off what the new step cannot hold; the steps must be as two whole numbers.  "lanczos" weighs 2 x 30
-             neighbours with a windowed sinc (obspy), for any shorter step, and never filters.
-    error  : the objects are shaken by the polygon through the samples, so a finer step changes the motion between
-             them: to subdivide without a change there is no need to resample
-    raises : ValueError for a step that is not positive, that the method cannot reach, or longer than the record
+    Parameters
+    ----------
+    motion : Motion
+        What is resampled.
+    dt : float
+        The new time step in s.
+    method : {"fft", "lanczos"}
+        "fft" goes through the Fourier transform of the record padded with zeros to twice its length (scipy) and cuts
+        off what the new step cannot hold; the steps must be as two whole numbers.  "lanczos" weighs 2 x 30 neighbours
+        with a windowed sinc (obspy), for any shorter step, and never filters.
+
+    Returns
+    -------
+    Motion
+        With the step written into it.
+
+    Raises
+    ------
+    InputError
+        For a step that is not positive, that the method cannot reach, or longer than the record.
+
+    Notes
+    -----
+    The objects are shaken by the polygon through the samples, so a finer step changes the motion between them: to
+    subdivide without a change there is no need to resample.
     """
     if not (np.isfinite(dt) and 0.0 < dt <= motion.duration):
         raise InputError(f"dt must be above 0 and at most the record's {motion.duration:g} s, not {dt!r}")
@@ -332,7 +431,10 @@ def _bands(data: Array, dt: float, count: int) -> tuple[Array, Array]:
 def _unsettled(flat: Array, dt: float, corner: float, start: float) -> tuple[float, float, float]:
     """What is left in the filtered horizontal displacement of the worse component, relative to its peak.
 
-    returns : its largest value after a time, that of a polynomial fitted to all of it, and the larger PGV in m/s
+    Returns
+    -------
+    (float, float, float)
+        Its largest value after a time, that of a polynomial fitted to all of it, and the larger PGV in m/s.
     """
     # The pads belong to the filtered motion (Boore 2005): cut off, its displacement would drift from the first sample.
     n, pad = flat.shape[1], int(np.ceil(pad_seconds(corner) / dt))

@@ -19,9 +19,23 @@ _BY_CODE: dict[str, float | str] = {"E": 90.0, "N": 0.0, "Z": "up"}
 def entries(folder: str | Path) -> list[str]:
     """Return, for the record files of a site's folder that its manifest does not name, TOML to be pasted into it.
 
-    One entry for each record: files of one station and instrument belong together.  What no file says stands there as
-    a comment to be answered; a file that is no record is named with its hash alone.
-    raises : MotionError for a folder without a manifest, or one that cannot be used
+    One entry for each record: files of one station and instrument belong together.  What no file says stands there as a
+    comment to be answered; a file that is no record is named with its hash alone.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The site's folder, or its manifest.toml.
+
+    Returns
+    -------
+    list of str
+        The entries; first the level that they belong to, where the manifest has none, last what is no record.
+
+    Raises
+    ------
+    MotionError
+        For a folder without a manifest, or one that cannot be used.
     """
     file = manifest_file(folder)
     manifest = load_manifest(file, begun=True)

@@ -14,7 +14,11 @@ class MotionError(InputError):
     """A record or a manifest that Kouros refuses to assess anything with.
 
     The message names the file, the place in it (key path, component, sample), what is wrong and what mends it.
-    judgement : the name under which a person may overrule it in the record's table `accept`; "" for what is corrupt
+
+    Attributes
+    ----------
+    judgement : str
+        The name under which a person may overrule it in the record's table `accept`; "" for what is corrupt.
     """
 
     exit_code: ClassVar[int] = 4
@@ -25,7 +29,26 @@ class MotionError(InputError):
 
 
 def refusal(file: Path, place: str, wrong: str, remedy: str, judgement: Judgement | Literal[""] = "") -> MotionError:
-    """Return the error, so that every refusal reads alike: file: place: what is wrong; remedy."""
+    """Return the error, so that every refusal reads alike: file: place: what is wrong; remedy.
+
+    Parameters
+    ----------
+    file : Path
+        The record's file or the manifest.
+    place : str
+        Where in it: key path, component, sample.
+    wrong : str
+        What is wrong there.
+    remedy : str
+        What mends it.
+    judgement : str
+        The name under which a person may overrule it; "" for what is corrupt.
+
+    Returns
+    -------
+    MotionError
+        To be raised by the caller.
+    """
     return MotionError(f"{file}: {place}: {wrong}; {remedy}", judgement)
 
 
@@ -40,8 +63,21 @@ def judged(
 ) -> None:
     """Refuse what is a matter of judgement, unless the manifest's record accepts it: then its reason becomes a step.
 
-    accept : the record's table of overruled refusals, by name
-    raises : MotionError with its `judgement`
+    Parameters
+    ----------
+    accept : mapping of str to str
+        The record's table of overruled refusals: the reason of each, by name.
+    judgement : str
+        The name of this refusal.
+    file, place, wrong, remedy : Path, str, str, str
+        As of `refusal`.
+    steps : list of str
+        What was done to the record; the accepted refusal is appended.
+
+    Raises
+    ------
+    MotionError
+        With its `judgement`, where it is not accepted.
     """
     if judgement not in accept:
         way = f'or look at it and overrule by accept.{judgement} = "REASON" in the manifest\'s record'

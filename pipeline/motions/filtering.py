@@ -16,8 +16,19 @@ POLES = 2
 def remove_baseline(data: Array, dt: float) -> tuple[Array, str]:
     """Subtract from each row its least-squares straight line (mean and drift), and say which.
 
-    data    : (3, n) m/s2
-    returns : (3, n) m/s2 and the step
+    Parameters
+    ----------
+    data : array, shape (3, n)
+        In m/s2.
+    dt : float
+        Time step in s.
+
+    Returns
+    -------
+    array, shape (3, n)
+        In m/s2, without the lines.
+    str
+        The step, with mean in m/s2 and slope in m/s3 of each row.
     """
     n = data.shape[1]
     # Time about the middle: the mean and the slope are then independent of each other.
@@ -30,10 +41,22 @@ def remove_baseline(data: Array, dt: float) -> tuple[Array, str]:
 
 
 def pad_seconds(corner_hz: float) -> float:
-    """Return the zeros in s before and after a record that its high-pass needs: 1.5 n / fc.
+    """Return the zeros that a record needs before and after it for its high-pass: 1.5 n / fc.
 
-    source : Boore, D.M. (2005), On pads and filters: processing strong-motion data, BSSA 95, 745-750; n is the order,
-             here the four of both passes together, and the whole length goes to each end.
+    Parameters
+    ----------
+    corner_hz : float
+        The corner fc in Hz.
+
+    Returns
+    -------
+    float
+        Seconds of zeros at each end.  n is the order, here the four of both passes together, and the whole length goes
+        to each end.
+
+    References
+    ----------
+    Boore, D. M. (2005), On pads and filters: processing strong-motion data, BSSA 95, 745-750.
     """
     return 1.5 * (2 * POLES) / corner_hz
 
@@ -41,11 +64,33 @@ def pad_seconds(corner_hz: float) -> float:
 def highpass(data: Array, dt: float, corner_hz: float) -> tuple[Array, str, Array]:
     """Zero-phase Butterworth high-pass of each row, padded with zeros and cut back to the record.
 
-    data    : (rows, n) m/s2
-    returns : (rows, n) m/s2, the step, and the velocity (rows,) m/s at the first sample.  A zero-phase filter answers
-              before the record begins: cut off without that velocity, the displacement would drift from there on
-    raises  : ValueError unless the corner is below the Nyquist frequency
-    source  : Boore (2005), as `pad_seconds`
+    Parameters
+    ----------
+    data : array, shape (rows, n)
+        In m/s2.
+    dt : float
+        Time step in s.
+    corner_hz : float
+        In Hz.
+
+    Returns
+    -------
+    array, shape (rows, n)
+        In m/s2.
+    str
+        The step.
+    array, shape (rows,)
+        Velocity in m/s at the first sample.  A zero-phase filter answers before the record begins: cut off without that
+        velocity, the displacement would drift from there on.
+
+    Raises
+    ------
+    InputError
+        Unless the corner is below the Nyquist frequency.
+
+    References
+    ----------
+    Boore, D. M. (2005), as of `pad_seconds`.
     """
     out, pad, step = _filtered(data, dt, corner_hz, "highpass")
     lead = out[:, : pad + 1]
@@ -56,8 +101,26 @@ def highpass(data: Array, dt: float, corner_hz: float) -> tuple[Array, str, Arra
 def lowpass(data: Array, dt: float, corner_hz: float) -> tuple[Array, str]:
     """Zero-phase Butterworth low-pass of each row, padded with zeros and cut back to the record.
 
-    data   : (rows, n) m/s2
-    raises : ValueError unless the corner is below the Nyquist frequency
+    Parameters
+    ----------
+    data : array, shape (rows, n)
+        In m/s2.
+    dt : float
+        Time step in s.
+    corner_hz : float
+        In Hz.
+
+    Returns
+    -------
+    array, shape (rows, n)
+        In m/s2.
+    str
+        The step.
+
+    Raises
+    ------
+    InputError
+        Unless the corner is below the Nyquist frequency.
     """
     out, pad, step = _filtered(data, dt, corner_hz, "lowpass")
     return np.ascontiguousarray(out[:, pad : pad + data.shape[1]]), step

@@ -28,18 +28,35 @@ HALF_CYCLES = 5
 class Inspection:
     """A record of a manifest with all that a seismologist asks of it.
 
-    x_azimuth       : of the site's x axis, degrees clockwise from north
-    place           : the record's key path in the manifest; level: the level of shaking, or "floor NAME"
-    before, motion  : as recorded (mean removed, turned and scaled alike), and processed; the same span where the
-                      record is not resampled
-    filtered        : whether anything was filtered or corrected here; a record processed by its source is not
-    corners         : of high-pass and low-pass [Hz]; None where there was none
-    measures_before, measures : `intensity.measures` of what was recorded, `site.measured` of what is used
-    spectra_before  : of x, y and z at 5 % damping; spectra : of all components at 5 %, of RotD100 at all the dampings
-                      asked for
-    target          : the level's spectrum, where it has one
-    pulse           : the strongest candidate of Shahi and Baker (2014), pulse-like or not; None without shaking
-    half_cycles     : for "x" and "y", the largest half-cycles of the velocity
+    Attributes
+    ----------
+    site : str
+        What the site is called.
+    x_azimuth : float
+        Of the site's x axis, degrees clockwise from north.
+    level : str
+        The level of shaking, or "floor NAME".
+    place : str
+        The record's key path in the manifest.
+    before, motion : Motion
+        As recorded (mean removed, turned and scaled alike), and processed; the same span where the record is not
+        resampled.
+    filtered : bool
+        Whether anything was filtered or corrected here; a record processed by its source is not.
+    corners : (float or None, float or None)
+        Of high-pass and low-pass in Hz; None where there was none.
+    measures_before, measures : mapping of str to float
+        `intensity.measures` of what was recorded, `site.measured` of what is used.
+    spectra_before : mapping of str to Spectrum
+        Of x, y and z at 5 % damping.
+    spectra : mapping of str to Spectrum
+        Of all components at 5 %, of RotD100 at all the dampings asked for.
+    target : TargetTable or None
+        The level's spectrum, where it has one.
+    pulse : WaveletPulse or None
+        The strongest candidate of Shahi and Baker (2014), pulse-like or not; None without shaking.
+    half_cycles : mapping of str to tuple of HalfCycle
+        For "x" and "y", the largest half-cycles of the velocity.
     """
 
     site: str
@@ -62,10 +79,24 @@ class Inspection:
 def inspect(folder: str | Path, name: str = "", damping: tuple[float, ...] = (0.02, 0.05, 0.10)) -> list[Inspection]:
     """Read and process the records of a manifest anew, and look at each.
 
-    folder  : the site's folder, or its manifest.toml
-    name    : only the record of that name; "" for all, those of the floors included
-    damping : ratios of the RotD100 spectra
-    raises  : MotionError, as `site.read_site`, and where no record has that name
+    Parameters
+    ----------
+    folder : str or Path
+        The site's folder, or its manifest.toml.
+    name : str
+        Only the record of that name; "" for all, those of the floors included.
+    damping : tuple of float
+        Ratios to critical of the RotD100 spectra.
+
+    Returns
+    -------
+    list of Inspection
+        In the manifest's order.
+
+    Raises
+    ------
+    MotionError
+        As `site.read_site`, and where no record has that name.
     """
     file = manifest_file(folder)
     manifest = load_manifest(file)

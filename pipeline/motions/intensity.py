@@ -12,9 +12,19 @@ from pipeline.records import Motion
 
 
 def integrate(motion: Motion) -> tuple[Array, Array]:
-    """Return velocity and displacement at the samples, (3, n) m/s and (3, n) m, exact to rounding.
+    """Return velocity and displacement at the samples, exact to rounding.
 
-    The velocity begins with the motion's own `start`, the displacement with zero.
+    Parameters
+    ----------
+    motion : Motion
+        Its velocity begins with its own `start`, its displacement with zero.
+
+    Returns
+    -------
+    array, shape (3, n)
+        Velocity in m/s.
+    array, shape (3, n)
+        Displacement in m.
     """
     a, dt = motion.acceleration, motion.dt
     v = np.zeros_like(a)
@@ -26,16 +36,32 @@ def integrate(motion: Motion) -> tuple[Array, Array]:
 
 
 def measures(motion: Motion) -> dict[str, float]:
-    """Return the intensity measures of a motion, in SI, over its samples' span.
+    """Return the intensity measures of a motion over its samples' span.
 
-    pga_x, pga_y, pga_z, pga (larger horizontal component), pga_resultant (peak of the horizontal vector) [m/s2];
-    pgv and pgd likewise [m/s, m]; arias_x, arias_y, arias_z [m/s]; duration_5_95 [s], of the horizontal components
-    together.  Maxima are over continuous time: a velocity peaks where the acceleration changes sign, between samples.
+    Parameters
+    ----------
+    motion : Motion
+        What is measured.
 
-    error  : none but rounding, about 1e-12 relative.  The polygon is the motion that objects are shaken by; where a
-             record shakes hard close to its Nyquist frequency, its Arias intensity is below the plain sum of squares
-             that agencies print (for one near-fault record at 100 samples/s by 7 to 17 %).
-    source : Arias (1970), pi/(2g) int a^2 dt; Trifunac and Brady (1975) for the significant duration
+    Returns
+    -------
+    dict of str to float
+        In SI.  pga_x, pga_y, pga_z, pga (larger horizontal component), pga_resultant (peak of the horizontal vector)
+        [m/s2]; pgv and pgd likewise [m/s, m]; arias_x, arias_y, arias_z [m/s]; duration_5_95 [s], of the horizontal
+        components together.
+
+    Notes
+    -----
+    Maxima are over continuous time: a velocity peaks where the acceleration changes sign, between samples.
+
+    Error: none but rounding, about 1e-12 relative.  The polygon is the motion that objects are shaken by; where a
+    record shakes hard close to its Nyquist frequency, its Arias intensity is below the plain sum of squares that
+    agencies print (for one near-fault record at 100 samples/s by 7 to 17 %).
+
+    References
+    ----------
+    Arias, A. (1970), pi/(2g) int a^2 dt.
+    Trifunac, M. D. and Brady, A. G. (1975), for the significant duration.
     """
     a, dt = motion.acceleration, motion.dt
     v, u = integrate(motion)
@@ -70,10 +96,23 @@ def measures(motion: Motion) -> dict[str, float]:
 
 
 def strong_part(motion: Motion, low: float = 0.05, high: float = 0.95) -> tuple[float, float]:
-    """Return when the horizontal components have delivered the shares ``low`` and ``high`` of their Arias intensity.
+    """Return when the horizontal components have delivered two shares of their Arias intensity.
 
-    returns : s from the first sample; (0, 0) for a motion without horizontal shaking
-    error   : none but rounding
+    Parameters
+    ----------
+    motion : Motion
+        What is looked at.
+    low, high : float
+        The shares, from 0 to 1.
+
+    Returns
+    -------
+    (float, float)
+        In s from the first sample; (0, 0) for a motion without horizontal shaking.
+
+    Notes
+    -----
+    Error: none but rounding.
     """
     pieces = _energy(motion)[:2].sum(axis=0)
     total = np.concatenate([[0.0], np.cumsum(pieces)])

@@ -247,7 +247,20 @@ def manifest_schema() -> dict[str, Any]:
 def manifest_file(path: str | Path) -> Path:
     """Return the manifest of a site's folder, or the manifest file itself.
 
-    raises : MotionError if there is none
+    Parameters
+    ----------
+    path : str or Path
+        The site's folder, or its manifest.toml.
+
+    Returns
+    -------
+    Path
+        The manifest.
+
+    Raises
+    ------
+    MotionError
+        If there is none.
     """
     path = Path(path)
     file = path / MANIFEST if path.is_dir() else path
@@ -260,9 +273,22 @@ def manifest_file(path: str | Path) -> Path:
 def load_manifest(folder: str | Path, *, begun: bool = False) -> Manifest:
     """Read and check a site's manifest, with the presence and the hash of every file that it names.
 
-    folder  : the site's folder, or its manifest.toml
-    begun   : a manifest that names no records yet will do
-    raises  : MotionError naming the manifest, the key path and the remedy
+    Parameters
+    ----------
+    folder : str or Path
+        The site's folder, or its manifest.toml.
+    begun : bool
+        Whether a manifest that names no records yet will do.
+
+    Returns
+    -------
+    Manifest
+        What it says.
+
+    Raises
+    ------
+    MotionError
+        Naming the manifest, the key path and the remedy.
     """
     file = manifest_file(folder)
     try:
@@ -291,7 +317,17 @@ def load_manifest(folder: str | Path, *, begun: bool = False) -> Manifest:
 def unlisted(file: Path, manifest: Manifest) -> list[str]:
     """Return the files of a site's folder that its manifest does not name, sorted; words about it are none.
 
-    file : the manifest
+    Parameters
+    ----------
+    file : Path
+        The manifest.
+    manifest : Manifest
+        What it says.
+
+    Returns
+    -------
+    list of str
+        Paths inside the folder, with / between folders; at most MOST.
     """
     named = {name for _, record in manifest.records() for name in record.all_files}
     folder = file.parent

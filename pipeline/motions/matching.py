@@ -41,17 +41,48 @@ def spectrum_compatible(
 ) -> Motion:
     """Return a motion whose pseudo-acceleration spectrum matches a target, the same for the same seed.
 
-    periods, target : (m,) s, increasing, and (m,) m/s2; straight lines between them in log-log; they must span the band
-    duration : s, at least three periods of the band's lowest frequency; damping : ratio; band : Hz
-    tolerance: misfit at which the search stops; what is reached is written into the motion's steps
-    error    : at most ACCEPTED at every frequency of the band (checked twice as densely as controlled)
-    raises   : ValueError naming the parameter, or when the misfit stays above ACCEPTED
-    method   : noise of random phases in the envelope of Jennings, Housner and Tsai (1968); its Fourier amplitudes
-               scaled by target / response as in SIMQKE (Gasparini and Vanmarcke 1976); then corrections in time: the
-               peak of each oscillator is moved by reversed impulse responses (Lilhanand and Tseng 1988), here in the
-               combination with the least weighted sum of squares.  A draw that stays above ACCEPTED is thrown away and
-               the next numbers of the same seed are taken.  The motion starts
-               and ends with no acceleration and no velocity and ends with no displacement.
+    Noise of random phases in an envelope gets Fourier amplitudes scaled by target / response; then it is corrected in
+    time: the peak of each oscillator is moved by reversed impulse responses, here in the combination with the least
+    weighted sum of squares.  A draw that stays above ACCEPTED is thrown away and the next numbers of the same seed are
+    taken.  The motion starts and ends with no acceleration and no velocity and ends with no displacement.
+
+    Parameters
+    ----------
+    periods : array_like, shape (m,)
+        In s, increasing; they must span the band.
+    target : array_like, shape (m,)
+        Pseudo-acceleration in m/s2; straight lines between them in log-log.
+    duration : float
+        In s, at least three periods of the band's lowest frequency.
+    seed : int
+        Whole number from 0.
+    damping : float
+        Ratio to critical, 0.005 to below 1.
+    dt : float
+        Longest time step in s, at most a quarter period of the band's highest frequency.
+    band : (float, float)
+        Frequencies in Hz that are matched, the lower one first.
+    tolerance : float
+        Relative misfit at which the search stops; what is reached is written into the motion's steps.
+    direction : {"x", "y", "z"}
+        The direction that is shaken.
+
+    Returns
+    -------
+    Motion
+        With a relative misfit of at most ACCEPTED at every frequency of the band, checked twice as densely as
+        controlled.
+
+    Raises
+    ------
+    InputError
+        Naming the parameter, or when the misfit stays above ACCEPTED.
+
+    References
+    ----------
+    Jennings, P. C., Housner, G. W. and Tsai, N. C. (1968), for the envelope.
+    Gasparini, D. A. and Vanmarcke, E. H. (1976), SIMQKE, for the amplitudes.
+    Lilhanand, K. and Tseng, W. S. (1988), for the corrections in time.
     """
     f, wanted, check, wanted_there = _grid(periods, target, damping, band)
     positive(duration=duration, dt=dt, tolerance=tolerance)

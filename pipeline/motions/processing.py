@@ -34,13 +34,20 @@ ORTHOGONAL_WITHIN = 2.0
 class Processed:
     """A record made ready, beside what it was before.
 
-    motion  : what objects are shaken by
-    before  : the same span as recorded, turned and scaled alike; of a raw record the mean is removed, which would hide
-              everything else
-    filtered: whether its baseline was corrected and it was filtered here, or by its source long ago
-    corners : of high-pass and low-pass [Hz], None where there was none
-    velocity: (3, n) m/s of the motion as its agency computed it, where the files hold it: its peak is the PGV; None
-              for a record that is filtered here, resampled, or comes without
+    Attributes
+    ----------
+    motion : Motion
+        What objects are shaken by.
+    before : Motion
+        The same span as recorded, turned and scaled alike; of a raw record the mean is removed, which would hide
+        everything else.
+    filtered : bool
+        Whether its baseline was corrected and it was filtered here, not by its source long ago.
+    corners : (float or None, float or None)
+        Of high-pass and low-pass in Hz, None where there was none.
+    velocity : array, shape (3, n), or None
+        In m/s, of the motion as its agency computed it, where the files hold it: its peak is the PGV; None for a record
+        that is filtered here, resampled, or comes without.
     """
 
     motion: Motion
@@ -58,9 +65,26 @@ def process(
     In this order: baseline, high-pass, low-pass (none of the three for a processed record), resampling, window,
     rotation to x and y, scaling.  A scale to a PGA counts the larger *recorded* horizontal component, before rotation.
 
-    target    : the level's spectrum, for a record with `scale_to_target`
-    x_azimuth : degrees clockwise from north of the x axis
-    raises    : ValueError naming the manifest's key
+    Parameters
+    ----------
+    recording : Recording
+        What was read.
+    record : Record
+        What is to be done to it.
+    target : TargetTable or None
+        The level's spectrum, for a record with `scale_to_target`.
+    x_azimuth : float
+        Of the x axis, degrees clockwise from north.
+
+    Returns
+    -------
+    Processed
+        The motion, beside what it was before.
+
+    Raises
+    ------
+    InputError
+        Naming the manifest's key.
     """
     source = f"{record.source}; licence: {record.licence}"
     start = (0.0, 0.0, 0.0) if recording.velocity is None else recording.velocity[:, 0]
@@ -188,10 +212,28 @@ def _scaled_to_pga(motion: Motion, before: Motion, record: Record, recording: Re
 
 
 def cut(data: Array, dt: float, start: float, end: float) -> tuple[Array, str]:
-    """Cut to the samples from ``start`` to ``end`` (s from the first sample), and say what velocity that leaves.
+    """Cut a history to a window, and say what velocity that leaves.
 
-    data   : (3, n) m/s2
-    raises : ValueError for a window that holds fewer than two samples or ends after the record
+    Parameters
+    ----------
+    data : array, shape (3, n)
+        In m/s2.
+    dt : float
+        Time step in s.
+    start, end : float
+        In s from the first sample.
+
+    Returns
+    -------
+    array, shape (3, m)
+        In m/s2, both ends included.
+    str
+        The step.
+
+    Raises
+    ------
+    InputError
+        For a window that holds fewer than two samples or ends after the record.
     """
     last = (data.shape[1] - 1) * dt
     if end > last + 0.5 * dt:
@@ -214,10 +256,26 @@ def _turned(motion: Motion, azimuths: tuple[float, float], x_azimuth: float) -> 
 def rotate(data: Array, first: float, second: float, x_azimuth: float = EAST) -> tuple[Array, str]:
     """Rotate two horizontal channels into x and y.
 
-    data          : (3, n) m/s2, rows first channel, second channel, up
-    first, second : azimuths in degrees clockwise from north
-    x_azimuth     : of the x axis; y is 90 degrees anticlockwise of it, as north is of east
-    raises        : ValueError unless the two are at right angles within 2 degrees
+    Parameters
+    ----------
+    data : array, shape (3, n)
+        In any unit, rows first channel, second channel, up.
+    first, second : float
+        Azimuths in degrees clockwise from north.
+    x_azimuth : float
+        Of the x axis; y is 90 degrees anticlockwise of it, as north is of east.
+
+    Returns
+    -------
+    array, shape (3, n)
+        In the same unit, rows x, y, up.
+    str
+        The step.
+
+    Raises
+    ------
+    InputError
+        Unless the two are at right angles within 2 degrees.
     """
     between = (second - first) % 180.0
     if abs(between - 90.0) > ORTHOGONAL_WITHIN:

@@ -37,9 +37,16 @@ _SCALE_RATIO = 1.05
 class HalfCycle:
     """What lies between two zero crossings of a history.
 
-    start, duration : s from the first sample, s
-    peak            : signed largest value, m/s of a velocity or m/s2 of an acceleration
-    area            : signed integral: the displacement increment in m, or the velocity increment in m/s
+    Attributes
+    ----------
+    start : float
+        In s from the first sample.
+    duration : float
+        In s.
+    peak : float
+        Signed largest value, m/s of a velocity or m/s2 of an acceleration.
+    area : float
+        Signed integral: the displacement increment in m, or the velocity increment in m/s.
     """
 
     start: float
@@ -52,17 +59,30 @@ class HalfCycle:
 class WaveletPulse:
     """The strongest pulse found in a velocity history, whether or not it makes the motion pulse-like.
 
-    is_pulse     : the verdict of the method
-    indicator    : Baker: a probability, pulse-like above 0.85; Shahi and Baker: pulse-like above 0
-    period       : Tp [s], the pseudo-period of the wavelet
-    angle        : degrees from x towards y of the direction that it was found in (0 where one history was given)
-    time         : s from the first sample, the centre of the largest wavelet
-    pgv          : m/s, of the velocity in that direction
-    pulse_pgv    : m/s, of the pulse alone
-    pgv_ratio, energy_ratio : the residual's PGV and sum of squares over those of the whole
-    late         : the pulse comes after the strong shaking has begun, so it is not taken for directivity
-    velocity, pulse, residual : (n,) m/s each; velocity = pulse + residual
-    method       : source of the criterion
+    Attributes
+    ----------
+    is_pulse : bool
+        The verdict of the method.
+    indicator : float
+        Baker: a probability, pulse-like above 0.85; Shahi and Baker: pulse-like above 0.
+    period : float
+        Tp in s, the pseudo-period of the wavelet.
+    angle : float
+        Degrees from x towards y of the direction that it was found in (0 where one history was given).
+    time : float
+        In s from the first sample, the centre of the largest wavelet.
+    pgv : float
+        In m/s, of the velocity in that direction.
+    pulse_pgv : float
+        In m/s, of the pulse alone.
+    pgv_ratio, energy_ratio : float
+        The residual's PGV and sum of squares over those of the whole.
+    late : bool
+        The pulse comes after the strong shaking has begun, so it is not taken for directivity.
+    velocity, pulse, residual : array, shape (n,)
+        In m/s each; velocity = pulse + residual.
+    method : str
+        Source of the criterion.
     """
 
     is_pulse: bool
@@ -86,9 +106,30 @@ def velocity_half_cycles(
 ) -> tuple[HalfCycle, ...]:
     """Return every half-cycle of the velocity between its zero crossings, in order of time.
 
-    acceleration     : (n,) m/s2, piecewise linear; initial_velocity : m/s
-    least            : m/s; half-cycles with a smaller peak are left out
-    error            : rounding; crossings and peaks between samples are exact for the polygon
+    Parameters
+    ----------
+    acceleration : array, shape (n,)
+        In m/s2, piecewise linear.
+    dt : float
+        Time step in s.
+    initial_velocity : float
+        In m/s.
+    least : float
+        In m/s; half-cycles with a smaller peak are left out.
+
+    Returns
+    -------
+    tuple of HalfCycle
+        Peaks in m/s, areas in m.
+
+    Raises
+    ------
+    InputError
+        For anything but one row of at least two finite values.
+
+    Notes
+    -----
+    Error: rounding; crossings and peaks between samples are exact for the polygon.
     """
     t, a, v, u = _refined(acceleration, dt, initial_velocity)
     crossing = np.flatnonzero(v[:-1] * v[1:] < 0.0)
@@ -105,9 +146,28 @@ def velocity_half_cycles(
 def acceleration_half_cycles(acceleration: Array, dt: float, least: float = 0.0) -> tuple[HalfCycle, ...]:
     """Return every half-cycle of the acceleration with the velocity increment that it delivers, in order of time.
 
-    acceleration : (n,) m/s2, piecewise linear
-    least        : m/s2; half-cycles with a smaller peak are left out
-    error        : rounding
+    Parameters
+    ----------
+    acceleration : array, shape (n,)
+        In m/s2, piecewise linear.
+    dt : float
+        Time step in s.
+    least : float
+        In m/s2; half-cycles with a smaller peak are left out.
+
+    Returns
+    -------
+    tuple of HalfCycle
+        Peaks in m/s2, areas in m/s.
+
+    Raises
+    ------
+    InputError
+        For anything but one row of at least two finite values.
+
+    Notes
+    -----
+    Error: rounding.
     """
     t, a, v, _ = _refined(acceleration, dt, 0.0)
     return _between_zeros(t, a, v, least)
@@ -116,16 +176,37 @@ def acceleration_half_cycles(acceleration: Array, dt: float, least: float = 0.0)
 def baker_pulse(velocity: Array, dt: float) -> WaveletPulse:
     """Identify a velocity pulse in one direction by the criterion of Baker (2007).
 
-    velocity : (n,) m/s, in the direction of interest (fault-normal in the paper)
-    returns  : pulse-like when the indicator exceeds 0.85, the pulse arrives early and the PGV is at least 0.3 m/s
-    raises   : ValueError for a velocity that is zero, not finite or shorter than the shortest wavelet
-    source   : Baker, J.W. (2007), Quantitative classification of near-fault ground motions using wavelet analysis,
-               BSSA 97, 1486-1501.  Largest coefficient of the continuous transform with the Daubechies wavelet of
-               order 4; ten wavelets of that scale; PI = 1/(1 + exp(-23.3 + 14.6 PGV ratio + 20.5 energy ratio)); late
-               when the pulse reaches 10 % of its energy after the motion reached 20 %.  The scales are in ratios of
-               1.05, refined around the largest, and the energy is the sum of squares.
-    error    : Tp of Ricker pulses and of most pulses of one or two lobes is within 10 % of the period that they were
-               made with; with more lobes, or between odd and even, it is up to 17 % off: the wavelet has few lobes
+    Parameters
+    ----------
+    velocity : array, shape (n,)
+        In m/s, in the direction of interest (fault-normal in the paper).
+    dt : float
+        Time step in s.
+
+    Returns
+    -------
+    WaveletPulse
+        Pulse-like when the indicator exceeds 0.85, the pulse arrives early and the PGV is at least 0.3 m/s.
+
+    Raises
+    ------
+    InputError
+        For a velocity that is zero, not finite or shorter than the shortest wavelet.
+
+    Notes
+    -----
+    Largest coefficient of the continuous transform with the Daubechies wavelet of order 4; ten wavelets of that scale;
+    PI = 1/(1 + exp(-23.3 + 14.6 PGV ratio + 20.5 energy ratio)); late when the pulse reaches 10 % of its energy after
+    the motion reached 20 %.  The scales are in ratios of 1.05, refined around the largest, and the energy is the sum of
+    squares.
+
+    Error: Tp of Ricker pulses and of most pulses of one or two lobes is within 10 % of the period that they were made
+    with; with more lobes, or between odd and even, it is up to 17 % off: the wavelet has few lobes.
+
+    References
+    ----------
+    Baker, J. W. (2007), Quantitative classification of near-fault ground motions using wavelet analysis, BSSA 97,
+    1486-1501.
     """
     v = _checked(velocity, dt, rows=1)[0]
     scales = _scales(dt)
@@ -141,16 +222,36 @@ def baker_pulse(velocity: Array, dt: float) -> WaveletPulse:
 def shahi_baker_pulses(velocity: Array, dt: float) -> tuple[WaveletPulse, ...]:
     """Return the five candidate pulses of Shahi and Baker (2014), each in its own direction and judged.
 
-    velocity : (2 or 3, n) m/s, rows x, y (and z, which is not looked at)
-    raises   : ValueError for a velocity that is zero, not finite or shorter than the shortest wavelet
-    source   : Shahi, S.K. and Baker, J.W. (2014), An efficient algorithm to identify strong-velocity pulses in
-               multicomponent ground motions, BSSA 104, 2456-2466, and the constants of the authors' published
-               implementation (github.com/shreyshahi/PulseClassification).  The direction with the largest coefficient
-               follows from those of x and y; each candidate blocks its surroundings in time for the next.  With
-               A = 0.63 PGV ratio + 0.777 energy ratio, P = (A - 1.208421)/0.2462717 and V = (PGV - 11.58861)/18.88015
-               in cm/s the indicator is -7.817 - 0.5679 P^2 - 0.1516 V^2 - 3.0253 P - 1.7396 V - 2.7156 P V; late when
-               the motion has released 17 % of its energy before the pulse has 5 % of its own.  Scales and energy as in
-               `baker_pulse`.
+    Parameters
+    ----------
+    velocity : array, shape (2, n) or (3, n)
+        In m/s, rows x, y (and z, which is not looked at).
+    dt : float
+        Time step in s.
+
+    Returns
+    -------
+    tuple of WaveletPulse
+        The strongest first; fewer than five where nothing is left to look at.
+
+    Raises
+    ------
+    InputError
+        For a velocity that is zero, not finite or shorter than the shortest wavelet.
+
+    Notes
+    -----
+    The direction with the largest coefficient follows from those of x and y; each candidate blocks its surroundings in
+    time for the next.  With A = 0.63 PGV ratio + 0.777 energy ratio, P = (A - 1.208421)/0.2462717 and V = (PGV -
+    11.58861)/18.88015 in cm/s the indicator is -7.817 - 0.5679 P^2 - 0.1516 V^2 - 3.0253 P - 1.7396 V - 2.7156 P V;
+    late when the motion has released 17 % of its energy before the pulse has 5 % of its own.  Scales and energy as in
+    `baker_pulse`.
+
+    References
+    ----------
+    Shahi, S. K. and Baker, J. W. (2014), An efficient algorithm to identify strong-velocity pulses in multicomponent
+    ground motions, BSSA 104, 2456-2466, and the constants of the authors' published implementation
+    (github.com/shreyshahi/PulseClassification).
     """
     rows = _checked(velocity, dt, rows=2)
     scales = _scales(dt)
@@ -178,7 +279,25 @@ def shahi_baker_pulses(velocity: Array, dt: float) -> tuple[WaveletPulse, ...]:
 
 
 def shahi_baker_pulse(velocity: Array, dt: float) -> WaveletPulse:
-    """Return the first candidate of `shahi_baker_pulses` that is a pulse, or else the strongest candidate."""
+    """Return the first candidate of `shahi_baker_pulses` that is a pulse, or else the strongest candidate.
+
+    Parameters
+    ----------
+    velocity : array, shape (2, n) or (3, n)
+        In m/s, rows x, y (and z, which is not looked at).
+    dt : float
+        Time step in s.
+
+    Returns
+    -------
+    WaveletPulse
+        With the direction that it was found in.
+
+    Raises
+    ------
+    InputError
+        As `shahi_baker_pulses`.
+    """
     candidates = shahi_baker_pulses(velocity, dt)
     return next((one for one in candidates if one.is_pulse), candidates[0])
 

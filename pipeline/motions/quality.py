@@ -54,11 +54,24 @@ def clipped(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
     single sample at the limit cannot be told from a crest, and a limit that was filtered or whose instrument's response
     was removed is no longer flat: give the samples as the file has them.
 
-    data    : (rows, n) in any unit, counts included; channels names the rows
-    dt      : s
-    returns : a sentence with the channel, the level in the data's unit, the sample and the time from the first sample
-    source  : the flat top as in Kleckner et al. (2022), Automated detection of clipping in broadband earthquake
-              records, SRL 93, 880-896; the bounds follow from the parabola of a crest, see SHOULDER_COUNTS
+    Parameters
+    ----------
+    data : array, shape (rows, n)
+        In any unit, counts included.
+    dt : float
+        Time step in s.
+    channels : tuple of str
+        What the rows are called.
+
+    Returns
+    -------
+    str or None
+        A sentence with the channel, the level in the data's unit, the sample and the time from the first sample.
+
+    References
+    ----------
+    Kleckner, J. K. et al. (2022), Automated detection of clipping in broadband earthquake records, SRL 93, 880-896, for
+    the flat top; the bounds follow from the parabola of a crest, see SHOULDER_COUNTS.
     """
     for row, channel in zip(data, channels, strict=True):
         for sign, side in ((1.0, "upper"), (-1.0, "lower")):
@@ -81,11 +94,24 @@ def cut_off(data: Array, dt: float, channels: tuple[str, ...]) -> str | None:
     part, when 5 to 95 % of the Arias intensity of both horizontals arrive.  The vertical is not asked: a triggered
     instrument misses the beginning of the P waves as a rule.
 
-    data    : (3, n) in any unit, the horizontals first
-    dt      : s
-    returns : a sentence with the channel, the sample and the time from the first sample
-    source  : Trifunac and Brady (1975) for the strong part, outside of which a complete record is quiet; the shares are
-              between what complete and cut records have, see END_SHARE
+    Parameters
+    ----------
+    data : array, shape (3, n)
+        In any unit, the horizontals first.
+    dt : float
+        Time step in s.
+    channels : tuple of str
+        What the rows are called.
+
+    Returns
+    -------
+    str or None
+        A sentence with the channel, the sample and the time from the first sample.
+
+    References
+    ----------
+    Trifunac, M. D. and Brady, A. G. (1975) for the strong part, outside of which a complete record is quiet; the shares
+    are between what complete and cut records have, see END_SHARE.
     """
     level = data[:2] - np.median(data[:2], axis=1, keepdims=True)
     square = level * level

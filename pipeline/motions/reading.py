@@ -40,12 +40,23 @@ AZIMUTH_TOLERANCE = 2.0
 class Recording:
     """Three components as recorded, aligned, in m/s2.
 
-    data     : (3, n), rows the channels that the manifest calls x, y, z; z positive up, zero where it is absent
-    azimuths : degrees clockwise from north of the first two rows
-    channels : what the files call the three rows
-    processed: whether the agency has filtered it already, by the manifest, or else by the files
-    velocity : (3, n) m/s as the agency computed it, with the velocity that the record starts with, of which the
-               acceleration knows nothing; None unless all three files hold it
+    Attributes
+    ----------
+    dt : float
+        Time step in s.
+    data : array, shape (3, n)
+        In m/s2, rows the channels that the manifest calls x, y, z; z positive up, zero where absent.
+    azimuths : (float, float)
+        Degrees clockwise from north of the first two rows.
+    channels : (str, str, str)
+        What the files call the three rows.
+    steps : tuple of str
+        What was read, and done to it, in order.
+    processed : bool
+        Whether the agency has filtered it already, by the manifest, or else by the files.
+    velocity : array, shape (3, n), or None
+        In m/s as the agency computed it, with the velocity that the record starts with, of which the acceleration knows
+        nothing; None unless all three files hold it.
     """
 
     dt: float
@@ -58,10 +69,20 @@ class Recording:
 
 
 def prefilter(sampling_hz: float, highpass_hz: float | None) -> tuple[float, float, float, float]:
-    """Return the four corners in Hz of the cosine taper that bounds the removal of an instrument's response.
+    """Return the corners of the cosine taper that bounds the removal of an instrument's response.
 
     It is one from a fifth of the record's high-pass (0.02 Hz without one) to 0.8 of the Nyquist frequency, and zero
     below half of the former and above 0.9 of the latter: beyond, a response has nothing left that could be divided by.
+
+    Parameters
+    ----------
+    sampling_hz, highpass_hz : float, float or None
+        Samples per second; corner of the high-pass in Hz, None without one.
+
+    Returns
+    -------
+    (float, float, float, float)
+        Corners in Hz, increasing.
     """
     low = 0.02 if highpass_hz is None else 0.2 * highpass_hz
     return 0.5 * low, low, 0.40 * sampling_hz, 0.45 * sampling_hz
@@ -70,9 +91,22 @@ def prefilter(sampling_hz: float, highpass_hz: float | None) -> tuple[float, flo
 def read_record(folder: str | Path, record: Record) -> Recording:
     """Read the files of a record.
 
-    returns : the three components on their common span, in m/s2
-    raises  : MotionError naming file, component and sample for anything but three complete, live, finite components
-    source  : obspy's Trace.remove_response for counts (full response, water level 60 dB, see `prefilter`)
+    Counts go through obspy's Trace.remove_response (full response, water level 60 dB, see `prefilter`).
+
+    Parameters
+    ----------
+    folder, record : str or Path, Record
+        The site's folder, and the manifest's table of the record.
+
+    Returns
+    -------
+    Recording
+        The three components on their common span, in m/s2.
+
+    Raises
+    ------
+    MotionError
+        Naming file, component and sample for anything but three complete, live, finite components.
     """
     folder = Path(folder)
     steps: list[str] = []
@@ -130,7 +164,21 @@ def _obspy() -> Any:
 def open_traces(file: Path, steps: list[str]) -> list[Any]:
     """Return the traces of a file of any format that is read, and write down what was read.
 
-    raises : MotionError naming the file
+    Parameters
+    ----------
+    file : Path
+        The record file.
+    steps : list of str
+        What was done to the record; what was read and what the reader warned of is appended.
+
+    Returns
+    -------
+    list of obspy.Trace
+
+    Raises
+    ------
+    MotionError
+        Naming the file, where it is damaged, incomplete, too large, or of an unknown format.
     """
     obspy = _obspy()
 
@@ -391,7 +439,17 @@ def _by_header(file: Path, key: str, record: Record, trace: Any) -> list[str]:
 
 
 def own_unit(stats: Any) -> tuple[str, float]:
-    """Return the unit that a trace's file says, "" for none, and how many m/s2 one of it is; 0.0 where that is open."""
+    """Return the unit that a trace's file says, and how many m/s2 one of it is.
+
+    Parameters
+    ----------
+    stats : obspy.core.trace.Stats
+
+    Returns
+    -------
+    (str, float)
+        The unit, "" where the file says none, and its factor to m/s2, 0.0 where that is open.
+    """
     if "kouros" in stats:
         return stats.kouros.units, stats.kouros.si_factor or 0.0
     if stats._format == "KNET":

@@ -44,7 +44,19 @@ PICTURE_MARGIN = 5.0
 
 @dataclass(frozen=True, slots=True)
 class SiteMotion:
-    """A processed motion with its measures (SI, see `measured`) and where it comes from."""
+    """A processed motion with its measures and where it comes from.
+
+    Attributes
+    ----------
+    motion : Motion
+        What objects are shaken by.
+    measures : dict of str to float
+        In SI, as `measured` names them.
+    licence : str
+        Under which the record may be used.
+    source : str
+        Whose record it is.
+    """
 
     motion: Motion
     measures: dict[str, float]
@@ -54,7 +66,23 @@ class SiteMotion:
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """A level of shaking; ``approved_by`` is empty when nobody answers for it, ``approved_on`` is an ISO date."""
+    """A level of shaking: its motions, how they are combined, and who answers for it.
+
+    Attributes
+    ----------
+    name : str
+        As the manifest has it.
+    return_period_years : float or None
+        In years, where it is known.
+    combine : str
+        "max" or "mean", as `manifest.LevelTable` explains.
+    approved_by : str
+        The engineer who answers for it; "" where nobody does.
+    approved_on : str
+        The ISO date of that; "" where nobody does.
+    motions : tuple of SiteMotion
+        In the manifest's order.
+    """
 
     name: str
     return_period_years: float | None
@@ -76,7 +104,19 @@ class Level:
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """A site as its manifest describes it, with the processed motions of the ground."""
+    """A site as its manifest describes it, with the processed motions of the ground.
+
+    Attributes
+    ----------
+    file : Path
+        The manifest.
+    manifest : Manifest
+        What it says.
+    levels : tuple of Level
+        The levels of shaking, as the ground feels them.
+    kept : Path or None
+        Where processed motions are kept between nights; None keeps nothing.
+    """
 
     file: Path
     manifest: Manifest
@@ -142,8 +182,24 @@ def read_site(folder: str | Path, *, kept: Path | None = None) -> Site:
 def levels_at(site: Site, floor: str) -> tuple[Level, ...]:
     """Return the levels of shaking as a floor feels them: the ground's motions carried up, or records made there.
 
-    floor  : a name of `site.floors`, or "ground"
-    raises : ValueError for a floor that the manifest does not have; MotionError as `read_site`
+    Parameters
+    ----------
+    site : Site
+        The site, with the motions of the ground.
+    floor : str
+        A name of `site.floors`, or "ground".
+
+    Returns
+    -------
+    tuple of Level
+        The levels of the site, each with the motions of that floor.
+
+    Raises
+    ------
+    InputError
+        For a floor that the manifest does not have.
+    MotionError
+        As `read_site`, of records made on the floor.
     """
     if floor == GROUND_FLOOR:
         return site.levels
@@ -201,7 +257,22 @@ def _kept(folder: Path | None, key: str, make: Callable[[], Measured]) -> Measur
 def carry(motion: Motion, table: FloorTable) -> Motion:
     """Return a motion of the ground as a floor feels it, by the method of the manifest's table.
 
-    raises : ValueError for a table of records, which are not computed
+    Parameters
+    ----------
+    motion : Motion
+        Of the ground.
+    table : FloorTable
+        The floor, with its height ratio.
+
+    Returns
+    -------
+    Motion
+        Of the floor; one that passes through modes has as many samples as they need.
+
+    Raises
+    ------
+    ValueError
+        For a table of records, which are not computed.
     """
     if table.height_ratio is None:
         raise ValueError(f"floor {table.name!r} has records of its own")
@@ -254,10 +325,24 @@ def _identity(record: Record, target: TargetTable | None, x_azimuth: float, *mor
 
 @one_thread()
 def measured(motion: Motion, velocity: Array | None = None) -> dict[str, float]:
-    """Return the measures of a motion (`intensity.measures`), and those of its near-fault pulse where it has one.
+    """Return the measures of a motion, and those of its near-fault pulse where it has one.
 
-    velocity : (3, n) m/s as the motion's agency computed it, where it did: its peaks are the PGV
-    pulse_period [s], pulse_pgv [m/s], pulse_angle [degrees from x towards y], by Shahi and Baker (2014)
+    Parameters
+    ----------
+    motion : Motion
+        What is measured.
+    velocity : array, shape (3, n), or None
+        In m/s as the motion's agency computed it, where it did: its peaks are the PGV.
+
+    Returns
+    -------
+    dict of str to float
+        Those of `intensity.measures`, and of a pulse: pulse_period [s], pulse_pgv [m/s] and pulse_angle [degrees from x
+        towards y].
+
+    References
+    ----------
+    Shahi, S. K. and Baker, J. W. (2014), for the pulse; see `pulses.shahi_baker_pulses`.
     """
     out = measures(motion)
     v = integrate(motion)[0] if velocity is None else velocity
@@ -275,7 +360,17 @@ def measured(motion: Motion, velocity: Array | None = None) -> dict[str, float]:
 def summaries(levels: Sequence[Level], floor: str = "") -> tuple[MotionSummary, ...]:
     """Return what a report shows of each motion, level for level, with thinned series for its picture.
 
-    floor : the floor on which these are felt; "" for the ground
+    Parameters
+    ----------
+    levels : sequence of Level
+        As a floor feels them.
+    floor : str
+        The floor on which these are felt; "" for the ground.
+
+    Returns
+    -------
+    tuple of MotionSummary
+        One for each motion.
     """
     return tuple(
         MotionSummary(
@@ -301,8 +396,18 @@ def summaries(levels: Sequence[Level], floor: str = "") -> tuple[MotionSummary, 
 def thinned(motion: Motion, points: int = PICTURE_POINTS) -> dict[str, tuple[float, ...]]:
     """Return the strong part of a motion (D5-95 and 5 s on both sides) with few enough points for a picture.
 
-    returns : t [s from the motion's first sample] and x, y, z [m/s2], all of one length, at most ``points``.  Each bin
-              of samples is drawn as its smallest and largest value, in the order in which they occur: peaks survive.
+    Parameters
+    ----------
+    motion : Motion
+        What is drawn.
+    points : int
+        Most points of a series.
+
+    Returns
+    -------
+    dict of str to tuple of float
+        t [s from the motion's first sample] and x, y, z [m/s2], all of one length, at most `points`.  Each bin of
+        samples is drawn as its smallest and largest value, in the order in which they occur: peaks survive.
     """
     start, end = strong_part(motion)
     if start == end:
@@ -341,8 +446,29 @@ def _site_motion(site: Site, key: str, record: Record, target: TargetTable | Non
 def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_azimuth: float) -> Processed:
     """Read and process one record of a manifest.
 
-    file, key : the manifest and the record's place in it, for messages
-    raises    : MotionError, also for a record that ends or begins during strong shaking
+    Parameters
+    ----------
+    file : Path
+        The manifest.
+    key : str
+        The record's place in it, for messages.
+    record : Record
+        What is read, and what is to be done to it.
+    target : TargetTable or None
+        The level's spectrum, for a record with `scale_to_target`.
+    x_azimuth : float
+        Of the x axis, degrees clockwise from north.
+
+    Returns
+    -------
+    Processed
+        The motion, beside what it was before.
+
+    Raises
+    ------
+    MotionError
+        As `reading.read_record`; for keys of the manifest that cannot be followed; for a record that ends or begins
+        during strong shaking, unless that is accepted.
     """
     since = perf_counter()
     recording = read_record(file.parent, record)

@@ -32,11 +32,18 @@ _NORMALS = np.vstack([np.cos(np.radians(_ANGLES)), np.sin(np.radians(_ANGLES))])
 class Spectrum:
     """Peak response of oscillators to one component of a motion.
 
-    component    : "x", "y", "z", "rotd50" (median over the horizontal directions) or "rotd100" (largest of them)
-    periods      : (m,) s
-    damping      : (k,), ratio to critical
-    displacement : (k, m) m, largest |u| relative to the base (Sd)
-    absolute_acceleration : (k, m) m/s2, largest |a + u''| (SA); None for rotd50 and rotd100
+    Attributes
+    ----------
+    component : str
+        "x", "y", "z", "rotd50" (median over the horizontal directions) or "rotd100" (largest of them).
+    periods : array, shape (m,)
+        In s.
+    damping : array, shape (k,)
+        Ratio to critical.
+    displacement : array, shape (k, m)
+        In m, largest abs(u) relative to the base (Sd).
+    absolute_acceleration : array, shape (k, m), or None
+        In m/s2, largest abs(a + u'') (SA); None for rotd50 and rotd100.
     """
 
     component: str
@@ -57,9 +64,22 @@ class Spectrum:
 
 
 def standard_periods(n: int = 200) -> Array:
-    """Return n periods in s from 0.01 to 20 s in equal ratios, which is 100 to 0.05 Hz.
+    """Return periods from 0.01 to 20 s in equal ratios, which is 100 to 0.05 Hz.
 
-    raises : ValueError for fewer than two
+    Parameters
+    ----------
+    n : int
+        How many, at least two.
+
+    Returns
+    -------
+    array, shape (n,)
+        In s.
+
+    Raises
+    ------
+    InputError
+        For fewer than two.
     """
     if n < 2:
         raise InputError(f"a spectrum needs at least 2 periods, not {n}")
@@ -74,17 +94,41 @@ def response_spectra(
 ) -> dict[str, Spectrum]:
     """Return the response spectra of a motion, by component, free decay after the record included.
 
-    periods    : (m,) s, each above 0
-    damping    : (k,) or one number, ratio to critical, each at least 0
-    components : any of "x", "y", "z", "rotd50", "rotd100"
-    raises     : ValueError naming the value that is not allowed
-    error      : x, y and z: rounding, about 1e-11 relative, peaks between samples included.  rotd50 and rotd100 are
-                 within 1e-4 of the exact peaks of their directions (measured: 4e-5 below critical damping, 1e-4 at
-                 twice critical): the histories are rotated as cubics between nodes NODE_PHASE rad of the oscillator's
-                 phase apart and looked at in NODE_PARTS points of each interval that may hold a peak.  rotd50 is the
-                 median of the directions 0, 1, ... 179 degrees; rotd100 is the peak resultant, over all directions.
-    source     : Nigam and Jennings (1969), exact for piecewise-linear input; Boore (2010), orientation-independent
-                 measures RotDnn.  A linear oscillator lets the two histories be rotated instead of the input.
+    Parameters
+    ----------
+    motion : Motion
+        What the oscillators stand on.
+    periods : array_like, shape (m,)
+        In s, each above 0.
+    damping : float or array_like, shape (k,)
+        Ratio to critical, each at least 0.
+    components : iterable of str
+        Any of "x", "y", "z", "rotd50", "rotd100".
+
+    Returns
+    -------
+    dict of str to Spectrum
+        By component, in the order asked for.
+
+    Raises
+    ------
+    InputError
+        Naming the value that is not allowed.
+
+    Notes
+    -----
+    A linear oscillator lets the two histories be rotated instead of the input.  rotd50 is the median of the directions
+    0, 1, ... 179 degrees; rotd100 is the peak resultant, over all directions.
+
+    Error of x, y and z: rounding, about 1e-11 relative, peaks between samples included.  rotd50 and rotd100 are within
+    1e-4 of the exact peaks of their directions (measured: 4e-5 below critical damping, 1e-4 at twice critical): the
+    histories are rotated as cubics between nodes NODE_PHASE rad of the oscillator's phase apart and looked at in
+    NODE_PARTS points of each interval that may hold a peak.
+
+    References
+    ----------
+    Nigam, N. C. and Jennings, P. C. (1969), exact for piecewise-linear input.
+    Boore, D. M. (2010), orientation-independent measures RotDnn.
     """
     t = _allowed("period", periods, above=True)
     z = _allowed("damping", np.atleast_1d(np.asarray(damping, dtype=np.float64)), above=False)
@@ -106,16 +150,48 @@ def response_spectra(
 
 
 def psa(motion: Motion, periods: Sequence[float] | Array, damping: float = 0.05, component: str = "rotd100") -> Array:
-    """Return the pseudo-acceleration spectrum (m,) m/s2 of one component at one damping, as `response_spectra`."""
+    """Return the pseudo-acceleration spectrum of one component at one damping.
+
+    Parameters
+    ----------
+    motion, periods : Motion, array_like, shape (m,)
+        As of `response_spectra`; periods in s.
+    damping : float
+        Ratio to critical.
+    component : str
+        "x", "y", "z", "rotd50" or "rotd100".
+
+    Returns
+    -------
+    array, shape (m,)
+        In m/s2.
+
+    Raises
+    ------
+    InputError
+        As `response_spectra`.
+    """
     acceleration: Array = response_spectra(motion, periods, damping, (component,))[component].pseudo_acceleration[0]
     return acceleration
 
 
 def fourier_amplitude(motion: Motion) -> tuple[Array, Array]:
-    """Return frequencies (m,) Hz and the Fourier amplitude spectra (3, m) m/s of the samples.
+    """Return the Fourier amplitude spectra of a motion's samples.
 
-    The record is padded with zeros to a length that transforms fast.  The amplitude is |dt * DFT|, so that the sum of
-    its squares over both signs of frequency, times the frequency step, is the sum of a^2 dt (Parseval).
+    The record is padded with zeros to a length that transforms fast.  The amplitude is abs(dt * DFT), so that the sum
+    of its squares over both signs of frequency, times the frequency step, is the sum of a^2 dt (Parseval).
+
+    Parameters
+    ----------
+    motion : Motion
+        What is transformed.
+
+    Returns
+    -------
+    array, shape (m,)
+        Frequencies in Hz.
+    array, shape (3, m)
+        Amplitudes in m/s, rows x, y, z.
     """
     from scipy.fft import next_fast_len, rfft, rfftfreq
 
@@ -125,9 +201,29 @@ def fourier_amplitude(motion: Motion) -> tuple[Array, Array]:
 
 
 def response_history(motion: Motion, row: int, period: float, damping: float) -> tuple[Array, Array]:
-    """Return u (n,) m and a + u'' (n,) m/s2 at the samples for one oscillator on component ``row`` (0 x, 1 y, 2 z).
+    """Return the response of one oscillator to one component, at the samples.
 
-    error : rounding, about 1e-12 of the largest value
+    Parameters
+    ----------
+    motion : Motion
+        What it stands on.
+    row : int
+        The component: 0 x, 1 y, 2 z.
+    period : float
+        In s.
+    damping : float
+        Ratio to critical.
+
+    Returns
+    -------
+    array, shape (n,)
+        u in m, relative to the base.
+    array, shape (n,)
+        a + u'' in m/s2.
+
+    Notes
+    -----
+    Error: rounding, about 1e-12 of the largest value.
     """
     history = np.zeros((motion.samples, 2))
     base = samples(motion.acceleration[row])

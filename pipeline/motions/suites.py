@@ -17,8 +17,24 @@ from pipeline.records import Motion
 def scale_to_pga(motion: Motion, pga: float, basis: Literal["larger", "resultant"] = "larger") -> Motion:
     """Scale the three components by one factor to a peak ground acceleration.
 
-    pga    : m/s2, of the larger horizontal component or of the peak horizontal resultant (RotD100)
-    raises : ValueError for a pga that is not above 0 or a motion without horizontal shaking
+    Parameters
+    ----------
+    motion : Motion
+        What is scaled.
+    pga : float
+        In m/s2, above 0.
+    basis : {"larger", "resultant"}
+        Whose peak that is: of the larger horizontal component, or of the horizontal resultant (RotD100).
+
+    Returns
+    -------
+    Motion
+        With the step written into it.
+
+    Raises
+    ------
+    InputError
+        For a pga that is not above 0 or a motion without horizontal shaking.
     """
     _above_zero("pga", pga)
     if basis not in {"larger", "resultant"}:
@@ -32,8 +48,24 @@ def scale_to_pga(motion: Motion, pga: float, basis: Literal["larger", "resultant
 def target_at(periods: Array, target_periods: Sequence[float] | Array, target: Sequence[float] | Array) -> Array:
     """Return a target spectrum at other periods, by straight lines in log-log.
 
-    periods : (m,) s; target_periods, target : (k,) s, increasing, and (k,) m/s2
-    raises  : ValueError for values that are not above 0, periods that do not increase, or periods outside the target
+    Parameters
+    ----------
+    periods : array, shape (m,)
+        In s.
+    target_periods : array_like, shape (k,)
+        In s, increasing.
+    target : array_like, shape (k,)
+        Pseudo-acceleration in m/s2.
+
+    Returns
+    -------
+    array, shape (m,)
+        In m/s2.
+
+    Raises
+    ------
+    InputError
+        For values that are not above 0, periods that do not increase, or periods outside the target.
     """
     t, s = np.asarray(target_periods, dtype=np.float64), np.asarray(target, dtype=np.float64)
     if t.ndim != 1 or t.shape != s.shape or t.size < 2:
@@ -65,12 +97,33 @@ def scale_to_spectrum(
 ) -> Motion:
     """Scale the three components by the one factor that brings a response spectrum closest to a target.
 
-    target_periods, target : (k,) s and (k,) m/s2 (PSA), as `target_at`
-    period_range : s, from and to; 100 periods in equal ratios are compared
-    component    : of the motion's spectrum, as `spectra.response_spectra`
-    measure      : "log": least squares of ln(factor PSA / target), the geometric mean of the ratios; "linear": least
-                   squares of factor PSA - target
-    raises       : ValueError, as `target_at`, and for a motion without shaking in that component
+    Parameters
+    ----------
+    motion : Motion
+        What is scaled.
+    target_periods : array_like, shape (k,)
+        In s, increasing.
+    target : array_like, shape (k,)
+        Pseudo-acceleration in m/s2.
+    period_range : (float, float)
+        In s, from and to; 100 periods in equal ratios are compared.
+    damping : float
+        Ratio to critical, of target and spectrum.
+    component : str
+        Of the motion's spectrum, as `spectra.response_spectra`.
+    measure : {"log", "linear"}
+        "log": least squares of ln(factor PSA / target), the geometric mean of the ratios; "linear": least squares of
+        factor PSA - target.
+
+    Returns
+    -------
+    Motion
+        With the step written into it, and the misfit left.
+
+    Raises
+    ------
+    InputError
+        As `target_at`, and for a motion without shaking in that component.
     """
     low, high = period_range
     if not (np.isfinite(high) and 0.0 < low < high):

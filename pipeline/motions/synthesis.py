@@ -39,9 +39,33 @@ def sine(
 ) -> Motion:
     """Return A sin(2 pi f t + phase) over a number of cycles.
 
-    amplitude : m/s2; frequency : Hz; ramp : s, cosine ramps at both ends; phase : degrees
-    error     : the polygon through the samples falls short of the sine by up to (pi f dt)^2 / 2 of the amplitude
-    raises    : ValueError naming the parameter, what is allowed and why
+    Parameters
+    ----------
+    amplitude : float
+        A in m/s2.
+    frequency : float
+        f in Hz.
+    cycles : float
+        How many.
+    dt, ramp : float
+        Longest time step, and length of the cosine ramps at both ends, in s.
+    phase : float
+        In degrees.
+    direction : {"x", "y", "z"}
+        The direction that is shaken; the others rest.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InputError
+        Naming the parameter, what is allowed and why.
+
+    Notes
+    -----
+    Error: the polygon through the samples falls short of the sine by up to (pi f dt)^2 / 2 of the amplitude.
     """
     positive(amplitude=amplitude, frequency=frequency, cycles=cycles, dt=dt)
     _below_nyquist("frequency", frequency, dt)
@@ -63,10 +87,29 @@ def swept_sine(
     ramp: float = 0.0,
     direction: Direction = "x",
 ) -> Motion:
-    """Return a sine whose frequency runs from ``first`` to ``last`` Hz, linearly in time or in octaves per second.
+    """Return a sine whose frequency runs from one to another, linearly in time or in octaves per second.
 
-    amplitude : m/s2; duration and ramp : s
-    raises    : ValueError, as `sine`
+    Parameters
+    ----------
+    amplitude : float
+        In m/s2.
+    first, last : float
+        Frequencies in Hz at the start and at the end.
+    duration, dt, ramp : float
+        In s; dt is the longest time step, ramp the length of the cosine ramps at both ends.
+    sweep : {"linear", "logarithmic"}
+        How the frequency runs.
+    direction : {"x", "y", "z"}
+        The direction that is shaken; the others rest.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InputError
+        As `sine`.
     """
     positive(amplitude=amplitude, first=first, last=last, duration=duration, dt=dt)
     if first == last:
@@ -98,9 +141,29 @@ def band_limited_random(
 ) -> Motion:
     """Return Gaussian noise with a flat spectrum between two frequencies, the same for the same seed.
 
-    rms      : m/s2, root mean square before the ramps; first, last : Hz; duration, ramp : s
-    seed     : whole number from 0
-    raises   : ValueError, as `sine`, and for a band that holds no line of the record's Fourier spectrum
+    Parameters
+    ----------
+    rms : float
+        Root mean square in m/s2, before the ramps.
+    first, last : float
+        The band in Hz.
+    duration : float
+        In s.
+    seed : int
+        Whole number from 0.
+    dt, ramp : float
+        Longest time step, and length of the cosine ramps at both ends, in s.
+    direction : {"x", "y", "z"}
+        The direction that is shaken; the others rest.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InputError
+        As `sine`, and for a band that holds no line of the record's Fourier spectrum.
     """
     positive(rms=rms, last=last, duration=duration, dt=dt)
     if not 0.0 <= first < last:
@@ -126,8 +189,23 @@ def band_limited_random(
 def rectangular_pulse(peak: float, duration: float, *, dt: float = 0.005, direction: Direction = "x") -> Motion:
     """Return a constant acceleration: the record jumps to it at its first sample and back to zero after its last.
 
-    peak   : m/s2, of either sign; duration : s
-    raises : ValueError, as `sine`
+    Parameters
+    ----------
+    peak : float
+        In m/s2, of either sign.
+    duration, dt : float
+        In s; dt is the longest time step.
+    direction : {"x", "y", "z"}
+        The direction that is shaken; the others rest.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InputError
+        As `sine`.
     """
     _nonzero("peak", peak)
     positive(duration=duration, dt=dt)
@@ -139,9 +217,29 @@ def rectangular_pulse(peak: float, duration: float, *, dt: float = 0.005, direct
 def half_sine_pulse(peak: float, duration: float, *, dt: float = 0.005, direction: Direction = "x") -> Motion:
     """Return A sin(pi t / T) over the duration T.
 
-    peak   : m/s2, of either sign; duration : s
-    error  : the polygon delivers less velocity than the half-sine by (pi dt / T)^2 / 12
-    raises : ValueError, as `sine`
+    Parameters
+    ----------
+    peak : float
+        A in m/s2, of either sign.
+    duration : float
+        T in s.
+    dt : float
+        Longest time step in s.
+    direction : {"x", "y", "z"}
+        The direction that is shaken; the others rest.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InputError
+        As `sine`.
+
+    Notes
+    -----
+    Error: the polygon delivers less velocity than the half-sine by (pi dt / T)^2 / 12.
     """
     _nonzero("peak", peak)
     positive(duration=duration, dt=dt)
@@ -157,9 +255,31 @@ def ricker(
 ) -> Motion:
     """Return a symmetric Ricker pulse in acceleration or in velocity: (1 - 2 x^2) exp(-x^2), x = pi (t - t0) / Tp.
 
-    peak   : m/s2 or m/s, of either sign; period : s, Tp, where the pulse's Fourier spectrum peaks
-    raises : ValueError, as `sine`
-    source : Ricker (1943); as a ground acceleration in Vassiliou and Makris (2011)
+    Parameters
+    ----------
+    peak : float
+        In m/s2 or m/s, of either sign.
+    period : float
+        Tp in s, where the pulse's Fourier spectrum peaks.
+    of : {"acceleration", "velocity"}
+        What has the shape of the pulse.
+    dt : float
+        Longest time step in s.
+    direction : {"x", "y", "z"}
+        The direction that is shaken; the others rest.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InputError
+        As `sine`.
+
+    References
+    ----------
+    Ricker, N. (1943); as a ground acceleration in Vassiliou, M. F. and Makris, N. (2011).
     """
     _nonzero("peak", peak)
     positive(period=period, dt=dt)
@@ -188,12 +308,39 @@ def mavroeidis_papageorgiou(
 ) -> Motion:
     """Return the near-fault pulse v = A/2 (1 + cos(2 pi f t / gamma)) cos(2 pi f t + nu), |t| <= gamma / (2 f).
 
-    amplitude : m/s, A; period : s, 1/f; cycles : gamma, above 1; phase : degrees, nu
-    error     : the acceleration is the exact derivative at the samples; the polygon's velocity is off by
-                (pi dt / Tp)^2 / 3 at most.  Unless nu is a multiple of 90 degrees the pulse leaves a displacement.
-    raises    : ValueError, as `sine`
-    source    : Mavroeidis, G.P. and Papageorgiou, A.S. (2003), A mathematical representation of near-fault ground
-                motions, BSSA 93, 1099-1131, equation 3
+    Parameters
+    ----------
+    amplitude : float
+        A in m/s.
+    period : float
+        1/f in s.
+    cycles : float
+        gamma, above 1.
+    phase : float
+        nu in degrees.
+    dt : float
+        Longest time step in s.
+    direction : {"x", "y", "z"}
+        The direction that is shaken; the others rest.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InputError
+        As `sine`.
+
+    Notes
+    -----
+    Error: the acceleration is the exact derivative at the samples; the polygon's velocity is off by (pi dt / Tp)^2 / 3
+    at most.  Unless nu is a multiple of 90 degrees the pulse leaves a displacement.
+
+    References
+    ----------
+    Mavroeidis, G. P. and Papageorgiou, A. S. (2003), A mathematical representation of near-fault ground motions, BSSA
+    93, 1099-1131, equation 3.
     """
     positive(amplitude=amplitude, period=period, dt=dt)
     if not (np.isfinite(cycles) and cycles > 1.0):
@@ -214,9 +361,23 @@ def mavroeidis_papageorgiou(
 
 
 def to_peak(motion: Motion, pga: float) -> Motion:
-    """Scale a test signal to a peak acceleration [m/s2] of its strongest direction.
+    """Scale a test signal to a peak acceleration of its strongest direction.
 
-    raises : ValueError for a motion at rest or a peak that is not above 0
+    Parameters
+    ----------
+    motion : Motion
+        The signal.
+    pga : float
+        In m/s2, above 0.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InputError
+        For a motion at rest or a peak that is not above 0.
     """
     positive(pga=pga)
     m = measures(motion)
@@ -227,9 +388,29 @@ def to_peak(motion: Motion, pga: float) -> Motion:
 
 
 def one_direction(a: Array, dt: float, direction: str, name: str, told: str) -> Motion:
-    """Return the motion that shakes one direction with the samples a (n,) m/s2.
+    """Return the motion that shakes one direction with given samples.
 
-    raises : ValueError for a direction that is not x, y or z
+    Parameters
+    ----------
+    a : array, shape (n,)
+        In m/s2.
+    dt : float
+        Time step in s.
+    direction : {"x", "y", "z"}
+        The direction that is shaken; the other two rest.
+    name : str
+        What a report calls the motion.
+    told : str
+        What it is, with its parameters: its one step.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InputError
+        For a direction that is not x, y or z.
     """
     if direction not in {"x", "y", "z"}:
         raise InputError(f"direction must be 'x', 'y' or 'z', not {direction!r}")
@@ -262,7 +443,19 @@ def _ramps(t: Array, ramp: float) -> Array:
 def generator(seed: int) -> np.random.Generator:
     """Return the random numbers of a seed.
 
-    raises : ValueError unless it is a whole number from 0
+    Parameters
+    ----------
+    seed : int
+        Whole number from 0.
+
+    Returns
+    -------
+    numpy.random.Generator
+
+    Raises
+    ------
+    InputError
+        Unless it is a whole number from 0.
     """
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise InputError(f"seed must be a whole number from 0, not {seed!r}")
@@ -272,7 +465,15 @@ def generator(seed: int) -> np.random.Generator:
 def positive(**values: float) -> None:
     """Refuse what is not a number above 0.
 
-    raises : ValueError naming it
+    Parameters
+    ----------
+    **values : float
+        By the names that messages give them.
+
+    Raises
+    ------
+    InputError
+        Naming the value.
     """
     for name, value in values.items():
         if not (np.isfinite(value) and value > 0.0):

@@ -29,16 +29,37 @@ def write_site(
     why: str,
     dry_run: bool = False,
 ) -> Path:
-    """Write motions as CSV files with a manifest beside them, and return the manifest.
+    """Write motions as CSV files with a manifest beside them.
 
-    motions : each with the name of its level; a level's motions are combined by the largest demand
-    site    : where they belong; its x axis is theirs
-    licence : where a motion's source does not end in its own ("...; licence: ...")
-    why     : a comment at the top of the manifest, such as the command that wrote it
-    dry_run : write the same to a folder that goes at once, and return where the manifest would be
-    error   : every sample is written with 17 digits and read back bit for bit; the time step to its last digit.  A
-              velocity that a record starts with has no place in the files: its PGV is kept as `v_max_cm_s`
-    raises  : MotionError where the folder has a manifest already
+    Parameters
+    ----------
+    folder : Path
+        Where to; it is made where there is none.
+    motions : sequence of (str, Motion)
+        Each with the name of its level; a level's motions are combined by the largest demand.
+    site : SiteTable
+        Where they belong; its x axis is theirs.
+    licence : str
+        Where a motion's source does not end in its own ("...; licence: ...").
+    why : str
+        A comment at the top of the manifest, such as the command that wrote it.
+    dry_run : bool
+        Write the same to a folder that goes at once, and return where the manifest would be.
+
+    Returns
+    -------
+    Path
+        The manifest.
+
+    Raises
+    ------
+    MotionError
+        Where the folder has a manifest already.
+
+    Notes
+    -----
+    Every sample is written with 17 digits and read back bit for bit; the time step to its last digit.  A velocity that
+    a record starts with has no place in the files: its PGV is kept as `v_max_cm_s`.
     """
     if (folder / MANIFEST).exists():
         remedy = "choose another folder, or remove it"
@@ -104,7 +125,17 @@ def _record(folder: Path, file: str, motion: Motion, azimuth: float, licence: st
 def motion_csv(motion: Motion, x_azimuth: float = EAST) -> str:
     """Return a motion as a table that `formats.table` reads: time in s, x, y and z in m/s2, 17 digits.
 
-    x_azimuth : degrees clockwise from north of the motion's x axis
+    Parameters
+    ----------
+    motion : Motion
+        What is written.
+    x_azimuth : float
+        Of the motion's x axis, degrees clockwise from north.
+
+    Returns
+    -------
+    str
+        The lines of the file, each with its end.
     """
     second = (x_azimuth - 90.0) % 360.0
     lines = ["# processed: yes", f"time (s), HN1 {x_azimuth:g} deg (m/s2), HN2 {second:g} deg (m/s2), HNZ up (m/s2)"]
@@ -116,8 +147,19 @@ def motion_csv(motion: Motion, x_azimuth: float = EAST) -> str:
 def accept(path: Path, name: str, judgements: Mapping[Judgement, str]) -> None:
     """Write into a manifest that refusals of one record were judged and overruled; all else stays as it was.
 
-    judgements : the reason of each
-    raises     : MotionError where no record of the manifest has that name
+    Parameters
+    ----------
+    path : Path
+        The site's folder, or its manifest.toml.
+    name : str
+        The record.
+    judgements : mapping of str to str
+        The reason of each refusal that is overruled, by its name.
+
+    Raises
+    ------
+    MotionError
+        Where there is no manifest, or no record of it has that name.
     """
     file = manifest_file(path)
     document = tomlkit.parse(file.read_text(encoding="utf-8"))

@@ -31,7 +31,18 @@ def rehearsed(settings: "Settings", dry_run: bool = True) -> Iterator["Settings"
 
     What a rehearsal keeps goes into a temporary folder, and with it.  The copy is of what a night may use, so that a
     dry run takes no longer than the night: `[charts] megabytes` bounds it.
-    dry_run : False: the settings as they are, for callers that are asked for one or the other
+
+    Parameters
+    ----------
+    settings : Settings
+        Of the workspace.
+    dry_run : bool
+        False: the settings as they are, for callers that are asked for one or the other.
+
+    Yields
+    ------
+    Settings
+        Those to work with in the block.
     """
     if not dry_run or settings.rehearsal is not None:
         yield settings
@@ -49,9 +60,28 @@ def rehearsed(settings: "Settings", dry_run: bool = True) -> Iterator["Settings"
 def read_only(settings: "Settings", folder: Path) -> "Database":
     """Open the database of the settings so that nothing can be written to it; where it is still empty, another one.
 
-    folder : of the rehearsal; where nothing was imported yet the job may work on an empty database there, which goes
-             with it
-    raises : UsageError where the tables are not those of this version: a dry run does not change them
+    Parameters
+    ----------
+    settings : Settings
+        Of the workspace.
+    folder : Path
+        Of the rehearsal; where nothing was imported yet the job may work on an empty database there, which goes with
+        it.
+
+    Returns
+    -------
+    Database
+        That of the settings, to be read only, or the empty one.
+
+    Raises
+    ------
+    InputError
+        Where the tables are not those of this version: a dry run does not change them.
+
+    Warns
+    -----
+    DryRunWarning
+        Where there are no tables of Kouros yet.
     """
     from pipeline.collection.database import database_url, open_database, open_for_reading
     from pipeline.collection.inventory import latest_import

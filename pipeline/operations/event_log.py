@@ -75,10 +75,20 @@ class _File(RotatingFileHandler):
 
 @contextmanager
 def journal(settings: "Settings | None", hide: Callable[[str], str], *, to_stderr: bool = False) -> Iterator[None]:
-    """Write what is noted to the file of the settings, to standard error, to both or to neither.
+    """Write what is noted in the block to the file of the settings, to standard error, to both or to neither.
 
-    settings  : say the file; None where they could not be read
-    hide      : takes the secrets out of a text, see `pipeline.operations.secrets.hider`
+    Parameters
+    ----------
+    settings : Settings or None
+        Say the file; None where they could not be read.
+    hide : callable
+        Takes the secrets out of a text, see `pipeline.operations.secrets.hider`.
+    to_stderr : bool
+        Whether the lines go to standard error too.
+
+    Yields
+    ------
+    None
     """
     handlers: list[logging.Handler] = [logging.StreamHandler(sys.stderr)] if to_stderr else []
     refused: OSError | None = None
@@ -113,7 +123,13 @@ def journal(settings: "Settings | None", hide: Callable[[str], str], *, to_stder
 def note(event: str, /, *, level: int = logging.INFO, **fields: Any) -> None:
     """Write an event into the log, wherever `journal` keeps it; nowhere, where none is kept.
 
-    event  : what happened, by its lasting name, such as "run.finished"
-    fields : JSON-ready values; what is not, is written as text
+    Parameters
+    ----------
+    event : str
+        What happened, by its lasting name, such as "run.finished".
+    level : int
+        Of the standard library's logging.
+    **fields : Any
+        JSON-ready values; what is not, is written as text.
     """
     _LOG.log(level, "%s", event, extra={_FIELDS: fields})

@@ -53,8 +53,12 @@ class HookError(KourosError):
 class Told:
     """Whether a hook was told.
 
-    hook    : its kind, and the program or host
-    problem : "" where it was told
+    Attributes
+    ----------
+    hook : str
+        Its kind, and the program or host.
+    problem : str
+        "" where it was told.
     """
 
     hook: str
@@ -70,9 +74,23 @@ def tell(
 ) -> list[Told]:
     """Tell every hook that wants this event, one after the other; nothing is raised.
 
-    document    : of schemas/event.schema.json, JSON-ready
-    hide        : takes the secrets out of what is said about a failure
-    environment : of this process, unless given
+    Parameters
+    ----------
+    hooks : Hooks
+        Those of the settings.
+    event : {"changed", "failed", "shrunk"}
+        What happened.
+    document : mapping
+        Of schemas/event.schema.json, JSON-ready.
+    hide : callable
+        Takes the secrets out of what is said about a failure.
+    environment : mapping of str to str, or None
+        Of this process, unless given.
+
+    Returns
+    -------
+    list of Told
+        One for each hook that wants this event.
     """
     known = os.environ if environment is None else environment
     body = json.dumps(document, allow_nan=False).encode()
@@ -108,7 +126,20 @@ def named(hooks: Hooks) -> list[tuple[str, CommandHook | WebhookHook | EmailHook
 
 
 def look(hook: CommandHook | WebhookHook | EmailHook, environment: Mapping[str, str] | None = None) -> str:
-    """Return what would keep a hook from being told, "" for nothing; nothing is sent, only names are looked up."""
+    """Return what would keep a hook from being told; nothing is sent, only names are looked up.
+
+    Parameters
+    ----------
+    hook : CommandHook, WebhookHook or EmailHook
+        Of the settings.
+    environment : mapping of str to str, or None
+        Of this process, unless given.
+
+    Returns
+    -------
+    str
+        "" for nothing.
+    """
     known = os.environ if environment is None else environment
     try:
         match hook:

@@ -29,10 +29,26 @@ TOLD = 100
 def watched(settings: Settings, work: Callable[[], Summary], hide: Callable[[str], str], *, whole: bool) -> Summary:
     """Do a night's work, and say what became of it wherever the settings want to hear it.
 
-    work   : the run itself
-    hide   : takes the secrets out of a text
-    whole  : whether it is of the whole collection; a part, and a dry run, are logged only
-    raises : what the work raises; what fails beside it is said and logged, and raises nothing
+    Parameters
+    ----------
+    settings : Settings
+        With log, hooks and retention.
+    work : callable
+        The run itself.
+    hide : callable
+        Takes the secrets out of a text.
+    whole : bool
+        Whether it is of the whole collection; a part, and a dry run, are logged only.
+
+    Returns
+    -------
+    Summary
+        What the work returns.
+
+    Raises
+    ------
+    BaseException
+        What the work raises; what fails beside it is said and logged, and raises nothing.
     """
     began = perf_counter()
     ended = Lock()

@@ -16,7 +16,20 @@ class Presentation(TypedDict):
 def presentation(settings: Settings) -> Presentation:
     """Return the units and the language that the settings ask for.
 
-    raises : ReportError for a language without a catalogue, or with a damaged one
+    Parameters
+    ----------
+    settings : Settings
+        Of which `[report]` counts.
+
+    Returns
+    -------
+    Presentation
+        What `render` is told.
+
+    Raises
+    ------
+    ReportError
+        For a language without a catalogue, or with a damaged one.
     """
     asked = settings.report
     folder = settings.path(asked.catalogues) if asked.catalogues else None

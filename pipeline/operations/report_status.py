@@ -34,9 +34,16 @@ GOOD, RUNNING, FAILED = "good", "running", "failed"
 class LastGood:
     """The last report that is whole.
 
-    finished : ISO 8601, UTC; empty where its run did not say
-    report   : its index, from the folder of reports on
-    reading  : what its records' reading came to, as summary.json beside it says; None where that is not known
+    Attributes
+    ----------
+    run_id : str
+        Of the run that made it.
+    finished : str
+        ISO 8601, UTC; empty where its run did not say.
+    report : str
+        Its index, from the folder of reports on.
+    reading : mapping or None
+        What its records' reading came to, as summary.json beside it says; None where that is not known.
     """
 
     run_id: str
@@ -49,12 +56,22 @@ class LastGood:
 class Status:
     """How the last report stands (schemas/status.schema.json).
 
-    state     : "good"; "running" while a run is at work, or after one that was killed; "failed"
-    since     : when the state began, ISO 8601, UTC
-    pid       : of the process that said so
-    last_good : None before the first good night
-    kind, message, exit_code : of the failure; empty and 0 where there was none
-    began     : when the run began that said so, ISO 8601, UTC; empty where no run did
+    Attributes
+    ----------
+    state : str
+        "good"; "running" while a run is at work, or after one that was killed; "failed".
+    since : str
+        When the state began, ISO 8601, UTC.
+    pid : int
+        Of the process that said so.
+    last_good : LastGood or None
+        None before the first good night.
+    kind, message : str
+        Of the failure; empty where there was none.
+    exit_code : int
+        Of the failure; 0 where there was none.
+    began : str
+        When the run began that said so, ISO 8601, UTC; empty where no run did.
     """
 
     state: str
@@ -79,7 +96,20 @@ def mark_running(settings: Settings) -> None:
 
 
 def mark_good(settings: Settings, summary: Summary) -> None:
-    """Say that tonight's report is the last good one."""
+    """Say that tonight's report is the last good one.
+
+    Parameters
+    ----------
+    settings : Settings
+        Of which the folder of reports counts.
+    summary : Summary
+        Of the run that made it.
+
+    Raises
+    ------
+    ValueError
+        For a run without a report.
+    """
     if summary.report is None:
         raise ValueError("a run without a report is not the last good one")
     root = _root(settings)
@@ -91,7 +121,14 @@ def mark_good(settings: Settings, summary: Summary) -> None:
 def mark_failed(settings: Settings, problem: BaseException, message: str) -> None:
     """Say that tonight's run failed, and why; the last good report stays what it is.
 
-    message : without secrets, for everybody who may read the reports
+    Parameters
+    ----------
+    settings : Settings
+        Of which the folder of reports counts.
+    problem : BaseException
+        What ended the run.
+    message : str
+        Without secrets, for everybody who may read the reports.
     """
     good, kind = last_good(settings), type(problem).__name__
     code = exit_code_of(problem)

@@ -27,9 +27,14 @@ _ALWAYS = ("index.html", "findings.jsonl", "objects.csv")
 class Pruned:
     """What was removed, or would be.
 
-    runs    : run ids, the oldest first
-    reports : names of folders, the oldest first
-    kept    : folders that are old enough, and why they stay all the same
+    Attributes
+    ----------
+    runs : tuple of str
+        Run ids, the oldest first.
+    reports : tuple of str
+        Names of folders, the oldest first.
+    kept : tuple of str
+        Folders that are old enough, and why they stay all the same.
     """
 
     runs: tuple[str, ...] = ()
@@ -43,8 +48,22 @@ def prune(settings: Settings, *, dry_run: bool = False) -> Pruned:
     The last good run, its report and what `latest` points at always stay, and so does every folder that is not wholly
     Kouros's own.  An unfinished run goes only where a good one followed it.
 
-    dry_run : remove nothing, and say what would be
-    raises  : LockedError where a run is at work
+    Parameters
+    ----------
+    settings : Settings
+        Of which `[retention]` counts.
+    dry_run : bool
+        Remove nothing, and say what would be.
+
+    Returns
+    -------
+    Pruned
+        What was removed, or would be.
+
+    Raises
+    ------
+    LockedError
+        Where a run is at work.
     """
     limits = settings.retention
     if not (limits.runs or limits.reports or limits.days):

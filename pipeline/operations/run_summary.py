@@ -40,19 +40,52 @@ class Stores:
 class Summary:
     """What a run did, for one screen and for programs.
 
-    objects       : of the run; those on display are act + open + safe + cannot, and the numbers besides are theirs
-    fresh         : of the assessed, those whose results were found now; the others' rest on nothing that has changed
-    stores        : what is not on display, where it was asked for
-    reading       : what was refused and is doubted of the museum's records, see `readings.told`; None: not known
-    worth         : how many measurements would settle a verdict, None where that was not asked
-    survey_seconds: what asking cost
-    missing       : why objects could not be assessed, with how many of each
-    faults        : how many objects Kouros itself failed on; the log has the tracebacks
-    decisions     : how many of each kind are in force
-    doubted       : those of them that must be looked at again, with the reasons
-    efforts       : what the verdicts of each model took, see `pipeline.analysis.refinement.Effort`
-    report        : the report's index, None for a dry run
-    exit_code     : of the command: 0, or 3 of a strict run where objects could not be assessed
+    Attributes
+    ----------
+    run_id : str
+        Of the run.
+    started, finished : str
+        ISO 8601, UTC.
+    version : str
+        Of Kouros.
+    museum, site : str
+        Their names.
+    objects : int
+        Of the run; those on display are act + open + safe + cannot, and the numbers besides are theirs.
+    on_display, galleries, assessed, cannot, act, open, safe, findings : int
+        How many of each.
+    measures : mapping of str to int
+        How many of each measure.
+    missing : mapping of str to int
+        Why objects could not be assessed, with how many of each.
+    first : sequence of str
+        Lines of the first objects that are not settled.
+    faults : int
+        How many objects Kouros itself failed on; the log has the tracebacks.
+    fresh : int
+        Of the assessed, those whose results were found now; the others' rest on nothing that has changed.
+    stores : Stores or None
+        What is not on display, where it was asked for.
+    reading : mapping or None
+        What was refused and is doubted of the museum's records, see `readings.told`; None: not known.
+    worth : int or None
+        How many measurements would settle a verdict, None where that was not asked.
+    survey_seconds : float
+        What asking cost, in s.
+    decisions : mapping of str to int
+        How many of each kind are in force.
+    doubted : sequence of str
+        Those of them that must be looked at again, with the reasons.
+    efforts : sequence of mapping
+        What the verdicts of each model took, see `pipeline.analysis.refinement.Effort`.
+    report : Path or None
+        The report's index, None for a dry run.
+    latest : Path or None
+        The link to the newest report, where there is one.
+    exit_code : int
+        Of the command: 0, or 3 of a strict run where objects could not be assessed.
+    changes : RunChanges or None
+        Since the run before.
     """
 
     run_id: str
@@ -91,8 +124,19 @@ class Summary:
 def summary_document(summary: Summary, *, most: int | None = None, base: Path | None = None) -> dict[str, Any]:
     """Return a summary as schemas/run-summary.schema.json describes it.
 
-    most : changes of each kind that are listed, all of them where None; how many there are is told in any case
-    base : paths are told from this folder on, so that a report that is moved or published names no place of the machine
+    Parameters
+    ----------
+    summary : Summary
+        Of a run.
+    most : int or None
+        Changes of each kind that are listed, all of them where None; how many there are is told in any case.
+    base : Path or None
+        Paths are told from this folder on, so that a report that is moved or published names no place of the machine.
+
+    Returns
+    -------
+    dict
+        JSON-ready.
     """
     plain: dict[str, Any] = dict(vars(summary))
     changes: RunChanges | None = plain.pop("changes")
@@ -162,12 +206,30 @@ def words_of(problem: BaseException) -> str:
 def summary_text(summary: Summary, folder: Path) -> str:
     """Return the contents of summary.json, which lies beside a report's index.
 
-    folder : of the report; paths in the file are told from it
+    Parameters
+    ----------
+    summary : Summary
+        Of a run.
+    folder : Path
+        Of the report; paths in the file are told from it.
+
+    Returns
+    -------
+    str
+        JSON, with a line end.
     """
     return json.dumps(summary_document(summary, most=LISTED, base=folder), indent=2, allow_nan=False) + "\n"
 
 
 def write_aside(path: Path, text: str) -> None:
-    """Put a file (UTF-8) in place of another by one rename, so that nobody ever reads half of it."""
+    """Put a file in place of another by one rename, so that nobody ever reads half of it.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    text : str
+        What it shall hold, in UTF-8.
+    """
     with replacing(path) as aside:
         aside.write_text(text, encoding="utf-8", newline="\n")

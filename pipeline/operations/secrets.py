@@ -14,9 +14,18 @@ _SECRETIVE = re.compile("PASS|PWD|SECRET|TOKEN|KEY|CREDENTIAL")
 def hider(settings: Settings | None, environment: Mapping[str, str] | None = None) -> Callable[[str], str]:
     """Return a function that gives a text with *** in place of every secret of these settings.
 
-    settings    : name the variables whose values are secrets; None where they could not be read
-    environment : of this process, unless given.  Variables KOUROS_... whose names say that they hold a secret, and the
-                  password of the database's address, count whatever the settings say.
+    Parameters
+    ----------
+    settings : Settings or None
+        Name the variables whose values are secrets; None where they could not be read.
+    environment : mapping of str to str, or None
+        Of this process, unless given.  Variables KOUROS_... whose names say that they hold a secret, and the password
+        of the database's address, count whatever the settings say.
+
+    Returns
+    -------
+    callable
+        From text to text.
     """
     known = os.environ if environment is None else environment
     values = [value for name, value in known.items() if name.startswith("KOUROS_") and _SECRETIVE.search(name)]

@@ -29,7 +29,10 @@ _WORDS = {
 class Stopped(KeyboardInterrupt):
     """Somebody stopped the command.
 
-    exit_code : 128 and the signal's number, as a shell has it
+    Attributes
+    ----------
+    exit_code : int
+        128 and the signal's number, as a shell has it.
     """
 
     def __init__(self, number: int) -> None:
@@ -59,8 +62,21 @@ def _signals_come_here() -> bool:
 def stoppable(last_words: Callable[[Stopped], None]) -> Iterator[None]:
     """Let Ctrl-C and SIGTERM raise `Stopped` in the block, and end the process GRACE seconds later at the latest.
 
-    last_words : called by another thread where the process is ended because the main thread did not come to it
     In a thread other than the main one, which no signal reaches, nothing is done.
+
+    Parameters
+    ----------
+    last_words : callable
+        Called by another thread where the process is ended because the main thread did not come to it.
+
+    Yields
+    ------
+    None
+
+    Raises
+    ------
+    Stopped
+        In the block, where a signal comes.
     """
     if not _signals_come_here():
         yield

@@ -38,7 +38,15 @@ class UsageError(InputError):
 
 @dataclass(frozen=True)
 class Workspace:
-    """Open settings: the database is at the newest schema, the folders are known."""
+    """Open settings: the database is at the newest schema, the folders are known.
+
+    Attributes
+    ----------
+    settings : Settings
+        Of the museum.
+    engine : Database
+        Where inventory and runs are.
+    """
 
     settings: "Settings"
     engine: "Database"
@@ -47,7 +55,12 @@ class Workspace:
     def rules(self) -> "Table | None":
         """The rules of classification, where the museum has some of its own.
 
-        raises : UsageError for a file that is not there, TableError for one that cannot be used
+        Raises
+        ------
+        UsageError
+            For a file that is not there.
+        TableError
+            For one that cannot be used.
         """
         from pipeline.analysis.rules import with_own
 
@@ -58,7 +71,12 @@ class Workspace:
     def measures(self) -> "MeasureCatalogue":
         """The measures and isolators that the museum has.
 
-        raises : UsageError for a file that is not there, TableError for one that cannot be used
+        Raises
+        ------
+        UsageError
+            For a file that is not there.
+        TableError
+            For one that cannot be used.
         """
         wanted = self.settings.mitigation
         from pipeline.mitigate import measure_catalogue
@@ -77,7 +95,15 @@ class Workspace:
     def site(self) -> "Site":
         """Read the site of the settings; its processed motions are kept for the next time.
 
-        raises : MotionError
+        Returns
+        -------
+        Site
+            With the motions of the ground.
+
+        Raises
+        ------
+        MotionError
+            As `pipeline.motions.site.read_site`.
         """
         from pipeline.motions.site import read_site
 
@@ -105,13 +131,39 @@ class Workspace:
 
 
 def near(name: str, known: Collection[str]) -> str:
-    """Return "; did you mean 'x' or 'y'?" for the names that are most like this one, or nothing where none is."""
+    """Return a question after the names that are most like one that is not known.
+
+    Parameters
+    ----------
+    name : str
+        The one that is not known.
+    known : collection of str
+        Those that are.
+
+    Returns
+    -------
+    str
+        "; did you mean 'x' or 'y'?", or "" where none is like it.
+    """
     close = get_close_matches(name, known, n=3)
     return f"; did you mean {' or '.join(map(repr, close))}?" if close else ""
 
 
 def site_folder(home: Path, name: str) -> Path:
-    """Return a site's folder: the bundled one for "demo", else relative to a home, the folder of the settings."""
+    """Return a site's folder.
+
+    Parameters
+    ----------
+    home : Path
+        The folder of the settings.
+    name : str
+        "demo" for the bundled one, else a folder, relative to home.
+
+    Returns
+    -------
+    Path
+        Whether or not it is there.
+    """
     return resource("site_motions", "demo") if name == "demo" else home / Path(name).expanduser()
 
 
@@ -131,8 +183,21 @@ def open_workspace(settings: "Settings") -> Workspace:
 def locked(settings: "Settings", *, sweeping: bool = True) -> Iterator[None]:
     """Hold the lock of this workspace: one run at a time.  A dry run where none ever was makes no file for it.
 
-    sweeping : remove what processes that died left unfinished; not where nothing is to be written
-    raises   : LockedError at once where another process holds it
+    Parameters
+    ----------
+    settings : Settings
+        Of the workspace.
+    sweeping : bool
+        Remove what processes that died left unfinished; not where nothing is to be written.
+
+    Yields
+    ------
+    None
+
+    Raises
+    ------
+    LockedError
+        At once where another process holds it.
     """
     from filelock import FileLock, Timeout
 
@@ -170,10 +235,21 @@ def _sweep(settings: "Settings") -> None:
 def charts_of(
     settings: "Settings | None", using: Collection[str] = (), admitted: Collection[str] | None = None
 ) -> Iterator["ChartCache"]:
-    """Lend the cache of the workspace's response charts, and prune the cache at the end; None: one in memory only.
+    """Lend the cache of the workspace's response charts, and prune the cache at the end.
 
-    using    : hashes of motions in use, whose charts stay although perhaps none of them is asked for
-    admitted : see `ChartCache`
+    Parameters
+    ----------
+    settings : Settings or None
+        Of the workspace; None: a cache in memory only.
+    using : collection of str
+        Hashes of motions in use, whose charts stay although perhaps none of them is asked for.
+    admitted : collection of str, or None
+        See `ChartCache`.
+
+    Yields
+    ------
+    ChartCache
+        For the block.
     """
     from pipeline.analysis.response_charts import ChartCache
 
@@ -204,7 +280,22 @@ def tidy(settings: "Settings", using: Collection[str]) -> None:
 def folder_of_site(settings: "Settings | None", site: str | None) -> Path:
     """Return the folder of a site named on the command line, or else of the settings.
 
-    raises : UsageError where neither names one
+    Parameters
+    ----------
+    settings : Settings or None
+        None where there are none.
+    site : str or None
+        As named on the command line.
+
+    Returns
+    -------
+    Path
+        Whether or not it is there.
+
+    Raises
+    ------
+    UsageError
+        Where neither names one.
     """
     if site is not None:
         return site_folder(Path() if settings is None else settings.home, site)

@@ -263,7 +263,20 @@ class Settings(_Part):
 def load_settings(file: str | Path) -> Settings:
     """Read kouros.toml.
 
-    raises : SettingsError naming the file, the key and the remedy
+    Parameters
+    ----------
+    file : str or Path
+        Its folder becomes the home of relative paths.
+
+    Returns
+    -------
+    Settings
+        Checked; defaults where the file is silent.
+
+    Raises
+    ------
+    SettingsError
+        Naming the file, the key and the remedy.
     """
     where = Path(file)
     try:

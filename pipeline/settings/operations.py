@@ -59,7 +59,15 @@ class WebhookHook(_Hook):
 def check_address(url: str) -> None:
     """Refuse what is no address of a webhook, or holds a password.
 
-    raises : ValueError, which does not repeat the address
+    Parameters
+    ----------
+    url : str
+        The address.
+
+    Raises
+    ------
+    InputError
+        Which does not repeat the address.
     """
     parts = urlsplit(url)
     if parts.scheme not in ("http", "https") or not parts.hostname:

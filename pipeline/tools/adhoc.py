@@ -27,13 +27,39 @@ def respond_on_site(
 ) -> list[dict[str, Any]]:
     """Run one model under every motion of a site, as it comes through a chain of supports.
 
-    parameters : "name=value" or "name=value,value,..." in SI
-    through    : the supports from the ground up, each "name:parameter=value,parameter=value"
-    angle      : degrees, or "worst"
-    settings   : of the workspace in which charts and processed motions are kept; None keeps motions in the user's
-                 cache, and no charts
-    returns    : the rows of `respond`'s table with the motion and the parameters in front, for each motion
-    raises     : UsageError for words that are not name=value, ValueError as `respond`
+    Parameters
+    ----------
+    model : str
+        Its name.
+    parameters : sequence of str
+        "name=value" or "name=value,value,..." in SI.
+    site : str
+        Its folder, or "demo".
+    through : sequence of str
+        The supports from the ground up, each "name:parameter=value,parameter=value" in SI.
+    angle : str
+        Degrees, or "worst".
+    fidelity : str
+        As of `Numerics`.
+    tail : float or None
+        As of `respond`.
+    settings : Settings or None
+        Of the workspace in which charts and processed motions are kept; None keeps motions in the user's cache, and no
+        charts.
+
+    Returns
+    -------
+    list of dict
+        The rows of `respond`'s table with the motion and the parameters in front, for each motion.
+
+    Raises
+    ------
+    UsageError
+        For words that are not name=value.
+    InputError
+        As `respond`.
+    MotionError
+        For a site that cannot be used.
     """
     from pipeline.analysis.response import answer
     from pipeline.analysis.transmission import cascade

@@ -26,7 +26,16 @@ from pipeline.store.runs import commit_run, compare_runs
 class Pair:
     """A motion and the one that would take its place; "" where one of the two sites has no counterpart.
 
-    measures : by name, those of both (SI); None where there is no counterpart
+    Attributes
+    ----------
+    level : str
+        The level of shaking.
+    before, after : str
+        The motions.
+    same : bool
+        Whether they are the same, sample for sample.
+    measures : mapping of str to (float or None, float or None)
+        By name, those of both (SI); None where there is no counterpart.
     """
 
     level: str
@@ -40,9 +49,18 @@ class Pair:
 class Swap:
     """What a swap of one site for another would change.
 
-    basis    : which verdicts are compared, in words; why there are none, where there are none
-    verdicts : that would change
-    moved    : how many of these go from one verdict to another
+    Attributes
+    ----------
+    old, new : str
+        The sites.
+    pairs : sequence of Pair
+        Of their motions.
+    basis : str
+        Which verdicts are compared, in words; why there are none, where there are none.
+    verdicts : sequence of VerdictChange
+        That would change.
+    moved : mapping of str to int
+        How many of these go from one verdict to another.
     """
 
     old: str
@@ -57,8 +75,25 @@ def compare_sites(old: Path, new: Path, settings: Settings | None, progress: Pro
     """Compare two sites: the measures of their motions, and the verdicts of the last run under one and the other.
 
     Levels are paired by name, and those left over by their place; the motions of a level by their place.
-    settings : of the museum whose last run is looked at; None compares measures only
-    raises   : MotionError
+
+    Parameters
+    ----------
+    old, new : Path
+        Folders of the sites, or their manifests.
+    settings : Settings or None
+        Of the museum whose last run is looked at; None compares measures only.
+    progress : callable
+        Is told what is done, of how much.
+
+    Returns
+    -------
+    Swap
+        What would change.
+
+    Raises
+    ------
+    MotionError
+        For a site that cannot be used.
     """
     kept = None if settings is None else settings.kept
     before, after = read_site(old, kept=kept), read_site(new, kept=kept)
@@ -128,7 +163,10 @@ def _verdicts(
 def _assessed(workspace: Workspace, site: Site, name: str, engine: Database, progress: Progress) -> int:
     """Keep a run of the inventory on a site's motions in a database of its own; results that are there are taken over.
 
-    returns : how many objects had no result yet
+    Returns
+    -------
+    int
+        How many objects had no result yet.
     """
     everything = workspace.object_index()
     with pictures(workspace, site) as drawing:

@@ -48,9 +48,25 @@ class Wish:
 def decide(workspace: Workspace, wish: Wish, *, dry_run: bool = False) -> Decision:
     """Write a decision down, with what the last run of the whole collection found.
 
-    dry_run : write nothing; the decision has the id 0
-    raises  : UsageError for an object, measure, class, model, level or decision that there is not (naming those there
-              are), for a name or reason that is empty, and for a date or parameter that cannot be
+    Parameters
+    ----------
+    workspace : Workspace
+        Whose log of decisions it goes into.
+    wish : Wish
+        The decision, in words.
+    dry_run : bool
+        Write nothing; the decision has the id 0.
+
+    Returns
+    -------
+    Decision
+        As it is kept.
+
+    Raises
+    ------
+    UsageError
+        For an object, measure, class, model, level or decision that there is not (naming those there are), for a name
+        or reason that is empty, and for a date or parameter that cannot be.
     """
     decision = _put(workspace, wish)
     return decision if dry_run else add_decision(workspace.engine, decision)
@@ -269,6 +285,21 @@ def _number(quantity: Quantity, name: str, text: str) -> float:
 
 
 def listed(workspace: Workspace, object_number: str | None = None, *, log: bool = False) -> list[Decision]:
-    """Return the decisions in force about an object, or about all, by id; of the log all that was ever written."""
+    """Return the decisions about an object, or about all, by id.
+
+    Parameters
+    ----------
+    workspace : Workspace
+        Whose log of decisions is read.
+    object_number : str or None
+        The museum's number of the object; None: all.
+    log : bool
+        All that was ever written; else those in force.
+
+    Returns
+    -------
+    list of Decision
+        By id.
+    """
     rows = read_decisions(workspace.engine, object_number)
     return list(rows if log else in_force(rows))

@@ -18,8 +18,17 @@ MUSEUM = "Carnegie Museum of Art (demonstration)"
 def demonstration(folder: Path, *, dry_run: bool = False) -> Settings:
     """Return the demonstration's settings, written where they are missing.
 
-    folder  : kept from one demonstration to the next; the reports lie below it
-    dry_run : write neither folder nor settings
+    Parameters
+    ----------
+    folder : Path
+        Kept from one demonstration to the next; the reports lie below it.
+    dry_run : bool
+        Write neither folder nor settings.
+
+    Returns
+    -------
+    Settings
+        Of the demonstration.
     """
     file = folder / "kouros.toml"
     text = template(museum=MUSEUM, source=str(bundled_collection()), mapping="carnegie", site="demo")
@@ -36,5 +45,18 @@ def demonstration(folder: Path, *, dry_run: bool = False) -> Settings:
 
 
 def demo(folder: Path, progress: Progress) -> Summary:
-    """Run the night with the demonstration's settings."""
+    """Run the night with the demonstration's settings.
+
+    Parameters
+    ----------
+    folder : Path
+        As of `demonstration`.
+    progress : callable
+        Is told what is done, of how much.
+
+    Returns
+    -------
+    Summary
+        Of the run.
+    """
     return run(demonstration(folder), progress)

@@ -29,7 +29,20 @@ Look = tuple[str, Callable[[], Found]]
 
 
 def looks(settings: Settings, workspace: Workspace | None) -> Iterator[Look]:
-    """Yield what to look at, by name; each look returns what it found, and may raise."""
+    """Yield what to look at, by name; each look returns what it found, and may raise.
+
+    Parameters
+    ----------
+    settings : Settings
+        What is looked at.
+    workspace : Workspace or None
+        None where it could not be opened: less is looked at.
+
+    Yields
+    ------
+    Look
+        A name, and the look.
+    """
     yield "disk", lambda: _disk(settings)
     yield "permissions", lambda: _permissions(settings)
     yield "kernels", _kernels

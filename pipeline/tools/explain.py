@@ -30,11 +30,21 @@ from pipeline.store.decisions import InForce, decisions_in_force
 class Taken:
     """A step that was taken for one parameter set under one motion.
 
-    inputs     : which of the uncertain inputs is at an end of its range, and the direction where it is known
-    step       : bound, chart, or the fidelity that was integrated at
-    low, high  : between these the demand lies; of a chart its value less and plus its error, of a history the same
-    error      : as the chart or the history states it; None of a bound
-    told       : what the object does then, where the history tells
+    Attributes
+    ----------
+    motion : str
+        Its name.
+    inputs : str
+        Which of the uncertain inputs is at an end of its range, and the direction where it is known.
+    step : str
+        Bound, chart, or the fidelity that was integrated at.
+    low, high : float
+        Between these the demand lies, in the capacity's unit; of a chart its value less and plus its error, of a
+        history the same.
+    error : float or None
+        As the chart or the history states it; None of a bound.
+    told : str
+        What the object does then, where the history tells.
     """
 
     motion: str
@@ -50,7 +60,14 @@ class Taken:
 class Reasoning:
     """One model under one level: the steps in the order in which they were taken, and what came of them.
 
-    taken : none of what stands on an isolator, which is integrated under what that passes on
+    Attributes
+    ----------
+    finding : Finding
+        What came of them.
+    capacity : Estimate
+        What the demand is held against.
+    taken : tuple of Taken
+        None of what stands on an isolator, which is integrated under what that passes on.
     """
 
     finding: Finding
@@ -70,7 +87,26 @@ class Explanation:
 def explain(workspace: Workspace, number: str, progress: Progress) -> list[Explanation]:
     """Assess one object as a night would, and keep every step; all records of that number, if it has several.
 
-    raises : UsageError for an object that the inventory does not have, with close ones; errors as a run
+    Parameters
+    ----------
+    workspace : Workspace
+        Whose inventory has the object.
+    number : str
+        The museum's number of the object.
+    progress : callable
+        Is told what is done, of how much.
+
+    Returns
+    -------
+    list of Explanation
+        One for each record of that number.
+
+    Raises
+    ------
+    UsageError
+        For an object that the inventory does not have, with close ones.
+    KourosError
+        As a run does.
     """
     settings = workspace.settings
     everything, inventory = workspace.object_index(), read_inventory(workspace.engine)

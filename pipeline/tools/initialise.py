@@ -51,9 +51,22 @@ longitude = 0.0
 def initialise(folder: Path, *, dry_run: bool = False) -> list[Path]:
     """Make kouros.toml, site_motions/site and the database in a folder.
 
-    dry_run : make nothing
-    returns : what was made, or would be
-    raises  : UsageError where settings are there already; nothing is overwritten
+    Parameters
+    ----------
+    folder : Path
+        It is made where there is none.
+    dry_run : bool
+        Make nothing.
+
+    Returns
+    -------
+    list of Path
+        What was made, or would be.
+
+    Raises
+    ------
+    UsageError
+        Where settings are there already; nothing is overwritten.
     """
     file = folder / "kouros.toml"
     if file.exists():

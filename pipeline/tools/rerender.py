@@ -23,7 +23,18 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
     """Render a run from the store into a new folder; the newest of the whole collection becomes the latest report.
 
     Nothing is computed again, and one page at a time is in memory.
-    returns : the report's index
+
+    Parameters
+    ----------
+    settings : Settings
+        Of the workspace.
+    run_id : str or None
+        None: the newest of the whole collection.
+
+    Returns
+    -------
+    Path
+        The report's index.
     """
     with locked(settings):
         workspace = open_workspace(settings)
@@ -58,7 +69,22 @@ def _free(folder: Path) -> Path:
 def compare(settings: Settings, old: str | None, new: str | None) -> RunChanges:
     """Return what changed between two runs; the last two of the whole collection where none is named.
 
-    raises : UsageError where there are not two runs yet
+    Parameters
+    ----------
+    settings : Settings
+        Of the workspace.
+    old, new : str or None
+        Ids of the runs.
+
+    Returns
+    -------
+    RunChanges
+        From the old one to the new one.
+
+    Raises
+    ------
+    UsageError
+        Where there are not two runs yet.
     """
     engine = open_workspace(settings).engine
     runs = whole_runs(engine)

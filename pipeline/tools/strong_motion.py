@@ -18,9 +18,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MotionRow:
-    """One motion of a site in a line; SI, "" or None where there is none.
+    """One motion of a site in a line; "" or None where there is none.
 
-    pulse_period : s, of a pulse-like motion
+    Attributes
+    ----------
+    level, floor, name : str
+        What it is called, and where and at which level of shaking it is felt.
+    dt, duration : float
+        Time step and length in s.
+    pga : float
+        In m/s2, of the larger horizontal component, as `pgv` and `pgd`.
+    pgv : float
+        In m/s.
+    pgd : float
+        In m.
+    duration_5_95 : float
+        In s.
+    pulse_period : float or None
+        In s, of a pulse-like motion.
+    approved_by : str
+        The engineer who answers for the level.
+    hash : str
+        Of the processed motion.
     """
 
     level: str
@@ -40,7 +59,20 @@ class MotionRow:
 def listed(folder: Path) -> list[MotionRow]:
     """Return the motions of a site, those of its floors after those of the ground.
 
-    raises : MotionError
+    Parameters
+    ----------
+    folder : Path
+        The site's folder, or its manifest.toml.
+
+    Returns
+    -------
+    list of MotionRow
+        One for each motion.
+
+    Raises
+    ------
+    MotionError
+        For a site that cannot be used.
     """
     site = read_site(folder)
     return [
@@ -67,8 +99,28 @@ def listed(folder: Path) -> list[MotionRow]:
 def show(folder: Path, name: str, page: Path, units: Units) -> "tuple[list[Inspection], Path]":
     """Look at the records of a site and write the page of it.
 
-    name   : of one record, or "" for all
-    raises : MotionError
+    Parameters
+    ----------
+    folder : Path
+        The site's folder, or its manifest.toml.
+    name : str
+        Of one record, or "" for all.
+    page : Path
+        Where the page is written to.
+    units : Units
+        Those of the page.
+
+    Returns
+    -------
+    list of Inspection
+        One for each record.
+    Path
+        The page.
+
+    Raises
+    ------
+    MotionError
+        For a site that cannot be used, or has no such record.
     """
     from pipeline.motions.inspection import inspect
     from pipeline.report.pages.record_page import render_record
@@ -116,7 +168,20 @@ def described(one: "Inspection") -> dict[str, Any]:
 def entries(folder: Path) -> list[str]:
     """Return the entries that a site's manifest needs for the record files beside it, see `motions.entries`.
 
-    raises : MotionError
+    Parameters
+    ----------
+    folder : Path
+        The site's folder, or its manifest.toml.
+
+    Returns
+    -------
+    list of str
+        TOML to be pasted into the manifest.
+
+    Raises
+    ------
+    MotionError
+        For a folder without a manifest, or one that cannot be used.
     """
     from pipeline.motions.entries import entries as found
 
@@ -126,10 +191,28 @@ def entries(folder: Path) -> list[str]:
 def process(folder: Path, out: Path, name: str, *, dry_run: bool = False) -> Path:
     """Process the records of a site's ground and write them as a site of their own.
 
-    name    : of one record, or "" for all
-    dry_run : write nothing
-    returns : the new manifest
-    raises  : MotionError
+    Parameters
+    ----------
+    folder : Path
+        The site's folder, or its manifest.toml.
+    out : Path
+        The folder of the new site.
+    name : str
+        Of one record, or "" for all.
+    dry_run : bool
+        Write nothing.
+
+    Returns
+    -------
+    Path
+        The new manifest.
+
+    Raises
+    ------
+    UsageError
+        For a record that the site does not have.
+    MotionError
+        For a site that cannot be used, or where the new one is there already.
     """
     site = read_site(folder)
     chosen = [(v.name, one.motion) for v in site.levels for one in v.motions if name in {"", one.motion.name}]
@@ -143,9 +226,28 @@ def process(folder: Path, out: Path, name: str, *, dry_run: bool = False) -> Pat
 def overrule(folder: Path, name: str, reason: str, *, dry_run: bool = False) -> Sequence[str]:
     """Overrule, with a reason, the refusals of one record that are a matter of judgement; the manifest keeps it.
 
-    dry_run : leave the manifest as it is
-    returns : what was refused, in words, one for each refusal overruled; none where nothing was refused
-    raises  : MotionError for what is corrupt, or for a record that the manifest does not have
+    Parameters
+    ----------
+    folder : Path
+        The site's folder, or its manifest.toml.
+    name : str
+        Of the record.
+    reason : str
+        Why it is used all the same.
+    dry_run : bool
+        Leave the manifest as it is.
+
+    Returns
+    -------
+    sequence of str
+        What was refused, in words, one for each refusal overruled; none where nothing was refused.
+
+    Raises
+    ------
+    UsageError
+        For a record that the manifest does not have.
+    MotionError
+        For what is corrupt.
     """
     file = manifest_file(folder)
     manifest = load_manifest(file)

@@ -29,7 +29,19 @@ LENGTH_UNITS = ("cm", "mm", "m", "in", "ft")
 
 @dataclass(frozen=True)
 class Surveyed:
-    """What a survey asks for, where its workbook is, and the objects that Kouros failed on."""
+    """What a survey asks for, where its workbook is, and the objects that Kouros failed on.
+
+    Attributes
+    ----------
+    path : Path
+        Of the workbook.
+    wishes : tuple of MeasurementRequest
+        What is worth measuring, the most useful first.
+    objects, quantities, waste : int
+        As the workbook counts them.
+    faults : tuple of Fault
+        The objects that Kouros failed on.
+    """
 
     path: Path
     wishes: tuple[MeasurementRequest, ...]
@@ -44,9 +56,28 @@ def survey(
 ) -> Surveyed:
     """Assess the objects on display, and write what is worth measuring to a workbook.
 
-    galleries : only these; none named means all
-    path      : of the workbook; None for survey-<date>.xlsx beside the settings
-    raises    : as a run does, where motions or settings are wrong
+    Parameters
+    ----------
+    workspace : Workspace
+        Whose inventory is surveyed.
+    progress : callable
+        Is told what is done, of how much.
+    galleries : tuple of str
+        Only these; none named means all.
+    path : Path or None
+        Of the workbook; None for survey-<date>.xlsx beside the settings.
+
+    Returns
+    -------
+    Surveyed
+        What is asked for, and where.
+
+    Raises
+    ------
+    CollectionError
+        Where nothing is on display.
+    KourosError
+        As a run does, where motions or settings are wrong.
     """
     settings = workspace.settings
     items = [
@@ -94,7 +125,20 @@ def survey(
 def read_sheet(path: Path) -> Reading:
     """Read a sheet that was filled in: a survey's workbook, or a CSV with the columns of the preset "kouros".
 
-    raises : CollectionError for a file that cannot be read, or a workbook without the survey's sheet
+    Parameters
+    ----------
+    path : Path
+        The sheet.
+
+    Returns
+    -------
+    Reading
+        Its rows, and what was refused of them.
+
+    Raises
+    ------
+    CollectionError
+        For a file that cannot be read, or a workbook without the survey's sheet.
     """
     if path.suffix.lower() != ".xlsx":
         return read_items(path, load_mapping("kouros"))
@@ -110,7 +154,18 @@ def read_sheet(path: Path) -> Reading:
 
 
 def sheet_mapping(length: str) -> Mapping:
-    """Return the mapping that reads a survey's sheet whose lengths are in this unit."""
+    """Return the mapping that reads a survey's sheet.
+
+    Parameters
+    ----------
+    length : {"cm", "mm", "m", "in", "ft"}
+        The unit of its lengths.
+
+    Returns
+    -------
+    Mapping
+        Of the sheet's columns.
+    """
     whole = load_mapping("kouros").model_dump(exclude_none=True, exclude_defaults=True)
     whole["source"] = {"format": "xlsx", "sheet": sheet_title(length), "header_row": HEADER_ROW}
     columns = {}
@@ -123,9 +178,30 @@ def sheet_mapping(length: str) -> Mapping:
 def add_measurements(
     workspace: Workspace, path: Path, *, dry_run: bool = False
 ) -> tuple[Reading, Difference, list[str]]:
-    """Lay a filled-in sheet over the inventory; a dry run only says what that would change.
+    """Lay a filled-in sheet over the inventory.
 
-    returns : what was read, what changed, and the objects of the sheet that the inventory does not have
+    Parameters
+    ----------
+    workspace : Workspace
+        Whose inventory gets the measurements.
+    path : Path
+        The sheet.
+    dry_run : bool
+        Only say what that would change.
+
+    Returns
+    -------
+    Reading
+        What was read.
+    Difference
+        What changed.
+    list of str
+        The objects of the sheet that the inventory does not have.
+
+    Raises
+    ------
+    CollectionError
+        As `read_sheet`.
     """
     reading = read_sheet(path)
     changes, unknown = add_sheet(workspace.engine, reading, dry_run=dry_run)

@@ -27,10 +27,32 @@ SIGNALS: Mapping[str, Callable[..., Motion]] = {
 def synthesise(kind: str, words: Sequence[str], folder: Path, *, dry_run: bool = False) -> tuple[Path, Motion]:
     """Make a test signal and write it as a site of its own.
 
-    words   : "name=value" of the signal's own parameters; lists with commas
-    dry_run : write nothing
-    returns : the manifest, and the motion
-    raises  : UsageError naming the parameter; ValueError as the signal does; MotionError where there is a site already
+    Parameters
+    ----------
+    kind : str
+        The signal.
+    words : sequence of str
+        "name=value" of the signal's own parameters; lists with commas.
+    folder : Path
+        Of the new site.
+    dry_run : bool
+        Write nothing.
+
+    Returns
+    -------
+    Path
+        The manifest.
+    Motion
+        The signal.
+
+    Raises
+    ------
+    UsageError
+        Naming the parameter.
+    InputError
+        As the signal does.
+    MotionError
+        Where there is a site already.
     """
     make = SIGNALS[kind]
     motion = make(**_arguments(kind, make, words))

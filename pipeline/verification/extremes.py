@@ -17,7 +17,22 @@ BESIDE = ("angle", "fidelity", "note")
 
 
 def shaking(samples: int = 300, dt: float = 0.02, vertical: float = 0.5) -> Motion:
-    """Return band-limited random shaking (0.4 to 12 Hz) that rises and decays, the same at each call."""
+    """Return band-limited random shaking (0.4 to 12 Hz) that rises and decays, the same at each call.
+
+    Parameters
+    ----------
+    samples : int
+        How many.
+    dt : float
+        Time step in s.
+    vertical : float
+        Peak of the vertical relative to that of each horizontal.
+
+    Returns
+    -------
+    Motion
+        With peaks of STRONG in the horizontals.
+    """
     rng = np.random.default_rng(71)
     t = np.arange(samples) * dt
     envelope = np.sin(np.pi * (t + 0.5 * dt) / (t[-1] + dt)) ** 0.7
@@ -30,7 +45,22 @@ def shaking(samples: int = 300, dt: float = 0.02, vertical: float = 0.5) -> Moti
 
 
 def along_x(values: Array, dt: float, vertical: float = 0.0) -> Motion:
-    """Return a motion with these samples along x, and a constant vertical acceleration."""
+    """Return a motion with given samples along x, and a constant vertical acceleration.
+
+    Parameters
+    ----------
+    values : array, shape (n,)
+        In m/s2.
+    dt : float
+        Time step in s.
+    vertical : float
+        In m/s2, up.
+
+    Returns
+    -------
+    Motion
+        With nothing along y.
+    """
     return Motion(dt, np.vstack([values, np.zeros_like(values), np.full_like(values, vertical)]))
 
 

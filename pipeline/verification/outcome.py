@@ -7,8 +7,20 @@ from dataclasses import dataclass
 class Outcome:
     """What a case gave: result is not above limit where ok; problem is what stopped it.
 
-    what, truth : the extreme, and what it is held against
-    result      : a relative error where the truth says nothing else; None where no number came out
+    Attributes
+    ----------
+    what, truth : str
+        The extreme, and what it is held against.
+    result : float or None
+        A relative error where the truth says nothing else; None where no number came out.
+    limit : float
+        The largest result that is accepted.
+    ok : bool
+        Whether the case passed.
+    seconds : float
+        What it took.
+    problem : str
+        What stopped it; "" where nothing did.
     """
 
     what: str

@@ -21,7 +21,14 @@ from pipeline.verification.outcome import Outcome
 class Case:
     """An extreme, the truth that it is held against, and how far off it may be.
 
-    measure : -> what is held against the limit: a relative error where nothing else is said
+    Attributes
+    ----------
+    what, truth : str
+        The extreme, and what it is held against.
+    limit : float
+        The largest result that is accepted.
+    measure : callable
+        Returns what is held against the limit: a relative error where nothing else is said.
     """
 
     what: str
@@ -77,7 +84,20 @@ def _newmark(friction: Array, directions: int, peak: float = 0.5 * G, duration: 
 
 
 def step_response(x: Array, zeta: float) -> Array:
-    """Return w^2 u / A of an oscillator under a suddenly applied force, x = w t: the four textbook branches."""
+    """Return w^2 u / A of an oscillator under a suddenly applied force: the four textbook branches.
+
+    Parameters
+    ----------
+    x : array, shape (n,)
+        w t in rad.
+    zeta : float
+        Damping, ratio to critical.
+
+    Returns
+    -------
+    array, shape (n,)
+        Relative to the static response.
+    """
     if zeta < 1.0:
         d = np.sqrt(1.0 - zeta**2)
         return np.asarray(1.0 - np.exp(-zeta * x) * (np.cos(d * x) + zeta / d * np.sin(d * x)))

@@ -23,7 +23,19 @@ LAST = "last"
 
 @dataclass(frozen=True)
 class SelfTest:
-    """A whole self-test: when (ISO 8601, UTC), of which version and kernels, on what machine, with all its cases."""
+    """A whole self-test.
+
+    Attributes
+    ----------
+    when : str
+        ISO 8601, UTC.
+    version, kernels : str
+        What was tested.
+    machine : str
+        What the kernels were compiled for.
+    cases : sequence of Outcome
+        All of them.
+    """
 
     when: str
     version: str
@@ -43,7 +55,18 @@ def machine() -> str:
 
 
 def self_test(settings: Settings | None) -> Iterator[Outcome]:
-    """Run the self-test, yield each outcome, and keep the whole for the next reports; None keeps nothing."""
+    """Run the self-test, yield each outcome, and keep the whole for the next reports.
+
+    Parameters
+    ----------
+    settings : Settings or None
+        Of the workspace that keeps it; None keeps nothing.
+
+    Yields
+    ------
+    Outcome
+        Of each case.
+    """
     from pipeline.kernels import KERNEL_VERSION
     from pipeline.verification.self_measurement import outcomes
 
@@ -57,12 +80,31 @@ def self_test(settings: Settings | None) -> Iterator[Outcome]:
 
 
 def keep(test: SelfTest, folder: Path) -> None:
-    """Keep a self-test for the next reports, in place of the last one."""
+    """Keep a self-test for the next reports, in place of the last one.
+
+    Parameters
+    ----------
+    test : SelfTest
+        What is kept.
+    folder : Path
+        Of the cache.
+    """
     Cache(folder).put(SELF_TESTS, LAST, Kept(test.plain()), lasting=True)
 
 
 def kept(folder: Path) -> SelfTest | None:
-    """Return the last self-test, whatever kernels it ran, or None: never run, damaged, or of another form."""
+    """Return the last self-test, whatever kernels it ran.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the cache.
+
+    Returns
+    -------
+    SelfTest or None
+        None: never run, damaged, or of another form.
+    """
     found = Cache(folder).get(SELF_TESTS, LAST, lasting=True)
     try:
         return None if found is None else TypeAdapter(SelfTest).validate_json(json.dumps(found.said), strict=True)

@@ -60,12 +60,23 @@ CLOSED = 1e-14
 class Setting:
     """One setting of one model: what it costs and how wrong it is.
 
-    kind     : "bound" (the upper bound, as if it were the response), "chart" (looked up; the building is not in the
-               cost), "step" (all three in a fixed direction), or "azimuth" (the worst of several, at `history`)
-    setting  : in words; `fidelity` where the setting is one, else ""
-    cost     : ns per object and sample, in one thread, without the error estimate
-    median, p95, worst : relative error of the first output over the objects that move
-    wrong    : objects that fall in one and not in the other, which count in no error
+    Attributes
+    ----------
+    model : str
+        Its name.
+    kind : str
+        "bound" (the upper bound, as if it were the response), "chart" (looked up; the building is not in the cost),
+        "step" (all three in a fixed direction), or "azimuth" (the worst of several, at `history`).
+    setting : str
+        In words.
+    fidelity : str
+        The fidelity where the setting is one, else "".
+    cost : float
+        In ns per object and sample, in one thread, without the error estimate.
+    median, p95, worst : float
+        Relative error of the first output over the objects that move.
+    wrong : int
+        Objects that fall in one and not in the other, which count in no error.
     """
 
     model: str
@@ -83,10 +94,19 @@ class Setting:
 class Sample:
     """What a model was measured on.
 
-    objects : how many parameter sets; moved: how many of their responses count, which move
-    sensitive : how many responses hang on less than 1 % of the motion's amplitude, as the model itself says: no setting
-                can be right about them, and they count in no error
-    source  : "the collection", or "plausible ranges" where it has no such object
+    Attributes
+    ----------
+    model : str
+        Its name.
+    objects : int
+        How many parameter sets.
+    moved : int
+        How many of their responses count, which move.
+    sensitive : int
+        How many responses hang on less than 1 % of the motion's amplitude, as the model itself says: no setting can be
+        right about them, and they count in no error.
+    source : str
+        "the collection", or "plausible ranges" where it has no such object.
     """
 
     model: str
@@ -107,7 +127,18 @@ class Tradeoff:
     settings: Sequence[Setting]
 
     def cheapest(self, wanted: float) -> dict[str, Setting | None]:
-        """Return, for each model, the cheapest step whose worst error keeps a wanted one, with every outcome right."""
+        """Return, for each model, the cheapest step whose worst error keeps a wanted one, with every outcome right.
+
+        Parameters
+        ----------
+        wanted : float
+            Relative error.
+
+        Returns
+        -------
+        dict of str to Setting or None
+            By model; None where no step keeps it.
+        """
         out: dict[str, Setting | None] = {}
         for sample in self.samples:
             good = [
@@ -133,12 +164,31 @@ def measure(
 ) -> Tradeoff:
     """Measure error against cost for each model at every setting.
 
-    motions : each model is run under each of them; errors are over all, costs the mean
-    items   : the collection that parameters are drawn from, at random with the seed
-    models  : their names; all where empty
-    objects : parameter sets of each model
-    charts  : where charts are found and kept; None: in memory only
-    error   : against a step TRUTH times finer than the coarsest, and directions every AZIMUTH_TRUTH degrees
+    Parameters
+    ----------
+    motions : sequence of Motion
+        Each model is run under each of them; errors are over all, costs the mean.
+    items : sequence of Item
+        The collection that parameters are drawn from, at random with the seed.
+    progress : callable
+        Is told what is done, of how much.
+    models : sequence of str
+        Their names; all where empty.
+    objects : int
+        Parameter sets of each model.
+    seed : int
+        Of the draws.
+    charts : ChartCache or None
+        Where charts are found and kept; None: in memory only.
+
+    Returns
+    -------
+    Tradeoff
+        Errors relative, costs in ns per object and sample.
+
+    Notes
+    -----
+    Errors are against a step TRUTH times finer than the coarsest, and directions every AZIMUTH_TRUTH degrees.
     """
     chosen = [model_named(name) for name in models] or list(MODELS)
     scenes = sound(lambda some: [classify(item) for item in some], items)
@@ -294,7 +344,20 @@ def _setting(
 def picture(found: Tradeoff) -> Chart:
     """Return the work-precision plot: cost of each model against the error in 95 of 100 objects, step by step.
 
-    raises : ValueError where no measured model has a step, so that there is nothing to draw
+    Parameters
+    ----------
+    found : Tradeoff
+        What was measured.
+
+    Returns
+    -------
+    Chart
+        Both axes logarithmic.
+
+    Raises
+    ------
+    ValueError
+        Where no measured model has a step, so that there is nothing to draw.
     """
     curves, closed = [], []
     for sample in found.samples:
@@ -331,12 +394,31 @@ LAST = "last"
 
 
 def keep(found: Tradeoff, folder: Path) -> None:
-    """Keep a measurement for the next reports, in place of the last one."""
+    """Keep a measurement for the next reports, in place of the last one.
+
+    Parameters
+    ----------
+    found : Tradeoff
+        What is kept.
+    folder : Path
+        Of the cache.
+    """
     Cache(folder).put(TRADEOFFS, LAST, Kept(asdict(found)), lasting=True)
 
 
 def kept(folder: Path) -> Tradeoff | None:
-    """Return the last measurement, or None: never measured, measured on other kernels or models, or damaged."""
+    """Return the last measurement.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the cache.
+
+    Returns
+    -------
+    Tradeoff or None
+        None: never measured, measured on other kernels or models, or damaged.
+    """
     found = Cache(folder).get(TRADEOFFS, LAST, lasting=True)
     try:
         last = None if found is None else TypeAdapter(Tradeoff).validate_json(json.dumps(found.said), strict=True)
@@ -351,9 +433,28 @@ def kept(folder: Path) -> Tradeoff | None:
 def tradeoff_on(settings: Settings | None, site: str | None, progress: Progress, **wishes: Any) -> Tradeoff:
     """Measure on a site and on the inventory of the settings, and keep it for the next report.
 
-    settings : None measures on plausible objects, and keeps nothing
-    wishes   : as `measure`
-    raises   : UsageError for a model that there is not or where no site is named; MotionError
+    Parameters
+    ----------
+    settings : Settings or None
+        None measures on plausible objects, and keeps nothing.
+    site : str or None
+        Its folder, or "demo"; None: that of the settings.
+    progress : callable
+        Is told what is done, of how much.
+    **wishes : Any
+        As of `measure`.
+
+    Returns
+    -------
+    Tradeoff
+        What was measured.
+
+    Raises
+    ------
+    UsageError
+        For a model that there is not or where no site is named.
+    MotionError
+        For a site that cannot be used.
     """
     try:
         names = [model_named(name).name for name in wishes.pop("models", ())]

@@ -24,8 +24,17 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
     other named parts, mount, sheet, image.  Of several alike the largest is taken, never the height of one with the
     width of another.  What is said of a base or foot is the base's.
 
-    hung    : the object hangs on a wall, so that its frame comes first
-    returns : extents in m, mass in kg, each with the characters it came from and the reason; ranges by their larger end
+    Parameters
+    ----------
+    dimensions : Dimensions
+        What was read of the text.
+    hung : bool
+        The object hangs on a wall, so that its frame comes first.
+
+    Returns
+    -------
+    Chosen
+        Extents in m, mass in kg, each with the characters it came from and the reason; ranges by their larger end.
     """
     groups: dict[int, list[Part]] = {}
     for part in dimensions.parts:

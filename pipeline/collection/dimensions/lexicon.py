@@ -38,7 +38,15 @@ class _Row:
 def units() -> dict[str, Unit]:
     """Return the units by name.
 
-    raises : TableError where a unit's value is no decimal number above zero
+    Returns
+    -------
+    dict of str to Unit
+        Of the table.
+
+    Raises
+    ------
+    TableError
+        Where a unit's value is no decimal number above zero.
     """
     rows = checked(_Row, table("dimension_units"), "dimension_units.csv", named="unit")
     return {r.unit: Unit(r.unit, r.kind, r.si.numerator, r.si.denominator, r.smaller, r.system) for r in rows}

@@ -16,7 +16,20 @@ _EPS = 1e-9
 
 
 def agree(one: float, two: float, kind: str) -> bool:
-    """Say whether two readings of one thing differ by no more than 3 mm (3 g) or no more than 3 % of the larger."""
+    """Say whether two readings of one thing differ by no more than 3 mm (3 g) or no more than 3 % of the larger.
+
+    Parameters
+    ----------
+    one, two : float
+        In m or kg.
+    kind : {"length", "mass"}
+        What they are.
+
+    Returns
+    -------
+    bool
+        Whether they may be one.
+    """
     gap = abs(one - two)
     return gap <= _CLOSE[kind] + _EPS or gap <= _SHARE * max(one, two)
 
@@ -27,10 +40,21 @@ def _near(one: float, two: float) -> bool:
 
 
 def pair(open_: list[Quantity], others: list[Quantity], notes: list[Note]) -> list[Quantity]:
-    """Set each number beside its conversion; return those of ``others`` that convert nothing and stand for themselves.
+    """Set each number beside its conversion.
 
-    open_  : numbers that have no conversion yet, in the order of the text
-    others : the numbers in brackets behind them
+    Parameters
+    ----------
+    open_ : list of Quantity
+        Numbers that have no conversion yet, in the order of the text; they get one.
+    others : list of Quantity
+        The numbers in brackets behind them.
+    notes : list of Note
+        What a reader should know is appended.
+
+    Returns
+    -------
+    list of Quantity
+        Those of `others` that convert nothing and stand for themselves.
     """
     if any(q.unit is None for q in open_) or any(q.unit is None for q in others):
         _infer(open_, others, notes)

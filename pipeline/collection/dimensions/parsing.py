@@ -19,13 +19,29 @@ _CONVENTION = "the order is taken as height x width x depth, the museums' conven
 def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> Dimensions:
     """Read the text of a dimensions field.
 
-    text         : any text; the first 2,000 characters are read
-    default_unit : the unit of lengths that none is written for, "cm" for instance; None leaves them without a value
-    decimal      : the decimal mark where a number leaves it open ("1,234"), "." or ","
-    returns      : the parts in the order of the text, values in m and kg, each rounded once; and notes
-    raises       : ValueError for an unknown default unit or decimal mark
-    source       : the conventions of the CC0 open data of MoMA, the Met and Williams College; height x width x depth
-                   as in Cataloging Cultural Objects (2006), ch. 3
+    Parameters
+    ----------
+    text : str
+        Any text; the first 2,000 characters are read.
+    default_unit : str or None
+        The unit of lengths that none is written for, "cm" for instance; None leaves them without a value.
+    decimal : {".", ","}
+        The decimal mark where a number leaves it open ("1,234").
+
+    Returns
+    -------
+    Dimensions
+        The parts in the order of the text, values in m and kg, each rounded once; and notes.
+
+    Raises
+    ------
+    InputError
+        For an unknown default unit or decimal mark.
+
+    References
+    ----------
+    The conventions of the CC0 open data of MoMA, the Met and Williams College; height x width x depth as in Cataloging
+    Cultural Objects (2006), ch. 3.
     """
     default = None
     if default_unit is not None:

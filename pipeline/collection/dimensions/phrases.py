@@ -27,10 +27,20 @@ _GLUE = frozenset(("", "-", ".", "&", "'", "’", "/", "-.", "+"))
 class Phrase:
     """What a stretch of words says.
 
-    name       : the part, normalised; "" where none is named
-    known      : every word of the name is in the table, so that it may also stand behind the numbers
-    dimensions : the dimensions named, in their order
-    joined     : they are joined by "x", as in "height x width x depth"
+    Attributes
+    ----------
+    name : str
+        The part, normalised; "" where none is named.
+    known : bool
+        Every word of the name is in the table, so that it may also stand behind the numbers.
+    dimensions : list of str
+        The dimensions named, in their order.
+    joined : bool
+        They are joined by "x", as in "height x width x depth".
+    qualifiers : set of str
+        As of `result.Part`.
+    start, end : int
+        The characters of the text that hold it.
     """
 
     name: str = ""
@@ -43,7 +53,22 @@ class Phrase:
 
 
 def is_label_letter(tokens: list[Token], at: int, text: str) -> bool:
-    """Say whether a letter such as the d of ".d" or "(b, lid)" numbers a component, and is not short for a word."""
+    """Say whether a letter such as the d of ".d" or "(b, lid)" numbers a component, and is not short for a word.
+
+    Parameters
+    ----------
+    tokens : list of Token
+        Of the text.
+    at : int
+        The letter's token.
+    text : str
+        The text itself.
+
+    Returns
+    -------
+    bool
+        Whether it numbers a component.
+    """
     token = tokens[at]
     if token.end - token.start != 1:
         return False
@@ -56,7 +81,22 @@ def is_label_letter(tokens: list[Token], at: int, text: str) -> bool:
 
 
 def phrase_of(tokens: list[Token], indices: list[int], text: str) -> Phrase:
-    """Return what the tokens at the indices say together."""
+    """Return what some tokens say together.
+
+    Parameters
+    ----------
+    tokens : list of Token
+        Of the text.
+    indices : list of int
+        Those that count.
+    text : str
+        The text itself.
+
+    Returns
+    -------
+    Phrase
+        With the characters from the first to the last of them.
+    """
     out = Phrase()
     if not indices:
         return out

@@ -13,10 +13,32 @@ from pipeline.collection.dimensions.result import Note
 class Quantity:
     """A number [num / den of its unit], perhaps a range that ends there, with where it stands.
 
-    written : the unit stands behind this number itself
-    run     : numbers joined by "x" share it
-    other   : the same measure in the text's other system
-    repaired: SI value (num, den) that was judged to be meant
+    Attributes
+    ----------
+    num, den : int
+        The number, exactly.
+    start, end : int
+        The characters of the text that hold it.
+    word : str
+        The number as written.
+    unit : Unit or None
+        None where none is known.
+    unit_text : str
+        The unit as written.
+    written : bool
+        The unit stands behind this number itself.
+    first : (int, int) or None
+        Of a range, where it begins, as num and den.
+    dimension : str
+        Which dimension it is, "" where that is open.
+    assumed : bool
+        The dimension is not written but follows from the order.
+    run : int
+        Numbers joined by "x" share it.
+    other : Quantity or None
+        The same measure in the text's other system.
+    repaired : (int, int) or None
+        SI value (num, den) that was judged to be meant.
     """
 
     num: int
@@ -42,16 +64,37 @@ class Quantity:
     def si(self) -> float:
         """Return the value in SI, rounded once: Python divides two whole numbers correctly rounded.
 
-        raises : ValueError where it has no unit
+        Returns
+        -------
+        float
+            In m or kg.
+
+        Raises
+        ------
+        ValueError
+            Where it has no unit.
         """
         if self.repaired:
             return self.repaired[0] / self.repaired[1]
         return self.scaled(self.num, self.den)
 
     def scaled(self, num: int, den: int) -> float:
-        """Return num / den of this quantity's unit in SI.
+        """Return another number of this quantity's unit in SI.
 
-        raises : ValueError where it has no unit
+        Parameters
+        ----------
+        num, den : int
+            The number, as a fraction.
+
+        Returns
+        -------
+        float
+            In m or kg, rounded once.
+
+        Raises
+        ------
+        ValueError
+            Where it has no unit.
         """
         if self.unit is None:
             raise ValueError("a quantity without a unit has no value")
@@ -61,7 +104,16 @@ class Quantity:
         """Add the inches to the feet, the pennyweights to the ounces.
 
         The sum keeps the unit that the field quotes: of lengths the smaller (87 in.), of masses the larger (3.1 oz).
-        raises : ValueError where one of them has no unit
+
+        Parameters
+        ----------
+        smaller : Quantity
+            What is added; it stands behind this one.
+
+        Raises
+        ------
+        ValueError
+            Where one of them has no unit.
         """
         if self.unit is None or smaller.unit is None:
             raise ValueError("only quantities with units can be added")
@@ -102,7 +154,15 @@ def fill_units(run: list[Quantity]) -> None:
 
 
 def troy(quantity: Quantity, notes: list[Note] | None = None) -> None:
-    """Read a quantity in ounces as troy ounces."""
+    """Read a quantity in ounces as troy ounces.
+
+    Parameters
+    ----------
+    quantity : Quantity
+        Changed in place.
+    notes : list of Note, or None
+        Where it is told, if anywhere.
+    """
     quantity.unit = units()["oz t"]
     if notes is not None:
         message = "ounces are read as troy ounces, which the grams beside them bear out"

@@ -9,20 +9,34 @@ from dataclasses import dataclass
 class Part:
     """One measured number of a text.
 
-    name        : which part of the object, normalised: "overall", "base", "with base", "frame", "sheet"; "overall" too
-                  where the text names none
-    words       : the words as written, or "" where the text names no part
-    dimension   : height, width, depth, diameter, length, circumference, thickness, weight, or unlabelled
-    value       : in SI (m or kg), rounded once; of a range the larger end; None where no unit is known
-    unit        : as understood ("in", "oz t"); of a sum the smaller length (8' 3") or the larger mass (3 oz. 2 dwt.);
-                  "" where none is known
-    unit_text   : as written behind the number, "" where it stands elsewhere or nowhere
-    low, high   : the ends of a range, in SI; both equal to value where there is no range
-    alternative : the same measure as the text's other system gives it, in SI; None where it stands once
-    qualifiers  : sorted, of each, approximate, irregular, variable, sight, maximum, minimum
-    assumed     : the dimension is not written but follows from the order, height x width x depth
-    group       : numbers that stand together share it, counted from 0 in the order of the text
-    start, end  : the characters of the text that hold the number
+    Attributes
+    ----------
+    name : str
+        Which part of the object, normalised: "overall", "base", "with base", "frame", "sheet"; "overall" too where the
+        text names none.
+    words : str
+        The words as written, or "" where the text names no part.
+    dimension : str
+        height, width, depth, diameter, length, circumference, thickness, weight, or unlabelled.
+    value : float or None
+        In SI (m or kg), rounded once; of a range the larger end; None where no unit is known.
+    unit : str
+        As understood ("in", "oz t"); of a sum the smaller length (8' 3") or the larger mass (3 oz. 2 dwt.); "" where
+        none is known.
+    unit_text : str
+        As written behind the number, "" where it stands elsewhere or nowhere.
+    low, high : float or None
+        The ends of a range, in SI; both equal to value where there is no range.
+    alternative : float or None
+        The same measure as the text's other system gives it, in SI; None where it stands once.
+    qualifiers : tuple of str
+        Sorted, of each, approximate, irregular, variable, sight, maximum, minimum.
+    assumed : bool
+        The dimension is not written but follows from the order, height x width x depth.
+    group : int
+        Numbers that stand together share it, counted from 0 in the order of the text.
+    start, end : int
+        The characters of the text that hold the number.
     """
 
     name: str
@@ -45,9 +59,16 @@ class Part:
 class Note:
     """Something that a reader of the text should know.
 
-    kind : contradiction (two readings differ by more than 3 mm and 3 %), conversion (a reading that pairs with none),
-           order (the order was assumed), unit (a unit was assumed or inferred), missing_unit, ambiguous,
-           left_out (a duration, a date, a scale), variable, remainder (characters not understood), truncated
+    Attributes
+    ----------
+    kind : str
+        contradiction (two readings differ by more than 3 mm and 3 %), conversion (a reading that pairs with none),
+        order (the order was assumed), unit (a unit was assumed or inferred), missing_unit, ambiguous, left_out (a
+        duration, a date, a scale), variable, remainder (characters not understood), truncated.
+    message : str
+        The same in words.
+    start, end : int
+        The characters of the text that it is about.
     """
 
     kind: str

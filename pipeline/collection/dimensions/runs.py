@@ -26,7 +26,26 @@ _AREAS = frozenset({"sq", "square", "cubic", "cu", "quadrat"})
 
 
 def unit_at(tokens: list[Token], at: int, *, weighing: bool = False) -> tuple[Unit | None, int, int]:
-    """Return the unit at a token, the token behind it, and where its characters end; no unit leaves the place."""
+    """Return the unit at a token; no unit leaves the place.
+
+    Parameters
+    ----------
+    tokens : list of Token
+        Of the text.
+    at : int
+        The token.
+    weighing : bool
+        Whether a weight is named, so that a t is the unit and no dimension.
+
+    Returns
+    -------
+    Unit or None
+        The unit, if there is one.
+    int
+        The token behind it.
+    int
+        Where its characters end.
+    """
     token = tokens[at]
     if token.type == DOT and tokens[at + 1].unit is not None and tokens[at + 1].type != DIMENSION:
         at += 1
@@ -50,7 +69,26 @@ def unit_at(tokens: list[Token], at: int, *, weighing: bool = False) -> tuple[Un
 
 
 def quantity_at(tokens: list[Token], at: int, *, joined: bool, weighing: bool) -> tuple[Quantity, int]:
-    """Return the quantity whose number is at a token, and the token behind it."""
+    """Return the quantity whose number is at a token.
+
+    Parameters
+    ----------
+    tokens : list of Token
+        Of the text.
+    at : int
+        The token of the number.
+    joined : bool
+        Whether numbers that are joined by "x" stand before it.
+    weighing : bool
+        As of `unit_at`.
+
+    Returns
+    -------
+    Quantity
+        With its unit, where it has one.
+    int
+        The token behind it.
+    """
     token = tokens[at]
     out = Quantity(token.num, token.den, token.start, token.end, token.word)
     at = _take_unit(tokens, at + 1, out, weighing)
@@ -106,7 +144,22 @@ def _smaller(tokens: list[Token], at: int, larger: Quantity) -> tuple[Quantity |
 
 
 def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[Quantity], int] | None:
-    """Return the numbers joined by "x" that begin at a token, and the token behind them; None where none begin."""
+    """Return the numbers joined by "x" that begin at a token.
+
+    Parameters
+    ----------
+    tokens : list of Token
+        Of the text.
+    at : int
+        The token.
+    text : str
+        The text itself.
+
+    Returns
+    -------
+    (list of Quantity, int) or None
+        The numbers, and the token behind them; None where none begin.
+    """
     items: list[Quantity] = []
     before = False
     while True:
@@ -172,7 +225,20 @@ def _label_behind(tokens: list[Token], at: int, quantity: Quantity, text: str) -
 
 
 def area_at(tokens: list[Token], at: int) -> int | None:
-    """Return the token behind an area or a volume ("100 sq. ft."), or None where there is none."""
+    """Return the token behind an area or a volume ("100 sq. ft.").
+
+    Parameters
+    ----------
+    tokens : list of Token
+        Of the text.
+    at : int
+        The token where it may begin.
+
+    Returns
+    -------
+    int or None
+        None where there is none.
+    """
     behind = at + 1
     if tokens[behind].word not in _AREAS:
         return None
@@ -183,7 +249,22 @@ def area_at(tokens: list[Token], at: int) -> int | None:
 
 
 def conversion_at(tokens: list[Token], at: int, text: str) -> tuple[list[Quantity], int] | None:
-    """Return the numbers of brackets that hold nothing but numbers, and the token behind the brackets; else None."""
+    """Return the numbers of brackets that hold nothing but numbers.
+
+    Parameters
+    ----------
+    tokens : list of Token
+        Of the text.
+    at : int
+        The token of the opening bracket.
+    text : str
+        The text itself.
+
+    Returns
+    -------
+    (list of Quantity, int) or None
+        The numbers, and the token behind the brackets; None for other brackets.
+    """
     out: list[Quantity] = []
     at += 1
     run = 0

@@ -49,10 +49,20 @@ _MARKS = {
 class Token(NamedTuple):
     """A piece of the text: its type, its characters, and what they mean.
 
-    word       : in small letters
-    meaning    : of a word its (kind, meaning) of the table, or None where it is not known
-    unit       : the unit that it is, if it stands behind a number
-    num, den   : the value of a number, exactly
+    Attributes
+    ----------
+    type : int
+        One of the types of this module.
+    start, end : int
+        Its characters.
+    word : str
+        In small letters.
+    meaning : (str, str) or None
+        Of a word its (kind, meaning) of the table, or None where it is not known.
+    unit : Unit or None
+        The unit that it is, if it stands behind a number.
+    num, den : int
+        The value of a number, exactly.
     """
 
     type: int
@@ -68,7 +78,17 @@ class Token(NamedTuple):
 def tokens_of(text: str, decimal: str) -> list[Token]:
     """Return the tokens of a text, closed by an END.
 
-    decimal : the mark that separates decimals where a number leaves it open, "." or ","
+    Parameters
+    ----------
+    text : str
+        Any text.
+    decimal : {".", ","}
+        The mark that separates decimals where a number leaves it open.
+
+    Returns
+    -------
+    list of Token
+        In the order of the text.
     """
     out: list[Token] = []
     known, by_word = meanings(), unit_words()
@@ -113,11 +133,21 @@ def _word(word: str, start: int, end: int, known: dict[str, tuple[str, str]], by
 
 @lru_cache(maxsize=4096)
 def number_value(text: str, group: int, decimal: str) -> tuple[int, int] | None:
-    """Return a number's value as a fraction of two whole numbers; None where it is too long or divides by zero.
+    """Return a number's value as a fraction of two whole numbers.
 
-    text    : the characters that a group of the pattern matched
-    group   : which group
-    decimal : the mark that separates decimals where the number leaves it open
+    Parameters
+    ----------
+    text : str
+        The characters that a group of the pattern matched.
+    group : int
+        Which group.
+    decimal : {".", ","}
+        The mark that separates decimals where the number leaves it open.
+
+    Returns
+    -------
+    (int, int) or None
+        None where it is too long or divides by zero.
     """
     if len(text) > LONGEST_NUMBER or "e" in text.lower():  # nobody measures 1e400 in.
         return None

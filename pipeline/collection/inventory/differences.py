@@ -54,6 +54,17 @@ class Difference:
 
 
 def fields_changed(then: Item, now: Item) -> dict[str, tuple[Any, Any]]:
-    """Return the fields in which two records differ, each with both values, JSON-ready."""
+    """Return the fields in which two records differ.
+
+    Parameters
+    ----------
+    then, now : Item
+        The records.
+
+    Returns
+    -------
+    dict of str to (Any, Any)
+        Both values of each field, JSON-ready.
+    """
     before, after = to_records([then, now])
     return {name: (before[name], after[name]) for name in ITEM_FIELDS if before[name] != after[name]}

@@ -51,7 +51,19 @@ def filled_in(item: Item) -> dict[str, Any]:
 
 
 def current(connection: Connection, version: int | None = None) -> dict[str, tuple[str, dict[str, Any]]]:
-    """Return the sheets by object number, each with its source: those of now, or those of an earlier version.
+    """Return the sheets by object number.
+
+    Parameters
+    ----------
+    connection : Connection
+        Of the inventory's database.
+    version : int or None
+        Of the inventory; None: now.
+
+    Returns
+    -------
+    dict of str to (str, dict)
+        The source of each, and the fields that it fills in.
 
     Raises
     ------
@@ -69,7 +81,17 @@ def current(connection: Connection, version: int | None = None) -> dict[str, tup
 
 
 def store(connection: Connection, sheets: Mapping[str, tuple[str, dict[str, Any]]], version: int) -> None:
-    """Make the sheets of now what they are given as, from this version on."""
+    """Make the sheets of now what they are given as.
+
+    Parameters
+    ----------
+    connection : Connection
+        Of the inventory's database.
+    sheets : mapping of str to (str, dict)
+        As `current` returns them.
+    version : int
+        Of the inventory, from which they hold.
+    """
     before = current(connection)
     ended = [number for number in before if before[number] != sheets.get(number)]
     for number in ended:
@@ -87,7 +109,20 @@ def store(connection: Connection, sheets: Mapping[str, tuple[str, dict[str, Any]
 
 
 def laid_over(items: Sequence[Item], sheets: Mapping[str, tuple[str, dict[str, Any]]]) -> list[Item]:
-    """Return the items with what their sheets fill in; where the museum says something else, a problem says so."""
+    """Return items with what their sheets fill in; where the museum says something else, a problem says so.
+
+    Parameters
+    ----------
+    items : sequence of Item
+        As the museum's records say.
+    sheets : mapping of str to (str, dict)
+        As `current` returns them.
+
+    Returns
+    -------
+    list of Item
+        In the same order.
+    """
     return [_laid_over(item, *sheets[item.object_number]) if item.object_number in sheets else item for item in items]
 
 

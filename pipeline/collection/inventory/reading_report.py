@@ -133,9 +133,20 @@ def note_import(
 ) -> None:
     """Keep what a reading of the museum's records refused and doubts.
 
-    version  : that it led to;  below: the one before, which may be the same
-    base     : the import itself: sheets may have been laid over it since
-    doubtful : objects of that version with problems
+    Parameters
+    ----------
+    connection : Connection
+        Of the inventory's database.
+    version : int
+        That it led to.
+    below : int or None
+        The version before, which may be the same.
+    base : int
+        The import itself: sheets may have been laid over it since.
+    reading : Reading
+        What was read.
+    doubtful : int
+        Objects of that version with problems.
     """
     places = {number: (row, line) for row, line, number, *_ in (() if reading.unread is None else reading.unread.noted)}
     places |= {item.object_number: place for item, place in _placed(reading) if item.problems and place[0]}
@@ -165,9 +176,22 @@ def note_sheet(
 ) -> None:
     """Keep what was not used of a sheet of our own, beside what is kept already.
 
-    version : that it led to;  below: the one that it was laid over, which is the same where it says nothing new
-    unknown : its objects that the inventory does not have
-    filled  : object number and field of what it fills in, so that an earlier sheet's failure is mended
+    Parameters
+    ----------
+    connection : Connection
+        Of the inventory's database.
+    version : int
+        That it led to.
+    below : int
+        The version that it was laid over, which is the same where it says nothing new.
+    reading : Reading
+        What was read.
+    unknown : collection of str
+        Its objects that the inventory does not have.
+    filled : collection of (str, str)
+        Object number and field of what it fills in, so that an earlier sheet's failure is mended.
+    doubtful : int
+        Objects of that version with problems.
     """
     before = _sheets(connection, below)
     left = [one for one in before if one[0] != reading.source and (one[3], one[4]) not in filled]
@@ -177,7 +201,17 @@ def note_sheet(
 
 
 def note_return(connection: Connection, version: int, back: int) -> None:
-    """Keep with a return what is kept with the version returned to."""
+    """Keep with a return what is kept with the version returned to.
+
+    Parameters
+    ----------
+    connection : Connection
+        Of the inventory's database.
+    version : int
+        That the return led to.
+    back : int
+        The version returned to.
+    """
     known = _told(connection, back)
     if known is not None:
         _write(connection, version, known)

@@ -149,6 +149,18 @@ def _item(record: Mapping[str, Any]) -> Item | None:
 def sound(rows: Sequence[Sequence[Any]], database: str) -> list[Item]:
     """Return the items of rows with RECORD_COLUMNS, in their order.
 
+    Parameters
+    ----------
+    rows : sequence of sequence
+        As the database gives them.
+    database : str
+        Its name in messages, without its password.
+
+    Returns
+    -------
+    list of Item
+        Each checked against its digest.
+
     Raises
     ------
     DamagedRecordError
@@ -163,6 +175,18 @@ def sound(rows: Sequence[Sequence[Any]], database: str) -> list[Item]:
 
 def rows_where(connection: Connection, condition: ColumnElement[bool]) -> Iterator[Sequence[Any]]:
     """Yield the rows of records, as `records_of` takes them.
+
+    Parameters
+    ----------
+    connection : Connection
+        Of the inventory's database.
+    condition : ColumnElement of bool
+        Which rows of ITEM.
+
+    Yields
+    ------
+    sequence
+        A row.
 
     Raises
     ------
@@ -191,6 +215,18 @@ def _readable(connection: Connection, condition: ColumnElement[bool]) -> bool:
 def read_records(connection: Connection, condition: ColumnElement[bool]) -> list[Item]:
     """Return the items of some rows of ITEM, each checked against its digest.
 
+    Parameters
+    ----------
+    connection : Connection
+        Of the inventory's database.
+    condition : ColumnElement of bool
+        Which rows.
+
+    Returns
+    -------
+    list of Item
+        In the order of the database.
+
     Raises
     ------
     DamagedRecordError
@@ -200,7 +236,20 @@ def read_records(connection: Connection, condition: ColumnElement[bool]) -> list
 
 
 def stored_records(connection: Connection, numbers: Sequence[str]) -> dict[str, Item]:
-    """Return some objects' records of now as they stand, damaged or not, by object number; none that is no record."""
+    """Return some objects' records of now as they stand, damaged or not.
+
+    Parameters
+    ----------
+    connection : Connection
+        Of the inventory's database.
+    numbers : sequence of str
+        The museum's numbers of the objects.
+
+    Returns
+    -------
+    dict of str to Item
+        By object number; none that is no record.
+    """
     found: dict[str, Item] = {}
     for some in numbered(numbers):
         try:
@@ -245,7 +294,19 @@ def read_inventory(engine: Engine) -> list[Item]:
 
 
 def items_named(engine: Engine, numbers: Sequence[str]) -> dict[str, Item]:
-    """Return those of the items that there are, by object number.
+    """Return those of the items that there are.
+
+    Parameters
+    ----------
+    engine : Engine
+        The inventory's database.
+    numbers : sequence of str
+        The museum's numbers of the objects.
+
+    Returns
+    -------
+    dict of str to Item
+        By object number.
 
     Raises
     ------
@@ -264,7 +325,21 @@ def object_numbers(engine: Engine) -> list[str]:
 
 
 def fields_since(engine: Engine, number: str, digest: str) -> tuple[str, ...]:
-    """Return the fields in which an object's record is not what it was at a digest; none where that is not known.
+    """Return the fields in which an object's record is not what it was.
+
+    Parameters
+    ----------
+    engine : Engine
+        The inventory's database.
+    number : str
+        The museum's number of the object.
+    digest : str
+        Of its record as it was.
+
+    Returns
+    -------
+    tuple of str
+        Empty where that record, or the object, is not known.
 
     Raises
     ------

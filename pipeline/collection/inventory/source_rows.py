@@ -84,7 +84,22 @@ class SourceKey:
 
 
 def is_unchanged(engine: Engine, key: SourceKey, sha256: str) -> bool:
-    """Say whether a source is the one that the inventory is the state of, byte for byte, and would be read alike."""
+    """Say whether a source is the one that the inventory is the state of, byte for byte, and would be read alike.
+
+    Parameters
+    ----------
+    engine : Engine
+        The inventory's database.
+    key : SourceKey
+        Of the source, and how it is read.
+    sha256 : str
+        Of its bytes.
+
+    Returns
+    -------
+    bool
+        Whether there is nothing to read.
+    """
     with engine.connect() as connection:
         state = _state(connection, key)
     return state is not None and state[0] == sha256
@@ -132,7 +147,17 @@ def damaged_source_rows(engine: Engine) -> Iterator[str]:
 
 
 def store_source(connection: Connection, key: SourceKey, reading: Reading) -> None:
-    """Take down what is known of the rows of a source, in the transaction that makes the inventory their state."""
+    """Take down what is known of the rows of a source, in the transaction that makes the inventory their state.
+
+    Parameters
+    ----------
+    connection : Connection
+        Of that transaction.
+    key : SourceKey
+        Of the source, and how it is read.
+    reading : Reading
+        What was read.
+    """
     if reading.unread is None:
         connection.execute(delete(SOURCE_ROW))
     elif reading.unread.gone:
@@ -150,7 +175,17 @@ def store_source(connection: Connection, key: SourceKey, reading: Reading) -> No
 
 
 def hold_source(engine: Engine, key: SourceKey, sha256: str) -> None:
-    """Take down that a source was looked at, and that the inventory is by a person's will not the state of its rows."""
+    """Take down that a source was looked at, and that the inventory is by a person's will not the state of its rows.
+
+    Parameters
+    ----------
+    engine : Engine
+        The inventory's database.
+    key : SourceKey
+        Of the source, and how it is read.
+    sha256 : str
+        Of its bytes.
+    """
     with engine.begin() as connection:
         connection.execute(delete(SOURCE_ROW))
         _store_state(connection, key, sha256, 0)

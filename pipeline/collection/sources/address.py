@@ -31,9 +31,14 @@ _AFTER = r"(?![^\W_])"
 class Address:
     """Where a database is.
 
-    url     : with its secrets, for opening it only
-    shown   : without them, as it was written: the password is ***, ${NAME} stays, and what follows ? is left out
-    secrets : every form of them, the longest first, to be taken out of messages
+    Attributes
+    ----------
+    url : sqlalchemy.URL
+        With its secrets, for opening it only.
+    shown : str
+        Without them, as it was written: the password is ***, ${NAME} stays, and what follows ? is left out.
+    secrets : tuple of str
+        Every form of them, the longest first, to be taken out of messages.
     """
 
     url: URL
@@ -49,7 +54,20 @@ class Address:
 
 
 def hidden(text: str, secrets: Iterable[str] = ()) -> str:
-    """Return a text with *** for these secrets, for passwords in addresses, and for what is said to be a password."""
+    """Return a text without secrets.
+
+    Parameters
+    ----------
+    text : str
+        Any text.
+    secrets : iterable of str
+        What becomes ***, beside passwords in addresses and what is said to be a password.
+
+    Returns
+    -------
+    str
+        With *** in their place.
+    """
     for secret in secrets:
         if len(secret) < SHORT:
             before = _BEFORE if secret[:1].isalnum() else ""
@@ -61,12 +79,27 @@ def hidden(text: str, secrets: Iterable[str] = ()) -> str:
 
 
 def expand_secrets(url: str, environment: Mapping[str, str] | None = None) -> Address:
-    """Put the values of the environment (of this process, unless given) where a database's address says ${NAME}.
+    """Put the values of the environment where a database's address says ${NAME}.
 
     ${NAME} may stand for a user, a password, a host, a database, a value after the question mark, or for the whole
     address. A value is taken literally: it needs no percent signs.
 
-    raises : CollectionError for a name that the environment lacks, or for what is no address; no value is shown
+    Parameters
+    ----------
+    url : str
+        The address, with ${NAME} for secrets.
+    environment : mapping of str to str, or None
+        Of this process, unless given.
+
+    Returns
+    -------
+    Address
+        With and without its secrets.
+
+    Raises
+    ------
+    CollectionError
+        For a name that the environment lacks, or for what is no address; no value is shown.
     """
     known = os.environ if environment is None else environment
     values: list[str] = []

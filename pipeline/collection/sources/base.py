@@ -166,7 +166,20 @@ class FileSource(Source):
 
 
 def digested(name: str, rows: Iterator[Row]) -> Opened:
-    """Return rows that are no file's as an open source: its digest is of all rows that were read."""
+    """Return rows that are no file's as an open source: its digest is of all rows that were read.
+
+    Parameters
+    ----------
+    name : str
+        Of the source, in messages.
+    rows : iterator of Row
+        The header, then the rows.
+
+    Returns
+    -------
+    Opened
+        To be read once.
+    """
     digest = hashlib.sha256()
 
     def told() -> Iterator[Row]:

@@ -281,7 +281,18 @@ class Csv(FileSource):
         return False
 
     def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
-        """Yield the header and the rows."""
+        """Yield the header and the rows.
+
+        Parameters
+        ----------
+        binary, file, request : BufferedReader, str, Request
+            As of `FileSource.rows`.
+
+        Yields
+        ------
+        Row
+            First the header.
+        """
         return read_delimited(binary, file, request.settings.delimiter, request.settings.encoding)
 
 
@@ -293,5 +304,16 @@ class Tsv(Csv):
     Settings = TsvSettings
 
     def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
-        """Yield the header and the rows."""
+        """Yield the header and the rows.
+
+        Parameters
+        ----------
+        binary, file, request : BufferedReader, str, Request
+            As of `FileSource.rows`.
+
+        Yields
+        ------
+        Row
+            First the header.
+        """
         return read_delimited(binary, file, "\t", request.settings.encoding)

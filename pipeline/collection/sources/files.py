@@ -10,9 +10,26 @@ from pipeline.collection.errors import CollectionError
 
 
 def stream_of(source: str | Path | BinaryIO, file: str, stack: ExitStack) -> BinaryIO:
-    """Return a stream of a source's bytes: the stream that it is, or of the file at this path, closed with the stack.
+    """Return a stream of a source's bytes.
 
-    raises : CollectionError for a file that cannot be opened, by its name ``file``
+    Parameters
+    ----------
+    source : str, Path or binary stream
+        A stream comes back as it is; a file is opened.
+    file : str
+        Its name in messages.
+    stack : ExitStack
+        With which an opened file is closed.
+
+    Returns
+    -------
+    binary stream
+        At the file's beginning, or where it was.
+
+    Raises
+    ------
+    CollectionError
+        For a file that cannot be opened.
     """
     if not isinstance(source, str | Path):
         return source
@@ -23,7 +40,19 @@ def stream_of(source: str | Path | BinaryIO, file: str, stack: ExitStack) -> Bin
 
 
 def unreadable(file: str | Path, problem: OSError) -> CollectionError:
-    """Return the error of a file that cannot be read, with the remedy."""
+    """Return the error of a file that cannot be read, with the remedy.
+
+    Parameters
+    ----------
+    file : str or Path
+        Its name in messages.
+    problem : OSError
+        Why.
+
+    Returns
+    -------
+    CollectionError
+    """
     return CollectionError(
         f"{file}: cannot be read: {problem.strerror or problem}; see whether the path is right, the share is "
         "mounted and Kouros may read it"

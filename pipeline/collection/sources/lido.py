@@ -80,16 +80,29 @@ _EXPORT_AGAIN = "export the file again, and see whether it was cut off on its wa
 
 
 def read_records(source: str | Path | BinaryIO, file: str, *, languages: Sequence[str] = ("en",)) -> Iterator[Row]:
-    """Yield the header (number 0, line 1) and then every lido:lido as a row, with the line where it begins.
-
-    source    : the file's path, or its bytes in a stream; records stand in a lidoWrap, an OAI-PMH answer or alone
-    file      : its name in messages
-    languages : which to prefer where the file has several; then what has no language, then any other
+    """Yield the header and then every lido:lido as a row, with the line where it begins.
 
     A record is forgotten once it is a row. Nothing outside of the file is ever fetched. A file that turns out to be
     damaged raises after the rows before the damage: take none of them for the collection.
 
-    raises : CollectionError for a file that is missing, damaged, incomplete, not LIDO, or declares a document type
+    Parameters
+    ----------
+    source : str, Path or binary stream
+        The file; records stand in a lidoWrap, an OAI-PMH answer or alone.
+    file : str
+        Its name in messages.
+    languages : sequence of str
+        Which to prefer where the file has several; then what has no language, then any other.
+
+    Yields
+    ------
+    Row
+        First the header (number 0, line 1).
+
+    Raises
+    ------
+    CollectionError
+        For a file that is missing, damaged, incomplete, not LIDO, or declares a document type.
     """
     with ExitStack() as stack:
         stream = stream_of(source, file, stack)
@@ -425,5 +438,16 @@ class Lido(FileSource):
         return b"lido-schema.org" in head[:HEAD]
 
     def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
-        """Yield the header and the records."""
+        """Yield the header and the records.
+
+        Parameters
+        ----------
+        binary, file, request : BufferedReader, str, Request
+            As of `FileSource.rows`.
+
+        Yields
+        ------
+        Row
+            First the header.
+        """
         return read_records(binary, file, languages=(request.settings.language or "en",))

@@ -43,7 +43,20 @@ def source_named(name: str) -> Source | None:
 
 
 def recognised(where: str, head: bytes) -> Source | None:
-    """Return the kind of source that something surely is, by its path and how it begins; None where none is sure."""
+    """Return the kind of source that something surely is, by its path and how it begins.
+
+    Parameters
+    ----------
+    where : str
+        Path of a file, or an address.
+    head : bytes
+        How the file begins; empty for an address.
+
+    Returns
+    -------
+    Source or None
+        None where none is sure.
+    """
     return next((source for source in SOURCES if source.recognises(where, head)), None)
 
 

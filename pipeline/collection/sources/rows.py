@@ -14,11 +14,20 @@ NO_FAULTS: Mapping[int, tuple[str, str]] = MappingProxyType({})
 
 
 class Row(NamedTuple):
-    """A row as it stands in its source: its number (1 = first data row), its first line, its cells as texts.
+    """A row as it stands in its source: its number, its first line, its cells as texts.
 
-    line   : of the file or the sheet; of a query's result, the same as the number
-    fault  : why the row cannot be used, with the remedy; ("", "") where it can
-    faults : by cell (0 = first), why that cell alone cannot be used, with the remedy; the cell is an empty text then
+    Attributes
+    ----------
+    number : int
+        1 = first data row; 0 is the header.
+    line : int
+        Of the file or the sheet; of a query's result, the same as the number.
+    cells : list of str
+        As many as the header has.
+    fault : (str, str)
+        Why the row cannot be used, with the remedy; ("", "") where it can.
+    faults : mapping of int to (str, str)
+        By cell (0 = first), why that cell alone cannot be used, with the remedy; the cell is an empty text then.
     """
 
     number: int
@@ -34,7 +43,22 @@ def as_text(value: object) -> str:
     None is an empty text; numbers are written with all their digits and no more: 79.0 as 79, decimals exactly; flags
     are true and false; dates are ISO 8601.
 
-    raises : TypeError for what is no text, number, flag, date or time; ValueError for a number that is not finite
+    Parameters
+    ----------
+    value : object
+        A text, number, flag, date, time, or None.
+
+    Returns
+    -------
+    str
+        Its text.
+
+    Raises
+    ------
+    TypeError
+        For what is no text, number, flag, date or time.
+    ValueError
+        For a number that is not finite.
     """
     if value is None:
         return ""

@@ -86,21 +86,39 @@ def read_database(
 ) -> Iterator[Row]:
     """Yield the names of the columns (number 0) and then every row; a row's line is its number.
 
-    url             : of SQLAlchemy, with ${NAME} for secrets (`expand_secrets`)
-    query           : one SELECT (or WITH, VALUES, TABLE), in the order that it says; or
-    table           : a table or a view, as name or schema.name, exactly as the database lists it
-    columns         : of the table, all where left out
-    optional        : further columns, which the table may lack
-    order_by        : the table's column with the object number: the order of the rows; ties and, where it is left out,
-                      all rows follow the primary key
-    timeout_seconds : for all of it, what is done with the rows included
-    environment     : where ${NAME} is looked up, the process's own unless given
-
     Values are as they are in the database, by `as_text`; a UUID is its text, a date beyond the years 1 to 9999 what
     PostgreSQL writes for it. Binary values, arrays, structures and texts with broken characters give their cell a
     fault.
 
-    raises : CollectionError naming the database without its secrets, the row reached, and the remedy
+    Parameters
+    ----------
+    url : str
+        Of SQLAlchemy, with ${NAME} for secrets (`expand_secrets`).
+    query : str or None
+        One SELECT (or WITH, VALUES, TABLE), in the order that it says; or
+    table : str or None
+        A table or a view, as name or schema.name, exactly as the database lists it.
+    columns : sequence of str, or None
+        Of the table, all where left out.
+    optional : sequence of str
+        Further columns, which the table may lack.
+    order_by : str or None
+        The table's column with the object number: the order of the rows; ties and, where it is left out, all rows
+        follow the primary key.
+    timeout_seconds : float
+        In s, for all of it, what is done with the rows included.
+    environment : mapping of str to str, or None
+        Where ${NAME} is looked up, the process's own unless given.
+
+    Yields
+    ------
+    Row
+        First the header.
+
+    Raises
+    ------
+    CollectionError
+        Naming the database without its secrets, the row reached, and the remedy.
     """
     address = expand_secrets(url, environment)
     reached = 0
@@ -133,9 +151,26 @@ def read_database(
 
 
 def tables(url: str, *, timeout_seconds: float = 60.0, environment: Mapping[str, str] | None = None) -> tuple[str, ...]:
-    """Return the tables and views that a museum's database lists: of the default schema by name, then schema.name.
+    """Return the tables and views that a museum's database lists.
 
-    raises : as `read_database`
+    Parameters
+    ----------
+    url : str
+        As of `read_database`.
+    timeout_seconds : float
+        In s, for all of it.
+    environment : mapping of str to str, or None
+        Where ${NAME} is looked up, the process's own unless given.
+
+    Returns
+    -------
+    tuple of str
+        Of the default schema by name, then schema.name.
+
+    Raises
+    ------
+    CollectionError
+        As `read_database`.
     """
     address = expand_secrets(url, environment)
     try:

@@ -55,7 +55,17 @@ Range = tuple[int, int, int, int]
 def check_kind(stream: BinaryIO, file: str) -> None:
     """Refuse what is not a zip archive, and say what it is.
 
-    raises : CollectionError naming the file, what it is, and how to make a workbook of it
+    Parameters
+    ----------
+    stream : binary stream
+        At the file's beginning.
+    file : str
+        Its name in messages.
+
+    Raises
+    ------
+    CollectionError
+        Naming the file, what it is, and how to make a workbook of it.
     """
     start = stream.read(8)
     if start == _OLE:
@@ -80,7 +90,17 @@ def check_archive(archive: ZipFile, file: str) -> None:
     What an entry claims is held by zipfile while it is read: no byte beyond the claimed size is given out, and a claim
     that is too small fails the checksum.
 
-    raises : CollectionError
+    Parameters
+    ----------
+    archive : ZipFile
+        The file.
+    file : str
+        Its name in messages.
+
+    Raises
+    ------
+    CollectionError
+        Naming the file, what is wrong and the remedy.
     """
     entries = archive.infolist()
     names = {entry.filename for entry in entries}
@@ -126,9 +146,14 @@ def _check_entry(entry: ZipInfo, file: str) -> None:
 class Survey:
     """What was found in a sheet's XML.
 
-    last_row, last_column : of the last cells that hold anything; 0 where none does
-    merged                : merged cells, each with the cell that shows the value first
-    computed              : cells that an array formula or a data table fills
+    Attributes
+    ----------
+    last_row, last_column : int
+        Of the last cells that hold anything; 0 where none does.
+    merged : list of Range
+        Merged cells, each with the cell that shows the value first.
+    computed : list of Range
+        Cells that an array formula or a data table fills.
     """
 
     last_row: int = 0
@@ -221,8 +246,22 @@ class _Surveyor:
 def survey(stream: IO[bytes], file: str, sheet: str) -> Survey:
     """Go once through a sheet's XML, without keeping it, before anything is read from it.
 
-    raises : CollectionError for a sheet that is not well-formed, declares entities, has rows or cells out of order, or
-             is beyond the limits
+    Parameters
+    ----------
+    stream : binary stream
+        The sheet's XML.
+    file, sheet : str
+        Their names in messages.
+
+    Returns
+    -------
+    Survey
+        What was found.
+
+    Raises
+    ------
+    CollectionError
+        For a sheet that is not well-formed, declares entities, has rows or cells out of order, or is beyond the limits.
     """
     # Expat itself stops entities that grow; a document type is refused before any is used.
     parser = expat.ParserCreate(namespace_separator="}")

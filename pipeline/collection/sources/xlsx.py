@@ -48,20 +48,34 @@ def read_sheet(
 ) -> Iterator[Row]:
     """Yield the header (number 0) and then every row of a sheet that is not blank; a row's line is its number there.
 
-    source     : the workbook's path, or its bytes in a stream that can be taken back (seek)
-    file       : its name in messages
-    sheet      : the sheet's name; may be left out where only one sheet is visible
-    header_row : the row (from 1) that names the columns; what stands above it is left out
-
     Each row has as many cells as the header has names: missing ones are empty, and a row with anything beyond has a
     fault. Whole numbers are written without a decimal point; a format of zeros only ("0000") keeps its leading zeros, a
     date without a time is a date; no other format counts (50 % is 0.5). Formulas are never computed, and the value that
     was once saved beside them is never trusted: such cells have a fault, and so have error values, times without a
-    date's meaning (durations), and cells that are hidden behind a merged one. Hidden rows are read like all others.
-    A header cell that holds any of these is an error of the whole sheet.
+    date's meaning (durations), and cells that are hidden behind a merged one. Hidden rows are read like all others. A
+    header cell that holds any of these is an error of the whole sheet.
 
-    raises : CollectionError for a file that is missing, no workbook, protected, damaged or beyond the limits of
-             `workbook`, and for a sheet that is not there or has no header
+    Parameters
+    ----------
+    source : str, Path or binary stream
+        The workbook; a stream can be taken back (seek).
+    file : str
+        Its name in messages.
+    sheet : str or None
+        The sheet's name; may be left out where only one sheet is visible.
+    header_row : int
+        The row (from 1) that names the columns; what stands above it is left out.
+
+    Yields
+    ------
+    Row
+        First the header.
+
+    Raises
+    ------
+    CollectionError
+        For a file that is missing, no workbook, protected, damaged or beyond the limits of `workbook`, and for a sheet
+        that is not there or has no header.
     """
     with ExitStack() as stack:
         stream = stream_of(source, file, stack)
@@ -87,7 +101,20 @@ def read_sheet(
 def visible_sheets(path: Path) -> tuple[str, ...]:
     """Return the names of a workbook's sheets that are not hidden, in their order.
 
-    raises : as `read_sheet` for the workbook itself
+    Parameters
+    ----------
+    path : Path
+        The workbook.
+
+    Returns
+    -------
+    tuple of str
+        The names.
+
+    Raises
+    ------
+    CollectionError
+        As `read_sheet` for the workbook itself.
     """
     with ExitStack() as stack:
         try:
@@ -277,5 +304,16 @@ class Xlsx(FileSource):
         return head.startswith(b"PK\x03\x04")
 
     def rows(self, binary: BufferedReader, file: str, request: Request) -> Iterator[Row]:
-        """Yield the header and the rows of the sheet."""
+        """Yield the header and the rows of the sheet.
+
+        Parameters
+        ----------
+        binary, file, request : BufferedReader, str, Request
+            As of `FileSource.rows`.
+
+        Yields
+        ------
+        Row
+            First the header.
+        """
         return read_sheet(binary, file, sheet=request.settings.sheet, header_row=request.settings.header_row or 1)

@@ -47,9 +47,26 @@ def is_format(source: Source) -> bool:
 
 
 def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the Stream of a COSMOS file: one trace a channel of acceleration, in its unit (V0: counts).
+    """Return the traces of a COSMOS file, one a channel of acceleration.
 
-    raises : FormatError naming file and line
+    Parameters
+    ----------
+    source : str, Path or binary stream
+        The file.
+    headonly : bool
+        Whether the headers alone are wanted.
+    **_ : Any
+        What obspy hands to every reader; not used.
+
+    Returns
+    -------
+    obspy.Stream
+        In the unit that the file says (V0: counts).  `toolbox.make_trace` tells what a header holds.
+
+    Raises
+    ------
+    FormatError
+        Naming file and line.
     """
     from obspy import Stream
 

@@ -55,9 +55,26 @@ def is_format(source: Source) -> bool:
 
 
 def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the Stream of a CSMIP file: one trace a channel, in g (volume 1) or cm/s2 (volume 2).
+    """Return the traces of a CSMIP file, one a channel.
 
-    raises : FormatError naming file and line
+    Parameters
+    ----------
+    source : str, Path or binary stream
+        The file.
+    headonly : bool
+        Whether the headers alone are wanted.
+    **_ : Any
+        What obspy hands to every reader; not used.
+
+    Returns
+    -------
+    obspy.Stream
+        In g (volume 1) or cm/s2 (volume 2).  `toolbox.make_trace` tells what a header holds.
+
+    Raises
+    ------
+    FormatError
+        Naming file and line.
     """
     from obspy import Stream
 

@@ -28,9 +28,26 @@ def is_format(source: Source) -> bool:
 
 
 def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the Stream of an ESM file: one trace of acceleration.
+    """Return the trace of acceleration of an ESM file.
 
-    raises : FormatError naming file and line
+    Parameters
+    ----------
+    source : str, Path or binary stream
+        The file.
+    headonly : bool
+        Whether the headers alone are wanted.
+    **_ : Any
+        What obspy hands to every reader; not used.
+
+    Returns
+    -------
+    obspy.Stream
+        In the unit that the file says.  `toolbox.make_trace` tells what a header holds.
+
+    Raises
+    ------
+    FormatError
+        Naming file and line.
     """
     from obspy import Stream
 

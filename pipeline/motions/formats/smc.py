@@ -42,10 +42,28 @@ def is_format(source: Source) -> bool:
 
 
 def read_format(source: Source, headonly: bool = False, resample: float = RESAMPLED, **_: Any) -> Any:
-    """Return the Stream of an SMC file: one trace in cm/s2.
+    """Return the trace of an SMC file.
 
-    resample : s, the step for irregular times; without effect on a file that has its own step
-    raises   : FormatError naming file and line
+    Parameters
+    ----------
+    source : str, Path or binary stream
+        The file.
+    headonly : bool
+        Whether the headers alone are wanted.
+    resample : float
+        Time step in s for irregular times; without effect on a file that has its own step.
+    **_ : Any
+        What obspy hands to every reader; not used.
+
+    Returns
+    -------
+    obspy.Stream
+        In cm/s2.  `toolbox.make_trace` tells what a header holds.
+
+    Raises
+    ------
+    FormatError
+        Naming file and line.
     """
     from obspy import Stream
 

@@ -48,10 +48,15 @@ class FormatError(MotionError):
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """A velocity [m/s] or displacement [m] that the agency computed, (n,), at the samples of the acceleration.
+    """A velocity or displacement that the agency computed, at the samples of the acceleration.
 
     It stands in for the bare array in a trace's header, because obspy compares headers, which arrays do not stand.
     ``np.asarray(series)`` gives the values.
+
+    Attributes
+    ----------
+    values : array, shape (n,)
+        In m/s or m.
     """
 
     values: Array
@@ -70,7 +75,15 @@ class Series:
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """The lines of a record file without their ends; line numbers in messages start at 1, indices at 0."""
+    """The lines of a record file without their ends; line numbers in messages start at 1, indices at 0.
+
+    Attributes
+    ----------
+    file : str
+        What messages call the file.
+    lines : list of bytes
+        Without line ends.
+    """
 
     file: str
     lines: list[bytes]
@@ -79,13 +92,42 @@ class Lines:
         return len(self.lines)
 
     def error(self, index: int, wrong: str, remedy: str = "fetch the file again, or mend the line") -> FormatError:
-        """Return the error at a line."""
+        """Return the error at a line.
+
+        Parameters
+        ----------
+        index : int
+            The line, from 0.
+        wrong : str
+            What is wrong there.
+        remedy : str
+            What mends it.
+
+        Returns
+        -------
+        FormatError
+        """
         return FormatError(f"{self.file}: line {index + 1}: {wrong}; {remedy}")
 
     def text(self, index: int, expected: str = "a line") -> str:
         """Return a line as printable text without trailing blanks.
 
-        raises : FormatError if the file ends before it
+        Parameters
+        ----------
+        index : int
+            The line, from 0.
+        expected : str
+            What the message says was expected there.
+
+        Returns
+        -------
+        str
+            The line.
+
+        Raises
+        ------
+        FormatError
+            If the file ends before it.
         """
         if index >= len(self.lines):
             raise self.error(len(self.lines), f"the file ends where {expected} was expected", "fetch the file again")
@@ -94,7 +136,24 @@ class Lines:
     def match(self, index: int, pattern: re.Pattern[str], expected: str) -> re.Match[str]:
         """Return the match of a pattern anywhere in a line.
 
-        raises : FormatError that says what was expected and what is there
+        Parameters
+        ----------
+        index : int
+            The line, from 0.
+        pattern : re.Pattern
+            What is looked for.
+        expected : str
+            What the message says was expected there.
+
+        Returns
+        -------
+        re.Match
+            The first one.
+
+        Raises
+        ------
+        FormatError
+            That says what was expected and what is there.
         """
         text = self.text(index, expected)
         found = pattern.search(text)
@@ -138,7 +197,23 @@ def head(source: Source) -> str:
 def open_lines(source: Source) -> Lines:
     """Read a text file with any line ends.
 
-    raises : FormatError for a file that is larger than MAX_BYTES or has more than MAX_LINES lines; OSError
+    Parameters
+    ----------
+    source : str, Path or binary stream
+        The file.
+
+    Returns
+    -------
+    Lines
+        Its lines, without an empty last one.
+
+    Raises
+    ------
+    FormatError
+        For a file that is larger than MAX_BYTES, has more than MAX_LINES lines, or a line of more than MAX_LINE
+        characters.
+    OSError
+        For a file that cannot be read.
     """
     if isinstance(source, (str, Path)):
         file = str(source)
@@ -169,10 +244,30 @@ _PLAIN = bytes.maketrans(_PADDING + b"Dd", b"   Ee")
 
 
 def fixed(lines: Lines, start: int, count: int, columns: int, width: int, what: str) -> tuple[Array, int]:
-    """Read a Fortran block: ``count`` numbers in ``columns`` fields of ``width`` characters a line.
+    """Read a Fortran block: numbers in fields of equal width.
 
-    returns : (count,) and the index of the line after the block
-    raises  : FormatError at the first line that is missing, too short or long, or holds something else than numbers
+    Parameters
+    ----------
+    lines, start : Lines, int
+        The file, and the block's first line, from 0.
+    count : int
+        Numbers in the block.
+    columns, width : int
+        Fields in a line, and characters of a field.
+    what : str
+        What the numbers are, for messages.
+
+    Returns
+    -------
+    array, shape (count,)
+        The numbers, in the file's unit.
+    int
+        The index of the line after the block.
+
+    Raises
+    ------
+    FormatError
+        At the first line that is missing, too short or long, or holds something else than numbers.
     """
     if not (1 <= columns <= 100 and 1 <= width <= 40):
         raise lines.error(start - 1, f"{columns} columns of {width} characters make no block of numbers")
@@ -223,10 +318,26 @@ def _no_numbers(lines: Lines, index: int, what: str, columns: int, width: int) -
 
 
 def free(lines: Lines, start: int, count: int, what: str) -> Array:
-    """Read ``count`` blank-separated numbers that fill the rest of a file.
+    """Read blank-separated numbers that fill the rest of a file.
 
-    returns : (count,)
-    raises  : FormatError at a line that holds something else, or where there are fewer or more numbers
+    Parameters
+    ----------
+    lines, start : Lines, int
+        The file, and the first line of numbers, from 0.
+    count : int
+        How many the file announces.
+    what : str
+        What the numbers are, for messages.
+
+    Returns
+    -------
+    array, shape (count,)
+        The numbers, in the file's unit.
+
+    Raises
+    ------
+    FormatError
+        At a line that holds something else, or where there are fewer or more numbers.
     """
     values = array("d")
     for index in range(start, len(lines)):
@@ -257,9 +368,24 @@ def free(lines: Lines, start: int, count: int, what: str) -> Array:
 
 
 def step(lines: Lines, index: int, seconds: float) -> float:
-    """Return a time step in s that an accelerograph can have.
+    """Return a time step that an accelerograph can have.
 
-    raises : FormatError
+    Parameters
+    ----------
+    lines, index : Lines, int
+        The file, and the line that says it, from 0.
+    seconds : float
+        In s.
+
+    Returns
+    -------
+    float
+        The same, in s.
+
+    Raises
+    ------
+    FormatError
+        For a step below STEP_LEAST or above STEP_MOST.
     """
     if not STEP_LEAST <= seconds <= STEP_MOST:
         raise lines.error(index, f"a time step of {seconds:g} s is none that a record can have")
@@ -269,7 +395,22 @@ def step(lines: Lines, index: int, seconds: float) -> float:
 def samples(lines: Lines, index: int, count: int) -> int:
     """Return a number of samples that makes a record.
 
-    raises : FormatError for fewer than two
+    Parameters
+    ----------
+    lines, index : Lines, int
+        The file, and the line that says it, from 0.
+    count : int
+        The number.
+
+    Returns
+    -------
+    int
+        The same.
+
+    Raises
+    ------
+    FormatError
+        For fewer than two.
     """
     if count < 2:
         raise lines.error(index, f"announces {count} samples, which make no record", "use another record")
@@ -283,9 +424,18 @@ _WORDS |= {"N": 0.0, "NORTH": 0.0, "E": 90.0, "EAST": 90.0, "S": 180.0, "SOUTH":
 
 
 def orientation(text: str) -> Orientation:
-    """Return what a header's words say: degrees clockwise from north in [0, 360), "up" or "down".
+    """Return what a header's words say of an orientation.
 
-    "90 Deg", "360", "N16W", "South", "Up"; what is none of these comes back as its own text, None for nothing.
+    Parameters
+    ----------
+    text : str
+        Such as "90 Deg", "360", "N16W", "South", "Up".
+
+    Returns
+    -------
+    float, str or None
+        Degrees clockwise from north in [0, 360), "up" or "down"; what is none of these comes back as its own text, None
+        for nothing.
     """
     word = text.strip().upper()
     if word in _WORDS:
@@ -301,23 +451,65 @@ def orientation(text: str) -> Orientation:
 def seed_orientation(channel: str) -> Orientation:
     """Return what the last letter of a SEED channel code says (N and E within 5 degrees), None where it says nothing.
 
-    source : SEED 2.4 manual, appendix A
+    Parameters
+    ----------
+    channel : str
+        The code, of three letters.
+
+    Returns
+    -------
+    float, str or None
+        Degrees clockwise from north, or "up".
+
+    References
+    ----------
+    SEED 2.4 manual, appendix A.
     """
     letters: dict[str, Orientation] = {"N": 0.0, "E": 90.0, "Z": "up"}
     return letters.get(channel[2]) if re.fullmatch(r"[A-Z]{2}[A-Z0-9]", channel) else None
 
 
 def channel_code(rate: float, direction: Orientation, number: int) -> str:
-    """Return a SEED code for an accelerometer: Z, N and E where the orientation says so, else the channel's number."""
+    """Return a SEED code for an accelerometer: Z, N and E where the orientation says so, else the channel's number.
+
+    Parameters
+    ----------
+    rate : float
+        Samples per second.
+    direction : float, str or None
+        As `orientation` returns it.
+    number : int
+        Of the channel; its last digit is used.
+
+    Returns
+    -------
+    str
+        Three letters.
+    """
     band = "H" if rate >= 80.0 else "B"
     letters: dict[Orientation, str] = {"up": "Z", "down": "Z", 0.0: "N", 90.0: "E"}
     return f"{band}N{letters.get(direction) or number % 10}"
 
 
 def start_time(lines: Lines, index: int, *parts: float) -> Any:
-    """Return the UTCDateTime of year, month, day, hour, minute and second.
+    """Return the time of the parts of a header.
 
-    raises : FormatError for parts that make no time
+    Parameters
+    ----------
+    lines, index : Lines, int
+        The file, and the line that says it, from 0.
+    *parts : float
+        Year, month, day, hour, minute and second.
+
+    Returns
+    -------
+    obspy.UTCDateTime
+        The time.
+
+    Raises
+    ------
+    FormatError
+        For parts that make no time.
     """
     from obspy import UTCDateTime
 
@@ -352,14 +544,46 @@ def make_trace(
     series: Mapping[str, Series] | None = None,
     more: Mapping[str, str] | None = None,
 ) -> Any:
-    """Return the obspy Trace of one channel, in the file's own unit.
+    """Return the trace of one channel, in the file's own unit.
 
-    ``stats.kouros`` holds: units ("g", "cm/s2", "counts", ...), si_factor (times the samples gives m/s2; None where the
-    file does not say), orientation (degrees clockwise from north, "up", "down", the header's own words, or None),
-    processed (True, False, or None where the file does not say), format, file, start ("record", "earthquake" where only
-    its origin time is known, or "unknown"), peak (what the agency printed: acceleration [m/s2], velocity [m/s],
-    displacement [m], None where it did not), and where there are any velocity and displacement (``series``) and what
-    else there is to know (``more``: notes, resampled, title).
+    Parameters
+    ----------
+    lines : Lines
+        The file.
+    data : array, shape (n,)
+        The samples, in the file's unit.
+    dt : float
+        Time step in s.
+    form : str
+        The format.
+    units : str
+        "g", "cm/s2", "counts", ...
+    si_factor : float or None
+        Times the samples gives m/s2; None where the file does not say.
+    direction : float, str or None
+        Degrees clockwise from north, "up", "down", the header's own words, or None.
+    processed : bool or None
+        Whether the agency has filtered it; None where the file does not say.
+    station, network, location, channel : str
+        SEED codes.
+    start : obspy.UTCDateTime or None
+        The time of the first sample, or of what `start_is` says.
+    start_is : str
+        "record", "earthquake" where only its origin time is known, or "unknown".
+    headonly : bool
+        Whether the header alone is wanted.
+    peak : mapping of str to float or None
+        What the agency printed: acceleration [m/s2], velocity [m/s], displacement [m].
+    series : mapping of str to Series, or None
+        Velocity [m/s] and displacement [m], where there are any.
+    more : mapping of str to str, or None
+        What else there is to know: notes, resampled, title.
+
+    Returns
+    -------
+    obspy.Trace
+        Its ``stats.kouros`` holds units, si_factor, orientation, processed, format, file, start (`start_is`), peak
+        (None for what the agency did not print), and the items of `series` and `more`.
     """
     from obspy import Trace
     from obspy.core import AttribDict
