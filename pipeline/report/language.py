@@ -5,7 +5,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
-from gettext import NullTranslations, translation
+from gettext import GNUTranslations, NullTranslations, find
+from hashlib import sha256
+from io import BytesIO
 from pathlib import Path
 
 from pipeline.report.errors import ReportError
@@ -23,11 +25,13 @@ _PHRASES: ContextVar[NullTranslations | None] = ContextVar("phrases", default=No
 class Language:
     """A language of the pages; English, which needs no catalogue, where nothing is said.
 
-    code : a language tag, such as "it" or "pt-BR"
+    code   : a language tag, such as "it" or "pt-BR"
+    digest : of its catalogues; "" where there is none
     """
 
     code: str = "en"
     phrases: NullTranslations = field(default_factory=NullTranslations, compare=False)
+    digest: str = ""
 
     @property
     def direction(self) -> str:
@@ -48,18 +52,23 @@ def language(code: str, catalogues: Path | None) -> Language:
         raise ReportError(f"[report] language is {code!r}, and [report] catalogues names no folder: name it")
     locale = tag.replace("-", "_")
     try:
-        phrases = translation(DOMAIN, str(catalogues), [locale], fallback=locale == "en")
-    except FileNotFoundError as error:
-        raise ReportError(
-            f"there is no {catalogues / locale / 'LC_MESSAGES' / f'{DOMAIN}.mo'}; compile the catalogue, "
-            "or correct [report] language and catalogues"
-        ) from error
+        # Not by `gettext.translation`: it reads a file once in the life of a process, whatever becomes of it.
+        contents = [Path(file).read_bytes() for file in find(DOMAIN, str(catalogues), [locale], all=True)]
+        read = [GNUTranslations(BytesIO(content)) for content in contents]
     except (OSError, UnicodeDecodeError, ValueError) as error:
         raise ReportError(
             f"the catalogue of {code!r} in {catalogues} is damaged ({error}); compile it again"
         ) from error
+    if not read and locale != "en":
+        raise ReportError(
+            f"there is no {catalogues / locale / 'LC_MESSAGES' / f'{DOMAIN}.mo'}; compile the catalogue, "
+            "or correct [report] language and catalogues"
+        )
+    phrases: NullTranslations = read[0] if read else NullTranslations()
+    for more in read[1:]:
+        phrases.add_fallback(more)
     _check(phrases, code)
-    return Language(tag, phrases)
+    return Language(tag, phrases, sha256(b"".join(contents)).hexdigest() if contents else "")
 
 
 _NAMES = re.compile(r"%\((\w+)\)s|\{(\w+)\}")

@@ -97,8 +97,8 @@ class PageRenderer:
         """What all pages say of the run and how they say it, as one digest."""
         head = self.head
         said = (
-            repr(self.units), self.language.code, head.museum, head.settings.get("credit"), head.version,
-            head.demonstration,
+            repr(self.units), self.language.code, self.language.digest, head.museum, head.settings.get("credit"),
+            head.version, head.demonstration,
             [(m.hash, m.name, m.level, m.floor, m.approved_by, m.approved_on) for m in head.motions],
             sorted(head.charts),
         )  # fmt: skip
