@@ -98,7 +98,7 @@ def test_a_worker_that_is_killed_in_the_middle_of_a_night_loses_nothing(
     settings = museum_of(tmp_path / "killed", OBJECTS)
     execution = settings.execution.model_copy(update={"cluster": cluster.scheduler_address})
     settings = settings.model_copy(update={"execution": execution})
-    killed = []
+    killed: list[int] = []
 
     def told(self: scheduler.NightRun, came: Assessments) -> list[Stored]:
         if not killed:

@@ -1,0 +1,313 @@
+"""What is done again after a change of each input: which objects are assessed, which are classed, which pages drawn."""
+
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from random import Random
+
+import pytest
+from babel.messages.catalog import Catalog
+from babel.messages.mofile import write_mo
+
+from pipeline import resources
+from pipeline.night import scheduler
+from pipeline.night.context import RunContext
+from pipeline.night.tasks import Assessments, PageTask, Rendered, UnitTask
+from pipeline.operations.workspace import open_workspace
+from pipeline.records import DecisionKind
+from pipeline.report.files import page_renderer, report_writer
+from pipeline.tools.decisions import Wish, decide
+from tests.night.changing import ISOLATORS, RULES, Changing, measures
+
+
+@dataclass
+class Done:
+    """What a night did: units assessed, units only classed, pages drawn."""
+
+    assessed: int = 0
+    classed: int = 0
+    drawn: int = 0
+
+    def numbers(self) -> tuple[int, int, int]:
+        return self.assessed, self.classed, self.drawn
+
+
+@pytest.fixture
+def done(monkeypatch: pytest.MonkeyPatch) -> Done:
+    """What was done since; HTML, which nothing here looks at, is left out."""
+    return counted(monkeypatch)
+
+
+def counted(patch: pytest.MonkeyPatch) -> Done:
+    made, assess, render = Done(), scheduler.assess_units, scheduler.render_page
+
+    def assessing(context: RunContext, task: UnitTask) -> Assessments:
+        if task.assessed:
+            made.assessed += len(task.keys)
+        else:
+            made.classed += len(task.keys)
+        return assess(context, task)
+
+    def rendering(context: RunContext, task: PageTask) -> Rendered:
+        made.drawn += 1
+        return render(context, task)
+
+    patch.setattr(scheduler, "assess_units", assessing)
+    patch.setattr(scheduler, "render_page", rendering)
+    patch.setattr(page_renderer, "fill", lambda *_: "")
+    patch.setattr(report_writer, "fill", lambda *_: "")
+    return made
+
+
+def alike_in_no_way(museum: Changing) -> None:
+    """30 objects of which none is like another: 8 in each of three galleries, two of them in a case, and 6 stored."""
+    museum.rows = []
+    for n in range(30):
+        gallery = "ABC"[n % 3]
+        row = museum.object() | {"title": f"No. {n}", "gallery": gallery, "case": "", "height_m": f"{0.1 + n / 100}"}
+        row |= {"on_display": "no" if n >= 24 else "yes", "case": "I" if n in (3, 6) else ""}
+        row |= {"position_x_m": f"{n}" if gallery == "A" else "", "position_y_m": "0" if gallery == "A" else ""}
+        museum.rows.append(row)
+    museum.tables = {
+        "rules.csv": RULES.format("bust", "vase"), "measures.csv": measures(0.2), "isolators.csv": ISOLATORS.format(0.1)
+    }  # fmt: skip
+    for name in ("rules", "measures"):
+        museum.set(name, f'"{name}.csv"')
+    museum.set("catalogue", '"isolators.csv"')
+
+
+@pytest.fixture(scope="module")
+def first(tmp_path_factory: pytest.TempPathFactory) -> tuple[Changing, Done]:
+    """A museum after its first night, and what that did; it is only copied."""
+    museum = Changing.of(tmp_path_factory.mktemp("keys") / "museum", 1)
+    alike_in_no_way(museum)
+    mapping = Path(resources.__file__).parent / "collection/presets/kouros.toml"
+    shutil.copy(mapping, museum.home / "mapping.toml")
+    museum.set("mapping", '"mapping.toml"')
+    with pytest.MonkeyPatch.context() as patch:
+        made = counted(patch)
+        museum.night()
+    return museum, made
+
+
+@pytest.fixture
+def museum(first: tuple[Changing, Done], tmp_path: Path) -> Changing:
+    """A copy of the museum after its first night."""
+    made = first[0]
+    home = Path(shutil.copytree(made.home, tmp_path / "museum", symlinks=True))
+    values = {group: dict(some) for group, some in made.values.items()}
+    rows = [dict(row) for row in made.rows]
+    return Changing(home, Random(1), rows, values=values, tables=dict(made.tables), imports=list(made.imports))
+
+
+def test_a_first_night_does_everything(first: tuple[Changing, Done]) -> None:
+    # 24 on display, of which two in a case are one; pages of three galleries, and one of what is stored.
+    assert first[1].numbers() == (23, 6, 4)
+
+
+NOTHING, PAGES, ALL, SHOWN = (0, 0, 0), (0, 0, 4), (23, 6, 4), (23, 0, 3)
+SHAKEN = (23, 0, 4)
+"""Every page says by which motions the run was."""
+
+
+def rules(museum: Changing) -> None:
+    museum.tables["rules.csv"] = RULES.format("figurine", "vase")
+
+
+def limits(museum: Changing) -> None:
+    museum.tables["measures.csv"] = measures(0.4)
+
+
+def isolator(museum: Changing) -> None:
+    museum.tables["isolators.csv"] = ISOLATORS.format(0.2)
+
+
+def setting(name: str, value: str) -> Callable[[Changing], None]:
+    def change(museum: Changing) -> None:
+        museum.set(name, value)
+
+    change.__name__ = f"{name}={value}"
+    return change
+
+
+def record(museum: Changing) -> None:
+    """Another record of the same size and time of change: only its digest in the manifest tells."""
+    file, manifest = museum.home / "site" / "motion-1.csv", museum.home / "manifest.txt"
+    before, text = file.read_bytes(), file.read_text(encoding="utf-8")
+    times = file.stat()
+    assert text.count("\n0.10000000000000001, 3.8217") == 1
+    file.write_text(text.replace("\n0.10000000000000001, 3.8217", "\n0.10000000000000001, 3.8216"), encoding="utf-8")
+    os.utime(file, ns=(times.st_atime_ns, times.st_mtime_ns))
+    after = file.read_bytes()
+    assert len(before) == len(after)
+    assert before != after
+    said = manifest.read_text(encoding="utf-8")
+    assert sha256(before).hexdigest() in said
+    manifest.write_text(said.replace(sha256(before).hexdigest(), sha256(after).hexdigest()), encoding="utf-8")
+
+
+def scale(museum: Changing) -> None:
+    museum.scale = 1.1
+
+
+def v_max(museum: Changing) -> None:
+    museum.v_max = 33.0
+
+
+def height(museum: Changing) -> None:
+    museum.rows[1]["height_m"] = "0.77"
+
+
+def place(museum: Changing) -> None:
+    museum.rows[0]["position_y_m"] = "0.3"
+
+
+def value(museum: Changing) -> None:
+    museum.rows[1]["value_class"] = "A"
+
+
+def in_a_case(museum: Changing) -> None:
+    museum.rows[3]["height_m"] = "0.77"
+
+
+def off_display(museum: Changing) -> None:
+    museum.rows[1]["on_display"] = "no"
+
+
+def upstairs(museum: Changing) -> None:
+    museum.upstairs = ["B"]
+
+
+def order(museum: Changing) -> None:
+    museum.rows.reverse()
+    museum.columns.reverse()
+
+
+def line_ends(museum: Changing) -> None:
+    museum.newline = "\r\n"
+
+
+def mapping(museum: Changing) -> None:
+    """Depths are read as what they are in another unit."""
+    file = museum.home / "mapping.toml"
+    text = file.read_text(encoding="utf-8")
+    lines = text.split("\n")
+    at = next(n for n, line in enumerate(lines) if "[columns.depth_m]" in line)
+    at = next(n for n in range(at, len(lines)) if 'unit = "m"' in lines[n])
+    lines[at] = lines[at].replace('unit = "m"', 'unit = "ft"')
+    file.write_text("\n".join(lines), encoding="utf-8")
+
+
+def classed(museum: Changing) -> None:
+    wish = Wish(museum.rows[1]["object_number"], DecisionKind.CLASS, ["statue"], "so it is", "Ann")
+    decide(open_workspace(museum.settings), wish)
+
+
+def accepted(museum: Changing) -> None:
+    wish = Wish(museum.rows[1]["object_number"], DecisionKind.ACCEPT, [], "so it is", "Ann")
+    decide(open_workspace(museum.settings), wish)
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (lambda _: None, NOTHING),
+        (rules, ALL),
+        (limits, SHOWN),
+        (isolator, SHOWN),
+        # A setting of each group.
+        (setting("name", '"Another museum"'), PAGES),
+        (setting("shrink_limit", "0.5"), NOTHING),
+        (setting("azimuth_step", "30.0"), SHOWN),
+        (setting("fidelity", '"history"'), SHOWN),
+        (setting("fragility", "true"), SHOWN),
+        (setting("workers", "1"), NOTHING),
+        (setting("stores", "true"), (6, 0, 1)),
+        (setting("processes", "1"), NOTHING),
+        (setting("unused_days", "20.0"), NOTHING),
+        (setting("length", '"in"'), PAGES),
+        (setting("survey", "true"), ALL),
+        (setting("keep", "4"), NOTHING),
+        (setting("reports", "4"), NOTHING),
+        (setting("rows", "500"), NOTHING),
+        (setting("mapping", '"kouros"'), NOTHING),
+        # Motions.
+        (record, SHAKEN),
+        (scale, SHAKEN),
+        (v_max, SHOWN),
+        # What is stored shares no page with what is stored on another floor.
+        (upstairs, (8, 2, 5)),
+        # Records.
+        (height, (1, 0, 1)),
+        (in_a_case, (1, 0, 1)),
+        # Where an object stands is its neighbours' business, and what it is worth that of its page.
+        (place, (0, 0, 1)),
+        (value, (0, 0, 1)),
+        (off_display, (0, 1, 2)),
+        (order, NOTHING),
+        (line_ends, NOTHING),
+        (mapping, ALL),
+        # Decisions.
+        (classed, (1, 0, 1)),
+        (accepted, (0, 0, 1)),
+    ],
+    ids=lambda given: getattr(given, "__name__", "").replace("<lambda>", "nothing") or None,
+)
+def test_what_a_change_costs(
+    museum: Changing, done: Done, change: Callable[[Changing], None], expected: tuple[int, int, int]
+) -> None:
+    change(museum)
+    museum.night()
+    assert done.numbers() == expected
+
+
+@pytest.fixture
+def versions() -> Iterator[None]:
+    """Digests of code and libraries are found anew, before and after."""
+    for digest in (resources.code_version, resources.page_version):
+        digest.cache_clear()
+    yield
+    for digest in (resources.code_version, resources.page_version):
+        digest.cache_clear()
+
+
+@pytest.mark.parametrize(("library", "expected"), [("numpy", ALL), ("numba", ALL), ("jinja2", PAGES)])
+@pytest.mark.usefixtures("versions")
+def test_what_another_version_of_a_library_costs(
+    museum: Changing, done: Done, monkeypatch: pytest.MonkeyPatch, library: str, expected: tuple[int, int, int]
+) -> None:
+    true = resources._installed
+    monkeypatch.setattr(resources, "_installed", lambda name: "999" if name == library else true(name))
+    museum.night()
+    assert done.numbers() == expected
+
+
+@pytest.mark.usefixtures("versions")
+def test_another_template_costs_pages_alone(museum: Changing, done: Done, monkeypatch: pytest.MonkeyPatch) -> None:
+    true = resources.page_files
+    monkeypatch.setattr(resources, "page_files", lambda: true()[:-1])
+    museum.night()
+    assert done.numbers() == PAGES
+
+
+def test_another_catalogue_of_phrases_costs_pages_alone(museum: Changing, done: Done) -> None:
+    museum.set("language", '"it"')
+    museum.set("catalogues", '"phrases"')
+
+    def phrase(said: str) -> None:
+        catalogue = Catalog(locale="it")
+        catalogue.add("Galleries", said)
+        file = museum.home / "phrases" / "it" / "LC_MESSAGES" / "kouros.mo"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with file.open("wb") as out:
+            write_mo(out, catalogue)
+
+    phrase("Gallerie")
+    museum.night()
+    assert done.numbers() == PAGES
+    phrase("Sale")
+    museum.night()
+    assert done.numbers() == (0, 0, 8)
