@@ -42,12 +42,13 @@ docs: $(STAMP)  ## the documentation, in build/docs
 bench: $(PEERS)  ## costs beside peers and beside C, ns per object and sample of each model, the stages of a night
 	$(BIN)/python -m tests.benchmarks
 
-soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for two minutes each, fifty nights killed, every call disturbed
+soak: $(STAMP)  ## what is too long for every day: readers fed damaged files for two minutes each, fifty nights killed, every call disturbed, two hundred museums changed eight times
 	KOUROS_FUZZ_SECONDS=120 $(BIN)/python -m pytest --numprocesses 2 tests/motions/formats/test_fuzz.py -k damage
 	KOUROS_KILLS=50 $(BIN)/python -m pytest --numprocesses 2 tests/operations/test_interruptions.py -k kill
 	KOUROS_DAMAGES=1000 $(BIN)/python -m pytest tests/operations/test_damage.py
 	KOUROS_CALLS=1 $(BIN)/python -m pytest -s tests/operations/test_every_call.py
-	KOUROS_OBJECTS=8 $(BIN)/python -m pytest tests/test_faults.py
+	KOUROS_OBJECTS=8 $(BIN)/python -m pytest tests/night/test_faults.py
+	KOUROS_SEQUENCES=200 $(BIN)/python -m pytest --numprocesses 2 tests/night/test_incremental.py
 	KOUROS_GRID=1 $(BIN)/python -m pytest tests/models/test_bounded_work.py
 
 # In environments of their own: what audits and what schedules must not decide which versions Kouros is tested with.

@@ -10,6 +10,7 @@ import pytest
 
 from pipeline.analysis.assess import LevelMotions, assess
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.plan import plan
 from pipeline.analysis.response import respond
 from pipeline.analysis.response_charts import ChartCache, ResponseChart
@@ -21,6 +22,7 @@ from pipeline.night import units
 from pipeline.night.run import run
 from pipeline.quantities import G
 from pipeline.records import Estimate, Finding, Item, Motion, Origin, Scene, Support, Verdict
+from pipeline.records.numerics import Numerics
 from pipeline.settings import Settings, load_settings
 from pipeline.store.runs import load_run
 from tests.analysis.test_assess import PAINTING, VASE
@@ -140,11 +142,6 @@ def test_ad_hoc_charts_are_kept_beside_the_settings(tmp_path: Path) -> None:
     assert not list(bare.iterdir())
 
 
-class Silent:
-    def step(self, what: str, done: int, total: int) -> None:
-        assert 0 <= done <= total
-
-
 def noise(seed: int) -> Motion:
     x, y = (band_limited_random(0.3 * G, 0.5, 8.0, 6.0, seed + n, dt=0.02).acceleration[0] for n in (1, 2))
     return Motion(0.02, np.array([x, y, 0.2 * x]), f"noise {seed}")
@@ -154,7 +151,7 @@ def judged(
     scenes: list[Scene], motions: tuple[Motion, ...], fidelity: str, charts: ChartCache, combine: str = "max"
 ) -> list[list[Finding]]:
     levels = [LevelMotions("design", combine, motions)]
-    return assess(scenes, levels, Threads(2), Silent(), fidelity=fidelity, charts=charts)[1]
+    return assess(scenes, levels, Context(Threads(2), charts=charts), Numerics(fidelity))[1]
 
 
 @pytest.mark.parametrize("combine", ["max", "mean"])
