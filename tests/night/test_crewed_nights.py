@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 from distributed import LocalCluster
-from pipeline.night.tasks import Assessments
 
 from pipeline.night import scheduler
+from pipeline.night.unit_tasks import Assessments
 from pipeline.settings import Settings
 from pipeline.store.results import Stored
 from tests.museum import found, museum_of, night, vases

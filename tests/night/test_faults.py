@@ -17,7 +17,7 @@ from pipeline.collection.database import open_database
 from pipeline.collection.record import plausible
 from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.night import assessment as assessing
-from pipeline.night import tasks
+from pipeline.night import unit_tasks
 from pipeline.night.run import run
 from pipeline.operations.event_log import journal
 from pipeline.operations.run_summary import Summary
@@ -248,7 +248,7 @@ def test_a_fault_of_ours_costs_one_object_its_answer_for_one_night(
     settings = museum(tmp_path, few()).model_copy(update={"logs": Logs(file="log.jsonl")})
     with monkeypatch.context() as broken, journal(settings, str):
         for name in STAGES:
-            where = {"draw": PageRenderer, "encode": tasks, "neighbours": tasks}.get(name, assessing)
+            where = {"draw": PageRenderer, "encode": unit_tasks, "neighbours": unit_tasks}.get(name, assessing)
             broken.setattr(where, name, failing(name, getattr(where, name)))
         summary = night(settings)
     assert summary.faults == len(STAGES)

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pipeline.night.tasks import Assessments, UnitTask, assess_units
 
 from pipeline.execute import memory
 from pipeline.execute.pool import pool
 from pipeline.motions import site
 from pipeline.motions.pulses import WaveletPulse, shahi_baker_pulse
-from pipeline.night import scheduler, tasks
+from pipeline.night import scheduler, unit_tasks
 from pipeline.night.context import RunContext
 from pipeline.night.paging import paged
+from pipeline.night.unit_tasks import Assessments, UnitTask, assess_units
 from pipeline.report.files import page_renderer, report_writer
 from tests.night.changing import Changing, exported
 
@@ -48,7 +48,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(page_renderer, "fill", lambda *_: "")
     monkeypatch.setattr(report_writer, "fill", lambda *_: "")
     monkeypatch.setattr(site, "shahi_baker_pulse", lambda velocity, dt: pulse(velocity.tobytes(), dt))
-    for module in (scheduler, tasks, memory):
+    for module in (scheduler, unit_tasks, memory):
         monkeypatch.setattr(module, "give_back", lambda: None)
 
 

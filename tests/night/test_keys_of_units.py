@@ -11,11 +11,12 @@ from random import Random
 import pytest
 from babel.messages.catalog import Catalog
 from babel.messages.mofile import write_mo
-from pipeline.night.tasks import Assessments, PageTask, Rendered, UnitTask
 
 from pipeline import resources
 from pipeline.night import scheduler
 from pipeline.night.context import RunContext
+from pipeline.night.page_tasks import PageTask, Rendered
+from pipeline.night.unit_tasks import Assessments, UnitTask
 from pipeline.operations.workspace import open_workspace
 from pipeline.records import DecisionKind
 from pipeline.report.files import page_renderer, report_writer
