@@ -1,16 +1,19 @@
 """Runs to store: hostile ones from hypothesis, and a small one that a person can follow."""
 
+import json
 import types
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from enum import StrEnum
+from itertools import count, groupby
 from typing import Any, Union, get_args, get_origin, get_type_hints
-from uuid import uuid4
 
 from hypothesis import strategies as st
 from sqlalchemy import Engine
 
+from pipeline.collection.record import KINDS, digest_of, to_records
 from pipeline.records import (
+    ITEM_FIELDS,
     Assessment,
     Chart,
     Check,
@@ -21,18 +24,20 @@ from pipeline.records import (
     Mark,
     MotionSummary,
     Origin,
+    Page,
     Recommendation,
     RunRecord,
     Scene,
-    Sheet,
     Spacing,
     Standing,
     Support,
     Verdict,
 )
-from pipeline.report.pages.tallies import tally
-from pipeline.store.results import encode
+from pipeline.report.pages.tallies import counts, tally
+from pipeline.store.pages import Members, page_digest, page_row
+from pipeline.store.results import Stored, anonymous, encode, encode_spacings, keep
 from pipeline.store.runs import commit_run
+from pipeline.store.sealing import seal
 
 HOSTILE = (
     "", " ", "\0", "a\0b", "\x1a0", "\x1a\x1a1\0", "'; DROP TABLE run; --", "%s %(run_id)s :run_id ?", "{demand} {0}",
@@ -79,30 +84,55 @@ def values_of(hint: Any) -> st.SearchStrategy[Any]:
     )
 
 
-def _own(assessment: Assessment) -> Assessment:
-    """Make the findings and recommendations those of the assessment's object."""
-    number = assessment.scene.item.object_number
+ITEMS = st.builds(
+    Item,
+    **{
+        # The inventory has no record whose numbers are not finite.
+        name: st.none() | st.floats(allow_nan=False, allow_infinity=False)
+        if KINDS[name] == "number"
+        else values_of(hint)
+        for name, hint in get_type_hints(Item).items()
+    },
+)
+
+
+def _own(assessment: Assessment, item: Item) -> Assessment:
+    """Make an assessment that of an object."""
+    number, gallery = item.object_number, item.gallery
     return replace(
         assessment,
-        findings=tuple(replace(finding, object_number=number) for finding in assessment.findings),
-        recommendations=tuple(replace(advice, object_number=number) for advice in assessment.recommendations),
+        scene=replace(assessment.scene, item=item),
+        findings=tuple(replace(one, object_number=number, gallery=gallery) for one in assessment.findings),
+        recommendations=tuple(
+            replace(one, object_number=number, gallery=gallery) for one in assessment.recommendations
+        ),
         fragilities=tuple(replace(curve, object_number=number) for curve in assessment.fragilities),
     )
 
 
+def _run(record: RunRecord, spacings: Sequence[tuple[int, Spacing]]) -> RunRecord:
+    """Give a run its gaps, each from one of its objects, in the order of these."""
+    numbers = [one.scene.item.object_number for one in record.assessments]
+    first = sorted(((at % len(numbers), gap) for at, gap in spacings if numbers), key=lambda pair: pair[0])
+    return replace(record, spacings=tuple(replace(gap, first=numbers[at]) for at, gap in first))
+
+
 RUNS = st.builds(
-    RunRecord,
-    **dict.fromkeys(("run_id", "started", "finished", "version", "site", "museum"), TEXTS),
-    level_notes=values_of(tuple[str, ...]),
-    settings=SETTINGS,
-    assessments=st.lists(
-        values_of(Assessment).map(_own), max_size=3, unique_by=lambda a: a.scene.item.object_number
-    ).map(tuple),
-    charts=values_of(Mapping[str, Chart]),
-    motions=values_of(tuple[MotionSummary, ...]),
-    decisions=values_of(tuple[Standing, ...]),
-    demonstration=st.booleans(),
-    spacings=values_of(tuple[Spacing, ...]),
+    _run,
+    st.builds(
+        RunRecord,
+        **dict.fromkeys(("run_id", "started", "finished", "version", "site", "museum"), TEXTS),
+        level_notes=values_of(tuple[str, ...]),
+        settings=SETTINGS,
+        assessments=st.lists(
+            st.builds(_own, values_of(Assessment), ITEMS), max_size=3, unique_by=lambda a: a.scene.item.object_number
+        ).map(tuple),
+        charts=values_of(Mapping[str, Chart]),
+        motions=values_of(tuple[MotionSummary, ...]),
+        decisions=values_of(tuple[Standing, ...]),
+        demonstration=st.booleans(),
+    ),
+    st.lists(st.tuples(st.integers(0, 99), values_of(Spacing)), max_size=3),
 )
 
 
@@ -171,9 +201,51 @@ def run(run_id: str, *assessments: Assessment, day: int = 1, motions: tuple[Moti
     )
 
 
+def packed(items: Sequence[Item]) -> bytes:
+    """Return records as the inventory gives them away."""
+    rows = [
+        [*(json.dumps(row[name]) if KINDS[name] == "list" else row[name] for name in ITEM_FIELDS), digest_of(item)]
+        for item, row in zip(items, to_records(list(items)), strict=True)
+    ]
+    return json.dumps(["an inventory", rows]).encode()
+
+
+def _named(stored: Stored) -> Stored:
+    # As a night's: the same results have the same key.
+    return replace(stored, key=seal(stored.found))
+
+
+def _page(assessments: Sequence[Assessment], wishes: Sequence[Any] | None, gaps: str) -> tuple[Members, list[Stored]]:
+    """Return the objects of a page, and their results by unit: one object, or all in one case."""
+    alone = count()
+    units = groupby(assessments, key=lambda one: one.scene.item.case or next(alone))
+    stored, results = [], []
+    for _, unit in units:
+        told = []
+        for one in unit:
+            mine = None if wishes is None else [w for w in wishes if w.object_number == one.scene.item.object_number]
+            told.append(anonymous(one, {}, None if mine is None else tuple(mine)))
+        stored.append(_named(encode("", told)))
+        results += [(stored[-1].key, at) for at in range(len(told))]
+    items = [one.scene.item for one in assessments]
+    return Members(packed(items), tuple(map(digest_of, items)), tuple(results), gaps), stored
+
+
 def save_run(engine: Engine, record: RunRecord) -> None:
-    """Keep a whole run as one sheet, as a night keeps its many."""
-    found = Found(record.assessments, record.wishes, record.spacings)
-    encoded = encode(uuid4().hex, "", found, tally)
-    sheet = Sheet(encoded.key, "", True, 1, 1, record.run_id, record.finished, encoded.counts)
-    commit_run(engine, replace(record, assessments=(), wishes=None, spacings=()), [sheet], [encoded])
+    """Keep a whole run as a night does: the results first, then the run with its pages, one for each gallery."""
+    stored, pages, rows = [], [], []
+    gaps = ""
+    if record.spacings:
+        stored.append(_named(encode_spacings("", record.spacings, {})))
+        gaps = stored[0].key
+    galleries = groupby(record.assessments, key=lambda one: (one.scene.item.on_display, one.scene.item.gallery))
+    # A run of nothing, too, says on a page that it did not ask what is worth measuring.
+    for (on_display, gallery), found in [(at, list(some)) for at, some in galleries] or [((True, ""), [])]:
+        members, results = _page(found, record.wishes, gaps)
+        key = page_digest(members.digests, members.results, gaps)
+        pages.append(Page(key, gallery, on_display, 1, 1, record.run_id, record.started))
+        rows.append(page_row(pages[-1], members))
+        stored += results
+    keep(engine, record.run_id, record.started, stored)
+    told = counts(tally(Found(record.assessments, record.wishes, record.spacings)))
+    commit_run(engine, replace(record, assessments=(), wishes=None, spacings=()), pages, rows, counts=told)

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from run_samples import assessment, finding, motion, run, save_run
 from sqlalchemy import Engine, delete
 
 from pipeline.collection.database import open_database
@@ -28,6 +27,7 @@ from pipeline.store.codec import StoreError
 from pipeline.store.migrate import upgrade
 from pipeline.store.runs import compare_runs
 from pipeline.store.tables import RUN
+from tests.store.run_samples import assessment, finding, motion, run, save_run
 
 PASS, FAIL, UNDETERMINED = Verdict.PASS, Verdict.FAIL, Verdict.UNDETERMINED
 

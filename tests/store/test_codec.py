@@ -6,11 +6,11 @@ from datetime import date
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from run_samples import SETTINGS, TEXTS
 
 from pipeline.records import Estimate, Origin
 from pipeline.store import codec
 from pipeline.store.codec import StoreError
+from tests.store.run_samples import SETTINGS, TEXTS
 
 
 @given(TEXTS | st.text(alphabet="\0\x1a01a", max_size=12))

@@ -9,7 +9,6 @@ from typing import get_args, get_type_hints
 import jsonschema
 import pytest
 from hypothesis import given, settings
-from run_samples import finding, values_of
 
 from pipeline.records import ITEM_FIELDS, Decision, Finding
 from pipeline.report.files.exports import FINDING_COLUMNS
@@ -17,6 +16,7 @@ from pipeline.resources import resource
 from pipeline.store import codec
 from pipeline.store.schema import decision_schema, finding_schema
 from pipeline.store.tables import DECISION, METADATA
+from tests.store.run_samples import finding, values_of
 
 NAMES = {field.name for field in fields(Finding)}
 

@@ -11,7 +11,6 @@ from alembic.autogenerate import compare_metadata
 from alembic.config import Config
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from run_samples import assessment, finding, run, save_run
 from sqlalchemy import URL, Engine, insert, inspect, text
 
 import pipeline
@@ -25,6 +24,7 @@ from pipeline.store.codec import StoreError
 from pipeline.store.migrate import current, revisions, upgrade
 from pipeline.store.runs import load_run
 from pipeline.store.tables import IMPORT_BATCH, ITEM, METADATA
+from tests.store.run_samples import assessment, finding, run, save_run
 
 UPGRADE = """
 import sys

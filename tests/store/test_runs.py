@@ -9,20 +9,20 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
-from run_samples import RUNS, assessment, finding, motion, run, save_run
-from sqlalchemy import Engine, delete, func, select
+from sqlalchemy import Engine, Table, delete, func, select, update
 
 from pipeline.collection.database import open_database
-from pipeline.records import Chart, Estimate, Found, Origin, RunRecord, Verdict
-from pipeline.report.pages.tallies import tally
+from pipeline.records import Assessment, Chart, Estimate, MeasurementRequest, Origin, Page, RunRecord, Spacing, Verdict
 from pipeline.store.codec import StoreError
 from pipeline.store.migrate import upgrade
+from pipeline.store.pages import damaged_pages, load_page
 from pipeline.store.pruning import remove_runs
-from pipeline.store.results import encode, keep
+from pipeline.store.results import anonymous, damaged, encode, keep
 from pipeline.store.runs import commit_run, latest_run_id, list_runs, load_head, load_run
-from pipeline.store.tables import RESULT, RUN, RUN_CHART, RUN_MOTION, RUN_SHEET
+from pipeline.store.tables import PAGE, RESULT, RUN, RUN_CHART, RUN_MOTION, RUN_PAGE
+from tests.store.run_samples import RUNS, assessment, finding, motion, run, save_run
 
-TABLES = (RUN, RUN_MOTION, RUN_CHART, RUN_SHEET, RESULT)
+TABLES = (RUN, RUN_MOTION, RUN_CHART, RUN_PAGE, PAGE, RESULT)
 
 
 def rows(engine: Engine) -> dict[str, int]:
@@ -56,7 +56,7 @@ def _positive_zero(record: RunRecord) -> str:
 def test_mappings_that_are_no_dictionaries_are_refused_or_become_them(engine: Engine) -> None:
     one = assessment("1", finding("1"))
     scene = replace(one.scene, skipped=MappingProxyType({"swing": "stands"}))
-    with pytest.raises(StoreError, match=r"object '1' .*Expected `dict.*skipped"):
+    with pytest.raises(StoreError, match=r"Expected `dict.*skipped"):
         save_run(engine, run("a", replace(one, scene=scene)))
     record = replace(run("a", one), settings=MappingProxyType({"keep": (1, 2)}))
     save_run(engine, record)
@@ -96,13 +96,37 @@ def test_an_empty_run_comes_back(engine: Engine) -> None:
     assert load_run(engine, "") == record
 
 
-def test_an_object_that_occurs_twice_leaves_nothing_of_the_run(engine: Engine) -> None:
+def test_wishes_come_back_page_by_page_what_settles_most_first(engine: Engine) -> None:
+    def wish(number: str, gallery: str, settles: float) -> MeasurementRequest:
+        return MeasurementRequest(number, gallery, "Kouros", "mass_kg", "kg", 1.0, 2.0, 3.0, "a guess", 3, settles, 0)
+
+    objects = (assessment("1", gallery="G1"), assessment("2", gallery="G1"), assessment("3", gallery="G2"))
+    asked = (wish("2", "G1", 2.0), wish("1", "G1", 1.0), wish("3", "G2", 3.0))
+    record = replace(run("a", *objects), wishes=asked)
+    save_run(engine, record)
+    assert load_run(engine, "a").wishes == asked
+    save_run(engine, replace(record, run_id="b", wishes=()))
+    assert load_run(engine, "b").wishes == ()
+
+
+def test_objects_in_one_case_share_a_row_and_so_do_those_that_are_alike(engine: Engine) -> None:
+    def of(number: str, case: str, **changed: float) -> Assessment:
+        one = assessment(number, finding(number, **changed))
+        return replace(one, scene=replace(one.scene, item=replace(one.scene.item, case=case)))
+
+    record = run("a", of("1", "c", demand=0.1), of("2", "c", demand=0.2), of("3", ""), of("4", ""))
+    save_run(engine, record)
+    assert rows(engine) == NOTHING | {"run": 1, "page": 1, "run_page": 1, "result": 2}
+    assert load_run(engine, "a") == record
+
+
+def test_a_run_of_a_page_that_is_not_kept_leaves_nothing_of_itself(engine: Engine) -> None:
     before = run("before", assessment("1", finding("1")))
     save_run(engine, before)
     had = rows(engine)
-    many = [assessment(str(i)) for i in range(2_500)]
-    with pytest.raises(StoreError, match=r"it has more than one object '7'"):
-        save_run(engine, run("twice", *many, assessment("7"), motions=(motion("malibu", "ab"),)))
+    many = tuple(motion(str(number), "ab") for number in range(2_500))
+    with pytest.raises(StoreError, match=r"'gone' was not stored.*or a result of it is gone"):
+        commit_run(engine, run("gone", motions=many), [Page("none", "", True, 1, 1, "gone", "")], counts={})
     assert rows(engine) == had
     assert load_run(engine) == before
 
@@ -113,21 +137,17 @@ def test_a_run_is_never_overwritten(engine: Engine) -> None:
     had = rows(engine)
     with pytest.raises(StoreError, match=r"'a' was not stored.*there is a run of that id already"):
         save_run(engine, replace(first, museum="Another museum"))
-    # Its result had been written in the same transaction.
     assert rows(engine) == had
     assert load_run(engine, "a") == first
 
 
 @pytest.mark.parametrize(
-    ("changed", "what"),
-    [
-        ({"demand": "much"}, "object '1' in gallery 'G1'.*demand"),
-        ({"title": "broken \ud800"}, "object '1' in gallery 'G1'.*surrogates"),
-        ({"verdict": "fail?"}, "object '1' in gallery 'G1'.*verdict"),
-        ({"object_number": "2"}, "object '1' in gallery 'G1' has a finding of object '2'"),
-    ],
-)
-def test_what_cannot_be_kept_names_the_object(engine: Engine, changed: dict[str, object], what: str) -> None:
+    ("changed", "what"), [({"demand": "much"}, "demand"), ({"title": "broken \ud800"}, "surrogates"),
+                          ({"verdict": "fail?"}, "verdict")],
+)  # fmt: skip
+def test_what_cannot_be_kept_is_refused_before_anything_is_written(
+    engine: Engine, changed: dict[str, object], what: str
+) -> None:
     good = finding("1")
     with pytest.raises(StoreError, match=f"(?s){what}"):
         save_run(engine, run("a", assessment("1", replace(good, **changed))))
@@ -184,6 +204,7 @@ def test_the_list_counts(engine: Engine) -> None:
         "fail": 2,
         "undetermined": 0,
         "recommendations": 2,
+        "pages": 1,
         "charts": 0,
         "motions": 1,
     }
@@ -193,21 +214,66 @@ def test_what_two_runs_share_stays_until_both_are_gone(engine: Engine) -> None:
     """And what no run holds, as an interrupted one leaves behind, goes."""
     one = run("one", assessment("1", finding("1")))
     save_run(engine, one)
-    _, sheets = load_head(engine, "one")
-    commit_run(engine, replace(one, run_id="two", assessments=()), sheets)
-    stray = encode("stray", "", Found((assessment("2"),)), tally)
+    _, pages = load_head(engine, "one")
+    commit_run(engine, replace(one, run_id="two", assessments=()), pages, counts={})
+    stray = encode("stray", [anonymous(assessment("2"), {}, None)])
     keep(engine, "cut off", "2031-05-01T00:00:00+00:00", [stray])
     remove_runs(engine, ["one", "never there"])
-    assert rows(engine) == NOTHING | {"run": 1, "run_motion": 0, "run_sheet": 1, "result": 1}
+    assert rows(engine) == NOTHING | {"run": 1, "run_page": 1, "page": 1, "result": 1}
     assert load_run(engine, "two").assessments == one.assessments
     remove_runs(engine, ["two"])
     assert rows(engine) == NOTHING
 
 
+def test_a_result_that_another_page_shows_stays(engine: Engine) -> None:
+    """Of two nights that found the same of one object and another thing of its neighbour."""
+    spacing = Spacing("G1", "design", "1", "2", 0.05, 0.06, 0.02, 0.08, 0.06, 0.2, Verdict.PASS, "bound", "malibu")
+    old = replace(run("old", assessment("1"), assessment("2", finding("2"))), spacings=(spacing,))
+    new = replace(run("new", assessment("1"), assessment("2", finding("2", demand=0.5)), day=2), spacings=(spacing,))
+    save_run(engine, old)
+    save_run(engine, new)
+    assert rows(engine) == NOTHING | {"run": 2, "run_page": 2, "page": 2, "result": 4}
+    remove_runs(engine, ["old"])
+    assert rows(engine) == NOTHING | {"run": 1, "run_page": 1, "page": 1, "result": 3}
+    assert load_run(engine, "new") == new
+
+
+def _altered(engine: Engine, table: Table, column: str) -> None:
+    """Change the last letter, or the last byte, of a row's column."""
+    with engine.begin() as connection:
+        if table is PAGE:
+            # The rows of a run name it.
+            connection.execute(delete(RUN_PAGE))
+        old = connection.execute(select(table.c[column])).scalar_one()
+        new = old[:-1] + ("0" if old[-1] != "0" else "1") if isinstance(old, str) else old[:-1] + bytes([old[-1] ^ 1])
+        connection.execute(update(table).values({column: new}))
+
+
+@pytest.mark.parametrize("column", ["key", "run_id", "made", "outline", "found", "seal"])
+def test_a_result_that_is_not_what_was_written_is_noticed(engine: Engine, column: str) -> None:
+    save_run(engine, run("a", assessment("1", finding("1"))))
+    assert list(damaged(engine)) == []
+    _altered(engine, RESULT, column)
+    assert len(list(damaged(engine))) == 1
+    with pytest.raises(StoreError, match=r"result .*(is damaged|pruned while it was read)"):
+        load_run(engine, "a")
+
+
+@pytest.mark.parametrize("column", ["key", "run_id", "made", "members", "seal"])
+def test_a_page_that_is_not_what_was_written_is_noticed(engine: Engine, column: str) -> None:
+    save_run(engine, run("a", assessment("1", finding("1"))))
+    _, (page,) = load_head(engine, "a")
+    assert list(damaged_pages(engine)) == []
+    _altered(engine, PAGE, column)
+    assert len(list(damaged_pages(engine))) == 1
+    with pytest.raises(StoreError, match=r"page .*(is damaged|pruned while it was read)"):
+        load_page(engine, page.key)
+
+
 def test_a_run_that_lost_rows_is_not_shown_as_whole(engine: Engine) -> None:
     save_run(engine, run("a", assessment("1", finding("1"))))
     with engine.begin() as connection:
-        connection.execute(delete(RUN_SHEET))
+        connection.execute(delete(RUN_PAGE))
     with pytest.raises(StoreError, match="run 'a' is not whole"):
         load_run(engine, "a")
 
