@@ -13,7 +13,7 @@ import pytest
 import pipeline
 from pipeline.collection.database import database_url
 from pipeline.errors import InputError, KourosError, fault_words
-from tests.night.test_jobs import workspace
+from tests.museum import workspace
 
 INSIDE = {
     # Caught where it is raised, or can only be reached by a mistake in Kouros.

@@ -2,22 +2,13 @@
 
 import json
 import subprocess
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
 from pipeline.cli.commands import ALL
-from tests.night.test_jobs import ROWS, own_site, workspace
-
-
-def kouros(*words: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """Run the command in a folder, with the interpreter of the tests."""
-    program = "from pipeline.cli import main; main()"
-    return subprocess.run(
-        [sys.executable, "-c", program, *words], cwd=folder, capture_output=True, text=True, check=False
-    )
+from tests.museum import ROWS, kouros, own_site, workspace
 
 
 def test_every_command_has_help_with_an_example(tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from pipeline.motions import read_motion
 from pipeline.operations.dry_run import NOTHING
 from pipeline.store.migrate import revisions
 from pipeline.tools.synthetic import synthesise
-from tests.night.test_jobs import COLUMNS, ROWS, workspace
+from tests.museum import COLUMNS, ROWS, workspace
 
 MORE = [*ROWS, "4,B,Cup,0.1,0.08,0.08"]
 SHEET = "object_number,gallery,height_m,mass_kg\n3,B,0.31,2\n9,B,0.2,\n"

@@ -16,9 +16,8 @@ from sqlalchemy import create_engine, text
 from pipeline.collection.database import open_database
 from pipeline.collection.inventory import read_inventory
 from pipeline.collection.mapping import preset_names
-from tests.cli.test_cli import kouros
 from tests.collection.sources.lido_files import measured, measurements, record, wrap
-from tests.night.test_jobs import workspace
+from tests.museum import kouros, workspace
 
 DATA = Path(__file__).parents[1] / "data" / "collections"
 

@@ -7,8 +7,7 @@ import pytest
 
 from pipeline.motions import read_motion
 from pipeline.quantities import G
-from tests.cli.test_cli import kouros
-from tests.night.test_jobs import own_site, workspace
+from tests.museum import kouros, own_site, workspace
 
 
 def test_list_and_process_write_a_site_that_is_the_same(tmp_path: Path) -> None:

@@ -16,14 +16,20 @@ import sys
 import tempfile
 import threading
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from sqlalchemy import select
+
+from pipeline.collection.database import open_database
 from pipeline.operations.report_status import FAILED, GOOD, RUNNING, status
 from pipeline.settings import load_settings
-from tests.night.test_jobs import COLUMNS, workspace
+from pipeline.store.pages import fetch_pages
+from pipeline.store.results import damaged as damaged_results
+from pipeline.store.tables import PAGE, RESULT
+from tests.museum import COLUMNS, workspace
 
 from .conftest import within
 from .disturbed import last, objects, whole
@@ -209,14 +215,24 @@ def _litter(name: str) -> bool:
 
 
 def _database(file: Path) -> Iterator[str]:
-    with sqlite3.connect(file) as connection:
+    with closing(sqlite3.connect(file)) as connection:
         if connection.execute("PRAGMA integrity_check").fetchall() != [("ok",)]:
             yield "the database is damaged"
         if connection.execute("PRAGMA foreign_key_check").fetchall():
             yield "the database names what it does not hold"
-        orphans = "SELECT count(*) FROM result WHERE key NOT IN (SELECT key FROM run_sheet)"
+        orphans = "SELECT count(*) FROM page WHERE key NOT IN (SELECT key FROM run_page)"
         if connection.execute(orphans).fetchone() != (0,):
-            yield "the database holds results of no run"
+            yield "the database holds pages of no run"
+    engine = open_database(str(file))
+    with engine.connect() as connection:
+        there = set(connection.execute(select(RESULT.c.key)).scalars())
+        pages, damaged = fetch_pages(connection, connection.execute(select(PAGE.c.key)).scalars().all())
+    named = {key for page in pages.values() for key in (*page.members.keys, page.members.spacings)} - {""}
+    if there != named:
+        yield f"results of no page: {len(there - named)}, pages without their results: {len(named - there)}"
+    if damaged or [*damaged_results(engine)]:
+        yield "the database holds what was not written"
+    engine.dispose()
 
 
 def main() -> None:

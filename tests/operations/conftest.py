@@ -21,7 +21,7 @@ from referencing import Registry, Resource
 
 from pipeline.resources import resource
 from pipeline.tools.synthetic import synthesise
-from tests.night.test_jobs import COLUMNS, workspace
+from tests.museum import COLUMNS, workspace
 
 from .disturbed import Nights, last, objects, rows
 

@@ -12,8 +12,9 @@ from lxml import html
 
 from pipeline.collection.database import open_database
 from pipeline.records import RunRecord
+from pipeline.report.files.manifest import verify_report
 from pipeline.store.runs import load_run
-from tests.night.test_jobs import COLUMNS
+from tests.museum import COLUMNS
 
 ROOMS, EACH = 6, 5
 
@@ -75,6 +76,7 @@ def whole(folder: Path, nights: Expected) -> bool:
     assert report.name.startswith(told["run_id"])
     assert (report / told["report"]).is_file()
     assert (report / told["latest"]).resolve() == report
+    assert not list(verify_report(report))
     found = objects(report)
     assert found in (nights.before, nights.after)
     for page in report.glob("*.html"):

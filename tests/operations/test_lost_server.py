@@ -58,8 +58,8 @@ def test_a_server_that_stops_in_the_middle(nights: Nights, tmp_path: Path, serve
     said = []
     for line in night.stderr:
         said.append(line)
-        if "sheets" in line:
-            # Tonight's records are in the inventory, and the objects are being worked on.
+        if "objects" in line:
+            # Tonight's records are in the inventory, and what is found about them is about to be stored.
             stop_at_once(server)
             break
     said.append(night.stderr.read())

@@ -52,7 +52,7 @@ def night(
         wishes=None,
         settings={SELECTION: part},
     )
-    commit_run(workspace.engine, record, [])
+    commit_run(workspace.engine, record, [], counts={})
     if report and finished:
         folder = workspace.reports / run_id
         folder.mkdir(parents=True)

@@ -18,7 +18,7 @@ from pipeline.operations.run_summary import exit_code_of, words_of
 from pipeline.operations.stopping import Stopped, uninterrupted
 from pipeline.settings import load_settings
 from pipeline.tools.demo import demonstration
-from tests.night.test_jobs import workspace
+from tests.museum import workspace
 
 from .conftest import command, environment, validate, within
 from .disturbed import Nights, last, rows, whole

@@ -16,7 +16,7 @@ import pytest
 from pipeline.operations.report_status import mark_failed, status
 from pipeline.operations.workspace import locked
 from pipeline.settings import load_settings
-from tests.night.test_jobs import ROWS
+from tests.museum import ROWS
 
 from .conftest import Kouros, command, environment, validate, within
 from .servers import Web, web

@@ -21,7 +21,7 @@ from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.settings import template
 from pipeline.tools.synthetic import synthesise
-from tests.night.test_jobs import in_common
+from tests.museum import in_common
 from tests.operations.conftest import within
 from tests.operations.servers import Web, web
 from tests.report.conftest import browser as browser  # noqa: PLC0414 - a fixture

@@ -16,7 +16,7 @@ from pipeline.records import DecisionKind
 from pipeline.settings import Settings
 from pipeline.store.runs import list_runs, load_run
 from pipeline.tools.decisions import Wish, decide
-from tests.night.test_jobs import workspace
+from tests.museum import workspace
 
 ROWS = [
     "1,A,Vase \x1b[31mred,0.4,0.2,0.2",

@@ -14,7 +14,7 @@ from pipeline.settings import load_settings
 from pipeline.tools.rerender import render_again
 from pipeline.verification import self_measurement as numerics
 from pipeline.verification import selftest
-from tests.night.test_jobs import workspace
+from tests.museum import workspace
 
 QUICK = tuple(case for case in numerics.CASES if case.what.startswith(("friction", "one sample")))
 

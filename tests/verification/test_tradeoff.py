@@ -18,8 +18,7 @@ from pipeline.quantities import G
 from pipeline.records import Item, Motion
 from pipeline.settings import load_settings
 from pipeline.verification import tradeoff
-from tests.cli.test_cli import kouros
-from tests.night.test_jobs import workspace
+from tests.museum import kouros, workspace
 
 SILENT = Console(quiet=True)
 
