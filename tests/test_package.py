@@ -143,7 +143,7 @@ def test_every_dependency_has_its_reason() -> None:
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     project = tomllib.loads(text)["project"]
     for requirement in [*project["dependencies"], *itertools.chain(*project["optional-dependencies"].values())]:
-        assert re.search(rf'"{re.escape(requirement)}",? +# \S+', text), requirement
+        assert re.search(rf'"{re.escape(requirement)}",?\]? +# \S+', text), requirement
 
 
 def test_constraints_pin_versions_and_name_no_index() -> None:
