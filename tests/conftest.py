@@ -17,41 +17,6 @@ from filelock import FileLock
 SHARED = "KOUROS_TESTS_SHARED"
 """Names the folder of what all processes of a session have in common: it is the same whoever made it."""
 
-LONGEST = frozenset(
-    {
-        "test_unchanged_nights.py",
-        "test_alike.py",
-        "test_incremental.py",
-        "test_examples.py",
-        "test_motions_commands.py",
-        "test_cli.py",
-        "test_demo.py",
-        "test_night_changes.py",
-        "test_crewed_nights.py",
-        "test_findings.py",
-        "test_fragility.py",
-        "test_import_command.py",
-        "test_chart_nights.py",
-        "test_jobs.py",
-        "test_interruptions.py",
-        "test_every_call.py",
-        "test_borders.py",
-        "test_extremes.py",
-        "test_hostile_collection.py",
-        "test_tradeoff.py",
-        "test_pictures.py",
-        "test_faults.py",
-        "test_dry_runs.py",
-        "test_display.py",
-        "test_readings.py",
-        "test_stopping.py",
-        "test_corners.py",
-        "test_bounded_work.py",
-        "test_bounds.py",
-    }
-)
-"""Files of tests that take long: they come first, so that at the end no core waits for another."""
-
 
 def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
@@ -64,7 +29,8 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    items.sort(key=lambda item: item.path.name not in LONGEST)
+    # What takes long comes first, so that at the end no core waits for another.
+    items.sort(key=lambda item: item.get_closest_marker("slow_file") is None)
 
 
 @contextmanager

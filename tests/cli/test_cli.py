@@ -10,6 +10,8 @@ import pytest
 from pipeline.cli.commands import ALL
 from tests.museum import ROWS, kouros, own_site, workspace
 
+pytestmark = pytest.mark.slow_file
+
 
 def test_every_command_has_help_with_an_example(tmp_path: Path) -> None:
     for command in ALL:

@@ -25,6 +25,8 @@ from pipeline.store.migrate import revisions
 from pipeline.tools.synthetic import synthesise
 from tests.museum import COLUMNS, ROWS, workspace
 
+pytestmark = pytest.mark.slow_file
+
 MORE = [*ROWS, "4,B,Cup,0.1,0.08,0.08"]
 SHEET = "object_number,gallery,height_m,mass_kg\n3,B,0.31,2\n9,B,0.2,\n"
 

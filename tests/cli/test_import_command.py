@@ -19,6 +19,8 @@ from pipeline.collection.mapping import preset_names
 from tests.collection.sources.lido_files import measured, measurements, record, wrap
 from tests.museum import kouros, workspace
 
+pytestmark = pytest.mark.slow_file
+
 DATA = Path(__file__).parents[1] / "data" / "collections"
 
 Run = Callable[..., subprocess.CompletedProcess[str]]

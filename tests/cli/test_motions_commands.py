@@ -9,6 +9,8 @@ from pipeline.motions import read_motion
 from pipeline.quantities import G
 from tests.museum import kouros, own_site, workspace
 
+pytestmark = pytest.mark.slow_file
+
 
 def test_list_and_process_write_a_site_that_is_the_same(tmp_path: Path) -> None:
     listed = kouros("motions", "list", "demo", folder=tmp_path)

@@ -17,6 +17,8 @@ from pipeline.records import Assessment, Finding, Motion, Recommendation, RunRec
 from pipeline.resources import resource
 from pipeline.store.runs import load_run
 
+pytestmark = pytest.mark.slow_file
+
 
 @pytest.fixture(scope="module")
 def motion() -> Motion:

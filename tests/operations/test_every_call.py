@@ -18,6 +18,8 @@ import pytest
 
 from .conftest import environment
 
+pytestmark = pytest.mark.slow_file
+
 STRIDE = int(os.environ.get("KOUROS_CALLS", "0"))
 """One call of so many is disturbed, from the first on; `make soak` disturbs each; 0: the sample of every day."""
 

@@ -16,6 +16,8 @@ import pytest
 
 from .conftest import command, environment
 
+pytestmark = pytest.mark.slow_file
+
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"
 

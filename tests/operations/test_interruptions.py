@@ -23,6 +23,8 @@ from pipeline.store.runs import list_runs
 from .conftest import command, environment, within
 from .disturbed import Nights, last, objects, whole
 
+pytestmark = pytest.mark.slow_file
+
 KILLS = int(os.environ.get("KOUROS_KILLS", "2"))
 """How many runs are killed; `make soak` kills fifty."""
 

@@ -23,6 +23,8 @@ from tests.museum import workspace
 from .conftest import command, environment, validate, within
 from .disturbed import Nights, last, rows, whole
 
+pytestmark = pytest.mark.slow_file
+
 SECONDS = 2.0
 """Within which a command that is stopped has ended."""
 

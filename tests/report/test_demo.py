@@ -13,7 +13,7 @@ from lxml import etree
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow_file]
 
 STORED = "not-on-display.html"
 OTHERS = {"index.html", "motion.html", "method.html"}

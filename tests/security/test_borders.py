@@ -32,6 +32,8 @@ from tests.operations.conftest import museum as museum  # noqa: PLC0414 - fixtur
 from tests.operations.conftest import shaking as shaking  # noqa: PLC0414
 from tests.report.conftest import report as report  # noqa: PLC0414
 
+pytestmark = pytest.mark.slow_file
+
 PACKAGE = Path(__file__).parents[2] / "pipeline"
 
 RUNS_CODE = {"pickle", "cPickle", "dill", "cloudpickle", "marshal", "shelve", "joblib", "code", "pty"}

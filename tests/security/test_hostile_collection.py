@@ -28,6 +28,8 @@ from tests.report.conftest import browser as browser  # noqa: PLC0414 - a fixtur
 
 from . import payloads
 
+pytestmark = pytest.mark.slow_file
+
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
 

@@ -20,6 +20,8 @@ from pipeline.settings import load_settings
 from pipeline.verification import tradeoff
 from tests.museum import kouros, workspace
 
+pytestmark = pytest.mark.slow_file
+
 SILENT = Console(quiet=True)
 
 
