@@ -22,6 +22,7 @@ INSIDE = {
     "collection/dimensions/quantities.py",
     "collection/inventory/writing.py",
     "collection/sources/rows.py",
+    "mitigate/rows.py",
     "motions/formats/toolbox.py",
     "motions/site.py",
     "night/scheduler.py",
