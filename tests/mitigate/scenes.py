@@ -16,11 +16,6 @@ from pipeline.records import Item, Motion, Recommendation, Support
 from pipeline.resources import resource
 
 
-class Silent:
-    def step(self, what: str, done: int, total: int) -> None:
-        assert 0 <= done <= total
-
-
 def demo_motion() -> Motion:
     return read_motion(resource("site_motions", "demo"))[0]
 

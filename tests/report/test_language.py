@@ -20,6 +20,7 @@ from lxml import etree
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import advise
@@ -313,8 +314,8 @@ def test_a_real_run_is_translated(compiled: GNUTranslations, name: str) -> None:
     motion = motion.scaled(0.6, "weak") if name == "light" else motion
     scene = classify(item)
     levels = [LevelMotions("design", "max", (motion,))]
-    _, findings = assess([scene], levels, Threads(1), scenes.Silent())
-    (advice,) = advise([scene], findings, levels, Threads(1), scenes.Silent())
+    _, findings = assess([scene], levels, Context(Threads(1)))
+    (advice,) = advise([scene], findings, levels, Context(Threads(1)))
     assert advice
     with speaking(Language("it", compiled)):
         for finding in findings[0]:
