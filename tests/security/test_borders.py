@@ -42,6 +42,12 @@ RUNS_CODE = {"pickle", "cPickle", "dill", "cloudpickle", "marshal", "shelve", "j
 CALLS = {"eval", "exec", "compile", "__import__", "read_pickle", "to_pickle", "system", "popen"}
 """Functions that do; `re.compile` is another one."""
 
+KNOWN = {
+    ("execute/processes.py", "pickle"): "between processes of our own, through pipes, never in a file",
+    ("collection/inventory/writing.py", "verify"): "of records against their digests, not of certificates",
+}
+"""What looks like it and is not, and why."""
+
 
 def trees() -> Iterator[tuple[str, ast.AST]]:
     for file in sorted(PACKAGE.rglob("*.py")):
@@ -66,7 +72,7 @@ def test_nothing_that_is_stored_is_code() -> None:
                 )
                 found += [(name, word) for word in ("shell", "allow_pickle") if words.get(word)]
                 found += [(name, "verify")] if words.get("verify", True) is False else []
-    assert found == []
+    assert set(found) == KNOWN.keys()
 
 
 @trying(deadline=None, max_examples=500)

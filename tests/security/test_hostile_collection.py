@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import openpyxl
-import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
@@ -172,7 +171,7 @@ def test_nothing_was_written_elsewhere(night: Night) -> None:
 def test_what_is_left_holds_no_objects_of_python(night: Night) -> None:
     """Texts, tables, JSON, SQL and plain arrays: nothing that runs when it is read."""
     kept = [path for path in night.folder.rglob("*") if path.is_file()]
-    kinds = {*(".toml", ".sqlite", ".lock", ".html", ".csv", ".jsonl", ".json", ".parquet", ".xlsx", ".kept", ".arrow")}
+    kinds = {*(".toml", ".sqlite", ".lock", ".html", ".csv", ".jsonl", ".json", ".parquet", ".xlsx", ".kept")}
     assert {path.suffix or path.name for path in kept} - {".kouros.lock"} <= kinds
     sealed = [
         path for path in [*kept, *(night.folder / ".kouros-kept" / "charts").rglob("*")] if path.suffix == ".kept"
@@ -186,9 +185,6 @@ def test_what_is_left_holds_no_objects_of_python(night: Night) -> None:
         assert {np.dtype(kind).kind for _, kind, _ in arrays} <= set("biuf")
         sizes = [np.dtype(kind).itemsize * math.prod(shape) for _, kind, shape in arrays]
         assert len(body) == 8 + length + sum(sizes)
-    (listing,) = (path for path in kept if path.suffix == ".arrow")
-    _head, _, stream = listing.read_bytes().partition(b"\n")
-    assert {str(kind) for kind in pa.ipc.open_stream(stream).schema.types} == {"large_string", "bool", "int64"}
 
 
 def test_no_text_steers_a_terminal(night: Night) -> None:

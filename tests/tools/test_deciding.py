@@ -42,7 +42,7 @@ from pipeline.store.schema import decision_schema
 from pipeline.tables import table
 from pipeline.tools.decisions import WHO_VARIABLE, Wish, decide, listed
 from pipeline.tools.rerender import render_again
-from tests.museum import SILENT, edit, own_site, workspace
+from tests.museum import SILENT, edit, short_site, workspace
 
 HOSTILE = "<script>alert(1)</script>\"'&{{7*7}}\u202e"
 ROWS = ["1,A,Vase,0.4,0.2,0.2", "2,A,Vase,0.4,0.2,0.2", "3,B,Plate,0.03,0.3,0.3", f"{HOSTILE[:25]},B,Vase,0.5,0.2,0.2"]
@@ -53,7 +53,7 @@ KIND = DecisionKind
 def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small museum after one night."""
     folder = tmp_path_factory.mktemp("museum")
-    own_site(folder)
+    short_site(folder)
     run(workspace(folder, ROWS, site="site"), SILENT)
     return folder
 
