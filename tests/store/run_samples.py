@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from sqlalchemy import Engine
 
 from pipeline.collection.record import KINDS, digest_of, to_records
+from pipeline.collection.sealing import seal
 from pipeline.records import (
     ITEM_FIELDS,
     Assessment,
@@ -37,7 +38,6 @@ from pipeline.report.pages.tallies import counts, tally
 from pipeline.store.pages import Members, page_digest, page_row
 from pipeline.store.results import Stored, anonymous, encode, encode_spacings, keep
 from pipeline.store.runs import commit_run
-from pipeline.store.sealing import seal
 
 HOSTILE = (
     "", " ", "\0", "a\0b", "\x1a0", "\x1a\x1a1\0", "'; DROP TABLE run; --", "%s %(run_id)s :run_id ?", "{demand} {0}",

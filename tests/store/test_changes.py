@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from sqlalchemy import Engine, delete
+from sqlalchemy import Engine, Table, delete, select, update
 
 from pipeline.collection.database import open_database
 from pipeline.records import (
@@ -25,8 +25,9 @@ from pipeline.records import (
 )
 from pipeline.store.codec import StoreError
 from pipeline.store.migrate import upgrade
+from pipeline.store.results import DamagedRunError
 from pipeline.store.runs import compare_runs
-from pipeline.store.tables import RUN
+from pipeline.store.tables import PAGE, RESULT, RUN
 from tests.store.run_samples import assessment, finding, motion, run, save_run
 
 PASS, FAIL, UNDETERMINED = Verdict.PASS, Verdict.FAIL, Verdict.UNDETERMINED
@@ -89,6 +90,22 @@ def test_a_run_has_not_changed_against_itself_or_its_equal(engine: Engine) -> No
     save_run(engine, replace(one, run_id="b"))
     assert not compare_runs(engine, "a", "a")
     assert not compare_runs(engine, "a", "b")
+
+
+@pytest.mark.parametrize(
+    ("table", "column"), [(RESULT, "found"), (RESULT, "outline"), (RESULT, "key"), (PAGE, "members"), (PAGE, "made")]
+)
+def test_what_changed_since_a_damaged_run_is_not_made_up(sqlite: Engine, table: Table, column: str) -> None:
+    with sqlite.begin() as connection:
+        for one in (RUN, PAGE, RESULT):
+            connection.execute(delete(one))
+    save_run(sqlite, run("old", assessment("1", finding("1"))))
+    with sqlite.begin() as connection:
+        value = connection.execute(select(table.c[column])).scalar_one()
+        connection.execute(update(table).values({column: value[::-1]}))
+    save_run(sqlite, run("new", assessment("1", finding("1", verdict=FAIL), half_width=0.2), day=2))
+    with pytest.raises(DamagedRunError):
+        compare_runs(sqlite, "old", "new")
 
 
 def test_an_unknown_run_is_named(engine: Engine) -> None:
