@@ -23,10 +23,14 @@ def _nothing(_findings: Sequence[Finding]) -> Numbers:
     return {}
 
 
-def case_of(scene: Scene) -> tuple[str, str] | None:
-    """Return gallery and case that a standing object shares, None where no case is recorded."""
+Case = tuple[str, str, bool]
+"""Gallery, case, and whether what stands in it is on display: what is in store is advised apart, as it is kept."""
+
+
+def case_of(scene: Scene) -> Case | None:
+    """Return the case that a standing object shares, None where no case is recorded."""
     item = scene.item
-    return (item.gallery, item.case) if item.case.strip() and scene.support in STANDING else None
+    return (item.gallery, item.case, item.on_display) if item.case.strip() and scene.support in STANDING else None
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures import Measure
 from pipeline.mitigate.measures.remove import LAST_RESORTS
-from pipeline.mitigate.proposals import Candidate, Deficiency, Option, Proposal, case_of, company
+from pipeline.mitigate.proposals import Candidate, Case, Deficiency, Option, Proposal, case_of, company
 from pipeline.mitigate.trials import TransmittedMotions, Trial, TrialRunner, checks, passes, why_not
 from pipeline.models import settled_by_room
 from pipeline.records import Check, Finding, Mark, Numerics, Recommendation, Scene, Verdict
@@ -114,10 +114,8 @@ def _for_room_alone(findings: Sequence[Finding]) -> bool:
     return bool(still) and all(settled_by_room(f.model) for f in still)
 
 
-def _unassessed(
-    scenes: Sequence[Scene], findings: Sequence[Sequence[Finding]]
-) -> Mapping[tuple[str, str], tuple[str, ...]]:
-    out: dict[tuple[str, str], tuple[str, ...]] = {}
+def _unassessed(scenes: Sequence[Scene], findings: Sequence[Sequence[Finding]]) -> Mapping[Case, tuple[str, ...]]:
+    out: dict[Case, tuple[str, ...]] = {}
     for scene, found in zip(scenes, findings, strict=True):
         case = case_of(scene)
         if case is not None and not found:
@@ -135,7 +133,7 @@ class _Search:
 
     runner: TrialRunner
     objects: Sequence[Deficiency]
-    unassessed: Mapping[tuple[str, str], tuple[str, ...]]
+    unassessed: Mapping[Case, tuple[str, ...]]
     recommended: dict[tuple[int, str], Recommendation] = field(default_factory=dict)
     rejected: dict[int, list[str]] = field(default_factory=dict)
     helped: set[int] = field(default_factory=set)

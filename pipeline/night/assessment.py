@@ -19,6 +19,7 @@ from pipeline.analysis.survey import measurement_requests
 from pipeline.collection.record import INDIVIDUAL
 from pipeline.mitigate import MeasureCatalogue, advise
 from pipeline.mitigate.installed import InstalledMeasure, Placed, assess_above, placed
+from pipeline.mitigate.proposals import case_of
 from pipeline.models import model_named
 from pipeline.night.floors import Storey
 from pipeline.records import (
@@ -252,7 +253,7 @@ def each_assessed(
         objects,
         lambda one: (one.scene.object_class, one.scene.support),
         # What is advised for a case depends on all that stand in it.
-        lambda one: (one.scene.item.gallery, one.scene.item.case) if one.scene.item.case.strip() else None,
+        lambda one: case_of(one.scene),
     )
 
 

@@ -17,6 +17,8 @@ from pipeline.quantities import Array, G
 from pipeline.records import Finding, Item, Motion, Numerics, Scene, Support, Verdict
 from pipeline.resources import resource
 
+pytestmark = pytest.mark.slow_file
+
 COUNT = 400
 
 

@@ -21,6 +21,8 @@ from pipeline.report.units import Units
 from pipeline.resources import resource
 from pipeline.store.runs import load_run
 
+pytestmark = pytest.mark.slow_file
+
 
 @pytest.fixture(scope="module")
 def motion() -> Motion:

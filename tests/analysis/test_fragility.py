@@ -27,6 +27,8 @@ from pipeline.quantities import G
 from pipeline.records import Fragility, Item, Motion, Support
 from pipeline.store.runs import load_run
 
+pytestmark = pytest.mark.slow_file
+
 SILENT = Console(quiet=True)
 
 BLOCK = Item(

@@ -23,6 +23,8 @@ from pipeline.quantities import G
 from pipeline.records import Numerics
 from pipeline.verification.extremes import complaint
 
+pytestmark = pytest.mark.slow_file
+
 LIMIT = 60.0
 """Seconds in which a call must end on a machine that is busy with other things; each takes well below two."""
 

@@ -19,6 +19,8 @@ from pipeline.models import MODELS, model_named
 from pipeline.quantities import G
 from pipeline.resources import resource
 
+pytestmark = pytest.mark.slow_file
+
 BOUNDED = [m.name for m in MODELS if m.bound is not None]
 ROUNDING = 1e-12
 

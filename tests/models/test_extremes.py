@@ -24,6 +24,8 @@ from pipeline.quantities import G
 from pipeline.verification import self_measurement as numerics
 from pipeline.verification.extremes import complaint, motions, pushed
 
+pytestmark = pytest.mark.slow_file
+
 LIMIT = 60.0
 """Seconds after which a case hangs, compilation excepted; on an idle machine all take well below ten."""
 START = 60.0

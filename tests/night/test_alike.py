@@ -28,6 +28,8 @@ from pipeline.records.scene import Origin
 from pipeline.settings import load_settings
 from tests.museum import found, museum_of, night, vases, write_collection
 
+pytestmark = pytest.mark.slow_file
+
 CUP = Item(
     "1", "Room 1", title="Cup", object_name="cup", medium="earthenware", height_m=0.1, width_m=0.08, depth_m=0.08
 )

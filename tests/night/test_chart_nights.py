@@ -28,6 +28,8 @@ from pipeline.store.runs import load_run
 from tests.analysis.test_assess import PAINTING, VASE
 from tests.museum import SILENT, kouros, workspace
 
+pytestmark = pytest.mark.slow_file
+
 ROWS = [
     *(f"{n},A,Covered vase,{0.2 + 0.02 * n},0.2,0.2" for n in range(12)),
     *(f"p{n},B,Painting of a landscape,{0.5 + 0.1 * n},0.8,0.05" for n in range(6)),

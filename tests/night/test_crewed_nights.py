@@ -14,7 +14,10 @@ from pipeline.settings import Settings
 from pipeline.store.results import Stored
 from tests.museum import found, museum_of, night, vases
 
-pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning"),
+    pytest.mark.slow_file,
+]
 
 OBJECTS = vases(galleries=8, each=4)
 

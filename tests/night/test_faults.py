@@ -31,6 +31,8 @@ from pipeline.store.runs import load_run
 from pipeline.tools.doctor import diagnose
 from tests.museum import in_common, kouros
 
+pytestmark = pytest.mark.slow_file
+
 NAMES = {
     "framed": "Painting", "relief": "Relief", "chandelier": "Chandelier", "wall_painting": "Fresco",
     "installation": "Installation", "small_flat": "Medal", "mounted": "Mask", "stemmed_glass": "Wine glass",

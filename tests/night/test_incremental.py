@@ -19,6 +19,8 @@ from pipeline.night.unit_tasks import Assessments, UnitTask, assess_units
 from pipeline.report.files import page_renderer, report_writer
 from tests.night.changing import Changing, exported
 
+pytestmark = pytest.mark.slow_file
+
 SEQUENCES = int(os.environ.get("KOUROS_SEQUENCES", "20"))
 FIRST = int(os.environ.get("KOUROS_FIRST", "0"))
 EDITS = int(os.environ.get("KOUROS_EDITS", "8" if "KOUROS_SEQUENCES" in os.environ else "3"))

@@ -23,6 +23,8 @@ from pipeline.store.runs import list_runs, load_head, load_run
 from pipeline.tools.rerender import compare, render_again
 from tests.museum import ROWS, SILENT, own_site, workspace
 
+pytestmark = pytest.mark.slow_file
+
 
 def test_the_demonstration_accounts_for_every_object(demo_folder: Path) -> None:
     """2,000 rows: 1,374 on display in 34 galleries, 626 not; each in exactly one state."""

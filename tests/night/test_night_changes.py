@@ -19,6 +19,8 @@ from pipeline.tools.decisions import Wish, decide
 from pipeline.tools.rerender import compare
 from tests.museum import SILENT, edit, kouros, short_site, workspace
 
+pytestmark = pytest.mark.slow_file
+
 ROWS = ["1,A,Vase,0.4,0.2,0.2", "2,B,Vase,0.4,0.2,0.2", "3,B,Plate,0.03,0.3,0.3"]
 OWN = "rule,class,aat,classification,words,medium,shape,why\nours,bust,,,vase,,,our vases are busts\n"
 FLOOR = '\n[[floor]]\nname = "2"\nheight_ratio = 0.5\nperiod_s = 0.4\n'

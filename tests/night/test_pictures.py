@@ -18,6 +18,8 @@ from pipeline.motions.synthesis import band_limited_random
 from pipeline.quantities import Array, G
 from pipeline.records import Chart, ChartFigure, Motion
 
+pytestmark = pytest.mark.slow_file
+
 
 def curves_of(model: str) -> list[dict[str, float]]:
     """What the curves of a model's figure have fixed."""

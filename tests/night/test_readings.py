@@ -34,6 +34,8 @@ from pipeline.tools.survey import add_measurements
 from tests.museum import SILENT, workspace
 from tests.report import builder
 
+pytestmark = pytest.mark.slow_file
+
 GOOD = ["1,A,Vase,0.4,0.2,0.2", "2,B,Plate,0.03,0.3,0.3"]
 BAD = [
     *GOOD,

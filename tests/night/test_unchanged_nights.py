@@ -23,6 +23,8 @@ from pipeline.settings import Floors, Settings, load_settings
 from pipeline.store.tables import RESULT
 from tests.museum import SILENT, found, museum_of, night, vases, write_collection
 
+pytestmark = pytest.mark.slow_file
+
 
 def results(settings: Settings) -> int:
     engine = open_database(settings.database)

@@ -95,6 +95,27 @@ def test_an_inventory_of_before_versions_is_the_version_of_its_last_import(empty
     assert [info.id for info in versions(empty)] == [2, 1]
 
 
+def test_runs_of_before_units_are_dropped_and_decisions_and_the_inventory_stay(empty: Engine) -> None:
+    _upgrade_to(empty, "0011")
+    for table in ("run", "decision", "item"):
+        _any_row(empty, table)
+    upgrade(empty)
+    with empty.connect() as connection:
+        left = {name: connection.execute(text(f"SELECT count(*) FROM {name}")).scalar() for name in  # noqa: S608
+                ("run", "decision", "item", "result", "page", "run_page")}  # fmt: skip
+    assert left == {"run": 0, "decision": 1, "item": 1, "result": 0, "page": 0, "run_page": 0}
+
+
+def _any_row(engine: Engine, table: str) -> None:
+    """Write a row of a table as it then was: empty texts and lists, zeros."""
+    columns = [column for column in inspect(engine).get_columns(table) if not column["nullable"]]
+    kinds = {column["name"]: column["type"].python_type for column in columns}
+    values = {name: kind() if kind in (str, int, bool, float) else "[]" for name, kind in kinds.items()}
+    names, marks = (", ".join(f"{mark}{name}{end}" for name in values) for mark, end in (('"', '"'), (":", "")))
+    with engine.begin() as connection:
+        connection.execute(text(f"INSERT INTO {table} ({names}) VALUES ({marks})"), values)  # noqa: S608 - our own names
+
+
 def _upgrade_to(engine: Engine, revision: str) -> None:
     config = Config()
     config.set_main_option("script_location", str(resource("schemas", "migrations")))
