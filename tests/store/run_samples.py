@@ -9,10 +9,10 @@ from itertools import count, groupby
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from hypothesis import strategies as st
-from pipeline.store.sealing import seal
 from sqlalchemy import Engine
 
 from pipeline.collection.record import KINDS, digest_of, to_records
+from pipeline.collection.sealing import seal
 from pipeline.records import (
     ITEM_FIELDS,
     Assessment,
