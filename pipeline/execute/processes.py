@@ -9,7 +9,7 @@ from __future__ import annotations
 import logging
 import multiprocessing
 import os
-import pickle
+import pickle  # nosec B403 - between this process and those that it started
 import signal
 import sys
 import threading
@@ -56,7 +56,7 @@ class _Worker:
         self._pipe.send_bytes(b"" if self._has is call else call.pickled)
         self._has = call
         self._pipe.send_bytes(pickled)
-        done, outcome = pickle.loads(self._pipe.recv_bytes())  # noqa: S301 - from a process of our own
+        done, outcome = pickle.loads(self._pipe.recv_bytes())  # noqa: S301  # nosec B301 - from a process of our own
         return done, outcome
 
     def end(self) -> None:
@@ -195,7 +195,7 @@ def _serve(pipe: Connection) -> None:
 
 
 def _work(work: Callable[[Any, Any], Any], shared: object, task: bytes) -> Any:
-    return work(shared, pickle.loads(task))  # noqa: S301 - from the process that started this one
+    return work(shared, pickle.loads(task))  # noqa: S301  # nosec B301 - from the process that started it
 
 
 def _attempt(function: Callable[..., Any], *arguments: Any) -> tuple[bool, Any]:
@@ -219,7 +219,7 @@ def _pickled(outcome: tuple[bool, Any]) -> bytes:
         value.raised_at = raised_at(value)
         value.add_note(f"In a worker process:\n{text}")
         pickled = pickle.dumps((False, value), pickle.HIGHEST_PROTOCOL)
-        pickle.loads(pickled)  # noqa: S301 - some exceptions can be pickled, but not be made again of that
+        pickle.loads(pickled)  # noqa: S301  # nosec B301 - some exceptions can be pickled and not be made again
     except Exception:  # noqa: BLE001 - whatever the pickling of somebody's class raises
         return pickle.dumps((False, RuntimeError(f"{type(value).__name__}: {value}\n{text}")))
     return pickled
