@@ -143,8 +143,10 @@ def _words(entry: "EntryPoint", problem: BaseException) -> str:
 
 
 def _package(entry: "EntryPoint") -> tuple[str, str]:
-    # Either is None where the package's METADATA is damaged.
-    name, version = (None, None) if entry.dist is None else (entry.dist.name, entry.dist.version)
+    name = version = None
+    # Either is None where the package's METADATA is damaged, or asking for it fails, as who found the package likes.
+    with suppress(Exception):
+        name, version = (None, None) if entry.dist is None else (entry.dist.name, entry.dist.version)
     return name or "a package without a name", version or "?"
 
 

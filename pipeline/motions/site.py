@@ -243,6 +243,7 @@ def _kept(folder: Path | None, key: str, make: Callable[[], Measured]) -> Measur
         return make()
     cache = Cache(folder)
     found = cache.get(MOTIONS, key)
+    logger.debug("motion %s: %s", key, "not kept" if found is None else "kept")
     if found is not None:
         said = dict(found.said)
         measures = said.pop("measures")

@@ -98,12 +98,12 @@ class _Shown:
 
 @dataclass
 class _Work:
-    """The units of a floor that have no results yet, by key."""
+    """The units of a floor that have no results yet, by key; every: the keys of all that there are on it."""
 
     floor: str
     assessed: bool
     units: dict[str, Unit] = field(default_factory=dict)
-    every: int = 0
+    every: set[str] = field(default_factory=set)
 
 
 class NightRun:
@@ -175,7 +175,7 @@ class NightRun:
         for page in self._pages:
             which = (page.part.floor, page.part.on_display or self.context.stores)
             mine = work.setdefault(which, _Work(*which))
-            mine.every += len(page.units)
+            mine.every.update(unit.key for unit in page.units)
             if page.kept is None:
                 mine.units.update((unit.key, unit) for unit in page.units if unit.key not in there)
         return [one for one in work.values() if one.units]
@@ -247,7 +247,7 @@ class NightRun:
         for unit in work.units.values():
             shared[int(unit.members[0].assessment_digest[:8] or "0", 16) % parts].append(unit)
         # A few among many would take the place of what is kept of all.
-        whole = 2 * len(work.units) > work.every
+        whole = 2 * len(work.units) > len(work.every)
         return [
             partial(self._task, work, some, ("units", work.floor, at, parts) if whole else None)
             for at, some in enumerate(shared)

@@ -16,7 +16,6 @@ from pipeline.collection.object_index import read_packed
 from pipeline.execute.memory import give_back
 from pipeline.night.assessment import Assessed, assess_objects, left_aside
 from pipeline.records import Decision, Item, Motion
-from pipeline.store.codec import StoreError
 from pipeline.store.pages import NEIGHBOURS, Members, found_of
 from pipeline.store.results import Stored, anonymous, encode, encode_spacings
 
@@ -138,8 +137,9 @@ def _names(faults: Sequence[Fault], items: Sequence[Item]) -> bool:
 def _encoded(key: str, mine: Sequence[Assessed], items: Sequence[Item], faults: list[Fault]) -> Stored:
     try:
         return encode(key, [anonymous(one.assessment, dict(one.needing), one.wishes) for one in mine])
-    except StoreError as problem:
-        # What a model gave cannot be kept: no object's doing, and none of the others'.
+    except (MemoryError, OSError):
+        raise
+    except Exception as problem:  # noqa: BLE001 - whatever it is, it is of what was found of these, and told
         faults += [fault(item, problem) for item in items]
         told = [replace(one, assessment=unassessed(i, fault(i, problem))) for one, i in zip(mine, items, strict=True)]
         return encode(key, [anonymous(one.assessment, {}, () if one.wishes is not None else None) for one in told])

@@ -26,7 +26,7 @@ def test_the_published_schema_is_the_records() -> None:
 def test_python_sql_and_json_have_the_same_fields() -> None:
     names = [f.name for f in fields(Item)]
     assert names == list(SCHEMA["properties"])
-    assert [*names, "since", "until", "digest", "assessment_digest"] == list(ITEM.columns.keys())
+    assert [*names, "since", "until", "digest", "assessment_digest", "seal"] == list(ITEM.columns.keys())
     assert not SCHEMA["additionalProperties"]
     assert [c.name for c in ITEM.primary_key] == ["object_number", "since"]
 

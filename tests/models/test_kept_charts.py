@@ -12,7 +12,7 @@ from pipeline import cache, respond
 from pipeline.analysis.chart_runs import response_chart
 from pipeline.analysis.response_charts import ChartCache, ResponseChart
 from pipeline.cache import CHARTS, CacheWarning
-from pipeline.records import Motion
+from pipeline.records import Motion, Numerics
 
 
 class RebuiltError(Exception):
@@ -42,9 +42,9 @@ def test_charts_are_found_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         ask(motion, tmp_path, tolerance=2e-2)
     with pytest.raises(RebuiltError):
         ask(motion, tmp_path, tolerance=1e-2, directions=1.0)
-    response_chart("sliding", motion, tolerance=1e-2, charts=ChartCache(tmp_path))
+    response_chart("sliding", motion, numerics=Numerics(tolerance=1e-2), charts=ChartCache(tmp_path))
     with pytest.raises(RebuiltError):
-        response_chart("sliding", motion, tolerance=1e-2, first=True, charts=ChartCache(tmp_path))
+        response_chart("sliding", motion, numerics=Numerics(tolerance=1e-2, first=True), charts=ChartCache(tmp_path))
     with pytest.raises(RebuiltError):
         ask(motion.scaled(1.01, "another"), tmp_path, tolerance=1e-2)
     monkeypatch.setattr(cache, "code_version", lambda: 64 * "0")

@@ -222,7 +222,7 @@ def told(settings: Settings) -> dict[str, Any]:
 
 
 STAGES = {
-    "classify": "0", "assess": "1", "advise": "2", "measurement_requests": "4", "neighbours": "5", "encode": "6",
+    "classify": "0", "assess": "1", "advise": "2", "measurement_requests": "4", "neighbours": "5", "anonymous": "6",
     "fragilities": "8", "draw": "9",
 }  # fmt: skip
 """Steps of the work on many objects, and the object that each is made to fail on."""
@@ -250,7 +250,7 @@ def test_a_fault_of_ours_costs_one_object_its_answer_for_one_night(
     settings = museum(tmp_path, few()).model_copy(update={"logs": Logs(file="log.jsonl")})
     with monkeypatch.context() as broken, journal(settings, str):
         for name in STAGES:
-            where = {"draw": PageRenderer, "encode": unit_tasks, "neighbours": unit_tasks}.get(name, assessing)
+            where = {"draw": PageRenderer, "anonymous": unit_tasks, "neighbours": unit_tasks}.get(name, assessing)
             broken.setattr(where, name, failing(name, getattr(where, name)))
         summary = night(settings)
     assert summary.faults == len(STAGES)

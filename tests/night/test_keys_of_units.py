@@ -217,8 +217,8 @@ def accepted(museum: Changing) -> None:
     [
         (lambda _: None, NOTHING),
         (rules, ALL),
-        (limits, SHOWN),
-        (isolator, SHOWN),
+        (limits, ALL),
+        (isolator, ALL),
         # A setting of each group.
         (setting("name", '"Another museum"'), PAGES),
         (setting("shrink_limit", "0.5"), NOTHING),

@@ -10,6 +10,7 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.figures import chart_keys, draw
 from pipeline.analysis.response import respond
 from pipeline.analysis.response_charts import ChartCache, ResponseChart
+from pipeline.cache import CHARTS
 from pipeline.execute import Threads
 from pipeline.models import model_named
 from pipeline.models.common import lift_ratios
@@ -113,6 +114,6 @@ def test_read_back_it_is_the_same_picture(
 
     monkeypatch.setattr(ResponseChart, "build", refuse)
     assert draw(motion, Context(Threads(1), charts=ChartCache(folder))) == drawn
-    names = [file.name for file in folder.iterdir()]
+    names = [file.name for file in (folder / CHARTS).iterdir()]
     assert len(names) == 1 + len(SWINGS) + len(ISOLATORS)
     assert all(motion.hash[:16] in name for name in names)

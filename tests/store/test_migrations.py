@@ -18,6 +18,7 @@ from pipeline.collection.database import open_database
 from pipeline.collection.inventory import latest_import, read_inventory, replace_inventory, versions
 from pipeline.collection.reading import Reading
 from pipeline.collection.record import digest_of, to_records
+from pipeline.collection.sealing import write_seals
 from pipeline.records import Item, Problem, Support
 from pipeline.resources import resource
 from pipeline.store.codec import StoreError
@@ -62,6 +63,7 @@ def test_the_inventory_works_on_migrated_tables(engine: Engine) -> None:
         connection.execute(insert(ITEM), [record | version | {"digest": digest_of(item)} for item, record in records])
         for source in ("first.csv", "second.csv"):  # the database numbers them
             connection.execute(insert(IMPORT_BATCH), batch | {"imported_at": "2031-05-01", "source": source})
+        write_seals(connection, IMPORT_BATCH)
     assert read_inventory(engine) == items
     latest = latest_import(engine)
     assert latest is not None
