@@ -18,7 +18,7 @@ from pipeline.analysis.chart_runs import response_chart
 from pipeline.errors import InputError
 from pipeline.kernels.friction_line import MOST_PIECES
 from pipeline.kernels.pendulum import MOST_STEPS, substeps
-from pipeline.models import MODELS
+from pipeline.models import MODELS, model_named
 from pipeline.quantities import G
 from pipeline.records import Numerics
 from pipeline.verification.extremes import complaint
@@ -94,9 +94,8 @@ def work(answers: Queue[Any]) -> None:
             answers.put((what, "" if fair else repr(problem)))
             continue
         # A tension below zero is a compression.
-        wrong = [
-            complaint(row) for _, row in table.drop(columns=["tension", "low", "high"], errors="ignore").iterrows()
-        ]
+        plain = table.drop(columns=["tension", "low", "high"], errors="ignore")
+        wrong = [complaint(model_named(name), row) for _, row in plain.iterrows()]
         lost = table["note"].str.contains("not followed").to_numpy()
         first = table[table.columns[0]].to_numpy()
         if (table["error"].to_numpy()[lost] < 0.99 * first[lost]).any():
