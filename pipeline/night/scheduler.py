@@ -131,7 +131,7 @@ class NightRun:
         charts: Sequence[ChartTask] = (),
     ) -> None:
         self.workspace, self.context, self._charts = workspace, context, charts
-        self._index, self._decisions, self._objects = index, decisions, objects
+        self._index, self._decisions = index, decisions
         keys = UnitKeys(context, rules_digest(workspace.settings))
         self._pages = [_Shown(part, keys.units(part, decisions)) for part in paged(objects, workspace.settings)]
         placed = index.placed()
@@ -145,11 +145,7 @@ class NightRun:
         self._names: dict[str, str] = {}
         self._memory: dict[str, Kept] | None = None
         self._work = self._missing()
-        self.fresh = sum(
-            sum(unit.key in work.units for page in self._of(work) for unit in page.units for _ in unit.members)
-            for work in self._work
-            if work.assessed
-        )
+        self.fresh = self._unknown()
         self.seconds = 0.0
         self.faults: list[Fault] = []
 
@@ -173,18 +169,22 @@ class NightRun:
                 wanted.append(page)
         there = known(engine, {unit.key for page in wanted for unit in page.units})
         for page in self._pages:
-            which = (page.part.floor, page.part.on_display or self.context.stores)
+            which = self._which(page)
             mine = work.setdefault(which, _Work(*which))
             mine.every.update(unit.key for unit in page.units)
             if page.kept is None:
                 mine.units.update((unit.key, unit) for unit in page.units if unit.key not in there)
         return [one for one in work.values() if one.units]
 
-    def _of(self, work: _Work) -> Iterator[_Shown]:
-        for page in self._pages:
-            same = (page.part.floor, page.part.on_display or self.context.stores) == (work.floor, work.assessed)
-            if same and page.kept is None:
-                yield page
+    def _which(self, page: _Shown) -> tuple[str, bool]:
+        """Return what is worked on together: the floor, and whether what is on the page is assessed."""
+        return page.part.floor, page.part.on_display or self.context.stores
+
+    def _unknown(self) -> int:
+        """Count the objects that must be assessed, those that are alike each by itself."""
+        missing = {(work.floor, work.assessed): set(work.units) if work.assessed else set() for work in self._work}
+        new = (page for page in self._pages if page.kept is None)
+        return sum(len(u.members) for page in new for u in page.units if u.key in missing.get(self._which(page), set()))
 
     def _page(self, shown: _Shown, key: str, run: str, made: str) -> Page:
         part = shown.part
@@ -355,7 +355,7 @@ class NightRun:
             forget(self.workspace.engine, keys)
         work: dict[tuple[str, bool], _Work] = {}
         for page in self._pages:
-            which = (page.part.floor, page.part.on_display or self.context.stores)
+            which = self._which(page)
             for unit in page.units:
                 if self._names.get(unit.key, unit.key) in keys:
                     work.setdefault(which, _Work(*which)).units[unit.key] = unit
@@ -377,7 +377,7 @@ class NightRun:
             page.page = self._page(page, page_digest(page.digests(), named, gaps), run, made)
         if mine:
             members = self._members(page)
-            results = self._results([*members.keys, *filter(None, [members.spacings])])
+            results = self._results(members.wanted)
             found = found_of(members, {key: one.found for key, one in results.items()})
             page.standing = self._standing(found, mine)
 
@@ -451,7 +451,7 @@ class NightRun:
 
     def _page_task(self, shown: _Shown, *, draw: bool) -> PageTask:
         members = self._members(shown)
-        results = self._results([*members.keys, *filter(None, [members.spacings])])
+        results = self._results(members.wanted)
         if shown.page is None:
             raise ValueError("a page is rendered before all results on it are known")
         if shown.kept is None and draw:

@@ -7,6 +7,7 @@ this machine and on another, whoever did what before.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, Any
 
 from pipeline.analysis.chart_runs import deciding, response_chart
@@ -117,21 +118,20 @@ def assess_units(context: "RunContext", task: UnitTask) -> Assessments:
     else:
         with context.working(task.batch) as working:
             every, seconds, faults = assess_objects(context, floor, items, task.decisions, working)
-    stored, start, failed = [], 0, set()
-    for key, size in zip(task.keys, task.sizes, strict=True):
-        mine = every[start : start + size]
-        stored.append(_encoded(key, mine, items[start : start + size], faults))
-        if any(one.assessment.fault for one in mine) or (len(faults) and _names(faults, items[start : start + size])):
-            failed.add(key)
-        start += size
+    ends = [0, *accumulate(task.sizes)]
+    units = [(key, slice(*ends)) for key, ends in zip(task.keys, pairwise(ends), strict=True)]
+    stored = tuple(_encoded(key, every[mine], items[mine], faults) for key, mine in units)
+    # One that is like an object that failed has its fault, and none of its own.
+    bad = {one.object_number for one in faults}
+    failed = frozenset(
+        key
+        for key, mine in units
+        if any(a.assessment.fault or i.object_number in bad for a, i in zip(every[mine], items[mine], strict=True))
+    )
     del every, items
     # What follows takes far less.
     give_back()
-    return Assessments(tuple(stored), seconds, tuple(faults), frozenset(failed))
-
-
-def _names(faults: Sequence[Fault], items: Sequence[Item]) -> bool:
-    return not {one.object_number for one in faults}.isdisjoint(item.object_number for item in items)
+    return Assessments(stored, seconds, tuple(faults), failed)
 
 
 def _encoded(key: str, mine: Sequence[Assessed], items: Sequence[Item], faults: list[Fault]) -> Stored:
@@ -140,8 +140,12 @@ def _encoded(key: str, mine: Sequence[Assessed], items: Sequence[Item], faults: 
     except (MemoryError, OSError):
         raise
     except Exception as problem:  # noqa: BLE001 - whatever it is, it is of what was found of these, and told
-        faults += [fault(item, problem) for item in items]
-        told = [replace(one, assessment=unassessed(i, fault(i, problem))) for one, i in zip(mine, items, strict=True)]
+        met = [fault(item, problem) for item in items]
+        faults += met
+        told = [
+            replace(one, assessment=unassessed(item, told_of))
+            for one, item, told_of in zip(mine, items, met, strict=True)
+        ]
         return encode(key, [anonymous(one.assessment, {}, () if one.wishes is not None else None) for one in told])
 
 

@@ -6,6 +6,7 @@ from hashlib import blake2b
 from itertools import pairwise
 
 from pipeline.collection.listing import Listed
+from pipeline.collection.sealing import seal
 from pipeline.night.context import RunContext
 from pipeline.night.floors import Storey
 from pipeline.night.paging import Part
@@ -54,16 +55,16 @@ class UnitKeys:
         charts = None if context.admitted is None else sorted(context.admitted)
         asked = (sorted(analysis.items()), rules, measures, context.surveyed, context.fragile, charts)
         self._shaken = {
-            name: _digest(code_version(), repr((asked, _shaking(floor)))) for name, floor in context.storeys.items()
+            name: seal(code_version(), repr((asked, _shaking(floor)))) for name, floor in context.storeys.items()
         }
         # What is left aside is only classed, and stands as it was installed: no motion and no fidelity has a say in it.
         self._aside = {
-            name: _digest(code_version(), repr((rules, measures, context.surveyed, "aside", name)))
+            name: seal(code_version(), repr((rules, measures, context.surveyed, "aside", name)))
             for name in context.storeys
         }
         self._stores = context.stores
 
-    def basis(self, part: Part) -> bytes:
+    def basis(self, part: Part) -> str:
         """Return the digest of what results depend on besides the objects and the decisions about them."""
         return (self._shaken if part.on_display or self._stores else self._aside)[part.floor]
 
@@ -95,11 +96,11 @@ class UnitKeys:
             Of all of them.
         """
         members = [(unit.key, one.digest) for unit in units for one in unit.members]
-        return _digest("neighbours", self.basis(part), repr(members)).hex()
+        return seal("neighbours", self.basis(part), repr(members))
 
 
-def _key(basis: bytes, members: Sequence[Listed], decisions: Decisions) -> str:
-    digest = blake2b(basis, digest_size=16)
+def _key(basis: str, members: Sequence[Listed], decisions: Decisions) -> str:
+    digest = blake2b(basis.encode(), digest_size=16)
     for one in members:
         digest.update(one.assessment_digest.encode())
         if len(members) > 1:
@@ -110,14 +111,6 @@ def _key(basis: bytes, members: Sequence[Listed], decisions: Decisions) -> str:
             if decision.kind in (DecisionKind.CLASS, DecisionKind.INSTALLED):
                 digest.update(repr(decision).encode("utf-8", "surrogatepass"))
     return digest.hexdigest()
-
-
-def _digest(*parts: str | bytes) -> bytes:
-    digest = blake2b(digest_size=16)
-    for part in parts:
-        content = part.encode("utf-8", "surrogatepass") if isinstance(part, str) else part
-        digest.update(len(content).to_bytes(8, "little") + content)
-    return digest.digest()
 
 
 def _shaking(floor: Storey) -> list[object]:

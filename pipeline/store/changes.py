@@ -143,7 +143,7 @@ class _Comparison:
         pages = {id(places[number][0]): places[number][0] for number in sorted(numbers)}
         found: dict[str, Scene] = {}
         for members in pages.values():
-            kept, broken = fetch(self.connection, [*members.keys, *filter(None, [members.spacings])])
+            kept, broken = fetch(self.connection, members.wanted)
             if broken:
                 raise DamagedRunError(f"result {broken[0][:12]} changed in the database since it was written")
             scenes = (a.scene for a in found_of(members, {k: one.found for k, one in kept.items()}).assessments)

@@ -15,11 +15,8 @@ from pipeline.collection.object_index import read_packed
 from pipeline.collection.sealing import damaged_rows, seal, sealed, sound_rows
 from pipeline.records import ITEM_FIELDS, Found, Item, Page
 from pipeline.store.codec import StoreError
-from pipeline.store.results import DamagedRunError, decode, decode_spacings, fetch, of_object
+from pipeline.store.results import DamagedRunError, decode, decode_spacings, fetch, named, of_object
 from pipeline.store.tables import PAGE
-
-NAMED = 500
-"""Keys in one statement."""
 
 NEIGHBOURS = "how near its neighbours come is not known"
 
@@ -52,6 +49,11 @@ class Members:
     def keys(self) -> list[str]:
         """The keys of all results, each once."""
         return list(dict.fromkeys(key for key, _ in self.results))
+
+    @property
+    def wanted(self) -> list[str]:
+        """The keys of all that must be had to show the page: the results, and the gaps where there are any."""
+        return [*self.keys, *filter(None, [self.spacings])]
 
     @cached_property
     def _rows(self) -> list[list[Any]]:
@@ -189,7 +191,7 @@ def fetch_pages(database: Engine | Connection, keys: Collection[str]) -> tuple[d
             return fetch_pages(connection, keys)
     found: dict[str, Shown] = {}
     damaged: list[str] = []
-    for some in _some(keys):
+    for some in named(keys):
         rows, broken = sound_rows(database, PAGE, PAGE.c.key.in_(some))
         found |= {row.key: Shown(row.run_id, row.made, Members.of_packed(bytes(row.members))) for row in rows}
         damaged += broken
@@ -223,8 +225,7 @@ def load_page(database: Engine | Connection, key: str) -> Found:
         with database.connect() as connection:
             return load_page(connection, key)
     members = load_members(database, key)
-    wanted = [*members.keys, *filter(None, [members.spacings])]
-    kept, damaged = fetch(database, wanted)
+    kept, damaged = fetch(database, members.wanted)
     if damaged:
         raise StoreError(
             f"result {damaged[0][:12]} is damaged: the database was changed by hand or is broken; `kouros run` makes "
@@ -237,9 +238,3 @@ def damaged_pages(engine: Engine) -> Iterator[str]:
     """Yield the keys of all pages that are not what was written."""
     with engine.connect() as connection:
         yield from damaged_rows(connection, PAGE)
-
-
-def _some(keys: Collection[str]) -> Iterator[list[str]]:
-    listed = list(keys)
-    for start in range(0, len(listed), NAMED):
-        yield listed[start : start + NAMED]

@@ -217,7 +217,7 @@ def known(engine: Engine, keys: Collection[str]) -> set[str]:
 
 def _known(connection: Connection, keys: Collection[str]) -> set[str]:
     found: set[str] = set()
-    for some in _some(keys):
+    for some in named(keys):
         found.update(connection.execute(select(RESULT.c.key).where(RESULT.c.key.in_(some))).scalars())
     return found
 
@@ -232,7 +232,7 @@ def fetch(database: Engine | Connection, keys: Collection[str]) -> tuple[dict[st
             return fetch(connection, keys)
     found: dict[str, Kept] = {}
     damaged: list[str] = []
-    for some in _some(keys):
+    for some in named(keys):
         rows, broken = sound_rows(database, RESULT, RESULT.c.key.in_(some))
         found |= {row.key: Kept(row.run_id, row.made, row.outline, bytes(row.found)) for row in rows}
         damaged += broken
@@ -264,21 +264,23 @@ def damaged(engine: Engine) -> Iterator[str]:
 def forget(engine: Engine, keys: Collection[str]) -> None:
     """Remove what is kept under some keys, so that it is made again."""
     with engine.begin() as connection:
-        for some in _some(keys):
+        for some in named(keys):
             connection.execute(delete(RESULT).where(RESULT.c.key.in_(some)))
 
 
 def copy(source: Engine, target: Engine, keys: Collection[str]) -> None:
     """Copy results from one database to another, where the other does not have them."""
     with target.begin() as into:
-        wanted = [key for key in dict.fromkeys(keys) if key not in _known(into, [key])]
+        there = _known(into, keys)
+        wanted = [key for key in dict.fromkeys(keys) if key not in there]
         with source.connect() as out:
-            for some in _some(wanted):
+            for some in named(wanted):
                 rows = out.execute(select(RESULT).where(RESULT.c.key.in_(some))).mappings().all()
                 into.execute(insert(RESULT), [dict(row) for row in rows])
 
 
-def _some(keys: Collection[str]) -> Iterator[list[str]]:
+def named(keys: Collection[str]) -> Iterator[list[str]]:
+    """Yield keys, as many at a time as one statement may name."""
     listed = list(keys)
     for start in range(0, len(listed), NAMED):
         yield listed[start : start + NAMED]

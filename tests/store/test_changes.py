@@ -98,9 +98,7 @@ def test_a_run_has_not_changed_against_itself_or_its_equal(engine: Engine) -> No
 )
 def test_what_changed_since_a_damaged_run_is_not_known_and_said_so(sqlite: Engine, table: Table, column: str) -> None:
     """The new run is sound: a night does not fail for what the last one left."""
-    with sqlite.begin() as connection:
-        for one in (RUN, PAGE, RESULT):
-            connection.execute(delete(one))
+    _empty(sqlite)
     save_run(sqlite, run("old", assessment("1", finding("1"))))
     with sqlite.begin() as connection:
         value = connection.execute(select(table.c[column])).scalar_one()
@@ -139,13 +137,18 @@ def sqlite(tmp_path_factory: pytest.TempPathFactory) -> Engine:
     return engine
 
 
+def _empty(engine: Engine) -> None:
+    with engine.begin() as connection:
+        for one in (RUN, PAGE, RESULT):
+            connection.execute(delete(one))
+
+
 @settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow])
 @given(before=_RUN, after=_RUN)
 def test_changes_equal_a_plain_comparison(
     sqlite: Engine, before: dict[str, dict[tuple[str, str], Verdict]], after: dict[str, dict[tuple[str, str], Verdict]]
 ) -> None:
-    with sqlite.begin() as connection:
-        connection.execute(delete(RUN))
+    _empty(sqlite)
     records: list[RunRecord] = [run("a", *_assessments(before)), run("b", *_assessments(after))]
     for record in records:
         save_run(sqlite, record)
