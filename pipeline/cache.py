@@ -69,7 +69,7 @@ class Damage(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Kept:
+class CacheEntry:
     """What is kept under a key.
 
     Attributes
@@ -115,7 +115,7 @@ class Cache:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
-    def get(self, kind: str, key: str, *, lasting: bool = False) -> Kept | None:
+    def get(self, kind: str, key: str, *, lasting: bool = False) -> CacheEntry | None:
         """Return what was put under a key by this very code, bit for bit, and note that it was used.
 
         Parameters
@@ -155,7 +155,7 @@ class Cache:
             os.utime(file)
         return kept
 
-    def put(self, kind: str, key: str, kept: Kept, *, lasting: bool = False) -> None:
+    def put(self, kind: str, key: str, kept: CacheEntry, *, lasting: bool = False) -> None:
         """Keep a result under a key, atomically, in place of what was there.
 
         Parameters
@@ -263,7 +263,7 @@ def _prune(files: Collection[tuple[Path, re.Match[str]]], seconds: float, most_b
             total += size
 
 
-def _read(file: Path) -> tuple[Kept, str]:
+def _read(file: Path) -> tuple[CacheEntry, str]:
     """Return what is in a file, and the code version that put it there; else raise OSError or one of _UNREADABLE."""
     with file.open("rb") as stream:
         size = os.fstat(stream.fileno()).st_size
@@ -288,7 +288,7 @@ def _read(file: Path) -> tuple[Kept, str]:
         # A copy of its own: aligned, and to be written to.
         arrays[name] = np.frombuffer(body, dtype, count, at).reshape(shape).copy() if count else np.empty(shape, dtype)
         at += count * dtype.itemsize
-    return Kept(header["said"], arrays), header["code"]
+    return CacheEntry(header["said"], arrays), header["code"]
 
 
 def _seal(body: bytes | memoryview) -> bytes:

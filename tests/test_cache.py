@@ -12,9 +12,20 @@ import pytest
 
 from pipeline import cache
 from pipeline.analysis.response_charts.histories import Histories
-from pipeline.analysis.response_charts.refine import Cells
+from pipeline.analysis.response_charts.refine import ChartCells
 from pipeline.analysis.response_charts.response_chart import ResponseChart
-from pipeline.cache import CHARTS, DAY, HISTORIES, KINDS, MOTIONS, SELF_TESTS, TRADEOFFS, Cache, CacheWarning, Kept
+from pipeline.cache import (
+    CHARTS,
+    DAY,
+    HISTORIES,
+    KINDS,
+    MOTIONS,
+    SELF_TESTS,
+    TRADEOFFS,
+    Cache,
+    CacheEntry,
+    CacheWarning,
+)
 from pipeline.models import model_named
 from pipeline.motions import read_site
 from pipeline.resources import resource
@@ -29,7 +40,7 @@ def put_motion(folder: Path) -> None:
 
 
 def put_chart(folder: Path) -> None:
-    cells = Cells(
+    cells = ChartCells(
         edges=np.array([0.0, 0.5, 1.0]),
         values=np.linspace(0.0, 1.0, 28).reshape(2, 7, 2),
         bounds=np.full((2, 2), 1e-3),
@@ -76,7 +87,7 @@ def key_in(file: Path) -> str:
     return file.stem.partition("-")[2]
 
 
-def get(file: Path) -> Kept | None:
+def get(file: Path) -> CacheEntry | None:
     kind = file.parent.name
     return Cache(file.parent.parent).get(kind, key_in(file), lasting=kind in LASTING)
 
@@ -128,7 +139,7 @@ def test_what_is_whole_but_under_a_wrong_name_is_foreign(tmp_path: Path, kind: s
     cache_ = Cache(tmp_path)
     lasting = kind in LASTING
     for key in ("a", "b"):
-        cache_.put(kind, key, Kept({"who": key}, {"x": np.arange(3.0)}), lasting=lasting)
+        cache_.put(kind, key, CacheEntry({"who": key}, {"x": np.arange(3.0)}), lasting=lasting)
     a, b = sorted((tmp_path / kind).iterdir())
     first, second = a.read_bytes(), b.read_bytes()
     a.write_bytes(second)
@@ -146,7 +157,7 @@ def test_what_is_whole_but_under_a_wrong_name_is_foreign(tmp_path: Path, kind: s
 @pytest.mark.parametrize("said", [b"[]", b"{}", b"null", b"[" * 100_000, b'{"kind": 1}', b"\xff"])
 def test_a_seal_that_somebody_made_does_not_let_nonsense_in(tmp_path: Path, said: bytes) -> None:
     cache_ = Cache(tmp_path)
-    cache_.put(CHARTS, "a", Kept())
+    cache_.put(CHARTS, "a", CacheEntry())
     (file,) = (tmp_path / CHARTS).iterdir()
     body = len(said).to_bytes(8, "little") + said
     file.write_bytes(cache._MARK + cache._seal(body) + body)
@@ -164,7 +175,7 @@ def test_what_was_put_is_got_bit_for_bit(tmp_path: Path) -> None:
         "notes": np.array([1, -(2**62)]),
     }
     said = {"text": "\U0001f3fa \udc80", "number": 0.1, "nothing": None, "limit": float("inf"), "list": [1, [2.5]]}
-    Cache(tmp_path).put(CHARTS, "a", Kept(said, arrays))
+    Cache(tmp_path).put(CHARTS, "a", CacheEntry(said, arrays))
     kept = Cache(tmp_path).get(CHARTS, "a")
     assert kept is not None
     assert kept.said == said
@@ -180,10 +191,10 @@ def test_what_was_put_is_got_bit_for_bit(tmp_path: Path) -> None:
 
 def test_nothing_is_ever_unpickled_or_named_outside(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="objects of Python"):
-        Cache(tmp_path).put(CHARTS, "a", Kept({}, {"x": np.array([object()])}))
+        Cache(tmp_path).put(CHARTS, "a", CacheEntry({}, {"x": np.array([object()])}))
     for kind, key in ((CHARTS, "../a"), ("../a", "a"), (CHARTS, ""), (CHARTS, "a-b-c"), (CHARTS, "A.kept")):
         with pytest.raises(ValueError, match="not what a file can be called after"):
-            Cache(tmp_path).put(kind, key, Kept())
+            Cache(tmp_path).put(kind, key, CacheEntry())
     assert list(tmp_path.iterdir()) == []
 
 
@@ -196,23 +207,23 @@ def test_keys_differ_where_anything_does() -> None:
 
 
 def test_other_code_finds_nothing_but_what_is_lasting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    Cache(tmp_path).put(CHARTS, "a", Kept())
-    Cache(tmp_path).put(SELF_TESTS, "a", Kept(), lasting=True)
+    Cache(tmp_path).put(CHARTS, "a", CacheEntry())
+    Cache(tmp_path).put(SELF_TESTS, "a", CacheEntry(), lasting=True)
     monkeypatch.setattr(cache, "code_version", lambda: 64 * "0")
     assert Cache(tmp_path).get(CHARTS, "a") is None
-    assert Cache(tmp_path).get(SELF_TESTS, "a", lasting=True) == Kept()
+    assert Cache(tmp_path).get(SELF_TESTS, "a", lasting=True) == CacheEntry()
     # Both are whole.
     assert list(Cache(tmp_path).verify()) == []
 
 
 def test_what_is_too_large_is_neither_kept_nor_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    Cache(tmp_path).put(CHARTS, "a", Kept({}, {"x": np.zeros(1000)}))
+    Cache(tmp_path).put(CHARTS, "a", CacheEntry({}, {"x": np.zeros(1000)}))
     monkeypatch.setattr(cache, "LARGEST", 8000)
     with pytest.warns(CacheWarning, match="too large"):
         assert Cache(tmp_path).get(CHARTS, "a") is None
-    Cache(tmp_path).put(CHARTS, "a", Kept({}, {"x": np.zeros(1000)}))
+    Cache(tmp_path).put(CHARTS, "a", CacheEntry({}, {"x": np.zeros(1000)}))
     assert Cache(tmp_path).get(CHARTS, "a") is None
-    Cache(tmp_path).put(CHARTS, "a", Kept({}, {"x": np.zeros(500)}))
+    Cache(tmp_path).put(CHARTS, "a", CacheEntry({}, {"x": np.zeros(500)}))
     assert Cache(tmp_path).get(CHARTS, "a") is not None
 
 
@@ -223,7 +234,7 @@ def test_a_folder_that_cannot_be_written_or_read_costs_time_only(tmp_path: Path)
         Cache(folder).prune(days=1.0, most_bytes=0)
         assert list(Cache(folder).verify()) == []
     assert Cache(tmp_path / "absent").get(CHARTS, "a") is None
-    Cache(file).put(CHARTS, "a", Kept())
+    Cache(file).put(CHARTS, "a", CacheEntry())
     with pytest.warns(CacheWarning, match="Not a directory"):
         assert Cache(file).get(CHARTS, "a") is None
     assert file.read_text() == "a file"
@@ -246,10 +257,10 @@ def test_what_nobody_asks_for_is_removed(tmp_path: Path, monkeypatch: pytest.Mon
     kept = Cache(tmp_path)
     with monkeypatch.context() as patch:
         patch.setattr(cache, "code_version", lambda: 64 * "0")
-        kept.put(CHARTS, "f-old", Kept())
+        kept.put(CHARTS, "f-old", CacheEntry())
     keys = ("a-1", "a-2", "b-1", "b-2", "c-1", "c-2")
     for key in keys:
-        kept.put(CHARTS, key, Kept())
+        kept.put(CHARTS, key, CacheEntry())
     others = {".chart.kept.77-88.kouros.partial", "mine.npz", "mine.kept", "notes.txt"}
     for name in others:
         (tmp_path / CHARTS / name).write_bytes(b"of the user")
@@ -277,8 +288,8 @@ def test_each_kind_is_bounded(tmp_path: Path, kind: str) -> None:
     """What was used longest ago goes first; what is in use goes last; what is lasting stays."""
     kept = Cache(tmp_path)
     for key in ("a-1", "b-1", "c-1"):
-        kept.put(kind, key, Kept({}, {"x": np.zeros(100)}))
-    kept.put(kind, "d-1", Kept(), lasting=True)
+        kept.put(kind, key, CacheEntry({}, {"x": np.zeros(100)}))
+    kept.put(kind, "d-1", CacheEntry(), lasting=True)
     used(tmp_path, {"a-1": 3.0, "b-1": 2.0, "c-1": 1.0}, kind)
     (size,) = {file.stat().st_size for file in (tmp_path / kind).iterdir() if "lasting" not in file.name}
     kept.prune(days=30.0, most_bytes=3 * size)
@@ -295,7 +306,7 @@ def test_the_hash_of_a_motion_in_use_is_the_group_of_its_charts(tmp_path: Path) 
     """Groups are told by their first letters, in names as in what is said to be in use."""
     motion = "0123456789abcdef" * 4
     kept, key = Cache(tmp_path), cache.key_of("a chart", group=motion)
-    kept.put(CHARTS, key, Kept())
+    kept.put(CHARTS, key, CacheEntry())
     used(tmp_path, {key: 40.0})
     kept.prune(days=30.0, most_bytes=10**9, using=[motion])
     assert names(tmp_path) == {key}
@@ -309,7 +320,7 @@ def test_what_two_write_at_once_is_one_of_both(tmp_path: Path) -> None:
 
     def write(number: int) -> None:
         for _ in range(20):
-            kept.put(CHARTS, "a", Kept({"n": number}, {"x": np.full(2000, float(number))}))
+            kept.put(CHARTS, "a", CacheEntry({"n": number}, {"x": np.full(2000, float(number))}))
 
     def read(_: int) -> None:
         for _ in range(50):

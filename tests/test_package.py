@@ -1,5 +1,6 @@
 """The package as others meet it: lazy names, floors, and a wheel that carries its files."""
 
+import ast
 import itertools
 import os
 import re
@@ -7,6 +8,7 @@ import subprocess
 import sys
 import tomllib
 import zipfile
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -47,6 +49,14 @@ def test_every_model_but_the_building_block_is_tried_on_some_object() -> None:
 
 def test_every_measure_has_a_row_of_the_table() -> None:
     assert {row["measure"] for row in table("measures")} == {measure.name for measure in MEASURES.own}
+
+
+def test_a_name_of_a_class_means_one_thing() -> None:
+    sources = sorted((ROOT / "pipeline").rglob("*.py"))
+    nodes = (node for f in sources for node in ast.walk(ast.parse(f.read_text())))
+    named = Counter(node.name for node in nodes if isinstance(node, ast.ClassDef))
+    assert len(named) > 200
+    assert [name for name, times in named.items() if times > 1] == []
 
 
 def test_importing_the_package_is_free_and_the_names_survive_any_order() -> None:

@@ -11,9 +11,9 @@ from pipeline.analysis.model_runs import both_ways, prepare, run_model
 from pipeline.analysis.response_charts import (
     PROCESS_CHARTS,
     ChartCache,
+    ChartSettings,
     ResponseChart,
     Run,
-    Settings,
     Tabulated,
     axis_of,
     chart_of,
@@ -193,7 +193,7 @@ def _charted(
     numerics: Numerics,
     angle: float | None,
     tail: float | None,
-) -> tuple[Run, Settings]:
+) -> tuple[Run, ChartSettings]:
     """Return how the nodes of a chart are run, and what the chart depends on besides model and motion."""
     angle, tail, azimuth_step = checked(angle, tail, numerics.azimuth_step)
     both = both_ways(model, values)
@@ -203,4 +203,4 @@ def _charted(
     def run(some: Mapping[str, Array]) -> Columns:
         return run_model(model, motion, some, finely, angle, tail)[0]
 
-    return run, Settings(None if both else angle, both, tail, finely)
+    return run, ChartSettings(None if both else angle, both, tail, finely)

@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import cache, lru_cache
 from math import pi
 
-from pipeline.analysis.rules import Table, rule_for
+from pipeline.analysis.rules import RuleTable, rule_for
 from pipeline.errors import InputError
 from pipeline.models import MODELS, model_named
 from pipeline.records import SECTION_SHAPES, Estimate, Item, Origin, Scene, Support
@@ -351,7 +351,7 @@ def object_classes() -> Mapping[str, str]:
     return {name: row["title"] for name, row in _classes().items()}
 
 
-def classify(item: Item, rules: Table | None = None, decided: tuple[str, str] | None = None) -> Scene:
+def classify(item: Item, rules: RuleTable | None = None, decided: tuple[str, str] | None = None) -> Scene:
     """Return the scene of one object: class, support, models to try, estimates, and the fields that are missing.
 
     rules   : the table that decides the class; None for Kouros's own

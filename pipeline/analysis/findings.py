@@ -9,7 +9,7 @@ from pipeline import __version__
 from pipeline.analysis.demands import Step
 from pipeline.analysis.model_runs import run_model
 from pipeline.analysis.plan import Indices, Work
-from pipeline.analysis.refinement import Case, FidelitySearch, Known
+from pipeline.analysis.refinement import DemandCase, FidelitySearch, Known
 from pipeline.analysis.verdicts import LevelMotions, Mask, utilisation
 from pipeline.models.common import words
 from pipeline.quantities import Array
@@ -41,7 +41,7 @@ class _Numbers:
     enclosed: Mask
 
 
-def _numbers(search: FidelitySearch, case: Case) -> _Numbers:
+def _numbers(search: FidelitySearch, case: DemandCase) -> _Numbers:
     level, spans = search.level, case.spans
     points = [found.points(case.output) for found in search.found]
     demand = level.over([spans.best(high) for _, high in points])
@@ -70,7 +70,7 @@ def _gap(low: Array, high: Array) -> Array:
     return np.subtract(high, low, out=np.zeros_like(high), where=high > low)
 
 
-def findings(search: FidelitySearch, case: Case, known: Known, scenes: Sequence[Scene]) -> list[Finding]:
+def findings(search: FidelitySearch, case: DemandCase, known: Known, scenes: Sequence[Scene]) -> list[Finding]:
     """Return the findings of a case.
 
     Parameters
@@ -165,7 +165,7 @@ class _Said:
 class _Rows:
     """Says of each parameter set under each motion what objects have in common, once."""
 
-    def __init__(self, search: FidelitySearch, case: Case, numbers: _Numbers) -> None:
+    def __init__(self, search: FidelitySearch, case: DemandCase, numbers: _Numbers) -> None:
         self._search, self._output = search, case.output
         self._known: dict[tuple[int, int], _Said] = {}
         self._screens = [

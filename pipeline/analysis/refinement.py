@@ -23,7 +23,7 @@ from pipeline.records.numerics import AUTO, CHART
 
 
 @dataclass(frozen=True)
-class Case:
+class DemandCase:
     """The analyses of a work that one of the model's outputs counts for.
 
     analyses : (m,) places in the work's list
@@ -39,7 +39,7 @@ class Case:
     estimates: Sequence[Estimate]
 
     @classmethod
-    def of(cls, work: Work, output: str, analyses: Indices, capacities: Sequence[Estimate]) -> "Case":
+    def of(cls, work: Work, output: str, analyses: Indices, capacities: Sequence[Estimate]) -> "DemandCase":
         """Return the case of some analyses with their capacities.
 
         Parameters
@@ -62,7 +62,7 @@ class Case:
         ends = tuple(np.array([getattr(c, end) for c in capacities]) for end in ("low", "value", "high"))
         return cls(output, analyses, spans, (ends[0], ends[1], ends[2]), capacities)
 
-    def take(self, chosen: Indices) -> "Case":
+    def take(self, chosen: Indices) -> "DemandCase":
         """Return a part of the analyses.
 
         Parameters
@@ -78,7 +78,7 @@ class Case:
         low, best, high = self.capacity
         capacity = (low[chosen], best[chosen], high[chosen])
         estimates = [self.estimates[at] for at in chosen]
-        return Case(self.output, self.analyses[chosen], self.spans.take(chosen), capacity, estimates)
+        return DemandCase(self.output, self.analyses[chosen], self.spans.take(chosen), capacity, estimates)
 
 
 @dataclass(frozen=True)
@@ -183,7 +183,7 @@ class FidelitySearch:
         decided = np.zeros(work.scenes.size, dtype=np.int8)
         return cls(work, level, context, numerics, found, decided, effort)
 
-    def decide(self, case: Case) -> Known:
+    def decide(self, case: DemandCase) -> Known:
         """Go on until the verdict of every analysis of the case stands.
 
         Parameters
@@ -209,7 +209,7 @@ class FidelitySearch:
         self._integrate(case)
         return self._known(case)
 
-    def tell(self, case: Case, known: Known) -> None:
+    def tell(self, case: DemandCase, known: Known) -> None:
         """Find the numbers of what does not pass: the highest demand, that of the best estimates, what the object does.
 
         Nobody needs more of what passes than that it stays below its capacity.
@@ -235,7 +235,7 @@ class FidelitySearch:
             ]
             self.effort.numbers += self._up(Step.HISTORY, moving)
 
-    def governing(self, case: Case) -> tuple[Indices, Indices]:
+    def governing(self, case: DemandCase) -> tuple[Indices, Indices]:
         """Return under which motion the best estimates of each analysis demand most.
 
         Parameters
@@ -260,7 +260,7 @@ class FidelitySearch:
                 most[larger], motion[larger], row[larger] = high[side][larger], at, side[larger]
         return motion, row
 
-    def count(self, case: Case) -> None:
+    def count(self, case: DemandCase) -> None:
         """Add to the effort by what the analyses of a case were decided, and how many needed any history.
 
         Parameters
@@ -272,7 +272,7 @@ class FidelitySearch:
             self.effort.decided[step] += int(np.count_nonzero(self.decided[case.analyses] == step))
         self.effort.needing += int(np.count_nonzero(self.needed(case)))
 
-    def needed(self, case: Case) -> Mask:
+    def needed(self, case: DemandCase) -> Mask:
         """Return for which analyses of a case any history was run.
 
         Parameters
@@ -291,7 +291,7 @@ class FidelitySearch:
     def _with(self, rows: Sequence[Indices]) -> list[tuple[Indices, Demands]]:
         return list(zip(rows, self.found, strict=True))
 
-    def _known(self, case: Case) -> Known:
+    def _known(self, case: DemandCase) -> Known:
         low, _, high = case.capacity
         least = [found.low[case.output] for found in self.found]
         most = [found.high[case.output] for found in self.found]
@@ -303,7 +303,7 @@ class FidelitySearch:
             may_fail=exceeds(over([spans.lowest(column) for column in most]), high),
         )
 
-    def _look_up(self, case: Case) -> None:
+    def _look_up(self, case: DemandCase) -> None:
         """Look up in charts what the open verdicts hang on."""
         known = self._known(case)
         still = np.flatnonzero(known.open)
@@ -312,7 +312,7 @@ class FidelitySearch:
             self._up(Step.CHART, [self._hanging(part, known, still, found) for found in self.found])
             self.decided[part.analyses] = Step.CHART
 
-    def _integrate(self, case: Case) -> None:
+    def _integrate(self, case: DemandCase) -> None:
         """Integrate what the open verdicts hang on, the strongest motions first: the others may not be needed."""
         pushes = [largest_push(motion.excitation(None)) for motion in self.level.motions]
         for at in np.argsort(np.negative(pushes), kind="stable"):
@@ -325,7 +325,7 @@ class FidelitySearch:
             self.effort.verdicts += self._up(Step.HISTORY, [rows if at == i else rows[:0] for i in range(len(pushes))])
             self.decided[case.analyses] = Step.HISTORY
 
-    def _hanging(self, part: Case, known: Known, chosen: Indices, found: Demands) -> Indices:
+    def _hanging(self, part: DemandCase, known: Known, chosen: Indices, found: Demands) -> Indices:
         """Return the rows of open analyses that their verdicts hang on under a motion."""
         rows, spread = part.spans.rows, part.spans.spread
         low, high = found.low[part.output], found.high[part.output]
@@ -340,11 +340,11 @@ class FidelitySearch:
                 needed |= straddles & np.repeat(asked[chosen], part.spans.lengths)[:, None]
         return np.unique(rows[needed])
 
-    def _unknown(self, case: Case, found: Demands) -> Indices:
+    def _unknown(self, case: DemandCase, found: Demands) -> Indices:
         rows = np.unique(case.spans.rows)
         return rows[found.low[case.output][rows] < found.high[case.output][rows]]
 
-    def _numbers(self, part: Case) -> list[Indices]:
+    def _numbers(self, part: DemandCase) -> list[Indices]:
         """Return the rows that may have a say in the range of the demand, and are no better known than by a bound."""
         output, spans = part.output, part.spans
         mean = self.level.combine == "mean"
@@ -373,7 +373,7 @@ class Examined:
     """A work under a level with its verdicts."""
 
     search: FidelitySearch
-    cases: tuple[tuple[Case, Known], ...]
+    cases: tuple[tuple[DemandCase, Known], ...]
 
 
 def examine(
@@ -418,7 +418,7 @@ def examine(
     watch(search)
     cases = []
     for output, members in outputs.items():
-        case = Case.of(work, output, np.array(members, dtype=np.intp), [capacities[at][1] for at in members])
+        case = DemandCase.of(work, output, np.array(members, dtype=np.intp), [capacities[at][1] for at in members])
         known = search.decide(case)
         if outcomes:
             search.tell(case, known)

@@ -154,7 +154,7 @@ def _each(check: Callable[[str], str]) -> AfterValidator:
     return AfterValidator(lambda entries: tuple(map(check, entries)))
 
 
-class _Row(BaseModel):
+class _RuleRow(BaseModel):
     """A row of a table of rules, as the opening of this module says."""
 
     rule: Annotated[str, AfterValidator(_name)]
@@ -195,7 +195,7 @@ class Rule:
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class RuleTable:
     """The rules in order, and where to find those of a word; ``wordless`` are those that ask for no naming word.
 
     aat     : every identifier that some rule names
@@ -211,7 +211,7 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Decision:
+class RuleMatch:
     """The rule that decided, and what in the record made it hold ("" where the row asks for no name)."""
 
     rule: Rule
@@ -224,7 +224,7 @@ class Decision:
         return f"{self.rule.name}: {self.rule.why}{said}"
 
 
-def read_rules(rows: tuple[Row, ...], classes: frozenset[str], file: str = "rules.csv") -> Table:
+def read_rules(rows: tuple[Row, ...], classes: frozenset[str], file: str = "rules.csv") -> RuleTable:
     """Return rows of a table of rules, ready to match.
 
     raises : TableError naming file, line, rule, column and remedy, for an unknown class or shape, a name used twice,
@@ -232,7 +232,7 @@ def read_rules(rows: tuple[Row, ...], classes: frozenset[str], file: str = "rule
     """
     if not rows:
         raise TableError(f"{file}: has no rows; the last row must be a rule without conditions")
-    written = checked(_Row, rows, file, named="rule", context={"classes": classes})
+    written = checked(_RuleRow, rows, file, named="rule", context={"classes": classes})
     once((row.rule for row in written), "rule", file)
     out = [_rule(row, at) for at, row in enumerate(written)]
     if any(rows[-1][column].strip() for column in ("aat", "classification", "words", "medium", "shape")):
@@ -249,7 +249,7 @@ def read_rules(rows: tuple[Row, ...], classes: frozenset[str], file: str = "rule
     by_last: dict[str, list[str]] = {}
     for word in words:
         by_last.setdefault(word.rpartition(" ")[2], []).append(word)
-    return Table(
+    return RuleTable(
         tuple(out),
         {word: tuple(found) for word, found in words.items()},
         {ending: tuple(endings[ending]) for ending in sorted(endings, key=len, reverse=True)},
@@ -259,7 +259,7 @@ def read_rules(rows: tuple[Row, ...], classes: frozenset[str], file: str = "rule
     )
 
 
-def _rule(row: _Row, position: int) -> Rule:
+def _rule(row: _RuleRow, position: int) -> Rule:
     words = [(" ".join(_WORD.findall(fold(entry))), entry.startswith("*")) for entry in row.words]
     medium = [re.escape(fold(entry)) for entry in row.medium]
     return Rule(
@@ -277,7 +277,7 @@ def _rule(row: _Row, position: int) -> Rule:
 
 
 @cache
-def rules() -> Table:
+def rules() -> RuleTable:
     """Return Kouros's own table of rules.
 
     raises : TableError, as read_rules
@@ -285,7 +285,7 @@ def rules() -> Table:
     return read_rules(table("rules"), frozenset(row["class"] for row in table("classes")))
 
 
-def with_own(path: Path) -> Table:
+def with_own(path: Path) -> RuleTable:
     """Return a museum's own rules, followed by Kouros's; a row of the same name takes the place of Kouros's.
 
     path   : a CSV file with the columns of tables/rules.csv
@@ -300,7 +300,7 @@ def with_own(path: Path) -> Table:
     return read_rules(both, frozenset(row["class"] for row in table("classes")), path.name)
 
 
-def rule_for(item: Item, among: Table | None = None) -> Decision:
+def rule_for(item: Item, among: RuleTable | None = None) -> RuleMatch:
     """Return the first rule whose conditions hold for the object, of Kouros's table or another."""
     of = among or rules()
     if item.aat:
@@ -308,27 +308,27 @@ def rule_for(item: Item, among: Table | None = None) -> Decision:
         for rule in of.rules if recorded else ():
             shared = rule.aat & recorded
             if shared and rule.fits(item):
-                return Decision(rule, f"AAT {min(shared)}")
+                return RuleMatch(rule, f"AAT {min(shared)}")
     kinds = _kinds(item.classification) | _kinds(item.object_name)
     named = _named(item, kinds, of)
     for rule in of.wordless:
         if named is not None and named.rule.position < rule.position:
             return named
         if (not rule.kinds or rule.kinds & kinds) and rule.fits(item):
-            return Decision(rule)
+            return RuleMatch(rule)
     raise TableError("rules.csv: no rule holds; the last row must have no conditions")
 
 
-def _named(item: Item, kinds: frozenset[str], of: Table) -> Decision | None:
+def _named(item: Item, kinds: frozenset[str], of: RuleTable) -> RuleMatch | None:
     """Return the first rule of the first naming word that has one which fits."""
     for word in _candidates(item, of):
         for rule in of.by_word.get(word) or of.by_ending.get(word[1:], ()):
             if (not rule.kinds or rule.kinds & kinds) and rule.fits(item):
-                return Decision(rule, f"named {word!r}")
+                return RuleMatch(rule, f"named {word!r}")
     return None
 
 
-def _candidates(item: Item, of: Table) -> Iterator[str]:
+def _candidates(item: Item, of: RuleTable) -> Iterator[str]:
     """Yield the known words and *endings of object name and title, the likeliest name of the thing first."""
     for text in (item.object_name, item.title):
         for part in _BREAK.split(fold(text)) if text else ():
@@ -340,7 +340,7 @@ def _candidates(item: Item, of: Table) -> Iterator[str]:
 
 
 @lru_cache(maxsize=65536)
-def _known(of: Table, word: str) -> tuple[tuple[tuple[str, ...], str], ...]:
+def _known(of: RuleTable, word: str) -> tuple[tuple[tuple[str, ...], str], ...]:
     """Return the known words that a word may end: what must stand before it and the whole, the longest phrase first."""
     forms = _forms(word)
     whole = [(tuple(phrase.split(" ")[:-1]), phrase) for form in forms for phrase in of.by_last.get(form, ())]

@@ -1,9 +1,9 @@
 """One cell that holds a number with its unit."""
 
-from pipeline.collection.dimensions import Dimensions, Part, parse
+from pipeline.collection.dimensions import DimensionPart, Dimensions, parse
 
 
-def written(part: Part, read: Dimensions) -> str:
+def written(part: DimensionPart, read: Dimensions) -> str:
     """Return the number of a part as it was written, with the unit that it is in.
 
     Parameters

@@ -12,7 +12,7 @@ from time import perf_counter
 
 import numpy as np
 
-from pipeline.cache import MOTIONS, Cache, Kept, key_of
+from pipeline.cache import MOTIONS, Cache, CacheEntry, key_of
 from pipeline.errors import InputError
 from pipeline.motions.blas import one_thread
 from pipeline.motions.errors import MotionError, judged, refusal
@@ -250,7 +250,7 @@ def _kept(folder: Path | None, key: str, make: Callable[[], Measured]) -> Measur
         return Motion(acceleration=found.arrays["acceleration"], **said), measures
     motion, measures = make()
     said = {name: getattr(motion, name) for name in ("dt", "name", "steps", "source", "start", "v_max")}
-    cache.put(MOTIONS, key, Kept(said | {"measures": measures}, {"acceleration": motion.acceleration}))
+    cache.put(MOTIONS, key, CacheEntry(said | {"measures": measures}, {"acceleration": motion.acceleration}))
     return motion, measures
 
 

@@ -1,4 +1,4 @@
-"""What is found about objects on one floor: each is placed, run, judged and advised, alike ones once.
+"""Assessment of objects on one floor: each is placed, run, judged and advised, alike ones once.
 
 What Kouros fails on costs one object its answer (see `pipeline.analysis.faults`).
 """
@@ -14,14 +14,14 @@ from pipeline.analysis.classify import classify, object_classes
 from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, each_apart, fault, unassessed
 from pipeline.analysis.fragility.objects import fragilities
-from pipeline.analysis.rules import Table
+from pipeline.analysis.rules import RuleTable
 from pipeline.analysis.survey import measurement_requests
 from pipeline.collection.record import INDIVIDUAL
 from pipeline.mitigate import MeasureCatalogue, advise
 from pipeline.mitigate.installed import InstalledMeasure, Placed, assess_above, placed
 from pipeline.mitigate.proposals import case_of
 from pipeline.models import model_named
-from pipeline.night.floors import Storey
+from pipeline.night.floors import Floor
 from pipeline.records import (
     ITEM_FIELDS,
     Assessment,
@@ -62,7 +62,7 @@ class Assessed:
 
 
 def place(
-    item: Item, rules: Table | None, decisions: Sequence[Decision], measures: MeasureCatalogue | None = None
+    item: Item, rules: RuleTable | None, decisions: Sequence[Decision], measures: MeasureCatalogue | None = None
 ) -> Placed:
     """Return an object as people say that it is and stands: of the class decided, with the measures installed.
 
@@ -76,7 +76,7 @@ def place(
 
 
 def assess_objects(
-    context: "RunContext", floor: Storey, items: Sequence[Item], decisions: Sequence[Decision], working: Context
+    context: "RunContext", floor: Floor, items: Sequence[Item], decisions: Sequence[Decision], working: Context
 ) -> tuple[list[Assessed], float, list[Fault]]:
     """Run everything that objects on one floor require under its motions, judge it and advise.
 
@@ -124,7 +124,7 @@ def assess_objects(
 
 def _found(
     context: "RunContext",
-    floor: Storey,
+    floor: Floor,
     objects: Mapping[Hashable, Placed],
     working: Context,
     faults: list[Fault],
@@ -209,7 +209,7 @@ def by_object(decisions: Iterable[Decision]) -> dict[str, list[Decision]]:
 
 
 def placed_each(
-    context: "RunContext", floor: Storey, items: Sequence[Item], about: Mapping[str, Sequence[Decision]]
+    context: "RunContext", floor: Floor, items: Sequence[Item], about: Mapping[str, Sequence[Decision]]
 ) -> list[Placed | Exception]:
     """Return each object as it stands, or the error that placing it came to."""
 
@@ -228,7 +228,7 @@ def failed_on(item: Item | Scene, problem: Exception, faults: list[Fault]) -> As
 
 
 def left_aside(
-    context: "RunContext", floor: Storey, items: Sequence[Item], decisions: Sequence[Decision]
+    context: "RunContext", floor: Floor, items: Sequence[Item], decisions: Sequence[Decision]
 ) -> tuple[list[Assessed], float, list[Fault]]:
     """Return objects that are not on display as what they are, with nothing found about them.
 
@@ -245,7 +245,7 @@ def left_aside(
 
 
 def each_assessed(
-    context: "RunContext", floor: Storey, objects: Sequence[Placed], working: Context
+    context: "RunContext", floor: Floor, objects: Sequence[Placed], working: Context
 ) -> list[tuple[Assessment, dict[str, int]] | Exception]:
     """Return what is found of each object, or the error that finding it came to."""
     return apart(
@@ -258,7 +258,7 @@ def each_assessed(
 
 
 def _assessed(
-    context: "RunContext", floor: Storey, objects: Sequence[Placed], working: Context
+    context: "RunContext", floor: Floor, objects: Sequence[Placed], working: Context
 ) -> list[tuple[Assessment, dict[str, int]]]:
     """Run everything that objects require, judge it and advise."""
     if not objects:

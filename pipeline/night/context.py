@@ -1,4 +1,4 @@
-"""What everything that is done in a run shares: it goes once to each worker."""
+"""The run context: motions, rules and settings that all tasks of a run share; it goes once to each worker."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -9,12 +9,12 @@ from typing import Any
 
 from pipeline.analysis.context import Context, remembered
 from pipeline.analysis.response_charts import ChartCache
-from pipeline.analysis.rules import Table
+from pipeline.analysis.rules import RuleTable
 from pipeline.cache import Cache, key_of
 from pipeline.execute import Threads
 from pipeline.mitigate import MeasureCatalogue
 from pipeline.mitigate.trials import TransmittedMotions
-from pipeline.night.floors import Storey
+from pipeline.night.floors import Floor
 from pipeline.records import (
     Motion,
     RunRecord,
@@ -30,7 +30,7 @@ class RunContext:
     """What everything that is done in a run shares.
 
     head      : the run without its objects: its motions and its charts, what pages say of it
-    storeys   : the floors by name
+    floors   : the floors by name
     surveyed, fragile : whether to find out what is worth measuring, and from what shaking objects fail
     stores    : whether what is not on display is assessed too
     admitted  : which response charts are built (see `response_charts.ChartCache`); None: those that pay
@@ -39,9 +39,9 @@ class RunContext:
     """
 
     head: RunRecord
-    storeys: Mapping[str, Storey]
+    floors: Mapping[str, Floor]
     analysis: Analysis
-    rules: Table | None
+    rules: RuleTable | None
     measures: MeasureCatalogue
     surveyed: bool
     fragile: bool
@@ -61,7 +61,7 @@ class RunContext:
     @property
     def motions(self) -> dict[str, Motion]:
         """The motions in use, by hash."""
-        return motions_of(self.storeys)
+        return motions_of(self.floors)
 
     @cached_property
     def charts(self) -> ChartCache:
@@ -100,6 +100,6 @@ class RunContext:
         return PageRenderer(self.head, self.units, language(self.tongue, self.catalogues))
 
 
-def motions_of(storeys: Mapping[str, Storey]) -> dict[str, Motion]:
+def motions_of(floors: Mapping[str, Floor]) -> dict[str, Motion]:
     """Return the motions of some floors by hash; one that several share is there once."""
-    return {m.motion.hash: m.motion for storey in storeys.values() for level in storey.levels for m in level.motions}
+    return {m.motion.hash: m.motion for floor in floors.values() for level in floor.levels for m in level.motions}

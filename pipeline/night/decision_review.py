@@ -1,4 +1,4 @@
-"""Whether what a decision rested on is still so; where not, the decision must be looked at again."""
+"""Review of decisions: one whose grounds changed must be looked at again."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
@@ -10,10 +10,10 @@ from pipeline.records import (
     Basis,
     Decision,
     DecisionKind,
+    DecisionStatus,
     Finding,
     MotionSummary,
     RunRecord,
-    Standing,
     Verdict,
 )
 
@@ -57,9 +57,9 @@ def now(
     return Now(found, head.motions, digests, changed, head.started[:10])
 
 
-def standing(decisions: Iterable[Decision], at: Now) -> tuple[Standing, ...]:
+def standing(decisions: Iterable[Decision], at: Now) -> tuple[DecisionStatus, ...]:
     """Return the decisions, each with the reasons for which it must be looked at again."""
-    return tuple(Standing(decision, tuple(dict.fromkeys(_doubts(decision, at)))) for decision in decisions)
+    return tuple(DecisionStatus(decision, tuple(dict.fromkeys(_doubts(decision, at)))) for decision in decisions)
 
 
 def _doubts(decision: Decision, at: Now) -> Iterable[str]:

@@ -13,7 +13,7 @@ from pipeline.settings import Floors, Settings, SettingsError
 
 
 @dataclass(frozen=True)
-class Storey:
+class Floor:
     """A floor that objects stand on, with its levels of shaking and the places of its objects in the list of all.
 
     name      : "" for the ground
@@ -50,7 +50,7 @@ class Storey:
         return summaries(self.levels, self.name)
 
 
-def storeys(settings: Settings, site: Site, items: Sequence[Item]) -> list[Storey]:
+def floors_with(settings: Settings, site: Site, items: Sequence[Item]) -> list[Floor]:
     """Sort the objects by the floor that their gallery stands on, the ground first; each on one.
 
     raises : as `floors_of`
@@ -59,10 +59,10 @@ def storeys(settings: Settings, site: Site, items: Sequence[Item]) -> list[Store
     for index, item in enumerate(items):
         places.setdefault(floor_name(settings, item.gallery), []).append(index)
     found = floors_of(settings, site, {item.gallery for item in items})
-    return [replace(storey, members=tuple(places[name])) for name, storey in found.items()]
+    return [replace(floor, members=tuple(places[name])) for name, floor in found.items()]
 
 
-def floors_of(settings: Settings, site: Site, galleries: Collection[str]) -> dict[str, Storey]:
+def floors_of(settings: Settings, site: Site, galleries: Collection[str]) -> dict[str, Floor]:
     """Return the floors that some galleries stand on, by name, the ground first; without any objects.
 
     raises : SettingsError for a floor that the manifest does not have; MotionError for a record of a floor
@@ -74,7 +74,7 @@ def floors_of(settings: Settings, site: Site, galleries: Collection[str]) -> dic
     for name in (GROUND_FLOOR, *site.floors):
         if name in wanted:
             said = "" if name == GROUND_FLOOR else name
-            found[said] = Storey(said, levels_at(site, name), (), x_azimuth)
+            found[said] = Floor(said, levels_at(site, name), (), x_azimuth)
     return found
 
 

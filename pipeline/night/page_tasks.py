@@ -1,4 +1,4 @@
-"""What workers show: a page of the report, or its totals alone."""
+"""Tasks of workers that show: a page of the report, or its totals alone."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -6,7 +6,7 @@ from functools import partial
 
 from pipeline.analysis.faults import Fault, fitting
 from pipeline.night.context import RunContext
-from pipeline.records import Found, Page, Standing, Tally
+from pipeline.records import DecisionStatus, Found, Page, Tally
 from pipeline.report.files.page_renderer import PageRenderer, RenderedPage
 from pipeline.report.pages.tallies import tally
 from pipeline.store.pages import Members, found_of
@@ -33,7 +33,7 @@ class PageTask:
     page: Page
     members: Members
     results: Mapping[str, bytes]
-    decisions: tuple[Standing, ...] = field(default=())
+    decisions: tuple[DecisionStatus, ...] = field(default=())
     draw: bool = True
 
 
@@ -57,5 +57,5 @@ def render_page(context: RunContext, task: PageTask) -> Rendered:
     return Rendered(page.tally if shown is found else tally(shown), page, tuple(faults))
 
 
-def _drawn(renderer: PageRenderer, page: Page, decisions: Sequence[Standing], found: Found) -> RenderedPage:
+def _drawn(renderer: PageRenderer, page: Page, decisions: Sequence[DecisionStatus], found: Found) -> RenderedPage:
     return renderer.draw(page, found, decisions)

@@ -13,7 +13,7 @@ MOST = 1_000
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class PagePart:
     """The objects of one page, before anything is known about them.
 
     Attributes
@@ -34,7 +34,7 @@ class Part:
     objects: Listing
 
 
-def paged(objects: Listing, settings: Settings, most: int = MOST) -> list[Part]:
+def paged(objects: Listing, settings: Settings, most: int = MOST) -> list[PagePart]:
     """Cut a collection into pages: galleries by name, then what is not on display, floor by floor.
 
     Parameters
@@ -51,7 +51,7 @@ def paged(objects: Listing, settings: Settings, most: int = MOST) -> list[Part]:
         # What is not on display shares pages, but not with what stands on another floor.
         place = run.gallery if run.on_display else floor_name(settings, run.gallery)
         groups.setdefault((not run.on_display, place), []).append(run)
-    out: list[Part] = []
+    out: list[PagePart] = []
     stored: list[tuple[str, Listing]] = []
     for absent, place in sorted(groups):
         pieces = _pieces(objects.joined(groups[absent, place]), most)
@@ -59,8 +59,8 @@ def paged(objects: Listing, settings: Settings, most: int = MOST) -> list[Part]:
             stored += [(place, piece) for piece in pieces]
         else:
             floor = floor_name(settings, place)
-            out += [Part(place, True, floor, n, len(pieces), piece) for n, piece in enumerate(pieces, 1)]
-    out += [Part("", False, floor, n, len(stored), piece) for n, (floor, piece) in enumerate(stored, 1)]
+            out += [PagePart(place, True, floor, n, len(pieces), piece) for n, piece in enumerate(pieces, 1)]
+    out += [PagePart("", False, floor, n, len(stored), piece) for n, (floor, piece) in enumerate(stored, 1)]
     return out
 
 

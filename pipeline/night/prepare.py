@@ -1,4 +1,4 @@
-"""What all of a run shares, made ready: motions and their pictures, rules, measures, and what is asked for."""
+"""Preparation of a run: motions and their pictures, rules, measures, and what is asked for."""
 
 import os
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from pipeline.analysis.classify import classify
 from pipeline.analysis.faults import sound, without_failing
 from pipeline.analysis.plan import Work, plan
 from pipeline.analysis.response_charts.grouping import group_name, groups
-from pipeline.analysis.rules import Table
+from pipeline.analysis.rules import RuleTable
 from pipeline.collection.inventory import latest_import
 from pipeline.collection.listing import Listing
 from pipeline.collection.object_index import ObjectIndex
@@ -69,8 +69,8 @@ def run_context(
     settings = workspace.settings
     # A catalogue of phrases that is missing is said before the night's work, not after it.
     written = presentation(settings)
-    storeys = floors_of(settings, site, chosen.galleries)
-    motions = motions_of(storeys)
+    floors = floors_of(settings, site, chosen.galleries)
+    motions = motions_of(floors)
     samples = sum(motion.acceleration.shape[1] for motion in motions.values())
     shown = chosen.shown * samples
     fragile = _asked(settings.analysis.fragility, shown <= FRAGILE)
@@ -95,12 +95,12 @@ def run_context(
         | {INVENTORY: index.version, READING: told(workspace, index)},
         assessments=(),
         charts={},
-        motions=tuple(summary for storey in storeys.values() for summary in storey.summaries),
+        motions=tuple(summary for floor in floors.values() for summary in floor.summaries),
         demonstration=settings.demonstration,
     )
     context = RunContext(
         head=head,
-        storeys=storeys,
+        floors=floors,
         analysis=settings.analysis,
         rules=workspace.rules,
         measures=workspace.measures,
@@ -144,7 +144,7 @@ Group = tuple[Model, float | None, dict[str, float]]
 
 
 def popular(
-    index: ObjectIndex, chosen: Listing, rules: Table | None, measures: MeasureCatalogue, x_azimuth: float
+    index: ObjectIndex, chosen: Listing, rules: RuleTable | None, measures: MeasureCatalogue, x_azimuth: float
 ) -> dict[str, Group]:
     """Return the groups of parameters whose charts pay for a collection, as a sample of its objects says, by name.
 

@@ -1,4 +1,4 @@
-"""What the reading behind the inventory refused and doubts, for programs and in a line."""
+"""Summary of the reading behind the inventory, its refusals and doubts, for programs and in a line."""
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial

@@ -22,7 +22,7 @@ from pipeline.execute.pool import WorkerPool, cores, pool
 from pipeline.night.context import RunContext
 from pipeline.night.decision_review import now, standing
 from pipeline.night.page_tasks import PageTask, Rendered, render_page
-from pipeline.night.paging import Part, paged
+from pipeline.night.paging import PagePart, paged
 from pipeline.night.source_state import rules_digest
 from pipeline.night.unit_tasks import (
     Assessments,
@@ -37,14 +37,14 @@ from pipeline.night.units import Decisions, Unit, UnitKeys
 from pipeline.operations.event_log import note
 from pipeline.operations.workspace import Workspace
 from pipeline.quantities import counted
-from pipeline.records import Found, Page, Progress, RunChanges, Standing, Tally
+from pipeline.records import DecisionStatus, Found, Page, Progress, RunChanges, Tally
 from pipeline.report.files.manifest import PreviousReport
 from pipeline.report.files.report_writer import ReportWriter, link_to, page_key
 from pipeline.report.pages.since import mentioned
 from pipeline.report.pages.tallies import total
 from pipeline.report.pages.views import Pointer
 from pipeline.store.pages import Members, Shown, fetch_pages, found_of, page_digest, page_row
-from pipeline.store.results import Kept, Stored, copy, fetch, forget, keep, known
+from pipeline.store.results import KeptResult, Stored, copy, fetch, forget, keep, known
 
 FEW = 5_000
 """Objects to be assessed or shown for which other processes do not pay: they take seconds to start."""
@@ -77,12 +77,12 @@ class _Shown:
         Of the database, where it is not there yet.
     """
 
-    part: Part
+    part: PagePart
     units: list[Unit]
     spacings: str = ""
     kept: Shown | None = None
     page: Page | None = None
-    standing: tuple[Standing, ...] = ()
+    standing: tuple[DecisionStatus, ...] = ()
     row: dict[str, Any] | None = None
 
     def results(self, names: Mapping[str, str]) -> tuple[tuple[str, int], ...]:
@@ -143,7 +143,7 @@ class NightRun:
                     page.spacings = named
         self._digests = index.digests(list(decisions))
         self._names: dict[str, str] = {}
-        self._memory: dict[str, Kept] | None = None
+        self._memory: dict[str, KeptResult] | None = None
         self._work = self._missing()
         self.fresh = self._unknown()
         self.seconds = 0.0
@@ -202,11 +202,11 @@ class NightRun:
                 yield one.row or page_row(one.page, self._members(one))
 
     @property
-    def standing(self) -> tuple[Standing, ...]:
+    def standing(self) -> tuple[DecisionStatus, ...]:
         """The decisions about the objects of the run, as they stand."""
         return tuple(one for page in self._pages for one in page.standing)
 
-    def strangers(self, *, whole: bool) -> tuple[Standing, ...]:
+    def strangers(self, *, whole: bool) -> tuple[DecisionStatus, ...]:
         """Return the decisions about objects that the collection does not have any more.
 
         whole : whether the run is of all objects: else what is not in it is not gone
@@ -299,7 +299,7 @@ class NightRun:
         if self._memory is None:
             keep(self.workspace.engine, head.run_id, head.started, waiting)
         else:
-            self._memory |= {one.key: Kept(head.run_id, head.started, one.outline, one.found) for one in waiting}
+            self._memory |= {one.key: KeptResult(head.run_id, head.started, one.outline, one.found) for one in waiting}
         waiting.clear()
 
     def copy_results(self, target: Database) -> None:
@@ -338,7 +338,7 @@ class NightRun:
             self._names.get(page.spacings, page.spacings),
         )
 
-    def _results(self, keys: Iterable[str]) -> dict[str, Kept]:
+    def _results(self, keys: Iterable[str]) -> dict[str, KeptResult]:
         """Return results by key; those that are damaged are made again."""
         wanted = list(dict.fromkeys(keys))
         mine = {} if self._memory is None else {key: self._memory[key] for key in wanted if key in self._memory}
@@ -350,7 +350,7 @@ class NightRun:
             found |= self._again(gone)
         return mine | found
 
-    def _again(self, keys: set[str]) -> dict[str, Kept]:
+    def _again(self, keys: set[str]) -> dict[str, KeptResult]:
         if self._memory is None:
             forget(self.workspace.engine, keys)
         work: dict[tuple[str, bool], _Work] = {}
@@ -385,7 +385,7 @@ class NightRun:
         """Return when the newest of some results was made, and by which run."""
         return max((one.made, one.run) for one in self._results(keys).values())
 
-    def _standing(self, found: Found, decisions: Sequence[Any]) -> tuple[Standing, ...]:
+    def _standing(self, found: Found, decisions: Sequence[Any]) -> tuple[DecisionStatus, ...]:
         digests = {number: self._digests[number] for number in {d.object_number for d in decisions}}
         engine = self.workspace.engine
         at = now(

@@ -1,4 +1,4 @@
-"""Which source the inventory is the state of, and whether it would be read alike now."""
+"""State of the source behind the inventory, and whether it would be read alike now."""
 
 import hashlib
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What workers find: response charts, the results of units, the gaps between neighbours.
+"""Tasks of workers that find: response charts, the results of units, the gaps between neighbours.
 
 Nothing of the report is asked here: what is found does not depend on how it is shown.  A `RunContext` holds what all
 tasks share and goes once to each worker; a task is the rest.  What comes back depends on these two alone: the same on
@@ -112,7 +112,7 @@ class Assessments:
 
 def assess_units(context: "RunContext", task: UnitTask) -> Assessments:
     """Assess units; what Kouros fails on costs the object its answer, and is told."""
-    items, floor = read_packed(task.records), context.storeys[task.floor]
+    items, floor = read_packed(task.records), context.floors[task.floor]
     if not task.assessed:
         every, seconds, faults = left_aside(context, floor, items, task.decisions)
     else:
@@ -173,7 +173,7 @@ class GalleryTask:
 
 def find_neighbours(context: "RunContext", task: GalleryTask) -> Assessments:
     """Find the gaps between the neighbours of a gallery."""
-    floor = context.storeys[task.floor]
+    floor = context.floors[task.floor]
     assessments = tuple(one for page in task.pages for one in found_of(page, task.results).assessments)
     faults: list[Fault] = []
     _, gaps = each_apart(

@@ -8,8 +8,8 @@ from itertools import pairwise
 from pipeline.collection.listing import Listed
 from pipeline.collection.sealing import seal
 from pipeline.night.context import RunContext
-from pipeline.night.floors import Storey
-from pipeline.night.paging import Part
+from pipeline.night.floors import Floor
+from pipeline.night.paging import PagePart
 from pipeline.records import Decision, DecisionKind
 from pipeline.resources import code_version
 
@@ -55,20 +55,20 @@ class UnitKeys:
         charts = None if context.admitted is None else sorted(context.admitted)
         asked = (sorted(analysis.items()), rules, measures, context.surveyed, context.fragile, charts)
         self._shaken = {
-            name: seal(code_version(), repr((asked, _shaking(floor)))) for name, floor in context.storeys.items()
+            name: seal(code_version(), repr((asked, _shaking(floor)))) for name, floor in context.floors.items()
         }
         # What is left aside is only classed, and stands as it was installed: no motion and no fidelity has a say in it.
         self._aside = {
             name: seal(code_version(), repr((rules, measures, context.surveyed, "aside", name)))
-            for name in context.storeys
+            for name in context.floors
         }
         self._stores = context.stores
 
-    def basis(self, part: Part) -> str:
+    def basis(self, part: PagePart) -> str:
         """Return the digest of what results depend on besides the objects and the decisions about them."""
         return (self._shaken if part.on_display or self._stores else self._aside)[part.floor]
 
-    def units(self, part: Part, decisions: Decisions) -> list[Unit]:
+    def units(self, part: PagePart, decisions: Decisions) -> list[Unit]:
         """Return the units of a page, in the order of its objects.
 
         Parameters
@@ -85,7 +85,7 @@ class UnitKeys:
         companies = (tuple(objects[start:end]) for start, end in pairwise(ends))
         return [Unit(_key(basis, members, decisions), members) for members in companies]
 
-    def neighbours(self, part: Part, units: Iterable[Unit]) -> str:
+    def neighbours(self, part: PagePart, units: Iterable[Unit]) -> str:
         """Return the key of the gaps between the neighbours of a gallery.
 
         Parameters
@@ -113,7 +113,7 @@ def _key(basis: str, members: Sequence[Listed], decisions: Decisions) -> str:
     return digest.hexdigest()
 
 
-def _shaking(floor: Storey) -> list[object]:
+def _shaking(floor: Floor) -> list[object]:
     out: list[object] = [floor.name, floor.x_azimuth]
     for level in floor.levels:
         motions = [

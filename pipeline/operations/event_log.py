@@ -24,7 +24,7 @@ _FIELDS = "kouros_fields"
 _OWN = ("time", "level", "event", "pid")
 
 
-class _Lines(logging.Formatter):
+class _LineFormatter(logging.Formatter):
     """A record as one line of JSON, with nothing secret in it."""
 
     def __init__(self, hide: Callable[[str], str]) -> None:
@@ -105,7 +105,7 @@ def journal(settings: "Settings | None", hide: Callable[[str], str], *, to_stder
     before = _LOG.level
     _LOG.setLevel(logging.INFO)
     for handler in handlers:
-        handler.setFormatter(_Lines(hide))
+        handler.setFormatter(_LineFormatter(hide))
         _LOG.addHandler(handler)
     try:
         if refused is not None:

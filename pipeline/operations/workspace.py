@@ -15,7 +15,7 @@ from pipeline.resources import resource, sweep
 
 if TYPE_CHECKING:
     from pipeline.analysis.response_charts import ChartCache
-    from pipeline.analysis.rules import Table
+    from pipeline.analysis.rules import RuleTable
     from pipeline.collection.database import Database
     from pipeline.collection.object_index import ObjectIndex
     from pipeline.mitigate import MeasureCatalogue
@@ -52,7 +52,7 @@ class Workspace:
     engine: "Database"
 
     @cached_property
-    def rules(self) -> "Table | None":
+    def rules(self) -> "RuleTable | None":
         """The rules of classification, where the museum has some of its own.
 
         Raises

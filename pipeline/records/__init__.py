@@ -12,7 +12,7 @@ from pipeline.records.change import (
     RunChanges,
     VerdictChange,
 )
-from pipeline.records.decision import Basis, Decision, DecisionKind, Standing, in_force
+from pipeline.records.decision import Basis, Decision, DecisionKind, DecisionStatus, in_force
 from pipeline.records.fragility import Fragility
 from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.model import Bounds, ChartAxis, ChartFigure, Columns, Figure, Model, Trials
@@ -55,6 +55,7 @@ __all__ = [
     "Decision",
     "DecisionChange",
     "DecisionKind",
+    "DecisionStatus",
     "Doubt",
     "Errors",
     "Estimate",
@@ -89,7 +90,6 @@ __all__ = [
     "Scene",
     "Silent",
     "Spacing",
-    "Standing",
     "Support",
     "Tally",
     "Trials",

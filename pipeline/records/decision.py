@@ -144,7 +144,7 @@ class Decision:
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class DecisionStatus:
     """A decision in force at the time of a run.
 
     Attributes

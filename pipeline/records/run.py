@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from pipeline.records.decision import Standing
+from pipeline.records.decision import DecisionStatus
 from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.motion import MotionSummary
 from pipeline.records.picture import Chart
@@ -39,7 +39,7 @@ class RunRecord:
         Of all levels and floors.
     demonstration : bool
         Whether it is of the bundled collection.
-    decisions : tuple of Standing
+    decisions : tuple of DecisionStatus
         Those in force about its objects, and about objects that the inventory has no more.
     wishes : tuple of MeasurementRequest or None
         What is worth measuring, what settles most first; None where the run did not ask.
@@ -59,6 +59,6 @@ class RunRecord:
     charts: Mapping[str, Chart]
     motions: tuple[MotionSummary, ...]
     demonstration: bool = False
-    decisions: tuple[Standing, ...] = ()
+    decisions: tuple[DecisionStatus, ...] = ()
     wishes: tuple[MeasurementRequest, ...] | None = None
     spacings: tuple[Spacing, ...] = ()

@@ -11,8 +11,8 @@ from pydantic import ConfigDict, Field, RootModel, ValidationError, field_valida
 from pipeline.errors import InputError
 from pipeline.records import Numerics
 from pipeline.resources import small_text
-from pipeline.settings.operations import Hooks, Limits, Logs, Retention
-from pipeline.settings.operations import Part as _Part
+from pipeline.settings.operations import Hooks, LimitSettings, Logs, Retention
+from pipeline.settings.operations import SettingsPart as _Part
 
 DATABASE_VARIABLE = "KOUROS_DATABASE"
 """Environment variable that names the database, with its password, in place of the file's."""
@@ -44,7 +44,7 @@ def _without_password(where: str) -> str:
     return where
 
 
-class Museum(_Part):
+class MuseumSettings(_Part):
     """Whose collection it is."""
 
     name: str = Field(default="", description="shown on every page")
@@ -144,7 +144,7 @@ class Analysis(_Part):
         return Numerics(self.fidelity, self.azimuth_step)
 
 
-class Display(_Part):
+class DisplaySettings(_Part):
     """What of the collection is assessed: what is on display.
 
     What is not, because the museum's records say so, is counted and named.
@@ -223,12 +223,12 @@ class Report(_Part):
 class Settings(_Part):
     """All settings of one museum, as kouros.toml gives them; paths are relative to that file."""
 
-    museum: Museum = Museum()
+    museum: MuseumSettings = MuseumSettings()
     inventory: Inventory = Inventory()
     collection: Collection = Collection()
     site: SiteFolder = SiteFolder()
     floors: Floors = Field(default=Floors({}), examples=[{"2": ["Hall of Sculpture", "Gallery 12"]}])
-    display: Display = Display()
+    display: DisplaySettings = DisplaySettings()
     analysis: Analysis = Analysis()
     execution: Execution = Execution()
     mitigation: Mitigation = Mitigation()
@@ -237,7 +237,7 @@ class Settings(_Part):
     hooks: Hooks = Hooks()
     logs: Logs = Logs()
     retention: Retention = Retention()
-    limits: Limits = Limits()
+    limits: LimitSettings = LimitSettings()
     home: Path = Field(default=Path(), exclude=True)
     rehearsal: Path | None = Field(
         default=None, exclude=True, description="folder of a dry run, which writes there only"

@@ -15,13 +15,13 @@ EVENTS: tuple[Event, ...] = ("changed", "failed", "shrunk")
 _VARIABLE = r"^KOUROS_[A-Z0-9_]+$"
 
 
-class Part(BaseModel):
+class SettingsPart(BaseModel):
     """A table of kouros.toml: unknown keys are errors."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class _Hook(Part):
+class _Hook(SettingsPart):
     on: tuple[Event, ...] = Field(default=EVENTS, description="the events that are told")
     timeout_s: float = Field(default=30.0, gt=0.0, le=600.0, description="seconds that telling may take")
 
@@ -109,7 +109,7 @@ class EmailHook(_Hook):
         return self
 
 
-class Hooks(Part):
+class Hooks(SettingsPart):
     """Who is told when verdicts "changed", when a run "failed", and when the collection "shrunk" suspiciously.
 
     Each may be repeated.  Secrets never stand here: url_from, token_from and password_from name variables KOUROS_... of
@@ -147,7 +147,7 @@ class Hooks(Part):
         return tuple(dict.fromkeys(filter(None, [*named, *(hook.password_from for hook in self.email)])))
 
 
-class Logs(Part):
+class Logs(SettingsPart):
     """Where the log is kept, one JSON object a line."""
 
     file: str = Field(
@@ -161,7 +161,7 @@ class Logs(Part):
     keep: int = Field(default=5, ge=1, le=1000, description="full files that are kept")
 
 
-class Retention(Part):
+class Retention(SettingsPart):
     """What stays of earlier nights; 0 means all, nothing is removed unasked.  The last good ones always stay."""
 
     runs: int = Field(default=0, ge=0, description="how many runs stay in the database")
@@ -169,7 +169,7 @@ class Retention(Part):
     days: float = Field(default=0.0, ge=0.0, description="days after which runs and reports are removed")
 
 
-class Limits(Part):
+class LimitSettings(SettingsPart):
     """How much of an input is accepted: a collection beyond these is refused whole."""
 
     megabytes: float = Field(default=1024.0, gt=0.0, le=102_400.0, description="megabytes of a file of the collection")

@@ -1,4 +1,4 @@
-"""What changed between two stored runs: objects, inputs, motions, decisions, settings and versions, and verdicts."""
+"""Comparison of two stored runs: objects, inputs, motions, decisions, settings and versions, and verdicts."""
 
 from collections.abc import Mapping, Set
 from functools import cached_property

@@ -16,7 +16,7 @@ from pipeline.collection.sealing import damaged_rows, sealed, sound_rows
 from pipeline.records import Assessment, Item, MeasurementRequest, Outline, Result, Scene, Spacing, Verdict
 from pipeline.store import codec
 from pipeline.store.codec import StoreError
-from pipeline.store.speaking import speaking
+from pipeline.store.db_errors import explained
 from pipeline.store.tables import RESULT
 
 NAMED = 500
@@ -49,7 +49,7 @@ class Stored:
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class KeptResult:
     """What is there under a key: the run that found it, when that began (ISO 8601, UTC), and what it found."""
 
     run: str
@@ -186,7 +186,7 @@ def keep(engine: Engine, run_id: str, made: str, stored: Iterable[Stored]) -> No
     StoreError
         For a database that refuses.
     """
-    with speaking(engine, "results were not stored"), engine.begin() as connection:
+    with explained(engine, "results were not stored"), engine.begin() as connection:
         add(connection, run_id, made, stored)
 
 
@@ -211,7 +211,7 @@ def known(engine: Engine, keys: Collection[str]) -> set[str]:
     StoreError
         For a database that refuses.
     """
-    with speaking(engine, "the results of earlier runs could not be read"), engine.connect() as connection:
+    with explained(engine, "the results of earlier runs could not be read"), engine.connect() as connection:
         return _known(connection, keys)
 
 
@@ -222,19 +222,19 @@ def _known(connection: Connection, keys: Collection[str]) -> set[str]:
     return found
 
 
-def fetch(database: Engine | Connection, keys: Collection[str]) -> tuple[dict[str, Kept], list[str]]:
+def fetch(database: Engine | Connection, keys: Collection[str]) -> tuple[dict[str, KeptResult], list[str]]:
     """Return what is kept under some keys, and those of the keys whose rows are damaged.
 
     What is not there is in neither of them.
     """
     if isinstance(database, Engine):
-        with speaking(database, "the results of earlier runs could not be read"), database.connect() as connection:
+        with explained(database, "the results of earlier runs could not be read"), database.connect() as connection:
             return fetch(connection, keys)
-    found: dict[str, Kept] = {}
+    found: dict[str, KeptResult] = {}
     damaged: list[str] = []
     for some in named(keys):
         rows, broken = sound_rows(database, RESULT, RESULT.c.key.in_(some))
-        found |= {row.key: Kept(row.run_id, row.made, row.outline, bytes(row.found)) for row in rows}
+        found |= {row.key: KeptResult(row.run_id, row.made, row.outline, bytes(row.found)) for row in rows}
         damaged += broken
     return found, damaged
 

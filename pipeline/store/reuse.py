@@ -1,4 +1,4 @@
-"""What an earlier run computed and a later one may take over: charts of the same motion by the same kernels."""
+"""Reuse of what an earlier run computed: charts of the same motion by the same kernels."""
 
 import warnings
 from collections.abc import Iterable

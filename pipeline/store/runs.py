@@ -12,14 +12,14 @@ from sqlalchemy.exc import IntegrityError
 
 from pipeline.collection.sealing import damaged_rows, write_seals
 from pipeline.errors import DamageWarning
-from pipeline.records import Chart, MotionSummary, Page, RunChanges, RunRecord, Standing
+from pipeline.records import Chart, DecisionStatus, MotionSummary, Page, RunChanges, RunRecord
 from pipeline.store import codec
 from pipeline.store.changes import changes
 from pipeline.store.codec import StoreError
+from pipeline.store.db_errors import explained, where_is
 from pipeline.store.pages import add_pages, load_page
 from pipeline.store.results import DamagedRunError
 from pipeline.store.sound import damaged_heads, require_run, runs_but
-from pipeline.store.speaking import speaking, where_is
 from pipeline.store.tables import PAGE, RUN, RUN_CHART, RUN_DECISION, RUN_MOTION, RUN_PAGE
 
 __all__ = [
@@ -89,7 +89,7 @@ def commit_run(
     status = FINISHED if published else UNFINISHED
     failure = f"run {head.run_id!a} was not stored, and nothing of it was kept"
     try:
-        with speaking(engine, failure), engine.begin() as connection:
+        with explained(engine, failure), engine.begin() as connection:
             add_pages(connection, fresh, damaged)
             for table, rows in _tables(head, pages, counts, status):
                 waiting = iter(rows)
@@ -109,7 +109,7 @@ def mark_finished(engine: Engine, run_id: str) -> None:
     raises : StoreError for a database that refuses
     """
     failure = f"run {run_id!a} has its report, but could not be marked as finished"
-    with speaking(engine, failure), engine.begin() as connection:
+    with explained(engine, failure), engine.begin() as connection:
         mine = (RUN.c.run_id == run_id) & (RUN.c.status != FINISHED)
         if connection.execute(select(RUN.c.run_id).where(mine)).scalar() is None or any(
             damaged_rows(connection, RUN, mine)
@@ -125,7 +125,7 @@ def load_head(engine: Engine, run_id: str | None = None) -> tuple[RunRecord, tup
     run_id : None means the newest finished run
     raises : StoreError for a run that is not there (listing those that are)
     """
-    with speaking(engine, "the run could not be read"), engine.connect() as connection:
+    with explained(engine, "the run could not be read"), engine.connect() as connection:
         if run_id is None:
             run_id = _latest(connection)
         if run_id is None:
@@ -136,7 +136,7 @@ def load_head(engine: Engine, run_id: str | None = None) -> tuple[RunRecord, tup
             assessments=(),
             charts=_charts(connection, run_id),
             motions=tuple(_records(connection, RUN_MOTION, MotionSummary, run_id)),
-            decisions=tuple(_records(connection, RUN_DECISION, Standing, run_id)),
+            decisions=tuple(_records(connection, RUN_DECISION, DecisionStatus, run_id)),
         )
         pages = _pages(connection, run_id)
     there = {"pages": len(pages), "charts": len(record.charts), "motions": len(record.motions)}
@@ -168,7 +168,7 @@ def load_run(engine: Engine, run_id: str | None = None) -> RunRecord:
 def list_runs(engine: Engine) -> tuple[RunSummary, ...]:
     """Return all runs, the last one that started first."""
     names = [field.name for field in fields(RunSummary)]
-    with speaking(engine, "the runs could not be listed"), engine.connect() as connection:
+    with explained(engine, "the runs could not be listed"), engine.connect() as connection:
         sound = runs_but(damaged_heads(connection))
         rows = connection.execute(select(*(RUN.c[name] for name in names)).where(sound).order_by(*_newest_first()))
         return tuple(RunSummary(*row) for row in rows)
@@ -176,7 +176,7 @@ def list_runs(engine: Engine) -> tuple[RunSummary, ...]:
 
 def latest_run_id(engine: Engine) -> str | None:
     """Return the newest finished run, None where there is none."""
-    with speaking(engine, "the runs could not be listed"), engine.connect() as connection:
+    with explained(engine, "the runs could not be listed"), engine.connect() as connection:
         return _latest(connection)
 
 
@@ -194,7 +194,7 @@ def compare_runs(engine: Engine, old: str, new: str) -> RunChanges:
 
     raises : StoreError for a run that is not there, listing those that are
     """
-    with speaking(engine, f"the runs {old!r} and {new!r} could not be compared"), engine.connect() as connection:
+    with explained(engine, f"the runs {old!r} and {new!r} could not be compared"), engine.connect() as connection:
         for run_id in (old, new):
             _head(connection, run_id)
         return changes(connection, old, new)
@@ -210,7 +210,7 @@ def _check(head: RunRecord) -> None:
     for motion in head.motions:
         codec.check_type(f"{run}, motion {motion.name!a}", MotionSummary, motion)
     for standing in head.decisions:
-        codec.check_type(f"{run}, decision {standing.decision.id}", Standing, standing)
+        codec.check_type(f"{run}, decision {standing.decision.id}", DecisionStatus, standing)
     for key, chart in head.charts.items():
         codec.check_type(f"{run}, chart {key!a}", dict[str, Chart], {key: chart})
     named = {name: getattr(head, name) for name in _RUN_FIELDS if name not in {"settings", "level_notes"}}
@@ -232,7 +232,7 @@ def _tables(
     charts = enumerate(head.charts.items())
     yield RUN_CHART, ({**of_run, "position": i, "key": key, "chart": chart} for i, (key, chart) in charts)
     standing = (
-        row | {"object_number": row["decision"].object_number} for row in _rows(of_run, Standing, head.decisions)
+        row | {"object_number": row["decision"].object_number} for row in _rows(of_run, DecisionStatus, head.decisions)
     )
     yield RUN_DECISION, standing
     names = ("key", "gallery", "on_display", "number", "of")

@@ -1,4 +1,4 @@
-"""Which runs of the database are as they were written: one that is not is no part of any list, and never compared."""
+"""Soundness of runs: one that is not as it was written is no part of any list, and never compared."""
 
 import warnings
 

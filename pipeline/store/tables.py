@@ -30,7 +30,7 @@ from pipeline.collection.inventory.local_measurements import SUPPLEMENT
 from pipeline.collection.inventory.reading_report import READING
 from pipeline.collection.inventory.source_rows import SOURCE_ROW, SOURCE_STATE
 from pipeline.collection.sealing import seal_column
-from pipeline.records import Chart, Decision, MotionSummary, Standing
+from pipeline.records import Chart, Decision, DecisionStatus, MotionSummary
 from pipeline.store import codec
 
 # The inventory's tables are handed on so that METADATA is whole wherever this module is imported.
@@ -76,7 +76,7 @@ class _Coded(TypeDecorator[Any]):
         return None if value is None else self.read(value)
 
 
-class Words(_Coded):
+class WordsColumn(_Coded):
     """Any Unicode text, whatever is in it (see `codec.escape`)."""
 
     cache_ok = True
@@ -90,7 +90,7 @@ class Words(_Coded):
         return codec.unescape(text)
 
 
-class Choice(_Coded):
+class ChoiceColumn(_Coded):
     """A member of an enumeration, kept as its text."""
 
     cache_ok = True
@@ -114,7 +114,7 @@ class Choice(_Coded):
         return self.kind(text)
 
 
-class Json(_Coded):
+class JsonColumn(_Coded):
     """A nested record as JSON text; ``column::json`` reads it in PostgreSQL, ``json_extract`` in SQLite."""
 
     cache_ok = True
@@ -138,7 +138,7 @@ class Json(_Coded):
         return codec.of_json(self.hint, text)
 
 
-class Settings(_Coded):
+class SettingsColumn(_Coded):
     """Settings, which have no type, as JSON text (see `codec`)."""
 
     cache_ok = True
@@ -155,7 +155,7 @@ class Settings(_Coded):
         return codec.settings_from_json(text)
 
 
-class Number(TypeDecorator[float]):
+class NumberColumn(TypeDecorator[float]):
     """A double of any value.  SQLite turns NaN into NULL, so that there it is kept as the text "NaN".
 
     Both databases sort NaN above every number, and both keep infinities.
@@ -173,7 +173,7 @@ class Number(TypeDecorator[float]):
         return None if value is None else float(value)
 
 
-class Whole(TypeDecorator[int]):
+class WholeColumn(TypeDecorator[int]):
     """A whole number; numpy's are made Python's, for SQLite would keep their bytes."""
 
     impl = BigInteger
@@ -195,9 +195,9 @@ def _nan_as_text(value: float | None) -> float | str | None:
 
 def _column_type(hint: Any) -> TypeEngine[Any]:
     if isinstance(hint, type) and issubclass(hint, StrEnum):
-        return Choice(hint)
-    plain: dict[Any, TypeEngine[Any]] = {str: Words(), float: Number(), int: Whole(), bool: Boolean()}
-    return plain.get(hint) or Json(hint)
+        return ChoiceColumn(hint)
+    plain: dict[Any, TypeEngine[Any]] = {str: WordsColumn(), float: NumberColumn(), int: WholeColumn(), bool: Boolean()}
+    return plain.get(hint) or JsonColumn(hint)
 
 
 def _columns(record: type[Any], *names: str) -> list[Column[Any]]:
@@ -212,7 +212,7 @@ def _columns(record: type[Any], *names: str) -> list[Column[Any]]:
 
 
 def _of_run() -> Column[Any]:
-    return Column("run_id", Words(), ForeignKey("run.run_id", ondelete="CASCADE"), primary_key=True)
+    return Column("run_id", WordsColumn(), ForeignKey("run.run_id", ondelete="CASCADE"), primary_key=True)
 
 
 def _position() -> Column[Any]:
@@ -223,17 +223,17 @@ def _position() -> Column[Any]:
 RUN = Table(
     "run",
     METADATA,
-    Column("run_id", Words(), primary_key=True),
-    Column("started", Words(), nullable=False),
-    Column("finished", Words(), nullable=False),
-    Column("version", Words(), nullable=False),
-    Column("site", Words(), nullable=False),
-    Column("museum", Words(), nullable=False),
-    Column("level_notes", Json(tuple[str, ...]), nullable=False),
-    Column("settings", Settings(), nullable=False),
+    Column("run_id", WordsColumn(), primary_key=True),
+    Column("started", WordsColumn(), nullable=False),
+    Column("finished", WordsColumn(), nullable=False),
+    Column("version", WordsColumn(), nullable=False),
+    Column("site", WordsColumn(), nullable=False),
+    Column("museum", WordsColumn(), nullable=False),
+    Column("level_notes", JsonColumn(tuple[str, ...]), nullable=False),
+    Column("settings", SettingsColumn(), nullable=False),
     Column("demonstration", Boolean(), nullable=False),
-    Column("status", Words(), nullable=False),
-    Column("counts", Json(dict[str, int]), nullable=False),
+    Column("status", WordsColumn(), nullable=False),
+    Column("counts", JsonColumn(dict[str, int]), nullable=False),
     seal_column(),
     Index(None, "status", "started"),
 )
@@ -246,9 +246,9 @@ RUN_CHART = Table(
     "run_chart",
     METADATA,
     _of_run(),
-    Column("key", Words(), primary_key=True),
+    Column("key", WordsColumn(), primary_key=True),
     Column("position", BigInteger(), nullable=False),
-    Column("chart", Json(Chart), nullable=False),
+    Column("chart", JsonColumn(Chart), nullable=False),
     seal_column(),
 )
 """The charts of a run by key; the chart itself as JSON."""
@@ -256,10 +256,10 @@ RUN_CHART = Table(
 RESULT = Table(
     "result",
     METADATA,
-    Column("key", Words(), primary_key=True),
-    Column("run_id", Words(), nullable=False),
-    Column("made", Words(), nullable=False),
-    Column("outline", Words(), nullable=False),
+    Column("key", WordsColumn(), primary_key=True),
+    Column("run_id", WordsColumn(), nullable=False),
+    Column("made", WordsColumn(), nullable=False),
+    Column("outline", WordsColumn(), nullable=False),
     Column("found", LargeBinary(), nullable=False),
     Column("seal", Text(), nullable=False),
 )
@@ -273,9 +273,9 @@ seal    : of all the others (see `collection.sealing`)
 PAGE = Table(
     "page",
     METADATA,
-    Column("key", Words(), primary_key=True),
-    Column("run_id", Words(), nullable=False),
-    Column("made", Words(), nullable=False),
+    Column("key", WordsColumn(), primary_key=True),
+    Column("run_id", WordsColumn(), nullable=False),
+    Column("made", WordsColumn(), nullable=False),
     Column("members", LargeBinary(), nullable=False),
     Column("seal", Text(), nullable=False),
 )
@@ -290,8 +290,8 @@ RUN_PAGE = Table(
     METADATA,
     _of_run(),
     _position(),
-    Column("key", Words(), ForeignKey("page.key"), nullable=False),
-    Column("gallery", Words(), nullable=False),
+    Column("key", WordsColumn(), ForeignKey("page.key"), nullable=False),
+    Column("gallery", WordsColumn(), nullable=False),
     Column("on_display", Boolean(), nullable=False),
     Column("number", Integer(), nullable=False),
     Column("of", Integer(), nullable=False),
@@ -317,8 +317,8 @@ RUN_DECISION = Table(
     METADATA,
     _of_run(),
     _position(),
-    Column("object_number", Words(), nullable=False),
-    *_columns(Standing),
+    Column("object_number", WordsColumn(), nullable=False),
+    *_columns(DecisionStatus),
     seal_column(),
     Index(None, "run_id", "object_number"),
 )

@@ -16,7 +16,7 @@ from pipeline.mitigate import advise
 from pipeline.mitigate.installed import Placed, assess_above
 from pipeline.models import model_named
 from pipeline.night.assessment import place
-from pipeline.night.floors import storeys
+from pipeline.night.floors import floors_with
 from pipeline.night.prepare import assessed, popular
 from pipeline.night.run import named
 from pipeline.operations.workspace import Workspace, charts_of
@@ -114,16 +114,16 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
     site = workspace.site()
     executor, decisions = Threads(settings.analysis.workers or None), decisions_in_force(workspace.engine)
     out = []
-    for storey in storeys(settings, site, items):
-        levels = storey.shaking
+    for floor in floors_with(settings, site, items):
+        levels = floor.shaking
         # The charts that a night uses, so that the reasons are those of the night.
         asked = assessed(everything.objects, settings.display.stores)
-        charted = popular(everything, asked, workspace.rules, workspace.measures, storey.x_azimuth)
+        charted = popular(everything, asked, workspace.rules, workspace.measures, floor.x_azimuth)
         with charts_of(settings, [m.hash for level in levels for m in level.motions], charted) as charts:
             context = Context(executor, progress, charts)
-            for index in storey.members:
+            for index in floor.members:
                 one = _placed(workspace, items[index], decisions)
-                one = replace(one, scene=replace(one.scene, floor=storey.name))
+                one = replace(one, scene=replace(one.scene, floor=floor.name))
                 # What is advised for a case depends on all that stand in it.
                 others = [_placed(workspace, other, decisions) for other in _neighbours(items[index], inventory)]
                 out.append(_explain(one, others, levels, workspace, context))

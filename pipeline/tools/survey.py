@@ -17,7 +17,7 @@ from pipeline.collection.mapping import Mapping, load_mapping
 from pipeline.collection.reading import Reading, read_items
 from pipeline.execute import Threads
 from pipeline.night.assessment import place
-from pipeline.night.floors import storeys
+from pipeline.night.floors import floors_with
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Item, MeasurementRequest, Progress
 from pipeline.records.numerics import AUTO, CHART
@@ -107,9 +107,9 @@ def survey(
             by_object[request.object_number].append(request)
         return list(by_object.values())
 
-    for storey in storeys(settings, site, items):
-        here = [items[index] for index in storey.members]
-        for item, came in zip(here, apart(partial(asked, storey.shaking), here, lambda one: one.support), strict=True):
+    for floor in floors_with(settings, site, items):
+        here = [items[index] for index in floor.members]
+        for item, came in zip(here, apart(partial(asked, floor.shaking), here, lambda one: one.support), strict=True):
             if isinstance(came, Exception):
                 faults.append(fault(item, came))
             else:

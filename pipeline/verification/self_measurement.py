@@ -18,7 +18,7 @@ from pipeline.verification.outcome import Outcome
 
 
 @dataclass(frozen=True)
-class Case:
+class SelfTestCase:
     """An extreme, the truth that it is held against, and how far off it may be.
 
     Attributes
@@ -257,51 +257,53 @@ def _unexplained(model: Model, directions: int | None) -> float:
     return 0.0
 
 
-def _cases() -> Iterator[Case]:
+def _cases() -> Iterator[SelfTestCase]:
     plain = shaking(vertical=0.0)
     sunk = Motion(plain.dt, np.vstack([plain.acceleration[:2], np.full((1, plain.samples), -2.0 * G)]))
     stays = "it stays in space: minus the ground's displacement"
-    yield Case("friction 0", stays, 1e-9, partial(_in_space, plain, 0.0))
-    yield Case("vertical below -g: no friction", stays, 1e-9, partial(_in_space, sunk, 0.3))
+    yield SelfTestCase("friction 0", stays, 1e-9, partial(_in_space, plain, 0.0))
+    yield SelfTestCase("vertical below -g: no friction", stays, 1e-9, partial(_in_space, sunk, 0.3))
     for directions, limit in ((1, 1e-11), (2, 1e-5)):
         for mu in (1e-6, 0.2):
             what = f"friction {mu:g}, {directions} direction{'s'[: directions - 1]}, two samples"
-            yield Case(what, "Newmark 1965", limit, partial(_newmark, np.array([mu]), directions))
-    yield Case("friction 5", "does not move", 0.0, partial(_newmark, np.array([5.0]), 2))
+            yield SelfTestCase(what, "Newmark 1965", limit, partial(_newmark, np.array([mu]), directions))
+    yield SelfTestCase("friction 5", "does not move", 0.0, partial(_newmark, np.array([5.0]), 2))
     for zeta in (0.0, 1.0, 2.0):
         what = f"damping {zeta:g}, 0.02 to 500 Hz at dt 0.02"
-        yield Case(what, "closed form of the step response", 1e-9, partial(_steps, zeta))
-    yield Case("oscillator at 500 Hz", "static: u = a / w^2", 0.03, partial(_static, "oscillator"))
+        yield SelfTestCase(what, "closed form of the step response", 1e-9, partial(_steps, zeta))
+    yield SelfTestCase("oscillator at 500 Hz", "static: u = a / w^2", 0.03, partial(_static, "oscillator"))
     isolated = {"friction": 0.0, "directions": 1.0}
-    yield Case("isolator at 500 Hz", "static: u = a / w^2", 0.03, partial(_static, "horizontal_isolator", **isolated))
-    yield Case("oscillator at 3e-5 Hz", stays, 1e-5, _soft)
+    yield SelfTestCase(
+        "isolator at 500 Hz", "static: u = a / w^2", 0.03, partial(_static, "horizontal_isolator", **isolated)
+    )
+    yield SelfTestCase("oscillator at 3e-5 Hz", stays, 1e-5, _soft)
     for name, limit in (("swing", 1e-6), ("swing_3d", 1e-4)):
         for length in (0.001, 0.01, 1.0, 100.0):
             what = f"{name}, {length:g} m, undamped"
-            yield Case(what, "twice the tilt, by energy", limit, partial(_tilted, name, length))
-        yield Case(f"{name}, damping 1 and 2", "hangs tilted", limit, partial(_crept, name))
+            yield SelfTestCase(what, "twice the tilt, by energy", limit, partial(_tilted, name, length))
+        yield SelfTestCase(f"{name}, damping 1 and 2", "hangs tilted", limit, partial(_crept, name))
     for alpha in (0.02, 0.2, 1.2):
-        yield Case(f"slenderness {alpha:g} rad", "lifts at g tan(alpha)", 0.0, partial(_uplift, alpha))
+        yield SelfTestCase(f"slenderness {alpha:g} rad", "lifts at g tan(alpha)", 0.0, partial(_uplift, alpha))
         for e in (0.0, 0.6, 1.0):
             what = f"slenderness {alpha:g} rad, restitution {e:g}"
-            yield Case(what, "energy after an impact (Housner 1963)", 1e-5, partial(_released, alpha, e))
+            yield SelfTestCase(what, "energy after an impact (Housner 1963)", 1e-5, partial(_released, alpha, e))
     for k in (1e-6, 1000.0):
-        yield Case(f"acceleration times {k:g}", "scales", 1e-9, partial(_scaled, k))
-    yield Case("swings of 1e-3 and 1e-6 of it", "scale", 1e-5, _small_swings)
+        yield SelfTestCase(f"acceleration times {k:g}", "scales", 1e-9, partial(_scaled, k))
+    yield SelfTestCase("swings of 1e-3 and 1e-6 of it", "scale", 1e-5, _small_swings)
     for dt in (0.0005, 0.04):
         for model in MODELS:
             if model.trials.sample:
                 what = f"{model.name} at dt {1000.0 * dt:g} ms"
-                yield Case(what, "reference", model.trials.promised, partial(_sampled, model, dt))
-    yield Case("one sample", "does not move", 0.0, partial(_moved, "one sample"))
-    yield Case("3 million samples", "steady state at resonance", 1e-5, _long)
-    yield Case("a million objects", "Newmark 1965", 1e-11, _million)
-    yield Case("many objects: memory", "bytes for each object", 1000.0, _memory)
-    yield Case("denormal accelerations", "nothing that can be seen", 1e-290, partial(_moved, "denormals"))
-    yield Case("a motion of zeros", "does not move", 0.0, partial(_moved, "zeros"))
+                yield SelfTestCase(what, "reference", model.trials.promised, partial(_sampled, model, dt))
+    yield SelfTestCase("one sample", "does not move", 0.0, partial(_moved, "one sample"))
+    yield SelfTestCase("3 million samples", "steady state at resonance", 1e-5, _long)
+    yield SelfTestCase("a million objects", "Newmark 1965", 1e-11, _million)
+    yield SelfTestCase("many objects: memory", "bytes for each object", 1000.0, _memory)
+    yield SelfTestCase("denormal accelerations", "nothing that can be seen", 1e-290, partial(_moved, "denormals"))
+    yield SelfTestCase("a motion of zeros", "does not move", 0.0, partial(_moved, "zeros"))
     for model, ways in pushed():
         what = model.name if ways is None else f"{model.name}, {ways} direction{'s'[: ways - 1]}"
-        yield Case(
+        yield SelfTestCase(
             f"{what}: {counted(len(motions()), 'motion')}, extreme objects",
             "no NaN without a reason",
             0.0,

@@ -12,7 +12,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from pipeline import __version__
-from pipeline.cache import SELF_TESTS, Cache, Kept
+from pipeline.cache import SELF_TESTS, Cache, CacheEntry
 from pipeline.quantities import counted
 from pipeline.settings import Settings
 from pipeline.verification.outcome import Outcome
@@ -89,7 +89,7 @@ def keep(test: SelfTest, folder: Path) -> None:
     folder : Path
         Of the cache.
     """
-    Cache(folder).put(SELF_TESTS, LAST, Kept(test.plain()), lasting=True)
+    Cache(folder).put(SELF_TESTS, LAST, CacheEntry(test.plain()), lasting=True)
 
 
 def kept(folder: Path) -> SelfTest | None:

@@ -19,7 +19,7 @@ from pipeline.analysis.faults import sound
 from pipeline.analysis.model_runs import prepare, run_model
 from pipeline.analysis.plan import plan
 from pipeline.analysis.response_charts import ChartCache
-from pipeline.cache import TRADEOFFS, Cache, Kept
+from pipeline.cache import TRADEOFFS, Cache, CacheEntry
 from pipeline.collection.inventory import read_inventory
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.models import MODELS, model_named
@@ -403,7 +403,7 @@ def keep(found: Tradeoff, folder: Path) -> None:
     folder : Path
         Of the cache.
     """
-    Cache(folder).put(TRADEOFFS, LAST, Kept(asdict(found)), lasting=True)
+    Cache(folder).put(TRADEOFFS, LAST, CacheEntry(asdict(found)), lasting=True)
 
 
 def kept(folder: Path) -> Tradeoff | None:

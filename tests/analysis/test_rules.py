@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.analysis.rules import Decision, fold, identifiers, read_rules, rule_for, rules, with_own
+from pipeline.analysis.rules import RuleMatch, fold, identifiers, read_rules, rule_for, rules, with_own
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.night.importing import bundled_collection
@@ -22,7 +22,7 @@ def row(**cells: str) -> Row:
     return {**empty, "why": "because", **cells}
 
 
-def decide(object_name: str = "", title: str = "", **more: object) -> Decision:
+def decide(object_name: str = "", title: str = "", **more: object) -> RuleMatch:
     return rule_for(Item("1", "G", title=title, object_name=object_name, **more))  # type: ignore[arg-type]
 
 

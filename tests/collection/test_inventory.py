@@ -18,7 +18,7 @@ from pipeline.collection.errors import CollectionError, ShrunkError
 from pipeline.collection.inventory import (
     IMPORT_BATCH,
     ITEM,
-    Counts,
+    ChangeCounts,
     galleries,
     held,
     latest_import,
@@ -101,10 +101,14 @@ def test_items_come_back_as_they_were_written(shared: Engine, items: list[Item])
 
 def test_carnegie_through_the_database(engine: Engine) -> None:
     reading = read_items(PRESETS.parent / "data" / "carnegie_2000.csv", load_mapping("carnegie"))
-    assert replace_inventory(engine, reading).counts == Counts(before=0, after=2000, added=2000, removed=0, changed=0)
+    assert replace_inventory(engine, reading).counts == ChangeCounts(
+        before=0, after=2000, added=2000, removed=0, changed=0
+    )
     assert read_inventory(engine) == sorted(reading.items, key=lambda item: item.object_number)
     assert len(galleries(read_inventory(engine))) == 34
-    assert replace_inventory(engine, reading).counts == Counts(before=2000, after=2000, added=0, removed=0, changed=0)
+    assert replace_inventory(engine, reading).counts == ChangeCounts(
+        before=2000, after=2000, added=0, removed=0, changed=0
+    )
 
 
 def test_hostile_text_is_stored_and_not_run(engine: Engine) -> None:
@@ -148,7 +152,9 @@ def test_what_changed_is_counted(engine: Engine) -> None:
     old = numbered(10)
     replace_inventory(engine, made(old))
     new = [*old[1:8], replace(old[8], height_m=9.0), old[9], Item("X", "Hall")]
-    assert replace_inventory(engine, made(new)).counts == Counts(before=10, after=10, added=1, removed=1, changed=1)
+    assert replace_inventory(engine, made(new)).counts == ChangeCounts(
+        before=10, after=10, added=1, removed=1, changed=1
+    )
 
 
 def test_a_difference_names_objects_fields_and_both_values(engine: Engine) -> None:

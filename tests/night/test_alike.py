@@ -19,7 +19,7 @@ from pipeline.night import assessment as assessing
 from pipeline.night import scheduler
 from pipeline.night.assessment import Assessed, likeness
 from pipeline.night.context import RunContext
-from pipeline.night.floors import Storey
+from pipeline.night.floors import Floor
 from pipeline.night.importing import import_collection
 from pipeline.night.prepare import popular
 from pipeline.operations.workspace import open_workspace
@@ -87,7 +87,7 @@ def assessed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     true = assessing._assessed
 
     def noted(
-        context: RunContext, floor: Storey, objects: list[Placed], working: Context
+        context: RunContext, floor: Floor, objects: list[Placed], working: Context
     ) -> list[tuple[Assessment, dict[str, int]]]:
         numbers.extend(one.scene.item.object_number for one in objects)
         return true(context, floor, objects, working)

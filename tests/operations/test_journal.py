@@ -54,11 +54,11 @@ def test_a_line_says_when_what_and_how_grave(tmp_path: Path) -> None:
 @trying(deadline=None, max_examples=100)
 @given(st.dictionaries(st.text(), st.text() | st.floats() | st.integers() | st.lists(st.text()), max_size=4))
 def test_whatever_is_noted_is_one_line_that_reads_back(fields: dict[str, Any]) -> None:
-    from pipeline.operations.event_log import _FIELDS, _Lines
+    from pipeline.operations.event_log import _FIELDS, _LineFormatter
 
     record = logging.LogRecord("kouros", logging.INFO, "", 0, "event", None, None)
     setattr(record, _FIELDS, fields)
-    line = _Lines(str).format(record)
+    line = _LineFormatter(str).format(record)
     assert line.isascii()
     assert line.isprintable()
     read = json.loads(line)

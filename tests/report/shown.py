@@ -6,7 +6,7 @@ from pipeline.records import RunRecord
 from pipeline.report.pages.compose import compose, museum_view
 from pipeline.report.pages.museum_views import GalleryView, MuseumView
 from pipeline.report.pages.tallies import tally, total
-from pipeline.report.pages.views import Counts, DecisionsView, MotionView, Pointer
+from pipeline.report.pages.views import DecisionsView, MotionView, Pointer, StateCounts
 from pipeline.report.render import pages_of
 from pipeline.report.units import Units
 
@@ -19,7 +19,7 @@ class Shown:
     galleries: tuple[GalleryView, ...]
 
     @property
-    def counts(self) -> Counts:
+    def counts(self) -> StateCounts:
         """Of the whole museum."""
         return self.museum.counts
 

@@ -8,7 +8,7 @@ from pipeline.records import Assessment, Item, Mark, Move, ObjectPlace, RunChang
 from pipeline.report import ReportError, Units
 from pipeline.report.pages.ranking import urgency
 from pipeline.report.pages.since import since_view
-from pipeline.report.pages.views import Counts, State
+from pipeline.report.pages.views import State, StateCounts
 from pipeline.report.text import count, short, slug, words
 
 from . import builder
@@ -19,9 +19,9 @@ def test_the_four_counts_add_up_to_all_objects() -> None:
     record = builder.record()
     museum = shown(record, Units())
     # 4 + 1 fail among the antiquities, 2 + 5 in the salon; one open; one unknown; 1 + 4 pass.  In store: 1 and 1.
-    assert museum.counts == Counts(act=12, open=1, unknown=1, safe=5)
+    assert museum.counts == StateCounts(act=12, open=1, unknown=1, safe=5)
     assert museum.museum.stores is not None
-    assert museum.museum.stores.counts == Counts(act=1, safe=1)
+    assert museum.museum.stores.counts == StateCounts(act=1, safe=1)
     assert museum.counts.total + museum.museum.stores.counts.total == len(record.assessments)
     assert sum(g.counts.total for g in museum.galleries) == len(record.assessments)
     listed = [o.number for g in museum.galleries for o in g.objects]

@@ -11,6 +11,7 @@ from pipeline.records import (
     Decision,
     DecisionChange,
     DecisionKind,
+    DecisionStatus,
     FieldChange,
     InputChange,
     MotionChange,
@@ -18,7 +19,6 @@ from pipeline.records import (
     ObjectPlace,
     RunChanges,
     RunRecord,
-    Standing,
     Verdict,
     VerdictChange,
 )
@@ -37,14 +37,14 @@ def decision(number: str, kind: DecisionKind = KIND.ACCEPT, **more: object) -> D
     return replace(made, **more)  # type: ignore[arg-type]
 
 
-def decided(*standing: Standing) -> RunRecord:
+def decided(*standing: DecisionStatus) -> RunRecord:
     return replace(builder.record(), decisions=standing)
 
 
 def test_what_is_accepted_is_no_task_until_it_is_in_doubt() -> None:
     """The object's state, and with it the four numbers, are those of the computation either way."""
     plain = shown(builder.record(), Units())
-    made = Standing(decision("79.AA.143"))
+    made = DecisionStatus(decision("79.AA.143"))
     accepted = shown(decided(made), Units())
     doubted = shown(decided(replace(made, doubts=("the motion has changed",))), Units())
     for view, listed in ((plain, True), (accepted, False), (doubted, True)):
@@ -61,7 +61,7 @@ def test_what_is_accepted_is_no_task_until_it_is_in_doubt() -> None:
     [("rocking", "", True), ("", "design", True), ("sliding", "", False), ("", "x", False)],
 )
 def test_only_what_was_accepted_is_settled(model: str, level: str, settled: bool) -> None:
-    view = shown(decided(Standing(decision("79.AA.143", model=model, level=level))), Units())
+    view = shown(decided(DecisionStatus(decision("79.AA.143", model=model, level=level))), Units())
     assert next(o for g in view.galleries for o in g.objects if o.number == "79.AA.143").settled is settled
 
 
@@ -74,7 +74,7 @@ def test_hostile_words_of_every_kind_are_text(tmp_path: Path) -> None:
         decision("H.4", KIND.VERDICT, model="rocking", verdict=Verdict.PASS),
         decision(BAD),
     )  # fmt: skip
-    standing = tuple(Standing(d, (BAD,) if i != 1 else ()) for i, d in enumerate(kinds))
+    standing = tuple(DecisionStatus(d, (BAD,) if i != 1 else ()) for i, d in enumerate(kinds))
     verdict = VerdictChange("H.1", BAD, "rocking", BAD, Verdict.PASS, Verdict.FAIL, (Cause(CauseKind.MOTION, BAD),))
     changes = RunChanges(
         "a", "b", (ObjectPlace(BAD, BAD),), (ObjectPlace(BAD, BAD),), (Move("H.1", BAD, BAD),),

@@ -33,6 +33,7 @@ from pipeline.records import (
     Decision,
     DecisionChange,
     DecisionKind,
+    DecisionStatus,
     Doubt,
     FieldChange,
     InputChange,
@@ -41,7 +42,6 @@ from pipeline.records import (
     ObjectPlace,
     RunChanges,
     RunRecord,
-    Standing,
     Verdict,
     VerdictChange,
 )
@@ -168,7 +168,7 @@ def _field(name: str, value: Any) -> Any:
 
 WORD = "Б"
 DECIDED = tuple(
-    Standing(Decision(at, "79.AA.143", kind, WORD, "2031-05-01", WORD, "2031-05-01T00:00:00+00:00", **more))  # type: ignore[arg-type]
+    DecisionStatus(Decision(at, "79.AA.143", kind, WORD, "2031-05-01", WORD, "2031-05-01T00:00:00+00:00", **more))  # type: ignore[arg-type]
     for at, (kind, more) in enumerate(
         [
             (DecisionKind.ACCEPT, {"model": "rocking", "level": WORD, "until": "2032-01-01"}),

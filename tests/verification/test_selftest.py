@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from pipeline import cache
-from pipeline.cache import SELF_TESTS, Cache, Kept
+from pipeline.cache import SELF_TESTS, Cache, CacheEntry
 from pipeline.cli.console import Console
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.night.run import run
@@ -49,7 +49,7 @@ def test_without_a_workspace_nothing_is_kept(tmp_path: Path, monkeypatch: pytest
 @pytest.mark.parametrize("other", [{}, {"when": 1}, {"cases": [{"what": 5}]}])
 def test_one_of_another_form_counts_as_none(tmp_path: Path, other: dict[str, object]) -> None:
     """As another version of Kouros may have put it."""
-    Cache(tmp_path).put(SELF_TESTS, selftest.LAST, Kept(other), lasting=True)
+    Cache(tmp_path).put(SELF_TESTS, selftest.LAST, CacheEntry(other), lasting=True)
     assert selftest.kept(tmp_path) is None
 
 
@@ -61,7 +61,7 @@ def test_a_case_of_the_wrong_type_is_refused(tmp_path: Path) -> None:
     assert selftest.kept(tmp_path) == replace(test, cases=[outcome])
     wrong = test.plain()
     wrong["cases"][0]["limit"] = "large"
-    Cache(tmp_path).put(SELF_TESTS, selftest.LAST, Kept(wrong), lasting=True)
+    Cache(tmp_path).put(SELF_TESTS, selftest.LAST, CacheEntry(wrong), lasting=True)
     assert selftest.kept(tmp_path) is None
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pipeline.analysis.response import respond
-from pipeline.cache import TRADEOFFS, Cache, Kept
+from pipeline.cache import TRADEOFFS, Cache, CacheEntry
 from pipeline.cli.console import Console
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.models import MODELS
@@ -124,7 +124,7 @@ def test_what_was_measured_on_other_kernels_is_forgotten(found: tradeoff.Tradeof
     assert tradeoff.kept(tmp_path) is None
     tradeoff.keep(replace(found, kernels="another"), tmp_path)
     assert tradeoff.kept(tmp_path) is None
-    Cache(tmp_path).put(TRADEOFFS, tradeoff.LAST, Kept({"measured": "", "kernels": KERNEL_VERSION}), lasting=True)
+    Cache(tmp_path).put(TRADEOFFS, tradeoff.LAST, CacheEntry({"measured": "", "kernels": KERNEL_VERSION}), lasting=True)
     assert tradeoff.kept(tmp_path) is None
 
 

@@ -99,7 +99,7 @@ class Questions:
 
 
 @dataclass(frozen=True)
-class Found:
+class ScaledFailure:
     """The factors at which each question fails first.
 
     Attributes
@@ -114,7 +114,7 @@ class Found:
     returns: NDArray[np.bool_]
 
 
-def first_failures(questions: Questions, motion: Motion, context: Context, numerics: Numerics) -> Found:
+def first_failures(questions: Questions, motion: Motion, context: Context, numerics: Numerics) -> ScaledFailure:
     """Scale a motion and return the least factor at which each question fails.
 
     Demands need not grow with the factor: the least of those tried that fails counts, whatever larger ones do.
@@ -173,7 +173,7 @@ def first_failures(questions: Questions, motion: Motion, context: Context, numer
     share[told] = -np.log(least[told]) / (np.log(most[told]) - np.log(least[told]))
     least_factors = np.where(never, np.inf, 0.0)
     least_factors[between] = np.exp(below + share * (above - below))
-    return Found(least_factors, returns)
+    return ScaledFailure(least_factors, returns)
 
 
 def _smooth(below: Array, above: Array, least: Array, most: Array) -> NDArray[np.bool_]:

@@ -24,7 +24,7 @@ one direction and more than 40,000 for 0.1 %, because kinks run slantwise throug
 
 
 @dataclass(frozen=True)
-class Settings:
+class ChartSettings:
     """What a chart depends on besides its model, its motion and the parameters.
 
     angle    : degrees, None for the worst direction or for a model that is shaken in two
@@ -67,7 +67,7 @@ def tabulate(
     motion: Motion,
     values: Mapping[str, Array],
     run: Run,
-    settings: Settings,
+    settings: ChartSettings,
     charts: ChartCache,
     least: int = 0,
 ) -> Tabulated:
@@ -191,7 +191,7 @@ def _groups(fixed: Mapping[str, Array], rows: NDArray[np.intp]) -> list[NDArray[
 
 
 def chart_of(
-    model: Model, motion: Motion, fixed: Mapping[str, float], run: Run, settings: Settings, charts: ChartCache
+    model: Model, motion: Motion, fixed: Mapping[str, float], run: Run, settings: ChartSettings, charts: ChartCache
 ) -> ResponseChart:
     """Return the chart of a model under a motion, found or built.
 
@@ -222,7 +222,7 @@ def chart_of(
     return charts.get(key, axis, build)
 
 
-def _identity(model: Model, motion: Motion, fixed: Mapping[str, float], settings: Settings) -> str:
+def _identity(model: Model, motion: Motion, fixed: Mapping[str, float], settings: ChartSettings) -> str:
     worst, numerics = settings.angle is None and not settings.both, settings.numerics
     return key_of(
         motion.hash,

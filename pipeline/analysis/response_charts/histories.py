@@ -9,7 +9,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.cache import HISTORIES, Cache, Kept
+from pipeline.cache import HISTORIES, Cache, CacheEntry
 from pipeline.quantities import Array
 from pipeline.records import Columns
 
@@ -87,7 +87,7 @@ class Histories:
             parameters = np.frombuffer(b"".join(rows), dtype=np.float64).reshape(len(rows), -1)
             arrays[str(number)] = np.hstack([parameters, np.array(list(rows.values()))])
         said = {"tables": [[key, *self._names[key]] for key in used]}
-        self._cache.put(HISTORIES, self._key, Kept(said, arrays))
+        self._cache.put(HISTORIES, self._key, CacheEntry(said, arrays))
 
 
 def _rows(values: Mapping[str, Array]) -> list[bytes]:
@@ -96,7 +96,7 @@ def _rows(values: Mapping[str, Array]) -> list[bytes]:
     return [row.tobytes() for row in matrix]
 
 
-def _tables(kept: Kept | None) -> dict[str, tuple[tuple[str, ...], Array]]:
+def _tables(kept: CacheEntry | None) -> dict[str, tuple[tuple[str, ...], Array]]:
     if kept is None:
         return {}
     return {key: (tuple(names), kept.arrays[str(at)]) for at, (key, *names) in enumerate(kept.said["tables"])}

@@ -43,7 +43,7 @@ MOST_NODES = 6_000
 
 
 @dataclass(frozen=True)
-class Cells:
+class ChartCells:
     """The cells of a chart, along its axis.
 
     edges    : (cells + 1,), from 0 to UNITS
@@ -99,7 +99,7 @@ def _predict(values: Array) -> Array:
     return np.asarray(np.einsum("ai,cio->cao", weights, values[:, ::2]))
 
 
-def refine(analyse: Analyses, tolerance: float, most_nodes: int = MOST_NODES, counted: int | None = None) -> Cells:
+def refine(analyse: Analyses, tolerance: float, most_nodes: int = MOST_NODES, counted: int | None = None) -> ChartCells:
     """Halve cells until their error is below ``tolerance`` times the value there, or no more analyses may be run.
 
     analyse    : runs the model; its outputs are magnitudes
@@ -141,4 +141,4 @@ def refine(analyse: Analyses, tolerance: float, most_nodes: int = MOST_NODES, co
     starts, values, bounds, own, note, resolved = (np.concatenate(column) for column in zip(*done, strict=True))
     order = np.argsort(starts)
     edges = np.append(starts[order], UNITS).astype(np.float64)
-    return Cells(edges, values[order], bounds[order], own[order], note[order], resolved[order], len(nodes))
+    return ChartCells(edges, values[order], bounds[order], own[order], note[order], resolved[order], len(nodes))

@@ -6,8 +6,8 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.analysis.response_charts.refine import MOST_NODES, SMALL, UNITS, Cells, Integers, refine
-from pipeline.cache import Kept
+from pipeline.analysis.response_charts.refine import MOST_NODES, SMALL, UNITS, ChartCells, Integers, refine
+from pipeline.cache import CacheEntry
 from pipeline.errors import InputError
 from pipeline.kernels.lookup import POINTS, lookup_batch
 from pipeline.quantities import Array
@@ -51,7 +51,7 @@ class ResponseChart:
     high: float
     settled: float
     tolerance: float
-    cells: Cells
+    cells: ChartCells
 
     @classmethod
     def build(
@@ -88,20 +88,26 @@ class ResponseChart:
         cells = refine(analyse, tolerance, most_nodes, 1 if first else None)
         return cls(axis, outputs, axis.low, high, settled if settled <= high else np.inf, tolerance, cells)
 
-    def kept(self) -> Kept:
+    def kept(self) -> CacheEntry:
         """Return the chart as the cache keeps it."""
         said = {"outputs": self.outputs, "low": self.low, "high": self.high, "settled": self.settled}
         cells = {name: np.asarray(values) for name, values in asdict(self.cells).items()}
-        return Kept(said | {"tolerance": self.tolerance}, cells)
+        return CacheEntry(said | {"tolerance": self.tolerance}, cells)
 
     @classmethod
-    def of(cls, axis: ChartAxis, kept: Kept) -> "ResponseChart":
+    def of(cls, axis: ChartAxis, kept: CacheEntry) -> "ResponseChart":
         """Return a chart from what the cache kept of it, bit for bit; the axis is a part of its key."""
         said, cells = kept.said, dict(kept.arrays)
         nodes = int(cells.pop("nodes"))
         outputs = tuple(said["outputs"])
         return cls(
-            axis, outputs, said["low"], said["high"], said["settled"], said["tolerance"], Cells(**cells, nodes=nodes)
+            axis,
+            outputs,
+            said["low"],
+            said["high"],
+            said["settled"],
+            said["tolerance"],
+            ChartCells(**cells, nodes=nodes),
         )
 
     def covers(self, along: Array) -> NDArray[np.bool_]:

@@ -3,6 +3,6 @@
 from pipeline.collection.dimensions.choice import choose
 from pipeline.collection.dimensions.pairing import agree
 from pipeline.collection.dimensions.parsing import parse
-from pipeline.collection.dimensions.result import Choice, Chosen, Dimensions, Note, Part
+from pipeline.collection.dimensions.result import Choice, Chosen, DimensionNote, DimensionPart, Dimensions
 
-__all__ = ["Choice", "Chosen", "Dimensions", "Note", "Part", "agree", "choose", "parse"]
+__all__ = ["Choice", "Chosen", "DimensionNote", "DimensionPart", "Dimensions", "agree", "choose", "parse"]

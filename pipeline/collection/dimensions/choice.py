@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import hypot, pi
 
-from pipeline.collection.dimensions.result import Choice, Chosen, Dimensions, Part
+from pipeline.collection.dimensions.result import Choice, Chosen, DimensionPart, Dimensions
 
 _FRAMED = frozenset({"framed", "frame"})
 _FACES = {"mount": 4, "mat": 4, "sheet": 5, "page": 5, "image": 6, "composition": 6, "plate": 6, "block": 6}
@@ -36,13 +36,13 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
     Chosen
         Extents in m, mass in kg, each with the characters it came from and the reason; ranges by their larger end.
     """
-    groups: dict[int, list[Part]] = {}
+    groups: dict[int, list[DimensionPart]] = {}
     for part in dimensions.parts:
         if part.value is not None and part.value > 0.0:
             groups.setdefault(part.group, []).append(part)
     bodies = [g for g in groups.values() if not _is_base(g[0].name) and any(p.dimension != "weight" for p in g)]
     out: dict[str, Choice] = {}
-    chosen: list[Part] = []
+    chosen: list[DimensionPart] = []
     if bodies:
         best = min(_rank(g, hung) for g in bodies)
         alike = [g for g in bodies if _rank(g, hung) == best]
@@ -62,7 +62,7 @@ def _is_base(name: str) -> bool:
     return not name.startswith(("with ", "without ")) and bool(_BASES.intersection(words))
 
 
-def _rank(group: list[Part], hung: bool) -> int:
+def _rank(group: list[DimensionPart], hung: bool) -> int:
     """Return the place of a group in the order of preference, 0 first."""
     name = group[0].name
     words = name.split()
@@ -80,11 +80,11 @@ def _rank(group: list[Part], hung: bool) -> int:
     return min(faces) if faces else 3
 
 
-def _size(group: list[Part]) -> float:
+def _size(group: list[DimensionPart]) -> float:
     return hypot(*(p.value for p in group if p.value is not None and p.dimension != "weight"))
 
 
-def _reason(group: list[Part], alike: int, framed: bool) -> str:
+def _reason(group: list[DimensionPart], alike: int, framed: bool) -> str:
     part = group[0]
     if framed:
         return "framed, as it hangs"
@@ -94,10 +94,10 @@ def _reason(group: list[Part], alike: int, framed: bool) -> str:
     return what
 
 
-def _extents(group: list[Part], reason: str) -> dict[str, Choice]:
+def _extents(group: list[DimensionPart], reason: str) -> dict[str, Choice]:
     out: dict[str, Choice] = {}
 
-    def take(field: str, part: Part, how: str, factor: float = 1.0) -> None:
+    def take(field: str, part: DimensionPart, how: str, factor: float = 1.0) -> None:
         if field not in out and part.value is not None:
             said = ", as" if part.qualifiers else ""
             why = f"{how}, {reason}{said} {', '.join(part.qualifiers)}".rstrip()
@@ -121,7 +121,7 @@ def _extents(group: list[Part], reason: str) -> dict[str, Choice]:
     return out
 
 
-def _base(group: list[Part]) -> dict[str, Choice]:
+def _base(group: list[DimensionPart]) -> dict[str, Choice]:
     """Return width and depth of a base; they win over the object's largest width where it stands."""
     by_name = {part.dimension: part for part in reversed(group)}
     width, depth = by_name.get("width"), by_name.get("depth")
@@ -144,7 +144,7 @@ def _base(group: list[Part]) -> dict[str, Choice]:
     }
 
 
-def _mass(dimensions: Dimensions, chosen: list[Part]) -> Choice | None:
+def _mass(dimensions: Dimensions, chosen: list[DimensionPart]) -> Choice | None:
     masses = [p for p in dimensions.parts if p.dimension == "weight" and p.value is not None and p.value > 0.0]
     if not masses:
         return None

@@ -14,7 +14,7 @@ from pipeline.tables.rows import checked
 
 
 @dataclass(frozen=True, slots=True)
-class Unit:
+class LexiconUnit:
     """A unit of the table: one of it is num / den in SI, exactly."""
 
     name: str
@@ -35,7 +35,7 @@ class _Row:
 
 
 @cache
-def units() -> dict[str, Unit]:
+def units() -> dict[str, LexiconUnit]:
     """Return the units by name.
 
     Returns
@@ -49,11 +49,11 @@ def units() -> dict[str, Unit]:
         Where a unit's value is no decimal number above zero.
     """
     rows = checked(_Row, table("dimension_units"), "dimension_units.csv", named="unit")
-    return {r.unit: Unit(r.unit, r.kind, r.si.numerator, r.si.denominator, r.smaller, r.system) for r in rows}
+    return {r.unit: LexiconUnit(r.unit, r.kind, r.si.numerator, r.si.denominator, r.smaller, r.system) for r in rows}
 
 
 @cache
-def unit_words() -> dict[str, Unit]:
+def unit_words() -> dict[str, LexiconUnit]:
     """Return the units by every word and mark that stands for one, in small letters."""
     by_name = units()
     return {word: by_name[row["unit"]] for row in table("dimension_units") for word in row["words"].split("|")}

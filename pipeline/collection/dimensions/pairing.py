@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import cache
 
-from pipeline.collection.dimensions.lexicon import Unit, units
-from pipeline.collection.dimensions.quantities import Quantity, troy
-from pipeline.collection.dimensions.result import Note
+from pipeline.collection.dimensions.lexicon import LexiconUnit, units
+from pipeline.collection.dimensions.quantities import DimensionQuantity, troy
+from pipeline.collection.dimensions.result import DimensionNote
 from pipeline.tables import number, table
 
 _CLOSE = {"length": 0.003, "mass": 0.003}
@@ -39,7 +39,9 @@ def _near(one: float, two: float) -> bool:
     return abs(one - two) <= _SHARE * max(one, two)
 
 
-def pair(open_: list[Quantity], others: list[Quantity], notes: list[Note]) -> list[Quantity]:
+def pair(
+    open_: list[DimensionQuantity], others: list[DimensionQuantity], notes: list[DimensionNote]
+) -> list[DimensionQuantity]:
     """Set each number beside its conversion.
 
     Parameters
@@ -58,24 +60,28 @@ def pair(open_: list[Quantity], others: list[Quantity], notes: list[Note]) -> li
     """
     if any(q.unit is None for q in open_) or any(q.unit is None for q in others):
         _infer(open_, others, notes)
-    left: list[Quantity] = []
+    left: list[DimensionQuantity] = []
     for kind in ("length", "mass"):
         theirs = [q for q in others if q.kind == kind]
         if theirs:
             left += _pair([q for q in open_ if q.kind == kind], theirs, kind, notes)
     for b in others:
         if b.unit is None:
-            notes.append(Note("missing_unit", "a conversion without a unit; left out", b.start, b.end))
+            notes.append(DimensionNote("missing_unit", "a conversion without a unit; left out", b.start, b.end))
     strange = [q for q in left if not any(q.kind == ours.kind for ours in open_)]
     if strange and open_:
         what = " and ".join(sorted({"a mass" if q.kind == "mass" else "a length" for q in strange}))
         message = f"{what} in brackets is no conversion of what stands before it; kept as it is"
         place = len(others) == len(open_) > 1
-        notes.append(Note("contradiction" if place else "ambiguous", message, strange[0].start, strange[-1].end))
+        notes.append(
+            DimensionNote("contradiction" if place else "ambiguous", message, strange[0].start, strange[-1].end)
+        )
     return left
 
 
-def _pair(ours: list[Quantity], theirs: list[Quantity], kind: str, notes: list[Note]) -> list[Quantity]:
+def _pair(
+    ours: list[DimensionQuantity], theirs: list[DimensionQuantity], kind: str, notes: list[DimensionNote]
+) -> list[DimensionQuantity]:
     """Pair numbers of one kind; return those that only the brackets give."""
     if not ours:
         for b in theirs:
@@ -100,13 +106,17 @@ def _pair(ours: list[Quantity], theirs: list[Quantity], kind: str, notes: list[N
         if len(matches) == len(ours) and b.start > matches[-1][1].start:
             b.run = ours[-1].run
             left.append(b)
-            notes.append(Note("conversion", "stands only in the conversion; kept", b.start, b.end))
+            notes.append(DimensionNote("conversion", "stands only in the conversion; kept", b.start, b.end))
         else:
-            notes.append(Note("conversion", "converts none of the numbers before it; left out", b.start, b.end))
+            notes.append(
+                DimensionNote("conversion", "converts none of the numbers before it; left out", b.start, b.end)
+            )
     return left
 
 
-def _matches(ours: list[Quantity], theirs: list[Quantity], kind: str) -> list[tuple[Quantity, Quantity]]:
+def _matches(
+    ours: list[DimensionQuantity], theirs: list[DimensionQuantity], kind: str
+) -> list[tuple[DimensionQuantity, DimensionQuantity]]:
     if len(ours) == len(theirs):
         return list(zip(ours, theirs, strict=True))
     out, at = [], 0
@@ -119,7 +129,7 @@ def _matches(ours: list[Quantity], theirs: list[Quantity], kind: str) -> list[tu
     return out
 
 
-def _infer(open_: list[Quantity], others: list[Quantity], notes: list[Note]) -> None:
+def _infer(open_: list[DimensionQuantity], others: list[DimensionQuantity], notes: list[DimensionNote]) -> None:
     """Give numbers without a unit the one with which at least half of them agree with their partners, if any."""
     for bare, known in ((open_, others), (others, open_)):
         lengths = [q for q in known if q.kind == "length"]
@@ -135,11 +145,11 @@ def _infer(open_: list[Quantity], others: list[Quantity], notes: list[Note]) -> 
                 for q in unknown:
                     q.unit = unit
                 message = f"no unit is written; {name} agrees with the number beside it"
-                notes.append(Note("unit", message, unknown[0].start, unknown[-1].end))
+                notes.append(DimensionNote("unit", message, unknown[0].start, unknown[-1].end))
                 break
 
 
-def _judge(a: Quantity, b: Quantity, notes: list[Note]) -> None:
+def _judge(a: DimensionQuantity, b: DimensionQuantity, notes: list[DimensionNote]) -> None:
     """Two readings contradict each other: find the likely slip, believe one, and say why."""
     si, kind = b.si(), a.kind
     shown = f"{a.si():.4g} against {si:.4g} {'m' if kind == 'length' else 'kg'}"
@@ -151,7 +161,7 @@ def _judge(a: Quantity, b: Quantity, notes: list[Note]) -> None:
             if _near(a.num * unit.num / (a.den * unit.den), si):
                 message = f"no unit is written here; {name} and not {a.unit.name} agrees with the number in brackets"
                 a.unit = unit
-                notes.append(Note("unit", message, a.start, a.end))
+                notes.append(DimensionNote("unit", message, a.start, a.end))
                 return
     if glued:
         a.repaired = glued
@@ -170,21 +180,21 @@ def _judge(a: Quantity, b: Quantity, notes: list[Note]) -> None:
         reason = "the first is no museum object's size; the second is believed"
     else:
         reason = "the first is believed, as the one that was measured; the second is usually its conversion"
-    notes.append(Note("contradiction", f"{shown}: {reason}", a.start, b.end))
+    notes.append(DimensionNote("contradiction", f"{shown}: {reason}", a.start, b.end))
 
 
-def _swapped(matches: list[tuple[Quantity, Quantity]], notes: list[Note]) -> bool:
+def _swapped(matches: list[tuple[DimensionQuantity, DimensionQuantity]], notes: list[DimensionNote]) -> bool:
     """Say whether the numbers agree with each other's conversions: one of the two readings is in another order."""
     ours, theirs = sorted(a.si() for a, _ in matches), sorted(b.si() for _, b in matches)
     kind = matches[0][0].kind
     if len(matches) < 2 or not all(agree(one, two, kind) for one, two in zip(ours, theirs, strict=True)):
         return False
     message = "the same numbers in another order: the order of the first is believed"
-    notes.append(Note("contradiction", message, matches[0][0].start, matches[-1][1].end))
+    notes.append(DimensionNote("contradiction", message, matches[0][0].start, matches[-1][1].end))
     return True
 
 
-def _unglued(a: Quantity, si: float) -> tuple[int, int] | None:
+def _unglued(a: DimensionQuantity, si: float) -> tuple[int, int] | None:
     """Return 881/2 read as 88 1/2, in SI, where that agrees with the other reading."""
     above, slash, below = a.word.partition("/")
     if not (slash and above.isdigit() and below.isdigit() and a.unit):
@@ -197,17 +207,17 @@ def _unglued(a: Quantity, si: float) -> tuple[int, int] | None:
     return None
 
 
-def _exact(b: Quantity) -> tuple[int, int]:
+def _exact(b: DimensionQuantity) -> tuple[int, int]:
     if b.unit is None:
         raise ValueError("a quantity without a unit has no value")
     return b.num * b.unit.num, b.den * b.unit.den
 
 
-def _name(b: Quantity) -> str:
+def _name(b: DimensionQuantity) -> str:
     return b.unit.name if b.unit else ""
 
 
-def _of(kind: str) -> list[Unit]:
+def _of(kind: str) -> list[LexiconUnit]:
     # Nobody writes decimetres by mistake: what agrees in them has its decimal mark in the wrong place.
     return [unit for unit in units().values() if unit.kind == kind and unit.name != "dm"]
 

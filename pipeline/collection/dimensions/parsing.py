@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from pipeline.collection.dimensions.lexicon import units
-from pipeline.collection.dimensions.quantities import Group, Quantity
+from pipeline.collection.dimensions.quantities import DimensionQuantity, Group
 from pipeline.collection.dimensions.reader import Reader
-from pipeline.collection.dimensions.result import Dimensions, Note, Part
+from pipeline.collection.dimensions.result import DimensionNote, DimensionPart, Dimensions
 from pipeline.collection.dimensions.tokens import tokens_of
 from pipeline.errors import InputError
 
@@ -56,7 +56,9 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> 
     reader.read()
     notes = reader.notes
     if len(text) > LONGEST:
-        notes.append(Note("truncated", f"{len(text):,} characters, of which {LONGEST:,} are read", LONGEST, len(text)))
+        notes.append(
+            DimensionNote("truncated", f"{len(text):,} characters, of which {LONGEST:,} are read", LONGEST, len(text))
+        )
     for group in reader.groups:
         if all(q.unit is not None for q in group.quantities):
             continue
@@ -64,16 +66,18 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> 
         for q in group.quantities:
             if q.unit is None and default is not None:
                 q.unit = default
-                notes.append(Note("unit", f"no unit is written; {default.name} is the source's own", q.start, q.end))
+                notes.append(
+                    DimensionNote("unit", f"no unit is written; {default.name} is the source's own", q.start, q.end)
+                )
             elif q.unit is None:
-                notes.append(Note("missing_unit", "no unit is written, so there is no value", q.start, q.end))
+                notes.append(DimensionNote("missing_unit", "no unit is written, so there is no value", q.start, q.end))
     parts = tuple(
         _part(group, number, q) for number, group in enumerate(_ordered(reader.groups, notes)) for q in group.quantities
     )
     return Dimensions(text, parts, tuple(notes))
 
 
-def _share_units(group: Group, notes: list[Note]) -> None:
+def _share_units(group: Group, notes: list[DimensionNote]) -> None:
     """Carry a unit back in 'H. 10, W. 5, D. 3 cm'."""
     unit = None
     for q in reversed(group.quantities):
@@ -81,10 +85,10 @@ def _share_units(group: Group, notes: list[Note]) -> None:
             unit = q.unit
         elif q.unit is None and unit is not None and q.dimension != "weight":
             q.unit = unit
-            notes.append(Note("unit", f"the unit is that of the next number, {unit.name}", q.start, q.end))
+            notes.append(DimensionNote("unit", f"the unit is that of the next number, {unit.name}", q.start, q.end))
 
 
-def _ordered(groups: list[Group], notes: list[Note]) -> list[Group]:
+def _ordered(groups: list[Group], notes: list[DimensionNote]) -> list[Group]:
     """Give numbers without a written dimension theirs, by their order within a run."""
     first: tuple[int, int] | None = None
     for group in groups:
@@ -101,11 +105,11 @@ def _ordered(groups: list[Group], notes: list[Note]) -> list[Group]:
                     q.dimension, q.assumed = next(order, "unlabelled"), True
             first = first or (run[0].start, run[-1].end)
     if first:
-        notes.append(Note("order", _CONVENTION, *first))
+        notes.append(DimensionNote("order", _CONVENTION, *first))
     return groups
 
 
-def _part(group: Group, number: int, q: Quantity) -> Part:
+def _part(group: Group, number: int, q: DimensionQuantity) -> DimensionPart:
     if q.unit is None:
         value = low = high = None
         unit = ""
@@ -113,7 +117,7 @@ def _part(group: Group, number: int, q: Quantity) -> Part:
         unit = q.unit.name
         value = high = q.si()
         low = q.scaled(*q.first) if q.first else value
-    return Part(
+    return DimensionPart(
         group.name, group.words, q.dimension, value, unit, q.unit_text, low, high,
         q.other.si() if q.other is not None and q.other.unit is not None else None,
         tuple(sorted(group.qualifiers)), q.assumed, number, q.start, q.end,

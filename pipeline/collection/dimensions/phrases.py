@@ -38,7 +38,7 @@ class Phrase:
     joined : bool
         They are joined by "x", as in "height x width x depth".
     qualifiers : set of str
-        As of `result.Part`.
+        As of `result.DimensionPart`.
     start, end : int
         The characters of the text that hold it.
     """

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from pipeline.collection.dimensions.lexicon import Unit, units
-from pipeline.collection.dimensions.result import Note
+from pipeline.collection.dimensions.lexicon import LexiconUnit, units
+from pipeline.collection.dimensions.result import DimensionNote
 
 
 @dataclass(slots=True, eq=False)
-class Quantity:
+class DimensionQuantity:
     """A number [num / den of its unit], perhaps a range that ends there, with where it stands.
 
     Attributes
@@ -46,14 +46,14 @@ class Quantity:
     start: int
     end: int
     word: str = ""
-    unit: Unit | None = None
+    unit: LexiconUnit | None = None
     unit_text: str = ""
     written: bool = False
     first: tuple[int, int] | None = None
     dimension: str = ""
     assumed: bool = False
     run: int = 0
-    other: Quantity | None = None
+    other: DimensionQuantity | None = None
     repaired: tuple[int, int] | None = None
 
     @property
@@ -100,7 +100,7 @@ class Quantity:
             raise ValueError("a quantity without a unit has no value")
         return (num * self.unit.num) / (den * self.unit.den)
 
-    def add(self, smaller: Quantity) -> None:
+    def add(self, smaller: DimensionQuantity) -> None:
         """Add the inches to the feet, the pennyweights to the ounces.
 
         The sum keeps the unit that the field quotes: of lengths the smaller (87 in.), of masses the larger (3.1 oz).
@@ -134,12 +134,12 @@ class Group:
     name: str
     words: str
     qualifiers: set[str]
-    quantities: list[Quantity] = field(default_factory=list)
+    quantities: list[DimensionQuantity] = field(default_factory=list)
 
 
-def fill_units(run: list[Quantity]) -> None:
+def fill_units(run: list[DimensionQuantity]) -> None:
     """Give the numbers of a run without a unit that of the next number that has one, else of the one before."""
-    unit: Unit | None = None
+    unit: LexiconUnit | None = None
     for quantity in reversed(run):
         if quantity.unit is None:
             quantity.unit = unit
@@ -153,7 +153,7 @@ def fill_units(run: list[Quantity]) -> None:
                 unit = quantity.unit
 
 
-def troy(quantity: Quantity, notes: list[Note] | None = None) -> None:
+def troy(quantity: DimensionQuantity, notes: list[DimensionNote] | None = None) -> None:
     """Read a quantity in ounces as troy ounces.
 
     Parameters
@@ -166,4 +166,4 @@ def troy(quantity: Quantity, notes: list[Note] | None = None) -> None:
     quantity.unit = units()["oz t"]
     if notes is not None:
         message = "ounces are read as troy ounces, which the grams beside them bear out"
-        notes.append(Note("unit", message, quantity.start, quantity.end))
+        notes.append(DimensionNote("unit", message, quantity.start, quantity.end))

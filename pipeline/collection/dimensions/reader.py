@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pipeline.collection.dimensions.pairing import agree, pair
 from pipeline.collection.dimensions.phrases import Phrase, phrase_of
-from pipeline.collection.dimensions.quantities import Group, Quantity
-from pipeline.collection.dimensions.result import Note
+from pipeline.collection.dimensions.quantities import DimensionQuantity, Group
+from pipeline.collection.dimensions.result import DimensionNote
 from pipeline.collection.dimensions.runs import area_at, conversion_at, run_at
 from pipeline.collection.dimensions.tokens import (
     BREAK,
@@ -41,9 +41,9 @@ class Reader:
         self.tokens = tokens
         self.default_unit = default_unit
         self.groups: list[Group] = []
-        self.notes: list[Note] = []
+        self.notes: list[DimensionNote] = []
         self.label: list[int] = []  # words since the last number: the next number's label, or the last one's remark
-        self.open: list[Quantity] = []  # numbers of this clause that have no conversion yet
+        self.open: list[DimensionQuantity] = []  # numbers of this clause that have no conversion yet
         self.fresh = True  # no number since the last line break
         self.runs = 0
 
@@ -116,7 +116,7 @@ class Reader:
         self.fresh = False
         return self._conversions(behind, group)
 
-    def _measures(self, at: int, items: list[Quantity], behind: int) -> bool:
+    def _measures(self, at: int, items: list[DimensionQuantity], behind: int) -> bool:
         """Say whether numbers measure something; a number without unit and partner may as well count or name a part."""
         tokens = self.tokens
         first = tokens[at]
@@ -204,7 +204,7 @@ class Reader:
         self.open += items
         return behind
 
-    def _group(self, phrase: Phrase, items: list[Quantity]) -> Group:
+    def _group(self, phrase: Phrase, items: list[DimensionQuantity]) -> Group:
         """Return the group that numbers belong to: the last one where they go on with it, else a new one."""
         if self.groups and not self.fresh and not phrase.name:
             last = self.groups[-1]
@@ -224,7 +224,7 @@ class Reader:
         self.open = []
         return group
 
-    def _apply(self, phrase: Phrase, items: list[Quantity]) -> None:
+    def _apply(self, phrase: Phrase, items: list[DimensionQuantity]) -> None:
         """Give numbers the dimensions that a phrase names: a legend to all, one dimension to a single number."""
         if phrase.joined and len(phrase.dimensions) == len(items):
             for item, dimension in zip(items, phrase.dimensions, strict=True):
@@ -285,9 +285,9 @@ class Reader:
             return
         start, end = self.tokens[words[0]].start, self.tokens[words[-1]].end
         if "variable" in phrase.qualifiers:
-            self.notes.append(Note("variable", "dimensions are said to vary", start, end))
+            self.notes.append(DimensionNote("variable", "dimensions are said to vary", start, end))
         else:
-            self.notes.append(Note("remainder", f"not understood: {self.text[start:end][:80]!r}", start, end))
+            self.notes.append(DimensionNote("remainder", f"not understood: {self.text[start:end][:80]!r}", start, end))
 
     def _behind(self, phrase: Phrase) -> bool:
         """Apply a phrase that stands behind numbers to them; say whether there was any use for it."""
@@ -328,5 +328,5 @@ class Reader:
         while tokens[behind].type in (UNIT, DOT) or tokens[behind].word in ("per", "second", "a"):
             behind += 1
         end = tokens[behind - 1].end
-        self.notes.append(Note("left_out", f"{what}: {self.text[start:end][:80]!r}", start, end))
+        self.notes.append(DimensionNote("left_out", f"{what}: {self.text[start:end][:80]!r}", start, end))
         return behind

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class DimensionPart:
     """One measured number of a text.
 
     Attributes
@@ -56,7 +56,7 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True)
-class Note:
+class DimensionNote:
     """Something that a reader of the text should know.
 
     Attributes
@@ -82,14 +82,14 @@ class Dimensions:
     """A text's measured parts in the order of the text, and the notes."""
 
     text: str
-    parts: tuple[Part, ...] = ()
-    notes: tuple[Note, ...] = ()
+    parts: tuple[DimensionPart, ...] = ()
+    notes: tuple[DimensionNote, ...] = ()
 
-    def having(self, kind: str) -> tuple[Note, ...]:
+    def having(self, kind: str) -> tuple[DimensionNote, ...]:
         """Return the notes of one kind."""
         return tuple(note for note in self.notes if note.kind == kind)
 
-    def written(self, part: Part) -> str:
+    def written(self, part: DimensionPart) -> str:
         """Return the characters that a part came from."""
         return self.text[part.start : part.end]
 

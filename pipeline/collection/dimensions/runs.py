@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from pipeline.collection.dimensions.lexicon import Unit, unit_words, units
+from pipeline.collection.dimensions.lexicon import LexiconUnit, unit_words, units
 from pipeline.collection.dimensions.phrases import is_label_letter
-from pipeline.collection.dimensions.quantities import Quantity, fill_units, troy
+from pipeline.collection.dimensions.quantities import DimensionQuantity, fill_units, troy
 from pipeline.collection.dimensions.tokens import (
     CLOSE,
     COLON,
@@ -25,7 +25,7 @@ from pipeline.collection.dimensions.tokens import (
 _AREAS = frozenset({"sq", "square", "cubic", "cu", "quadrat"})
 
 
-def unit_at(tokens: list[Token], at: int, *, weighing: bool = False) -> tuple[Unit | None, int, int]:
+def unit_at(tokens: list[Token], at: int, *, weighing: bool = False) -> tuple[LexiconUnit | None, int, int]:
     """Return the unit at a token; no unit leaves the place.
 
     Parameters
@@ -68,7 +68,7 @@ def unit_at(tokens: list[Token], at: int, *, weighing: bool = False) -> tuple[Un
     return unit, at, end
 
 
-def quantity_at(tokens: list[Token], at: int, *, joined: bool, weighing: bool) -> tuple[Quantity, int]:
+def quantity_at(tokens: list[Token], at: int, *, joined: bool, weighing: bool) -> tuple[DimensionQuantity, int]:
     """Return the quantity whose number is at a token.
 
     Parameters
@@ -90,17 +90,17 @@ def quantity_at(tokens: list[Token], at: int, *, joined: bool, weighing: bool) -
         The token behind it.
     """
     token = tokens[at]
-    out = Quantity(token.num, token.den, token.start, token.end, token.word)
+    out = DimensionQuantity(token.num, token.den, token.start, token.end, token.word)
     at = _take_unit(tokens, at + 1, out, weighing)
     second = tokens[at + 1] if tokens[at].type == DASH or tokens[at].word in ("to", "bis", "à") else None
     if second is not None and second.type == NUMBER:
-        end = Quantity(second.num, second.den, second.start, second.end, second.word)
+        end = DimensionQuantity(second.num, second.den, second.start, second.end, second.word)
         behind = _take_unit(tokens, at + 2, end, weighing)
         apart = tokens[behind].type == JOIN and (joined or out.written)
         if not apart and (out.unit is None or end.unit is None or out.unit.name == end.unit.name):
             unit = end.unit or out.unit
             low, high = sorted(((out.num, out.den), (end.num, end.den)), key=lambda pair: pair[0] / pair[1])
-            merged = Quantity(*high, out.start, end.end, out.word, unit, end.unit_text or out.unit_text)
+            merged = DimensionQuantity(*high, out.start, end.end, out.word, unit, end.unit_text or out.unit_text)
             merged.first, merged.written = low, unit is not None
             return merged, behind
     while out.unit is not None and out.unit.kind in ("length", "mass"):
@@ -114,7 +114,7 @@ def quantity_at(tokens: list[Token], at: int, *, joined: bool, weighing: bool) -
     return out, at
 
 
-def _take_unit(tokens: list[Token], at: int, out: Quantity, weighing: bool) -> int:
+def _take_unit(tokens: list[Token], at: int, out: DimensionQuantity, weighing: bool) -> int:
     unit, behind, end = unit_at(tokens, at, weighing=weighing)
     if unit is None:
         return at
@@ -124,13 +124,13 @@ def _take_unit(tokens: list[Token], at: int, out: Quantity, weighing: bool) -> i
     return behind
 
 
-def _smaller(tokens: list[Token], at: int, larger: Quantity) -> tuple[Quantity | None, int]:
+def _smaller(tokens: list[Token], at: int, larger: DimensionQuantity) -> tuple[DimensionQuantity | None, int]:
     """Return the inches behind feet, the pennyweights behind ounces; feet may leave the mark of the inches out."""
     comma = tokens[at].type == COMMA
     number = tokens[at + 1] if comma else tokens[at]
     if number.type != NUMBER or larger.unit is None:
         return None, at
-    out = Quantity(number.num, number.den, number.start, number.end, number.word)
+    out = DimensionQuantity(number.num, number.den, number.start, number.end, number.word)
     behind = _take_unit(tokens, at + (2 if comma else 1), out, False)
     if out.unit is None:
         if larger.unit.name != "ft" or comma or number.num >= 12 * number.den:
@@ -143,7 +143,7 @@ def _smaller(tokens: list[Token], at: int, larger: Quantity) -> tuple[Quantity |
     return out, behind
 
 
-def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[Quantity], int] | None:
+def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[DimensionQuantity], int] | None:
     """Return the numbers joined by "x" that begin at a token.
 
     Parameters
@@ -160,7 +160,7 @@ def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[Quantity], int
     (list of Quantity, int) or None
         The numbers, and the token behind them; None where none begin.
     """
-    items: list[Quantity] = []
+    items: list[DimensionQuantity] = []
     before = False
     while True:
         start = at
@@ -199,7 +199,7 @@ def _begins(tokens: list[Token], at: int) -> bool:
     return tokens[at].type in (NUMBER, DOTTED)
 
 
-def _label_behind(tokens: list[Token], at: int, quantity: Quantity, text: str) -> int:
+def _label_behind(tokens: list[Token], at: int, quantity: DimensionQuantity, text: str) -> int:
     """Take the H of '10 in. H' and of '10 (h) x 12 (w) in.', and a unit behind it; return the token behind all that."""
     place = at + 1 if tokens[at].type == DOT else at
     bracket = tokens[place].type == OPEN
@@ -248,7 +248,7 @@ def area_at(tokens: list[Token], at: int) -> int | None:
     return behind + 1 if tokens[behind].word in unit_words() else None
 
 
-def conversion_at(tokens: list[Token], at: int, text: str) -> tuple[list[Quantity], int] | None:
+def conversion_at(tokens: list[Token], at: int, text: str) -> tuple[list[DimensionQuantity], int] | None:
     """Return the numbers of brackets that hold nothing but numbers.
 
     Parameters
@@ -265,7 +265,7 @@ def conversion_at(tokens: list[Token], at: int, text: str) -> tuple[list[Quantit
     (list of Quantity, int) or None
         The numbers, and the token behind the brackets; None for other brackets.
     """
-    out: list[Quantity] = []
+    out: list[DimensionQuantity] = []
     at += 1
     run = 0
     while tokens[at].type != CLOSE:

@@ -6,7 +6,7 @@ import re
 from functools import lru_cache
 from typing import NamedTuple
 
-from pipeline.collection.dimensions.lexicon import Unit, meanings, unit_words
+from pipeline.collection.dimensions.lexicon import LexiconUnit, meanings, unit_words
 
 NUMBER, DOTTED, WORD, UNIT, DIMENSION, JOIN, OPEN, CLOSE, BREAK, COMMA, COLON, DASH, DOT, TIME, OTHER, END = range(16)
 
@@ -70,7 +70,7 @@ class Token(NamedTuple):
     end: int
     word: str = ""
     meaning: tuple[str, str] | None = None
-    unit: Unit | None = None
+    unit: LexiconUnit | None = None
     num: int = 0
     den: int = 1
 
@@ -119,7 +119,7 @@ def tokens_of(text: str, decimal: str) -> list[Token]:
     return out
 
 
-def _word(word: str, start: int, end: int, known: dict[str, tuple[str, str]], by_word: dict[str, Unit]) -> Token:
+def _word(word: str, start: int, end: int, known: dict[str, tuple[str, str]], by_word: dict[str, LexiconUnit]) -> Token:
     meaning = known.get(word)
     unit = by_word.get(word)
     if meaning is not None:

@@ -1,6 +1,6 @@
 """Kouros's own inventory in SQL: every import is a version of it, and any earlier one can be had back."""
 
-from pipeline.collection.inventory.differences import Counts, Difference
+from pipeline.collection.inventory.differences import ChangeCounts, Difference
 from pipeline.collection.inventory.history import ImportInfo, held, latest_import, versions
 from pipeline.collection.inventory.records import (
     DamagedRecord,
@@ -19,7 +19,7 @@ from pipeline.collection.inventory.writing import add_sheet, replace_inventory, 
 __all__ = [
     "IMPORT_BATCH",
     "ITEM",
-    "Counts",
+    "ChangeCounts",
     "DamagedRecord",
     "DamagedRecordError",
     "Difference",

@@ -11,7 +11,7 @@ from pipeline.records import ITEM_FIELDS, Item
 
 
 @dataclass(frozen=True, slots=True)
-class Counts:
+class ChangeCounts:
     """What an import changed: objects before and after, of them new, gone, and with a changed record."""
 
     before: int
@@ -44,9 +44,9 @@ class Difference:
     changed: Mapping[str, Mapping[str, tuple[Any, Any]]]
 
     @property
-    def counts(self) -> Counts:
+    def counts(self) -> ChangeCounts:
         """How many of each."""
-        return Counts(self.before, self.after, len(self.added), len(self.removed), len(self.changed))
+        return ChangeCounts(self.before, self.after, len(self.added), len(self.removed), len(self.changed))
 
     def __bool__(self) -> bool:
         """Whether anything changes."""

@@ -51,7 +51,7 @@ class KeptPage:
 
 
 @dataclass(frozen=True, slots=True)
-class Manifest:
+class ReportManifest:
     """What a report consists of.
 
     pages   : in their order
@@ -87,9 +87,9 @@ def sum_of(file: Path) -> FileSum:
 
 
 @cache
-def _adapter() -> TypeAdapter[Manifest | None]:
+def _adapter() -> TypeAdapter[ReportManifest | None]:
     # The union is what makes room for a configuration: pydantic takes none for a bare dataclass.
-    return TypeAdapter(Manifest | None, config=ConfigDict(ser_json_inf_nan="strings"))
+    return TypeAdapter(ReportManifest | None, config=ConfigDict(ser_json_inf_nan="strings"))
 
 
 _SEALED = b'{"sha256":"%b","report":%b}\n'
@@ -97,7 +97,7 @@ _AT = len(_SEALED % (b"0" * 64, b"")) - 2
 """Where the content of a sealed manifest begins."""
 
 
-def write_manifest(folder: Path, manifest: Manifest) -> None:
+def write_manifest(folder: Path, manifest: ReportManifest) -> None:
     """Seal the manifest of a report and write it."""
     content = _adapter().dump_json(manifest)
     (folder / MANIFEST).write_bytes(_sealed(content))
@@ -107,7 +107,7 @@ def _sealed(content: bytes) -> bytes:
     return _SEALED % (hashlib.sha256(content).hexdigest().encode(), content)
 
 
-def read_manifest(folder: Path) -> Manifest:
+def read_manifest(folder: Path) -> ReportManifest:
     """Return the manifest of a report.
 
     raises : OSError where it cannot be read; ValueError where it is damaged, or is not understood
@@ -117,7 +117,7 @@ def read_manifest(folder: Path) -> Manifest:
     if whole != _sealed(content):
         raise ValueError("is damaged: it is not what was written")
     try:
-        return _adapter().validate_json(content) or Manifest()
+        return _adapter().validate_json(content) or ReportManifest()
     except ValidationError as error:
         raise ValueError("was written by another version of Kouros") from error
 
@@ -129,9 +129,9 @@ class PreviousReport:
     pages  : the keys of its pages, in their order
     """
 
-    def __init__(self, folder: Path, manifest: Manifest | None = None) -> None:
+    def __init__(self, folder: Path, manifest: ReportManifest | None = None) -> None:
         self.folder = folder
-        self.manifest = manifest or Manifest()
+        self.manifest = manifest or ReportManifest()
         self.pages = [page.key for page in self.manifest.pages]
         self._by_key = {page.key: page for page in self.manifest.pages}
         self._sound: dict[str, bool] = {}

@@ -10,7 +10,7 @@ from typing import Any
 from jinja2 import Environment
 from markupsafe import Markup
 
-from pipeline.records import Found, Page, RunRecord, Standing, Tally
+from pipeline.records import DecisionStatus, Found, Page, RunRecord, Tally
 from pipeline.report.files.exports import page_exports
 from pipeline.report.language import Language, speaking
 from pipeline.report.pages.compose import compose, page_head
@@ -50,7 +50,7 @@ class PageRenderer:
     units: Units
     language: Language
 
-    def draw(self, page: Page, found: Found, decisions: Sequence[Standing]) -> RenderedPage:
+    def draw(self, page: Page, found: Found, decisions: Sequence[DecisionStatus]) -> RenderedPage:
         """Return a page and what it adds to the report; the same results give the same bytes.
 
         Parameters
@@ -59,7 +59,7 @@ class PageRenderer:
             Which page it is.
         found : Found
             What was found about its objects.
-        decisions : sequence of Standing
+        decisions : sequence of DecisionStatus
             Those about its objects.
 
         Returns

@@ -14,7 +14,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from pipeline.records import Page, RunChanges, RunRecord, Standing, Tally
+from pipeline.records import DecisionStatus, Page, RunChanges, RunRecord, Tally
 from pipeline.report.errors import ReportError
 from pipeline.report.files.concatenation import concatenate
 from pipeline.report.files.exports import EXPORTS, WORKBOOK, write_exports_workbook
@@ -22,8 +22,8 @@ from pipeline.report.files.manifest import (
     PARTS,
     FileSum,
     KeptPage,
-    Manifest,
     PreviousReport,
+    ReportManifest,
     part_files,
     sum_of,
     write_manifest,
@@ -41,7 +41,7 @@ from pipeline.report.text import clean, short
 from pipeline.resources import aside_of, naming, page_version
 
 
-def page_key(renderer: PageRenderer, page: Page, decisions: Sequence[Standing]) -> str:
+def page_key(renderer: PageRenderer, page: Page, decisions: Sequence[DecisionStatus]) -> str:
     """Return the digest of everything that a page and its parts of the exports depend on.
 
     Parameters
@@ -50,7 +50,7 @@ def page_key(renderer: PageRenderer, page: Page, decisions: Sequence[Standing]) 
         What draws it, see `PageRenderer.identity`.
     page : Page
         All its fields count.
-    decisions : sequence of Standing
+    decisions : sequence of DecisionStatus
         Those about its objects, as they stand.
     """
     return _key(renderer, page, list(decisions))
@@ -166,7 +166,7 @@ class ReportWriter:
         for name, text in [*self._shared(head, tally, changes, links), *(beside or {}).items()]:
             self._write(name, text.encode())
         reading = "" if doubts is None else self._read(head, doubts)
-        write_manifest(self._partial, Manifest(tuple(self._pages), reading, dict(sorted(self._files.items()))))
+        write_manifest(self._partial, ReportManifest(tuple(self._pages), reading, dict(sorted(self._files.items()))))
         self._partial.rename(self.folder)
         return self.folder / "index.html"
 

@@ -20,7 +20,6 @@ from pipeline.report.pages.reading import reading_view
 from pipeline.report.pages.selftest import self_test_view
 from pipeline.report.pages.survey_words import SURVEY_SECONDS, errands, survey_sentence
 from pipeline.report.pages.views import (
-    Counts,
     EffortView,
     Entry,
     GalleryRow,
@@ -30,6 +29,7 @@ from pipeline.report.pages.views import (
     Pointer,
     SinceView,
     State,
+    StateCounts,
     TaskView,
 )
 from pipeline.report.text import clean, count, digest, slug, words
@@ -107,7 +107,7 @@ def compose(record: RunRecord, page: Page, units: Units, *, several: bool) -> Co
         name=clean(page.gallery) if page.on_display else "",
         page=PageView(file, page.number, page.of, *(numbers[:1] + numbers[-1:])),
         on_display=page.on_display,
-        counts=Counts(**{state.value: by_state[state] for state in State}),
+        counts=StateCounts(**{state.value: by_state[state] for state in State}),
         tasks=_tasks(pairs, describer, units),
         objects=tuple(views),
         charts=tuple(dict.fromkeys(f.chart for v in views for f in v.figures)),
@@ -252,9 +252,9 @@ def _effort(title: str, effort: Mapping[str, int]) -> EffortView:
     )
 
 
-def _total(counts: Iterable[Counts]) -> Counts:
+def _total(counts: Iterable[StateCounts]) -> StateCounts:
     listed = list(counts)
-    return Counts(**{state.value: sum(getattr(c, state.value) for c in listed) for state in State})
+    return StateCounts(**{state.value: sum(getattr(c, state.value) for c in listed) for state in State})
 
 
 def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], describer: Describer, units: Units) -> tuple[TaskView, ...]:

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
-from pipeline.records import Assessment, Decision, DecisionKind, Standing, Verdict
+from pipeline.records import Assessment, Decision, DecisionKind, DecisionStatus, Verdict
 from pipeline.report.language import _, said
 from pipeline.report.pages.views import DecisionsView, DecisionView, Pointer
 from pipeline.report.text import clean, words
@@ -22,9 +22,9 @@ def _title(kind: DecisionKind) -> str:
     return told[kind]
 
 
-def by_object(decisions: Iterable[Standing]) -> dict[str, list[Standing]]:
+def by_object(decisions: Iterable[DecisionStatus]) -> dict[str, list[DecisionStatus]]:
     """Return decisions by the number of the object that they are about."""
-    found: dict[str, list[Standing]] = {}
+    found: dict[str, list[DecisionStatus]] = {}
     for standing in decisions:
         found.setdefault(standing.decision.object_number, []).append(standing)
     return found
@@ -33,7 +33,7 @@ def by_object(decisions: Iterable[Standing]) -> dict[str, list[Standing]]:
 class Decided:
     """The decisions of one run, by object."""
 
-    def __init__(self, decisions: Iterable[Standing], units: Units) -> None:
+    def __init__(self, decisions: Iterable[DecisionStatus], units: Units) -> None:
         self._units = units
         self._of = by_object(decisions)
 
@@ -54,7 +54,7 @@ class Decided:
         """Return all decisions."""
         return tuple(self._view(s) for mine in self._of.values() for s in mine)
 
-    def _view(self, standing: Standing) -> DecisionView:
+    def _view(self, standing: DecisionStatus) -> DecisionView:
         decision = standing.decision
         return DecisionView(
             kind=decision.kind.value,

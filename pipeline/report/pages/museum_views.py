@@ -9,7 +9,6 @@ from pipeline.report.pages.reading import ReadingView
 from pipeline.report.pages.selftest import SelfTestView
 from pipeline.report.pages.views import (
     NO_DECISIONS,
-    Counts,
     DecisionsView,
     EffortView,
     GalleryRow,
@@ -20,6 +19,7 @@ from pipeline.report.pages.views import (
     Pointer,
     SinceView,
     State,
+    StateCounts,
     SurveyView,
     TaskView,
 )
@@ -32,7 +32,7 @@ class GalleryView:
     name: str
     page: PageView
     on_display: bool
-    counts: Counts
+    counts: StateCounts
     tasks: tuple[TaskView, ...]
     objects: tuple[ObjectView, ...]
     charts: tuple[str, ...]
@@ -76,7 +76,7 @@ class MuseumView:
     version: str
     credit: str
     demonstration: bool
-    counts: Counts
+    counts: StateCounts
     rows: tuple[GalleryRow, ...]
     first: tuple[Pointer, ...]
     motions: tuple[MotionView, ...]

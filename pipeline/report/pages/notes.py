@@ -15,7 +15,7 @@ _HEAD = 48
 
 
 @dataclass(frozen=True, slots=True)
-class Note:
+class PageNote:
     """One entry of a page's list; ``label`` is its number there, such as "A5", and its id."""
 
     label: str
@@ -40,7 +40,7 @@ class Notes:
                 sources.setdefault(text, {})[source] = None
         shared = [text for text, times in uses.items() if times > 1]
         self.listed = tuple(
-            Note(f"{letter}{i}", text, "; ".join(sources.get(text, ()))) for i, text in enumerate(shared, 1)
+            PageNote(f"{letter}{i}", text, "; ".join(sources.get(text, ()))) for i, text in enumerate(shared, 1)
         )
         self._headed = headed
         self._places = {note.text: at for at, note in enumerate(self.listed)}

@@ -85,7 +85,7 @@ def reading_view(settings: Mapping[str, Any]) -> ReadingView:
 
 
 @dataclass(frozen=True, slots=True)
-class Listed:
+class ListedDoubts:
     """What the page shows of a list: its first entries, how many there are, how many of which field."""
 
     entries: tuple[DoubtView, ...]
@@ -93,7 +93,7 @@ class Listed:
     fields: tuple[tuple[str, int], ...]
 
 
-def write_doubts(file: Path, doubts: Iterable[Doubt]) -> Listed:
+def write_doubts(file: Path, doubts: Iterable[Doubt]) -> ListedDoubts:
     """Write the whole list as CSV, one entry at a time, and return what the page shows of it."""
     fields: Counter[str] = Counter()
     with file.open("w", encoding="utf-8", newline="") as stream:
@@ -108,7 +108,9 @@ def write_doubts(file: Path, doubts: Iterable[Doubt]) -> Listed:
                 yield one
 
         first = nsmallest(SHOWN, written(), key=_order)
-    return Listed(tuple(map(_view, first)), fields.total(), tuple((words(f), n) for f, n in fields.most_common() if f))
+    return ListedDoubts(
+        tuple(map(_view, first)), fields.total(), tuple((words(f), n) for f, n in fields.most_common() if f)
+    )
 
 
 def _order(one: Doubt) -> tuple[int, bool, int, str]:

@@ -23,7 +23,7 @@ STATES = (State.ACT, State.OPEN, State.UNKNOWN, State.SAFE)
 
 
 @dataclass(frozen=True, slots=True)
-class Counts:
+class StateCounts:
     """How many objects are in each state; the five add up to all."""
 
     act: int = 0
@@ -365,7 +365,7 @@ class Entry:
     name: str
     on_display: bool
     page: PageView
-    counts: Counts
+    counts: StateCounts
     task: str
     leaders: tuple[tuple[tuple[int, bool, bool, str, float, str, str], Pointer], ...] = ()
     decisions: DecisionsView = DecisionsView()
@@ -378,7 +378,7 @@ class GalleryRow:
     name: str
     on_display: bool
     pages: tuple[PageView, ...]
-    counts: Counts
+    counts: StateCounts
     task: str
 
 

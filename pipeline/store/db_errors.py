@@ -1,4 +1,4 @@
-"""What a database says, in words that say what failed, where, and what mends it."""
+"""Errors of databases, in words that say what failed, where, and what mends it."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,7 +10,7 @@ from pipeline.store.codec import StoreError
 
 
 @contextmanager
-def speaking(engine: Engine, what: str) -> Iterator[None]:
+def explained(engine: Engine, what: str) -> Iterator[None]:
     """Turn what the database says, but for a clash of keys, into a StoreError that says what failed and where."""
     try:
         yield
