@@ -4,7 +4,6 @@ import csv
 import os
 import shutil
 import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from pipeline.resources import resource
 from pipeline.settings import KEPT, Settings, load_settings, template
 from pipeline.store.runs import load_run
 from tests.conftest import SHARED
+from tests.warm import kouros_process
 
 SILENT = Console(quiet=True)
 COLUMNS = "object_number,gallery,title,height_m,width_m,depth_m"
@@ -115,9 +115,11 @@ def write_collection(folder: Path, objects: list[dict[str, str]]) -> None:
         writer.writerows(objects)
 
 
-def museum_of(folder: Path, objects: list[dict[str, str]]) -> Settings:
-    """A museum of rows such as those of `vases`, with a copy of the bundled site and charts of its own."""
+def museum_of(folder: Path, objects: list[dict[str, str]], *, own_charts: bool = False) -> Settings:
+    """A museum of rows such as those of `vases`, with a copy of the bundled site."""
     folder.mkdir(parents=True)
+    if not own_charts:
+        in_common(folder)
     write_collection(folder, objects)
     text = template(museum="Three rooms", source="collection.csv", mapping="kouros", site="site")
     (folder / "kouros.toml").write_text(text, encoding="utf-8")
@@ -138,8 +140,7 @@ def found(settings: Settings) -> RunRecord:
 
 
 def kouros(*words: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """Run the command in a folder, with the interpreter of the tests."""
-    program = "from pipeline.cli import main; main()"
-    return subprocess.run(
-        [sys.executable, "-c", program, *words], cwd=folder, capture_output=True, text=True, check=False
-    )
+    """Run the command in a folder, as a process of its own; response charts are those of all museums."""
+    if "run" in words and (folder / "kouros.toml").exists():
+        in_common(folder)
+    return kouros_process(words, folder)

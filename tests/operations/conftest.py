@@ -22,6 +22,7 @@ from referencing import Registry, Resource
 from pipeline.resources import resource
 from pipeline.tools.synthetic import synthesise
 from tests.museum import COLUMNS, workspace
+from tests.warm import kouros_process
 
 from .disturbed import Nights, last, objects, rows
 
@@ -68,9 +69,7 @@ def kouros(tmp_path: Path) -> Kouros:
     """Run the command in the museum's folder, with more variables of the environment."""
 
     def call(*words: str, folder: Path = tmp_path, **more: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            command(*words), cwd=folder, env=environment(more), capture_output=True, text=True, check=False
-        )
+        return kouros_process(words, folder, environment(more))
 
     return call
 
