@@ -72,10 +72,13 @@ def demo_folder() -> Path:
     """The folder of a demonstration that was run once: settings, database, reports; it is only looked at."""
     from pipeline.cli.console import Console
     from pipeline.tools.demo import demo
+    from tests.museum import in_common
 
     folder = Path(os.environ[SHARED]) / "demo"
     with FileLock(folder.with_suffix(".lock")):
         if not (folder / "reports" / "latest").exists():
+            folder.mkdir(exist_ok=True)
+            in_common(folder)
             demo(folder, Console(quiet=True))
     return folder
 

@@ -52,7 +52,7 @@ def in_common(folder: Path) -> None:
     """Let a museum in a folder keep its response charts where all others do: each is the same whoever built it."""
     charts = folder / KEPT / CHARTS
     if not charts.exists():
-        charts.parent.mkdir(exist_ok=True)
+        charts.parent.mkdir(parents=True, exist_ok=True)
         common = Path(os.environ[SHARED]) / "charts"
         common.mkdir(exist_ok=True)
         charts.symlink_to(common, target_is_directory=True)
