@@ -33,7 +33,7 @@ from pipeline.operations.workspace import Workspace
 from pipeline.records import Model, Progress, RunRecord, Scene
 from pipeline.report.pages.reading import INVENTORY, READING
 from pipeline.resources import code_version
-from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, PICTURES, RULES
+from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES
 from pipeline.verification import selftest, tradeoff
 
 FRAGILE, SURVEYED = 1e8, 2e8
@@ -193,7 +193,6 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
     settings = workspace.settings
     return {
         KERNELS: KERNEL_VERSION,
-        PICTURES: code_version(),
         CODE: code_version()[:12],
         RULES: rules_digest(settings),
         LEVELS: {level.name: level.combine for level in site.levels},

@@ -190,7 +190,7 @@ class Mitigation(_Part):
 
 
 class Charts(_Part):
-    """How long response charts, histories and processed motions are kept, and how much room each may take."""
+    """How long response charts, histories, motions and their pictures are kept, and how much room each may take."""
 
     unused_days: float = Field(
         default=30.0, ge=1.0, le=3650.0, description="days after the last use of their motion, or of a history itself"
