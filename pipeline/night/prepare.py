@@ -26,14 +26,14 @@ from pipeline.night.context import RunContext, motions_of
 from pipeline.night.figures import Pictures
 from pipeline.night.floors import floors_of, notes
 from pipeline.night.reading_summary import told
-from pipeline.night.source_state import rules_digest
+from pipeline.night.source_state import rules_digest, tables_digest
 from pipeline.night.unit_tasks import ChartTask
 from pipeline.operations.presentation import presentation
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Model, Progress, RunRecord, Scene
 from pipeline.report.pages.reading import INVENTORY, READING
 from pipeline.resources import code_version
-from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES
+from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES, TABLES
 from pipeline.verification import selftest, tradeoff
 
 FRAGILE, SURVEYED = 1e8, 2e8
@@ -195,6 +195,7 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
         KERNELS: KERNEL_VERSION,
         CODE: code_version()[:12],
         RULES: rules_digest(settings),
+        TABLES: tables_digest(settings),
         LEVELS: {level.name: level.combine for level in site.levels},
         "credit": credit,
         "analysis": settings.analysis.model_dump(),

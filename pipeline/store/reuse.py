@@ -17,6 +17,10 @@ RULES = "rules"
 """Key of a run's settings under which the hash of the museum's own rules of classification is kept; "" for none."""
 
 
+TABLES = "tables"
+"""The same of the hashes of its own rows of what is assumed, by table."""
+
+
 LEVELS = "levels"
 """Key of a run's settings under which it is kept how each level combines its motions."""
 
