@@ -67,8 +67,8 @@ def run_context(
                 UsageError for tables of the museum's own, ReportError for a language without a catalogue
     """
     settings = workspace.settings
-    # A catalogue of phrases that is missing is said before the night's work, not after it.
-    written = presentation(settings)
+    # What is wrong with the museum's own tables, or that a catalogue of phrases is missing, is said before the work.
+    rules, measures, written = workspace.rules, workspace.measures, presentation(settings)
     floors = floors_of(settings, site, chosen.galleries)
     motions = motions_of(floors)
     samples = sum(motion.acceleration.shape[1] for motion in motions.values())
@@ -102,8 +102,8 @@ def run_context(
         head=head,
         floors=floors,
         analysis=settings.analysis,
-        rules=workspace.rules,
-        measures=workspace.measures,
+        rules=rules,
+        measures=measures,
         surveyed=surveyed,
         fragile=fragile,
         stores=settings.display.stores,

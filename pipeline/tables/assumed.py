@@ -44,6 +44,14 @@ class AssumedValues:
         words = ((tuple(map(re.escape, one.words)), one) for one in self.materials.values())
         return tuple((re.compile(rf"\b(?:{'|'.join(some)})\b", re.IGNORECASE), one) for some, one in words if some)
 
+    @property
+    def own(self) -> dict[str, int]:
+        """How many rows are the museum's, by table; those without any are left out."""
+        tables = {"classes": self.classes.values(), "materials": self.materials.values()}
+        pairs = {"friction": self.friction, "damping": self.damping}
+        counts = {name: sum(bool(row.own) for row in rows) for name, rows in (tables | pairs).items()}
+        return {name: count for name, count in counts.items() if count}
+
     def material_in(self, text: str) -> Material | None:
         """Return the material that stands first in a text.
 

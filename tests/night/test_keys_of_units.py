@@ -16,11 +16,13 @@ from pipeline import resources
 from pipeline.night import scheduler
 from pipeline.night.context import RunContext
 from pipeline.night.page_tasks import PageTask, Rendered
+from pipeline.night.run import run
 from pipeline.night.unit_tasks import Assessments, UnitTask
-from pipeline.operations.workspace import open_workspace
+from pipeline.operations.workspace import UsageError, open_workspace
 from pipeline.records import DecisionKind
 from pipeline.report.files import page_renderer, report_writer
 from pipeline.tools.decisions import Wish, decide
+from tests.museum import SILENT
 from tests.night.changing import FRICTION, ISOLATORS, RULES, Changing, measures, vessels
 
 
@@ -277,6 +279,14 @@ def test_what_a_change_costs(
     change(museum)
     museum.night()
     assert done.numbers() == expected
+
+
+def test_an_own_table_that_is_not_there_ends_the_night_before_its_work(museum: Changing, done: Done) -> None:
+    museum.set("friction", '"gone.csv"')
+    museum.write()
+    with pytest.raises(UsageError, match=r"gone\.csv is not there; \[tables\] friction names the file"):
+        run(museum.settings, SILENT)
+    assert done.numbers() == NOTHING
 
 
 @pytest.fixture

@@ -38,7 +38,7 @@ class _Row:
 @dataclass(frozen=True, slots=True)
 class _Word:
     kind: Text
-    meaning: Text
+    meaning: str
     words: Entries
 
 
@@ -76,5 +76,5 @@ def unit_words() -> dict[str, LexiconUnit]:
 @cache
 def meanings() -> dict[str, tuple[str, str]]:
     """Return kind and meaning of every word that is not a unit, in small letters."""
-    rows = checked(_Word, table("dimension_words"), "dimension_words.csv", named="meaning")
+    rows = checked(_Word, table("dimension_words"), "dimension_words.csv", named="words")
     return {word: (row.kind, row.meaning) for row in rows for word in row.words}
