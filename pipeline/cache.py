@@ -24,8 +24,9 @@ from numpy.typing import NDArray
 
 from pipeline.resources import code_version, replacing
 
-MOTIONS, CHARTS, HISTORIES, SELF_TESTS, TRADEOFFS = "motions", "charts", "histories", "selftests", "tradeoffs"
-KINDS = (MOTIONS, CHARTS, HISTORIES, SELF_TESTS, TRADEOFFS)
+MOTIONS, CHARTS, PICTURES, HISTORIES = "motions", "charts", "pictures", "histories"
+SELF_TESTS, TRADEOFFS = "selftests", "tradeoffs"
+KINDS = (MOTIONS, CHARTS, PICTURES, HISTORIES, SELF_TESTS, TRADEOFFS)
 """What is kept: each kind is a folder."""
 
 LARGEST = 1 << 28

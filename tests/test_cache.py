@@ -20,6 +20,7 @@ from pipeline.cache import (
     HISTORIES,
     KINDS,
     MOTIONS,
+    PICTURES,
     SELF_TESTS,
     TRADEOFFS,
     Cache,
@@ -28,7 +29,9 @@ from pipeline.cache import (
 )
 from pipeline.models import model_named
 from pipeline.motions import read_site
+from pipeline.records import Axis, Chart
 from pipeline.resources import resource
+from pipeline.store import codec
 from pipeline.verification import selftest, tradeoff
 from pipeline.verification.outcome import Outcome
 
@@ -55,6 +58,12 @@ def put_chart(folder: Path) -> None:
     Cache(folder).put(CHARTS, cache.key_of("a chart", group=64 * "a"), chart.kept())
 
 
+def put_pictures(folder: Path) -> None:
+    drawn = {"sliding:a": Chart("sliding:a", "Sliding", "0.25 m", Axis("f", "-"), Axis("d", "m"), ())}
+    kept = CacheEntry({"pictures": codec.to_json(dict[str, Chart], drawn)})
+    Cache(folder).put(PICTURES, cache.key_of("pictures", group=64 * "a"), kept)
+
+
 def put_histories(folder: Path) -> None:
     histories = Histories(Cache(folder), "batch")
     values = {"friction_static": np.array([0.1, 0.2, np.nan])}
@@ -77,6 +86,7 @@ def put_tradeoff(folder: Path) -> None:
 PUT: dict[str, Callable[[Path], None]] = {
     MOTIONS: put_motion,
     CHARTS: put_chart,
+    PICTURES: put_pictures,
     HISTORIES: put_histories,
     SELF_TESTS: put_self_test,
     TRADEOFFS: put_tradeoff,

@@ -23,7 +23,7 @@ INSIDE = {
     "collection/inventory/writing.py",
     "collection/sources/rows.py",
     "mitigate/rows.py",
-    "motions/formats/toolbox.py",
+    "motions/formats/blocks.py",
     "motions/site.py",
     "night/scheduler.py",
     "operations/report_status.py",

@@ -14,24 +14,21 @@ from pipeline.analysis.rules import RuleTable, rule_for
 from pipeline.errors import InputError
 from pipeline.models import MODELS, model_named
 from pipeline.records import SECTION_SHAPES, Estimate, Item, Origin, Scene, Support
-from pipeline.tables import Range, Row, damping_of, friction_of, material_in, spread, table
-
-NO_MODEL, WHEN_HELD = "none", "held"
-"""In the column models of classes.csv: no generic model applies; none does until it is recorded how it is held."""
+from pipeline.tables import Range
+from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed, span, tables_of
+from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
 
 SLENDEREST = 9.0
 """Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
 
 
-@cache
-def _classes() -> Mapping[str, Row]:
-    return {row["class"]: row for row in table("classes")}
+def material_of(item: Item, values: AssumedValues | None = None) -> Material:
+    """Return what an object is made of: the material whose word stands first in its record.
 
-
-def material_of(item: Item) -> Row:
-    """Return the row of materials.csv for what an object is made of: the word that stands first in its record."""
-    found = material_in(item.material or item.medium)
-    return found or next(row for row in table("materials") if row["material"] == "unknown")
+    values : the tables that know the words; None for Kouros's own
+    """
+    values = values or assumed()
+    return values.material_in(item.material or item.medium) or values.materials[UNKNOWN]
 
 
 def _assumed(value: float, low: float, high: float, unit: str, note: str, source: str) -> Estimate:
@@ -46,58 +43,53 @@ def _half(side: Estimate) -> Estimate:
     return replace(side, value=0.5 * side.value, low=0.5 * side.low, high=0.5 * side.high)
 
 
-def _times(row: Row, kind: str, base: float, unit: str, what: str, of: str) -> Estimate:
+def _times(row: ObjectClass, share: Range, base: float, unit: str, what: str, of: str) -> Estimate:
     """Return a share of a recorded dimension, as the row of the class assumes it."""
-    share = _range(row["class"], kind)
-    note = f"{what}: {share.value:g} ({share.low:g} to {share.high:g}) of its {of}, assumed for: {row['title'].lower()}"
+    note = f"{what}: {share.value:g} ({share.low:g} to {share.high:g}) of its {of}, assumed for: {row.told}"
     return _assumed(share.value * base, share.low * base, share.high * base, unit, note, share.source)
 
 
 # What depends on a table and a few words only is worked out once, not for every object of a collection.
 
 
-@cache
-def _range(object_class: str, kind: str) -> Range:
-    """Return the range of a class's share (cg, base, section) or quantity (fill, clearance), with its source."""
-    row = _classes()[object_class]
-    where = f"classes.csv, {object_class}"
-    value = f"{kind}_ratio" if f"{kind}_ratio" in row else kind
-    span = spread(row, value, f"{kind}_low", f"{kind}_high", where)
-    return replace(span, source=f"{where} ({row['source']})")
-
-
-@cache
-def _clearance_of(object_class: str) -> Estimate:
-    span = _range(object_class, "clearance")
-    low, value, high = (100.0 * v for v in (span.low, span.value, span.high))
-    note = f"clearance: {value:g} cm ({low:g} to {high:g}) to neighbour, wall or edge"
-    note += f", assumed for: {_classes()[object_class]['title'].lower()}"
-    return _assumed(span.value, span.low, span.high, "m", note, span.source)
+@lru_cache(maxsize=4096)
+def _clearance_of(values: AssumedValues, object_class: str) -> Estimate | None:
+    row = values.classes[object_class]
+    if row.room is None:
+        return None
+    low, value, high = (100.0 * v for v in (row.room.low, row.room.value, row.room.high))
+    note = f"clearance: {value:g} cm ({low:g} to {high:g}) to neighbour, wall or edge, assumed for: {row.told}"
+    return _assumed(row.room.value, row.room.low, row.room.high, "m", note, row.room.source)
 
 
 @lru_cache(maxsize=4096)
-def _friction_of(material: str, surface: str) -> Estimate:
-    span = friction_of(material, surface)
+def _friction_of(values: AssumedValues, material: str, surface: str) -> Estimate:
+    rows = values.friction_of(material, surface)
+    found = span(rows)
     pair = f"{material or 'any material'} on {surface or 'any floor'}"
-    note = f"friction: {span.value:g} ({span.low:g} to {span.high:g}), Table 3 for {pair}; not measured"
-    return _assumed(span.value, span.low, span.high, "-", note, span.source)
+    note = f"friction: {found.value:g} ({found.low:g} to {found.high:g}), {tables_of(rows)} for {pair}; not measured"
+    return _assumed(found.value, found.low, found.high, "-", note, found.source)
 
 
 @lru_cache(maxsize=4096)
-def _wall_damping_of(wall: str, back: str) -> Estimate:
-    span = damping_of(wall, back)
-    note = "damping against the wall: wood on paint, the least of Table 4; wall and back surfaces not recorded"
-    if wall or back:
-        note = f"damping of {back or 'its back'} on {wall or 'the wall'} (Table 4)"
-    return _assumed(span.value, span.low, span.high, "-", note, span.source)
+def _wall_damping_of(values: AssumedValues, wall: str, back: str) -> Estimate:
+    rows = values.damping_of(wall, back)
+    found = span(rows)
+    note = f"damping of {back or 'its back'} on {wall or 'the wall'} ({tables_of(rows)})"
+    if not wall and not back:
+        least = min(rows, key=lambda row: row.low)
+        pair = f"{least.back_surface.lower()} on {least.wall_surface.lower()}"
+        note = f"damping against the wall: {pair}, the least of {tables_of(rows)}; wall and back surfaces not recorded"
+    # With nothing known of its back the lowest damping counts.
+    return _assumed(found.value if back else found.low, found.low, found.high, "-", note, found.source)
 
 
 class _Builder:
     """Collects the parameters of one scene, and what is missing for them."""
 
-    def __init__(self, item: Item, row: Row, support: Support) -> None:
-        self.item, self.row, self.support = item, row, support
-        self.material = material_of(item)
+    def __init__(self, item: Item, row: ObjectClass, support: Support, values: AssumedValues) -> None:
+        self.item, self.row, self.support, self.values = item, row, support, values
+        self.material = material_of(item, values)
         self.found: dict[str, Estimate] = {}
         self.missing: list[str] = []
         self.doubts: list[str] = []
@@ -126,7 +118,7 @@ class _Builder:
         self._keep("length", length)
         damping = _measured(item.damping, "-")
         if damping is None and self.support is Support.HUNG:
-            damping = _wall_damping_of(item.wall_surface, item.back_surface)
+            damping = _wall_damping_of(self.values, item.wall_surface, item.back_surface)
         elif damping is None:
             note = "damping: none, as the paper takes it for chandeliers"
             damping = _assumed(0.0, 0.0, 0.0, "-", note, "Agbabian et al. 1991, sec. 2.4")
@@ -150,16 +142,16 @@ class _Builder:
                 self._keep("half_base_width", _half(width))
                 self._keep("half_base_depth", _half(depth))
         cg = _measured(item.cg_height_m, "m")
-        if cg is None and item.height_m is not None and self.row["cg_ratio"]:
-            cg = _times(self.row, "cg", item.height_m, "m", "height of the centre of gravity", "height")
+        if cg is None and item.height_m is not None and self.row.cg is not None:
+            cg = _times(self.row, self.row.cg, item.height_m, "m", "height of the centre of gravity", "height")
         if cg is None:
-            self.missing.append("height" if self.row["cg_ratio"] else "height of the centre of gravity")
+            self.missing.append("height" if self.row.cg is not None else "height of the centre of gravity")
         self._keep("cg_height", cg)
         self._friction()
         self._mass()
         if not self._section(width, depth) and self.support is Support.FASTENED:
             # What is made fast is judged by its weakest section alone.
-            self.missing.extend(lost if self.row["section"] else ["width of its weakest section"])
+            self.missing.extend(lost if self.row.section else ["width of its weakest section"])
             if "mass" not in self.found:
                 self.missing.append("mass")
         elif self.support is not Support.FASTENED:
@@ -172,25 +164,24 @@ class _Builder:
     def _plan(self) -> tuple[Estimate | None, Estimate | None, list[str]]:
         """Return the sides of its base, None where they are not known, and what must be recorded to know them."""
         item, row = self.item, self.row
-        assumes = bool(row["base_ratio"])
+        assumes = row.base is not None
         sides: list[Estimate | None] = []
         pairs = ((item.base_width_m, item.width_m, "width"), (item.base_depth_m, item.depth_m, "depth"))
         for measured, largest, name in pairs:
             side = _measured(measured, "m")
-            if side is None and largest is not None and assumes:
-                side = _times(row, "base", largest, "m", f"base {name}", name)
+            if side is None and largest is not None and row.base is not None:
+                side = _times(row, row.base, largest, "m", f"base {name}", name)
             sides.append(side)
         width, depth = sides
         if width is None and depth is None:
             return None, None, ["width (or diameter)"] if assumes else ["base width", "base depth"]
         if width is None or depth is None:
             known, lost = (width, "depth") if depth is None else (depth, "width")
-            if row["round"] != "yes" or known is None:
+            if not row.round or known is None:
                 return None, None, [lost if assumes else f"base {lost}"]
             note = f"{lost} not recorded: taken as round"
-            other = _assumed(
-                known.value, known.low, known.high, "m", note, known.source or f"classes.csv, {row['class']}"
-            )
+            source = known.source or f"{row.table}, {row.name}"
+            other = _assumed(known.value, known.low, known.high, "m", note, source)
             return (known, other, []) if depth is None else (other, known, [])
         return width, depth, []
 
@@ -198,13 +189,14 @@ class _Builder:
         item = self.item
         friction = _measured(item.friction, "-")
         if friction is None:
-            friction = _friction_of(item.base_material or self.material["friction_as"], item.surface_material)
+            material = item.base_material or self.material.friction_as
+            friction = _friction_of(self.values, material, item.surface_material)
         self._keep("friction_static", friction)
 
     def _clearance(self) -> None:
         clearance = _measured(self.item.clearance_m, "m")
-        if clearance is None and self.row["clearance"]:
-            clearance = _clearance_of(self.row["class"])
+        if clearance is None:
+            clearance = _clearance_of(self.values, self.row.name)
         self._keep("clearance", clearance)
 
     def _mass(self) -> None:
@@ -216,38 +208,34 @@ class _Builder:
             mass = _assumed(15.0 * area, 5.0 * area, 40.0 * area, "kg", note, "judgement")
         across = item.width_m or item.depth_m
         along = item.depth_m or item.width_m
-        if mass is None and row["fill"] and item.height_m and across and along:
-            box = item.height_m * across * along * (0.25 * pi if row["round"] == "yes" else 1.0)
-            fill = _range(row["class"], "fill")
-            where = f"materials.csv, {self.material['material']}"
-            density = spread(self.material, "density", "density_low", "density_high", where)
-            of = f"{self.material['material']} of {density.value:g} kg/m3"
-            note = f"mass: {of} filling {fill.value:g} of its outline, assumed"
+        if mass is None and row.filled is not None and item.height_m and across and along:
+            box = item.height_m * across * along * (0.25 * pi if row.round else 1.0)
+            fill, density = row.filled, self.material.density_range
+            note = f"mass: {self.material.told} of {density.value:g} kg/m3 filling {fill.value:g} of its outline"
             mass = _assumed(
                 box * fill.value * density.value,
                 box * fill.low * density.low,
                 box * fill.high * density.high,
                 "kg",
-                note,
-                where,
+                f"{note}{row.aside}, assumed",
+                density.source,
             )
         self._keep("mass", mass)
 
     def _section(self, width: Estimate | None, depth: Estimate | None) -> bool:
         """Keep what the stress in the weakest section hangs on; say whether all of it is known."""
         item = self.item
-        where = f"materials.csv, {self.material['material']}"
         condition = 1.0 if item.condition is None else item.condition
         allowable = _measured(item.allowable_stress_pa, "Pa")
         if allowable is None:
-            span = spread(self.material, "tensile", "tensile_low", "tensile_high", where)
-            low, value, high = (v / 1e6 for v in (span.low, span.value, span.high))
-            note = f"allowable stress: {self.material['material']}, {value:g} ({low:g} to {high:g}) MPa"
+            bears = self.material.tensile_range
+            low, value, high = (v / 1e6 for v in (bears.low, bears.value, bears.high))
+            note = f"allowable stress: {self.material.told}, {value:g} ({low:g} to {high:g}) MPa"
             note += (
                 ", condition factor 1 (not recorded)" if item.condition is None else f", condition factor {condition:g}"
             )
             allowable = _assumed(
-                span.value * condition, span.low * condition, span.high * condition, "Pa", note, span.source or where
+                bears.value * condition, bears.low * condition, bears.high * condition, "Pa", note, bears.source
             )
         mass, cg = self.found.get("mass"), self.found.get("cg_height")
         section = self._section_size(width, depth)
@@ -297,16 +285,15 @@ class _Builder:
                 return shape, size, deep, item.section_count or 1, wall, f"section: {recorded}, as recorded"
             else:
                 self.doubts.append(f"section: the recorded shape {item.section_shape!r} is not known, and not used")
-        if not row["section"] or width is None or depth is None:
+        if row.critical is None or width is None or depth is None:
             return None
         narrow = min(width, depth, key=lambda e: e.value)
-        kind = row["section"]
+        kind = row.section
         across = min(item.width_m or item.depth_m or narrow.value, item.depth_m or item.width_m or narrow.value)
         base = narrow.value if kind in ("foot", "legs", "ring") else across
         of = "narrower base side" if kind in ("foot", "legs", "ring") else "narrower side"
-        size = _times(
-            row, "section", base, "m", {"ring": "wall of its foot"}.get(kind, f"critical section ({kind})"), of
-        )
+        what = "wall of its foot" if kind == "ring" else f"critical section ({kind})"
+        size = _times(row, row.critical, base, "m", what, of)
         shapes = {"stem": ("round", 1), "ankles": ("round", 2), "foot": ("rectangle", 1), "legs": ("rectangle", 4)}
         if kind == "ring":
             # The size is the wall; the ring's outside is the base.
@@ -348,49 +335,49 @@ def rectangle_modulus(along: float, across: float, wall: float) -> float:
 
 def object_classes() -> Mapping[str, str]:
     """Return the classes that an object may be of, each with its title."""
-    return {name: row["title"] for name, row in _classes().items()}
+    return {name: row.title for name, row in assumed().classes.items()}
 
 
 def classify(item: Item, rules: RuleTable | None = None, decided: tuple[str, str] | None = None) -> Scene:
     """Return the scene of one object: class, support, models to try, estimates, and the fields that are missing.
 
-    rules   : the table that decides the class; None for Kouros's own
+    rules   : the table that decides the class, with what is assumed of each; None for Kouros's own
     decided : the class that a person gave it, and their words, in place of the rules
     raises  : KeyError for a decided class that is no row of classes.csv
     """
+    values = assumed() if rules is None else rules.values
     if decided is None:
         decision = rule_for(item, rules)
         object_class, words = decision.rule.object_class, decision.words
     else:
         object_class, words = decided
-    row = _classes()[object_class]
-    support = item.support or Support(row["support"])
+    row = values.classes[object_class]
+    support = item.support or row.support
     models = _tried(item, row)
     if not models:
-        why = f"no generic model applies: it {row['why']}"
-        return Scene(item, row["class"], words, support, (), {}, (), (why,))
-    builder = _Builder(item, row, support)
+        why = f"no generic model applies: it {row.why}"
+        return Scene(item, row.name, words, support, (), {}, (), (why,))
+    builder = _Builder(item, row, support, values)
     builder.build()
     builder.missing.extend(_unheld(item, support))
     missing = tuple(builder.missing) if _needs_size(models) else ()
     known = builder.found
     for estimates in _estimates_of(models):
-        scene = Scene(item, row["class"], words, support, models, dict(known), (), missing)
+        scene = Scene(item, row.name, words, support, models, dict(known), (), missing)
         known |= {name: one for name, one in estimates(scene).items() if name not in known}
     assumptions = [e.note for e in known.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
     if item.support is None:
-        assumptions.insert(0, f"support: {support.value}, assumed for: {row['title'].lower()}; not recorded")
-    return Scene(item, row["class"], words, support, models, known, tuple(dict.fromkeys(assumptions)), missing)
+        assumptions.insert(0, f"support: {support.value}, assumed for: {row.told}; not recorded")
+    return Scene(item, row.name, words, support, models, known, tuple(dict.fromkeys(assumptions)), missing)
 
 
-def _tried(item: Item, row: Row) -> tuple[str, ...]:
+def _tried(item: Item, row: ObjectClass) -> tuple[str, ...]:
     """Return the models that are tried on an object of a class: those of its class, or of how it is held, and more."""
-    own = Support(row["support"])
-    models = () if row["models"] in (NO_MODEL, WHEN_HELD) else tuple(row["models"].split("|"))
-    if item.support is not None and (item.support is not own or not (models or row["models"] == NO_MODEL)):
+    models = () if set(row.models) & {NO_MODEL, WHEN_HELD} else row.models
+    if item.support is not None and (item.support is not row.support or not (models or row.models == (NO_MODEL,))):
         models = models_of(item.support)
     for name, joins in _joining():
-        if name not in models and joins(item, row["class"], models):
+        if name not in models and joins(item, row.name, models):
             models = (*models, name)
     return models
 

@@ -27,6 +27,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, Validati
 from pipeline.errors import InputError
 from pipeline.records import Item
 from pipeline.tables import Row, TableError, read_table, table
+from pipeline.tables.assumed import AssumedValues, assumed
 from pipeline.tables.rows import Entries, checked, once
 
 FLAT = 0.12
@@ -200,6 +201,7 @@ class RuleTable:
 
     aat     : every identifier that some rule names
     by_last : the known words and phrases by their last word
+    values  : what is assumed of the classes that the rules name
     """
 
     rules: tuple[Rule, ...]
@@ -208,6 +210,7 @@ class RuleTable:
     wordless: tuple[Rule, ...]
     aat: frozenset[str]
     by_last: Mapping[str, tuple[str, ...]]
+    values: AssumedValues
 
 
 @dataclass(frozen=True)
@@ -224,7 +227,7 @@ class RuleMatch:
         return f"{self.rule.name}: {self.rule.why}{said}"
 
 
-def read_rules(rows: tuple[Row, ...], classes: frozenset[str], file: str = "rules.csv") -> RuleTable:
+def read_rules(rows: tuple[Row, ...], values: AssumedValues, file: str = "rules.csv") -> RuleTable:
     """Return rows of a table of rules, ready to match.
 
     raises : TableError naming file, line, rule, column and remedy, for an unknown class or shape, a name used twice,
@@ -232,7 +235,7 @@ def read_rules(rows: tuple[Row, ...], classes: frozenset[str], file: str = "rule
     """
     if not rows:
         raise TableError(f"{file}: has no rows; the last row must be a rule without conditions")
-    written = checked(_RuleRow, rows, file, named="rule", context={"classes": classes})
+    written = checked(_RuleRow, rows, file, named="rule", context={"classes": frozenset(values.classes)})
     once((row.rule for row in written), "rule", file)
     out = [_rule(row, at) for at, row in enumerate(written)]
     if any(rows[-1][column].strip() for column in ("aat", "classification", "words", "medium", "shape")):
@@ -256,6 +259,7 @@ def read_rules(rows: tuple[Row, ...], classes: frozenset[str], file: str = "rule
         tuple(r for r in out if not r.named and (r.kinds or r.medium or r.shapes or r is out[-1])),
         frozenset().union(*(rule.aat for rule in out)),
         {last: tuple(phrases) for last, phrases in by_last.items()},
+        values,
     )
 
 
@@ -282,22 +286,26 @@ def rules() -> RuleTable:
 
     raises : TableError, as read_rules
     """
-    return read_rules(table("rules"), frozenset(row["class"] for row in table("classes")))
+    return read_rules(table("rules"), assumed())
 
 
-def with_own(path: Path) -> RuleTable:
+def with_own(path: Path | None, values: AssumedValues | None = None) -> RuleTable:
     """Return a museum's own rules, followed by Kouros's; a row of the same name takes the place of Kouros's.
 
-    path   : a CSV file with the columns of tables/rules.csv
+    path   : a CSV file with the columns of tables/rules.csv; None: the museum has no rules of its own
+    values : what is assumed of the classes; None: Kouros's own tables
     raises : TableError naming file, line, rule, column and remedy; FileNotFoundError
     """
-    own, ours = read_table(path), table("rules")
+    values, ours = values or assumed(), table("rules")
+    if path is None:
+        return read_rules(ours, values)
+    own = read_table(path)
     missing = [column for column in ours[0] if own and column not in own[0]]
     if missing:
         raise TableError(f"{path.name}: there is no column {missing[0]!r}; its columns must be {', '.join(ours[0])}")
     names = {row["rule"] for row in own}
     both = (*own, *(row for row in ours if row["rule"] not in names))
-    return read_rules(both, frozenset(row["class"] for row in table("classes")), path.name)
+    return read_rules(both, values, path.name)
 
 
 def rule_for(item: Item, among: RuleTable | None = None) -> RuleMatch:

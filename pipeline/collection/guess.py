@@ -10,10 +10,11 @@ from dataclasses import dataclass, field
 from functools import cache, cached_property
 from itertools import islice
 from pathlib import Path
-from typing import cast
+from typing import Annotated, cast
 from unicodedata import normalize
 
 import tomlkit
+from pydantic import AfterValidator
 
 from pipeline.collection.dimensions import parse
 from pipeline.collection.errors import CollectionError
@@ -25,6 +26,7 @@ from pipeline.collection.sources.files import unreadable
 from pipeline.collection.sources.registry import is_address, recognised
 from pipeline.collection.sources.rows import Row
 from pipeline.tables import table
+from pipeline.tables.rows import Entries, checked
 
 LOOKED_AT = 2000
 """Rows that the guess is made from."""
@@ -262,9 +264,22 @@ def _plain(name: str) -> str:
     return re.sub(r"[\s_.:\-]+", " ", spaced).strip().casefold()
 
 
+def _mappable(field: str) -> str:
+    if field not in (*MAPPABLE, "dimensions"):
+        raise ValueError(f"is {field!r}, which is no field that a column can be mapped to")
+    return field
+
+
+@dataclass(frozen=True, slots=True)
+class _ColumnNames:
+    field: Annotated[str, AfterValidator(_mappable)]
+    names: Entries
+
+
 @cache
 def _names() -> dict[str, str]:
-    return {_plain(name): row["field"] for row in table("column_names") for name in row["names"].split("|")}
+    rows = checked(_ColumnNames, table("column_names"), "column_names.csv", named="field")
+    return {_plain(name): row.field for row in rows for name in row.names}
 
 
 def _fields(columns: Sequence[_Column]) -> dict[str, _Column]:

@@ -16,7 +16,7 @@ from typing import Any
 
 from pipeline.quantities import LENGTHS, MASSES
 from pipeline.records import Item, Origin
-from pipeline.tables import material_in, number
+from pipeline.tables.assumed import assumed
 
 FEWEST_STEPS = 40
 """Numbers with a fraction that steps are judged by: fewer may be chance."""
@@ -206,9 +206,8 @@ def _weighed(item: Item) -> tuple[str, str, float] | None:
         return None
     units = {of.field: of.written.rpartition(" ")[2] for of in item.provenance}
     lengths = {units.get(side, "") for side in _SIDES}
-    material = material_in(item.material or item.medium)
+    material = assumed().material_in(item.material or item.medium)
     if material is None or len(lengths) != 1 or not lengths <= LENGTHS.keys() or units.get("mass_kg") not in MASSES:
         return None
-    density = number(material, "density", f"materials.csv, {material['material']}")
     volume = sides[0] * sides[1] * sides[2]
-    return lengths.pop(), units["mass_kg"], item.mass_kg / volume / density
+    return lengths.pop(), units["mass_kg"], item.mass_kg / volume / material.density

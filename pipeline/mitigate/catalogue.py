@@ -1,7 +1,7 @@
 """Catalogue of a museum's measures, least intrusive first, and of its isolators."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
@@ -9,6 +9,7 @@ from pipeline.mitigate.measures import MEASURES, Measure
 from pipeline.mitigate.rows import Isolator, MeasureRow, read_isolators, read_measure_rows
 from pipeline.records import Scene
 from pipeline.tables import TableError, read_table, table
+from pipeline.tables.assumed import AssumedValues, assumed
 
 
 @dataclass(frozen=True)
@@ -21,6 +22,8 @@ class MeasureCatalogue:
         Each with its row; the last is always possible.
     isolators : tuple of Isolator
         In the order of their table.
+    values : AssumedValues
+        What is assumed of materials, and of surfaces that an object may be put on.
 
     Raises
     ------
@@ -30,6 +33,7 @@ class MeasureCatalogue:
 
     measures: tuple[Measure, ...]
     isolators: tuple[Isolator, ...]
+    values: AssumedValues = field(default_factory=assumed, repr=False)
 
     def __post_init__(self) -> None:
         if not self.measures or not self.measures[-1].last_resort:
@@ -66,7 +70,9 @@ def own_catalogue() -> MeasureCatalogue:
     )
 
 
-def measure_catalogue(measures: Path | None = None, isolators: Path | None = None) -> MeasureCatalogue:
+def measure_catalogue(
+    measures: Path | None = None, isolators: Path | None = None, values: AssumedValues | None = None
+) -> MeasureCatalogue:
     """Return what a museum can do.
 
     Parameters
@@ -76,6 +82,8 @@ def measure_catalogue(measures: Path | None = None, isolators: Path | None = Non
         of another name is added, of the kind that its column ``like`` names.
     isolators : Path, optional
         A CSV file with the columns of tables/isolators.csv, which takes the place of that table.
+    values : AssumedValues, optional
+        What is assumed of materials and surfaces; Kouros's own tables where it is left out.
 
     Returns
     -------
@@ -95,7 +103,7 @@ def measure_catalogue(measures: Path | None = None, isolators: Path | None = Non
         listed = _ordered(merged.values(), theirs, measures.name)
     if isolators is not None:
         have = read_isolators(read_table(isolators), isolators.name)
-    return MeasureCatalogue(listed, have)
+    return MeasureCatalogue(listed, have, values or assumed())
 
 
 def changed(

@@ -8,10 +8,6 @@ from typing import Annotated, Protocol, TypeVar
 
 import numpy as np
 from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
     Field,
     ValidationInfo,
     ValidatorFunctionWrapHandler,
@@ -21,8 +17,9 @@ from pydantic import (
 
 from pipeline.models import MODELS, model_named
 from pipeline.quantities import Quantity
-from pipeline.tables import Row, TableError, table
-from pipeline.tables.rows import Entries, Number, checked, once
+from pipeline.tables import Row, TableError
+from pipeline.tables.assumed import assumed
+from pipeline.tables.rows import Entries, Number, TableRow, Text, checked, once
 
 
 class Terms(Protocol):
@@ -55,12 +52,6 @@ STORED = "store_lower"
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,59}")
 
 
-def _said(cell: str) -> str:
-    if not cell.strip():
-        raise ValueError("is empty; every row needs it")
-    return cell
-
-
 def _empty_is(value: float) -> WrapValidator:
     """Return the validator of a cell that may be empty, which stands for a value of its own."""
 
@@ -70,16 +61,10 @@ def _empty_is(value: float) -> WrapValidator:
     return WrapValidator(read)
 
 
-Name = Annotated[str, BeforeValidator(lambda cell: cell.strip() if isinstance(cell, str) else cell)]
-Text = Annotated[str, AfterValidator(_said)]
 Above0 = Annotated[Number, Field(gt=0.0)]
 
 
-class _TableRow(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class MeasureRow(_TableRow):
+class MeasureRow(TableRow):
     """A row of measures.csv: the words, limits, place and source of a measure.
 
     Attributes
@@ -106,8 +91,8 @@ class MeasureRow(_TableRow):
         Who says so.
     """
 
-    name: Name = Field(alias="measure")
-    like: Name = Field(default="", validate_default=True)
+    name: str = Field(alias="measure")
+    like: str = Field(default="", validate_default=True)
     order: Number
     title: Text
     limit: Annotated[Above0, _empty_is(0.0)]
@@ -170,7 +155,7 @@ class MeasureRow(_TableRow):
     @field_validator("classes")
     @classmethod
     def _of_classes(cls, classes: tuple[str, ...]) -> tuple[str, ...]:
-        known = {row["class"] for row in table("classes")}
+        known = assumed().classes
         strange = next((name for name in classes if name not in known), None)
         if strange is not None:
             raise ValueError(f"names {strange!r}, which is no class; see kouros's classes.csv")
@@ -200,7 +185,7 @@ def _terms(info: ValidationInfo) -> Terms | None:
     return _known_measures(info).get(info.data.get("like", ""))
 
 
-class Isolator(_TableRow):
+class Isolator(TableRow):
     """A row of isolators.csv.
 
     Attributes
@@ -221,8 +206,8 @@ class Isolator(_TableRow):
         Who says so.
     """
 
-    name: Annotated[Name, AfterValidator(_said)]
-    kind: Name
+    name: Text
+    kind: str
     frequency: float
     damping: float
     friction: float
@@ -273,7 +258,7 @@ def _number_of(info: ValidationInfo) -> Quantity | None:
     return next((q for q in needs if q.name == column or (q.name, column) == ("friction_static", "friction")), None)
 
 
-RowT = TypeVar("RowT", bound=_TableRow)
+RowT = TypeVar("RowT", bound=TableRow)
 
 
 def _read(

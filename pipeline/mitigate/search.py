@@ -71,7 +71,7 @@ def advise(
     for at, some in enumerate(rounds):
         # What holds at all levels stands; the others are looked at level by level.
         stands = {key for key, found in advised.items() if found.measure not in LAST_RESORTS}
-        runner = TrialRunner(some, have.isolators, context, numerics, transmitted)
+        runner = TrialRunner(some, have.isolators, context, numerics, transmitted, have.values)
         search = _Search(runner, _deficiencies(scenes, findings, some, stands), unassessed)
         for done, measure in enumerate(have.measures, start=1):
             search.tries(measure)

@@ -20,6 +20,7 @@ from pipeline.models.common import largest_push, lift_ratios
 from pipeline.quantities import Array, G
 from pipeline.records import Check, Finding, Motion, Numerics, Scene, Verdict
 from pipeline.records.numerics import CHART
+from pipeline.tables.assumed import AssumedValues, assumed
 
 TRANSMITTED_ERROR = 0.03
 """Error that the sampling of what an isolator passes on may bring to an oscillator of 20 Hz on it.
@@ -146,6 +147,8 @@ class TrialRunner:
         How finely: as the findings were made.
     transmitted : TransmittedMotions, optional
         What isolators pass on, kept from one runner to the next.
+    values : AssumedValues, optional
+        What is assumed of materials and surfaces; Kouros's own tables where it is left out.
     """
 
     def __init__(
@@ -155,7 +158,9 @@ class TrialRunner:
         context: Context,
         numerics: Numerics,
         transmitted: TransmittedMotions | None = None,
+        values: AssumedValues | None = None,
     ) -> None:
+        self.values = values or assumed()
         self.levels, self._isolators = tuple(levels), tuple(isolators)
         self._context, self._numerics = context, numerics
         transmitted = transmitted or TransmittedMotions()

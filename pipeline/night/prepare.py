@@ -26,14 +26,14 @@ from pipeline.night.context import RunContext, motions_of
 from pipeline.night.figures import Pictures
 from pipeline.night.floors import floors_of, notes
 from pipeline.night.reading_summary import told
-from pipeline.night.source_state import rules_digest
+from pipeline.night.source_state import rules_digest, tables_digest
 from pipeline.night.unit_tasks import ChartTask
 from pipeline.operations.presentation import presentation
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Model, Progress, RunRecord, Scene
 from pipeline.report.pages.reading import INVENTORY, READING
 from pipeline.resources import code_version
-from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, PICTURES, RULES
+from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES, TABLES
 from pipeline.verification import selftest, tradeoff
 
 FRAGILE, SURVEYED = 1e8, 2e8
@@ -67,8 +67,8 @@ def run_context(
                 UsageError for tables of the museum's own, ReportError for a language without a catalogue
     """
     settings = workspace.settings
-    # A catalogue of phrases that is missing is said before the night's work, not after it.
-    written = presentation(settings)
+    # What is wrong with the museum's own tables, or that a catalogue of phrases is missing, is said before the work.
+    rules, measures, written = workspace.rules, workspace.measures, presentation(settings)
     floors = floors_of(settings, site, chosen.galleries)
     motions = motions_of(floors)
     samples = sum(motion.acceleration.shape[1] for motion in motions.values())
@@ -102,8 +102,8 @@ def run_context(
         head=head,
         floors=floors,
         analysis=settings.analysis,
-        rules=workspace.rules,
-        measures=workspace.measures,
+        rules=rules,
+        measures=measures,
         surveyed=surveyed,
         fragile=fragile,
         stores=settings.display.stores,
@@ -193,9 +193,9 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
     settings = workspace.settings
     return {
         KERNELS: KERNEL_VERSION,
-        PICTURES: code_version(),
         CODE: code_version()[:12],
         RULES: rules_digest(settings),
+        TABLES: tables_digest(settings),
         LEVELS: {level.name: level.combine for level in site.levels},
         "credit": credit,
         "analysis": settings.analysis.model_dump(),

@@ -23,7 +23,7 @@ from pipeline.night.context import RunContext
 from pipeline.night.decision_review import now, standing
 from pipeline.night.page_tasks import PageTask, Rendered, render_page
 from pipeline.night.paging import PagePart, paged
-from pipeline.night.source_state import rules_digest
+from pipeline.night.source_state import rules_digest, tables_digest
 from pipeline.night.unit_tasks import (
     Assessments,
     ChartTask,
@@ -132,7 +132,7 @@ class NightRun:
     ) -> None:
         self.workspace, self.context, self._charts = workspace, context, charts
         self._index, self._decisions = index, decisions
-        keys = UnitKeys(context, rules_digest(workspace.settings))
+        keys = UnitKeys(context, rules_digest(workspace.settings), tables_digest(workspace.settings))
         self._pages = [_Shown(part, keys.units(part, decisions)) for part in paged(objects, workspace.settings)]
         placed = index.placed()
         for (gallery, shown), several in groupby(self._pages, lambda one: (one.part.gallery, one.part.on_display)):

@@ -71,4 +71,15 @@ def unchanged(workspace: Workspace, source: str, mapping: str) -> bool:
 def rules_digest(settings: Settings) -> str:
     """Return a digest of the museum's own rules of classification; "" where it has none."""
     own = settings.collection.rules
-    return hashlib.sha256(settings.path(own).read_bytes()).hexdigest()[:12] if own else ""
+    return _file_digest(settings, own) if own else ""
+
+
+def tables_digest(settings: Settings) -> dict[str, str]:
+    """Return digests of the museum's own rows of what is assumed, by table; those that it has none of are left out."""
+    return {name: _file_digest(settings, file) for name, file in settings.tables.model_dump().items() if file}
+
+
+def _file_digest(settings: Settings, file: str) -> str:
+    """Return a digest of a file of the museum's, with its name, which reports give as the origin of what is in it."""
+    path = settings.path(file)
+    return hashlib.sha256(path.name.encode("utf-8", "surrogateescape") + b"\0" + path.read_bytes()).hexdigest()[:12]

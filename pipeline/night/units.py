@@ -36,10 +36,10 @@ class Unit:
 class UnitKeys:
     """The keys of the units of a run.
 
-    A key is a digest of the version of the code that computes, with its libraries and tables; of the settings, rules,
-    measures and isolators, and which response charts are used; of the shaking of the floor; of the records of the
-    unit's objects, without what nothing computed rests on; and of the decisions about them that change what is
-    computed.
+    A key is a digest of the version of the code that computes, with its libraries and tables; of the settings, the
+    museum's own rules and tables, measures and isolators, and which response charts are used; of the shaking of the
+    floor; of the records of the unit's objects, without what nothing computed rests on; and of the decisions about
+    them that change what is computed.
 
     Parameters
     ----------
@@ -47,20 +47,22 @@ class UnitKeys:
         Of the run.
     rules
         Digest of the museum's own rules of classification; "" where it has none.
+    tables
+        Digests of the museum's own rows of what is assumed, by table.
     """
 
-    def __init__(self, context: RunContext, rules: str) -> None:
+    def __init__(self, context: RunContext, rules: str, tables: Mapping[str, str]) -> None:
         analysis = context.analysis.model_dump(exclude={"workers", "fragility"})
         measures = repr(context.measures)
         charts = None if context.admitted is None else sorted(context.admitted)
-        asked = (sorted(analysis.items()), rules, measures, context.surveyed, context.fragile, charts)
+        told = (rules, sorted(tables.items()), measures)
+        asked = (sorted(analysis.items()), told, context.surveyed, context.fragile, charts)
         self._shaken = {
             name: seal(code_version(), repr((asked, _shaking(floor)))) for name, floor in context.floors.items()
         }
         # What is left aside is only classed, and stands as it was installed: no motion and no fidelity has a say in it.
         self._aside = {
-            name: seal(code_version(), repr((rules, measures, context.surveyed, "aside", name)))
-            for name in context.floors
+            name: seal(code_version(), repr((told, context.surveyed, "aside", name))) for name in context.floors
         }
         self._stores = context.stores
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from pipeline.mitigate import MeasureCatalogue
     from pipeline.motions.site import Site
     from pipeline.settings import Settings
+    from pipeline.tables.assumed import AssumedValues
 
 IMPORTS = "imports"
 """Folder beside the settings that holds the log of every import that changed something."""
@@ -53,7 +54,7 @@ class Workspace:
 
     @cached_property
     def rules(self) -> "RuleTable | None":
-        """The rules of classification, where the museum has some of its own.
+        """The rules of classification with what is assumed of each class, where the museum has some of its own.
 
         Raises
         ------
@@ -65,7 +66,29 @@ class Workspace:
         from pipeline.analysis.rules import with_own
 
         path = self._own(self.settings.collection.rules, "[collection] rules names the file of your own rules")
-        return None if path is None else with_own(path)
+        own = path is not None or any(self.settings.tables.model_dump().values())
+        return with_own(path, self.values) if own else None
+
+    @cached_property
+    def values(self) -> "AssumedValues":
+        """What is assumed where a record is silent, with the museum's rows in place of Kouros's.
+
+        Raises
+        ------
+        UsageError
+            For a file that is not there.
+        TableError
+            For one that cannot be used.
+        """
+        from pipeline.models import MODELS
+        from pipeline.tables.assumed import assumed, assumed_with
+
+        own = {}
+        for name, file in self.settings.tables.model_dump().items():
+            path = self._own(file, f"[tables] {name} names the file of your own rows")
+            if path is not None:
+                own[name] = path
+        return assumed_with(own, [model.name for model in MODELS]) if own else assumed()
 
     @cached_property
     def measures(self) -> "MeasureCatalogue":
@@ -84,6 +107,7 @@ class Workspace:
         return measure_catalogue(
             self._own(wanted.measures, "[mitigation] measures names the file of your own measures"),
             self._own(wanted.catalogue, "[mitigation] catalogue names the file of your own isolators"),
+            self.values,
         )
 
     def object_index(self) -> "ObjectIndex":

@@ -17,7 +17,7 @@ from pipeline.models import MODELS
 from pipeline.models.common import NOTES
 from pipeline.records import Item
 from pipeline.report.text import bare
-from pipeline.tables import table
+from pipeline.tables.assumed import assumed
 
 _Found = tuple[int, str, str, list[str]]
 
@@ -67,7 +67,7 @@ def _of_measures() -> Iterator[str]:
         sentence = measure.row.sentence
         yield from (measure.row.title, sentence, *measure.phrases)
         if "{surface}" in sentence:
-            surfaces = dict.fromkeys(pair["surface_material"].lower() for pair in table("friction"))
+            surfaces = dict.fromkeys(pair.surface_material.lower() for pair in assumed().friction)
             yield from (sentence.replace("{surface}", surface) for surface in surfaces)
         if "{what}" in sentence:
             yield sentence.replace("{what}", IT).replace(" {how}", "")

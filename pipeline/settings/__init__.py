@@ -189,8 +189,25 @@ class Mitigation(_Part):
     )
 
 
+class OwnTables(_Part):
+    """Your own rows of what Kouros assumes where a record is silent; each takes the place of Kouros's of the same name.
+
+    A file has the columns of Kouros's table, and the rows that you know better.
+    """
+
+    classes: str = Field(default="", description="a CSV file with the columns of Kouros's classes.csv")
+    materials: str = Field(default="", description="a CSV file with the columns of Kouros's materials.csv")
+    friction: str = Field(
+        default="",
+        description="a CSV file with the columns of Kouros's friction.csv: a row is known by its pair",
+    )
+    damping: str = Field(
+        default="", description="a CSV file with the columns of Kouros's damping.csv: a row is known by its pair"
+    )
+
+
 class Charts(_Part):
-    """How long response charts, histories and processed motions are kept, and how much room each may take."""
+    """How long response charts, histories, motions and their pictures are kept, and how much room each may take."""
 
     unused_days: float = Field(
         default=30.0, ge=1.0, le=3650.0, description="days after the last use of their motion, or of a history itself"
@@ -231,6 +248,7 @@ class Settings(_Part):
     display: DisplaySettings = DisplaySettings()
     analysis: Analysis = Analysis()
     execution: Execution = Execution()
+    tables: OwnTables = OwnTables()
     mitigation: Mitigation = Mitigation()
     charts: Charts = Charts()
     report: Report = Report()

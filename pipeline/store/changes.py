@@ -24,7 +24,7 @@ from pipeline.store import codec
 from pipeline.store.causes import Causes, MotionKey
 from pipeline.store.pages import Members, found_of, load_members
 from pipeline.store.results import DamagedRunError, fetch, outline_of, outlines
-from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES
+from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES, TABLES
 from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_PAGE
 
 _Place = tuple[Members, int, str, str, str, int]
@@ -227,6 +227,7 @@ def _settings(run: Mapping[str, Any]) -> dict[str, Any]:
     found |= {f"display.{name}": value for name, value in (kept.get(DISPLAY) or {}).items()}
     found["site.folder"] = kept.get("site")
     found["collection.rules"] = kept.get(RULES)
+    found |= {f"tables.{name}": digest for name, digest in (kept.get(TABLES) or {}).items()}
     found |= {f"levels.{name}": how for name, how in (kept.get(LEVELS) or {}).items()}
     return found
 

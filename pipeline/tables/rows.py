@@ -3,9 +3,19 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, TypeVar
 
-from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+)
 
-from pipeline.tables import Row, TableError
+from pipeline.tables import Range, Row, TableError
 
 Model = TypeVar("Model")
 
@@ -17,6 +27,12 @@ def _entries(cell: object) -> object:
     return tuple(filter(None, map(str.strip, cell.split("|")))) if isinstance(cell, str) else cell
 
 
+def _filled(cell: str) -> str:
+    if not cell.strip():
+        raise ValueError("is empty; every row needs it")
+    return cell
+
+
 Number = Annotated[float, Field(allow_inf_nan=False)]
 """A cell that holds a finite number."""
 
@@ -25,6 +41,64 @@ Optional = Annotated[Number | None, BeforeValidator(lambda cell: None if cell ==
 
 Entries = Annotated[tuple[str, ...], BeforeValidator(_entries)]
 """A cell whose entries are parted by `|`; empty ones do not count."""
+
+Text = Annotated[str, AfterValidator(_filled)]
+"""A cell that holds words."""
+
+
+class TableRow(BaseModel):
+    """A row all of whose columns are known; what stands around the words of a cell does not count."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", str_strip_whitespace=True)
+
+
+class RangeRow(TableRow):
+    """A row that states one value with its range, and who says so."""
+
+    value: Number
+    low: Number
+    high: Number
+    source: Text
+
+    @field_validator("high")
+    @classmethod
+    def _in_order(cls, high: float, info: ValidationInfo) -> float | None:
+        return in_order(high, info, "low", "value")
+
+    @property
+    def range(self) -> Range:
+        """Value, low and high, in the unit of the row."""
+        return Range(self.value, self.low, self.high, self.source)
+
+
+def in_order(high: float | None, info: ValidationInfo, low: str, value: str) -> float | None:
+    """Return the high end of a range.
+
+    Parameters
+    ----------
+    high : float or None
+        None for a range that is left out.
+    info : ValidationInfo
+        Of its validator; it holds the fields before it.
+    low, value : str
+        Names of the other two fields.
+
+    Returns
+    -------
+    float or None
+        The same.
+
+    Raises
+    ------
+    ValueError
+        Where the three are not in order.
+    """
+    three = (info.data.get(low), info.data.get(value), high)
+    # What was refused already is not there, and has its own message.
+    if None not in three and not three[0] <= three[1] <= high:  # type: ignore[operator]
+        shown = " ".join(f"{one:g}" for one in three if one is not None)
+        raise ValueError(f"{low} <= {value} <= {info.field_name} does not hold ({shown}); put them in order")
+    return high
 
 
 def checked(
@@ -74,6 +148,8 @@ def _one(adapter: TypeAdapter[Model], row: Row, where: str, named: str, context:
         own = first.get("ctx", {}).get("error")
         if first["type"] == "missing":
             said = "there is no such column"
+        elif first["type"] == "extra_forbidden":
+            said = "no column is called so; correct its name, or remove it"
         elif own is not None:
             said = str(own)
         else:

@@ -55,6 +55,7 @@ def _each(settings: Settings, workspace: Workspace | None) -> list[Diagnosis]:
     if workspace is not None:
         items = cache(partial(read_inventory, workspace.engine))
         looks += [
+            ("tables", lambda: _tables(workspace)),
             ("measures", lambda: _measures(workspace)),
             ("inventory", lambda: _inventory(workspace, items())),
             ("objects", lambda: _objects(workspace, items())),
@@ -116,6 +117,14 @@ def _motions(settings: Settings) -> tuple[str, str]:
 def _hashed(folder: Path, names: Sequence[str], most: int = 5) -> str:
     told = [f"{name} (sha256 {hashlib.sha256((folder / name).read_bytes()).hexdigest()})" for name in names[:most]]
     return ", ".join(told) + (f" and {len(names) - most:,} more" if len(names) > most else "")
+
+
+def _tables(workspace: Workspace) -> tuple[str, str]:
+    rules, own = workspace.rules, workspace.values.own
+    said = [f"{counted(number, 'row')} of {name}.csv" for name, number in own.items()]
+    if rules is not None and workspace.settings.collection.rules:
+        said.insert(0, f"rules in {workspace.settings.collection.rules}")
+    return "ok", f"your own: {', '.join(said)}" if said else "rules and assumed values are Kouros's own"
 
 
 def _measures(workspace: Workspace) -> tuple[str, str]:

@@ -16,13 +16,11 @@ from pipeline.mitigate import changed
 from pipeline.models import MODELS
 from pipeline.motions import read_motion
 from pipeline.quantities import G
-from pipeline.records import Estimate, Finding, Item, Motion, Numerics, Origin, Scene, Support, Verdict
+from pipeline.records import Estimate, Finding, Motion, Numerics, Origin, Scene, Support, Verdict
 from pipeline.resources import resource
+from tests.museum import PAINTING, VASE
 
-VASE = Item("1", "G", title="Covered vase", classification="Ceramics", medium="porcelain",
-            height_m=0.4, width_m=0.2, depth_m=0.2)  # fmt: skip
 PLATE = replace(VASE, object_number="2", title="Plate", height_m=0.03, width_m=0.3, depth_m=0.3)
-PAINTING = Item("3", "G", title="Landscape", classification="paintings", height_m=1.0, width_m=1.2)
 LOST = replace(VASE, object_number="4", height_m=None)
 
 

@@ -12,7 +12,8 @@ from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.night.importing import bundled_collection
 from pipeline.records import Item, Origin, Support
-from pipeline.tables import Row, friction_of, table
+from pipeline.tables import Row, table
+from pipeline.tables.assumed import assumed, span
 
 VASE = Item("1", "G", title="Covered vase", classification="Ceramics", medium="porcelain",
             height_m=0.4, width_m=0.2, depth_m=0.2)  # fmt: skip
@@ -146,23 +147,23 @@ def test_every_range_of_class_and_material_travels_to_the_models(row: Row, mater
         assert estimate.low <= estimate.value <= estimate.high, name
         assert estimate.source or estimate.origin is Origin.DERIVED, name
     found = scene.parameters
-    span = ("low", "value", "high")
+    ends = ("low", "value", "high")
     clearance = [float(row[c]) for c in ("clearance_low", "clearance", "clearance_high")]
-    assert [getattr(found["clearance"], s) for s in span] == clearance
+    assert [getattr(found["clearance"], s) for s in ends] == clearance
     if row["support"] != "freestanding":
         assert {"length", "damping"} <= set(found)
         return
     shares = [item.height_m * float(row[c]) for c in ("cg_low", "cg_ratio", "cg_high")]  # type: ignore[operator]
-    assert [getattr(found["cg_height"], s) for s in span] == pytest.approx(shares)
+    assert [getattr(found["cg_height"], s) for s in ends] == pytest.approx(shares)
     halves = [0.15 * float(row[c]) for c in ("base_low", "base_ratio", "base_high")]
-    assert [getattr(found["half_width"], s) for s in span] == pytest.approx(halves)
-    friction = friction_of(stuff["friction_as"])
-    assert [getattr(found["friction_static"], s) for s in span] == [friction.low, friction.value, friction.high]
+    assert [getattr(found["half_width"], s) for s in ends] == pytest.approx(halves)
+    friction = span(assumed().friction_of(stuff["friction_as"]))
+    assert [getattr(found["friction_static"], s) for s in ends] == [friction.low, friction.value, friction.high]
     tensile = [float(stuff[c]) for c in ("tensile_low", "tensile", "tensile_high")]
-    assert [getattr(found["allowable_stress"], s) for s in span] == tensile
+    assert [getattr(found["allowable_stress"], s) for s in ends] == tensile
     box = 0.3 * 0.3 * item.height_m * (pi / 4 if row["round"] == "yes" else 1.0)  # type: ignore[operator]
     masses = [box * float(row[f"fill{end}"]) * float(stuff[f"density{end}"]) for end in ("_low", "", "_high")]
-    assert [getattr(found["mass"], s) for s in span] == pytest.approx(masses)
+    assert [getattr(found["mass"], s) for s in ends] == pytest.approx(masses)
 
 
 def test_no_class_is_given_a_frequency_that_nobody_measured() -> None:
@@ -229,10 +230,10 @@ def test_a_recorded_support_changes_the_models() -> None:
 
 
 def test_the_material_is_the_word_that_stands_first() -> None:
-    assert material_of(replace(VASE, medium="marble on a bronze base"))["material"] == "marble"
-    assert material_of(replace(VASE, medium="bronze on a marble base"))["material"] == "bronze"
-    assert material_of(replace(VASE, medium="mixed media"))["material"] == "unknown"
-    assert material_of(replace(VASE, medium="oil on masonite"))["material"] == "unknown"  # no "stone" inside a word
+    assert material_of(replace(VASE, medium="marble on a bronze base")).name == "marble"
+    assert material_of(replace(VASE, medium="bronze on a marble base")).name == "bronze"
+    assert material_of(replace(VASE, medium="mixed media")).name == "unknown"
+    assert material_of(replace(VASE, medium="oil on masonite")).name == "unknown"  # no "stone" inside a word
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,8 @@ from pipeline.collection.reading import read_items
 from pipeline.night.importing import bundled_collection
 from pipeline.records import Item
 from pipeline.tables import Row, TableError
+from pipeline.tables.assumed import assumed
 
-CLASSES = frozenset({"vessel", "object"})
 LAST = {"rule": "rest", "class": "object"}
 
 
@@ -130,18 +130,18 @@ def test_most_rules_are_used_by_one_real_collection_and_the_last_holds_for_the_r
 def test_a_mistake_in_the_table_is_named(cells: dict[str, str], message: str) -> None:
     first = row(**{"rule": "a", "class": "vessel", "words": "vase", **cells})
     with pytest.raises(TableError, match=message):
-        read_rules((first, row(**LAST)), CLASSES)
+        read_rules((first, row(**LAST)), assumed())
 
 
 def test_the_last_row_must_take_the_rest() -> None:
     with pytest.raises(TableError, match="line 2: the last row must have no conditions"):
-        read_rules((row(rule="a", words="vase", **{"class": "vessel"}),), CLASSES)
+        read_rules((row(rule="a", words="vase", **{"class": "vessel"}),), assumed())
     with pytest.raises(TableError, match="has no rows"):
-        read_rules((), CLASSES)
+        read_rules((), assumed())
 
 
 def test_a_row_that_only_names_identifiers_takes_nothing_else() -> None:
-    table = read_rules((row(rule="a", aat="300132254", **{"class": "vessel"}), row(**LAST)), CLASSES)
+    table = read_rules((row(rule="a", aat="300132254", **{"class": "vessel"}), row(**LAST)), assumed())
     assert rule_for(Item("1", "G", title="vase"), table).rule.name == "rest"
     assert rule_for(Item("1", "G", aat="300132254"), table).rule.name == "a"
 

@@ -229,7 +229,7 @@ GOOD = "B1,Hall,Bust,10,\n"
         ('A1,Hall,"Vase,,\n', "", "not a row of a CSV file"),
         ("A1,Hall,Va\0se,,\n", "", "a NUL byte in cell 3"),
         (b"A1,Hall,Vas\xe9,,\n", "", "byte 0xe9 at character 4 of cell 3 cannot be read as utf-8"),
-        (f"A1,Hall,{'x' * (FIELD_LIMIT + 1)},,\n", "", "field larger than field limit"),
+        (f"A1,Hall,{'x' * (FIELD_LIMIT + 1)},,\n", "", "a cell of more than 1,048,576 characters"),
     ],
 )
 def test_a_broken_row_is_named_and_the_rest_goes_on(bad: str | bytes, field: str, message: str, read: Read) -> None:
@@ -241,6 +241,24 @@ def test_a_broken_row_is_named_and_the_rest_goes_on(bad: str | bytes, field: str
     assert rejected.message.startswith("museum.csv, row 2 (line 3): ")
     assert message in rejected.message
     assert rejected.remedy
+
+
+def test_a_text_longer_than_the_csv_modules_own_limit_is_read(read: Read) -> None:
+    """131,072 characters are what Python's reader takes unasked; a provenance may be longer, up to Kouros's limit."""
+    long = "x" * FIELD_LIMIT
+    reading = read(f'{HEADER}A1,Hall,"{long[:200_000]}",,\nA2,Hall,"{long}",,\n{GOOD}')
+    assert [item.object_number for item in reading.items] == ["A1", "A2", "B1"]
+    assert not reading.rejected
+
+
+@pytest.mark.parametrize("cell", ["x" * (FIELD_LIMIT + 1), '"' + f"{'x' * 4999}\n" * (FIELD_LIMIT // 5000 + 1) + '"'])
+def test_a_cell_beyond_the_limit_says_what_to_do(cell: str, read: Read) -> None:
+    """Also where the cell goes over many lines, which are then rows of their own and are each refused."""
+    reading = read(f"{HEADER}A1,Hall,{cell},,\n{GOOD}")
+    first = reading.rejected[0]
+    assert first.message.startswith("museum.csv, row 1 (line 2): a cell of more than 1,048,576 characters")
+    assert "shorten it" in first.remedy
+    assert [item.object_number for item in reading.items] == ["B1"]
 
 
 @pytest.mark.parametrize(

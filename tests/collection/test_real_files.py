@@ -10,16 +10,10 @@ import pytest
 from pipeline.collection.guess import guess
 from pipeline.collection.mapping import DIAMETER, load_mapping
 from pipeline.collection.measured_cell import of_cell
-from pipeline.collection.reading import NOWHERE, Reading, read_items
+from pipeline.collection.reading import NOWHERE
 from pipeline.collection.record import item_schema, to_records
 from pipeline.records import Item, Origin
-
-DATA = Path(__file__).resolve().parents[1] / "data" / "collections"
-FILES = {"met_27_rows_cp1252": "met", "tms_rows_cut_off": "tms", "moma_rows": "moma"}
-
-
-def read(name: str) -> Reading:
-    return read_items(DATA / f"{name}.csv", load_mapping(FILES[name]))
+from tests.collection.real_exports import DATA, FILES, read
 
 
 def item(name: str, number: str) -> Item:

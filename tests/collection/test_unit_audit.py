@@ -11,7 +11,7 @@ import pytest
 
 from pipeline.collection.mapping import PRESETS, Mapping, load_mapping
 from pipeline.collection.reading import Reading, read_items
-from pipeline.tables import material_in, number
+from pipeline.tables.assumed import assumed
 
 MAPPING = """
 [source]
@@ -40,10 +40,10 @@ def bodies() -> list[tuple[str, list[float], float]]:
     out = []
     for row in rows:
         sides = [float(row[f"item_{side}"]) for side in ("height", "width", "depth")]
-        material = material_in(row["medium"])
+        material = assumed().material_in(row["medium"])
         if material is not None and all(sides) and min(sides) > 1.0 and max(sides) < 100.0:
             volume = sides[0] * sides[1] * sides[2] * 0.0254**3
-            out.append((row["medium"], sides, volume * number(material, "density", "") * random.uniform(0.05, 0.6)))
+            out.append((row["medium"], sides, volume * material.density * random.uniform(0.05, 0.6)))
     return out[:300]
 
 

@@ -151,11 +151,11 @@ def test_an_error_comes_back_as_it_was_raised(workers: WorkerPool, tmp_path: Pat
 def test_an_unexpected_error_of_a_process_says_where_in_kouros_it_was_raised(
     processes: WorkerPool, tmp_path: Path
 ) -> None:
-    from pipeline.tables import number
+    from pipeline.quantities import counted
 
     with pytest.raises(TypeError) as caught:
-        list(processes.each(work.calls, Shared(tmp_path), [number]))
-    assert "(tables/__init__.py, line " in fault_words(caught.value)
+        list(processes.each(work.calls, Shared(tmp_path), [counted]))
+    assert "(quantities.py, line " in fault_words(caught.value)
     assert "In a worker process" in caught.value.__notes__[0]
 
 

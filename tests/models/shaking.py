@@ -46,3 +46,10 @@ def turned(motion: Motion, degrees: float) -> Motion:
 def times(motion: Motion, horizontal: float, vertical: float) -> Motion:
     """Return the motion with its components multiplied."""
     return Motion(motion.dt, motion.acceleration * np.array([[horizontal], [horizontal], [vertical]]))
+
+
+def base_displacement(a: Array, dt: float) -> tuple[Array, Array]:
+    """Return velocity and displacement (n,) of a base at its samples: exact for the polygon."""
+    v = np.concatenate([[0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1]))])
+    u = np.concatenate([[0.0], np.cumsum(v[:-1] * dt + dt**2 * (2.0 * a[:-1] + a[1:]) / 6.0)])
+    return v, u

@@ -8,8 +8,8 @@ import golden
 import numpy as np
 import pandas as pd
 import pytest
+from parameters import VALID
 from shaking import along_x, random_motion, times, turned
-from test_response import VALID
 
 from pipeline import Motion, read_motion, respond
 from pipeline.analysis.model_runs import prepare

@@ -5,8 +5,7 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
-from shaking import along_x, random_motion, resampled
-from test_sliding import base_displacement
+from shaking import along_x, base_displacement, random_motion, resampled
 
 from pipeline import Motion, respond, trace
 

@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from parameters import VALID
 from shaking import along_x, random_motion, resampled, times, turned
-from test_response import VALID
 
 from pipeline import Motion, respond, trace
 from pipeline.analysis.model_runs import prepare

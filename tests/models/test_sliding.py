@@ -7,10 +7,10 @@ import pytest
 from golden import formula
 from scipy.integrate import quad
 from scipy.optimize import brentq
-from shaking import along_x, random_motion
+from shaking import along_x, base_displacement, random_motion
 
 from pipeline import Motion, respond, trace
-from pipeline.quantities import Array, G
+from pipeline.quantities import G
 
 
 @pytest.mark.parametrize("samples", [2, 41])
@@ -40,13 +40,6 @@ def test_rectangular_pulse_worked_value() -> None:
     """Newmark 1965, worked: mu 0.2, 0.5 g, 0.2 s slides 0.14709975 m."""
     row = respond("sliding", along_x([-0.5 * G] * 2, 0.2), friction_static=0.2, directions=1).iloc[0]
     assert row["displacement"] == pytest.approx(formula("newmark_rectangular_pulse", mu=0.2), rel=1e-12)
-
-
-def base_displacement(a: Array, dt: float) -> tuple[Array, Array]:
-    """Return velocity and displacement (n,) of a base at its samples: exact for the polygon."""
-    v = np.concatenate([[0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1]))])
-    u = np.concatenate([[0.0], np.cumsum(v[:-1] * dt + dt**2 * (2.0 * a[:-1] + a[1:]) / 6.0)])
-    return v, u
 
 
 @pytest.mark.parametrize("directions", [1, 2])

@@ -39,6 +39,16 @@ NAMES = ("Vase", "Vase", "Bowl", "Plate", "Painting", "Figurine")
 FLOOR = '\n[[floor]]\nname = "2"\nheight_ratio = 0.5\nperiod_s = 0.4\n'
 RULES = "rule,class,aat,classification,words,medium,shape,why\nours,{},,,{},,,ours\n"
 ISOLATORS = "name,kind,frequency,damping,friction,stroke,source\nours,friction_isolator,,,{},,the maker\n"
+FRICTION = "object_material,surface_material,value,low,high,source\nMarble,Formica,{0},{0},{0},tilt tests\n"
+
+
+def vessels(clearance: float) -> str:
+    """A museum's own row of classes.csv: Kouros's of vessels with another clearance."""
+    header, *rows = Path(tables.__file__).with_name("classes.csv").read_text(encoding="utf-8").splitlines()
+    (row,) = (row for row in rows if row.startswith("vessel,"))
+    before, after = ",0.10,0.05,0.30,", f",{clearance},0.05,0.30,"
+    assert before in row
+    return f"{header}\n{row.replace(before, after)}\n"
 
 
 def measures(limit: float) -> str:
@@ -270,6 +280,12 @@ class Changing:
         self.set("catalogue", self.random.choice(('"isolators.csv"', '""')))
         self.tables["isolators.csv"] = ISOLATORS.format(self.random.choice(("0.05", "0.15")))
 
+    def own_rows(self) -> None:
+        self.set("classes", self.random.choice(('"classes.csv"', '""')))
+        self.tables["classes.csv"] = vessels(self.random.choice((0.06, 0.2)))
+        self.set("friction", self.random.choice(('"friction.csv"', '""')))
+        self.tables["friction.csv"] = FRICTION.format(self.random.choice((0.1, 0.4)))
+
     def other_floors(self) -> None:
         self.upstairs = self.random.choice(([], ["A"], ["B"], ["A", "C"]))
 
@@ -313,7 +329,8 @@ class Changing:
             self.swap_rows, self.add_row, self.remove_row, self.change_row, self.change_row, self.make_alike,
             self.exchange_numbers, self.reorder_columns, self.other_line_ends, self.rename_gallery, self.lay_sheet_over,
             self.other_v_max, self.other_scale, self.other_settings, self.stores, self.own_rules, self.own_measures,
-            self.own_isolators, self.other_floors, self.decide, self.withdraw, self.run_a_part, self.go_back,
+            self.own_isolators, self.own_rows, self.other_floors, self.decide, self.withdraw, self.run_a_part,
+            self.go_back,
         ]  # fmt: skip
 
 

@@ -25,8 +25,7 @@ from pipeline.records import Estimate, Finding, Item, Motion, Origin, Scene, Sup
 from pipeline.records.numerics import Numerics
 from pipeline.settings import Settings, load_settings
 from pipeline.store.runs import load_run
-from tests.analysis.test_assess import PAINTING, VASE
-from tests.museum import SILENT, kouros, workspace
+from tests.museum import PAINTING, SILENT, VASE, kouros, workspace
 
 pytestmark = pytest.mark.slow_file
 

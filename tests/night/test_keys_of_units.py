@@ -16,12 +16,14 @@ from pipeline import resources
 from pipeline.night import scheduler
 from pipeline.night.context import RunContext
 from pipeline.night.page_tasks import PageTask, Rendered
+from pipeline.night.run import run
 from pipeline.night.unit_tasks import Assessments, UnitTask
-from pipeline.operations.workspace import open_workspace
+from pipeline.operations.workspace import UsageError, open_workspace
 from pipeline.records import DecisionKind
 from pipeline.report.files import page_renderer, report_writer
 from pipeline.tools.decisions import Wish, decide
-from tests.night.changing import ISOLATORS, RULES, Changing, measures
+from tests.museum import SILENT
+from tests.night.changing import FRICTION, ISOLATORS, RULES, Changing, measures, vessels
 
 
 @dataclass
@@ -73,9 +75,10 @@ def alike_in_no_way(museum: Changing) -> None:
         row |= {"position_x_m": f"{n}" if gallery == "A" else "", "position_y_m": "0" if gallery == "A" else ""}
         museum.rows.append(row)
     museum.tables = {
-        "rules.csv": RULES.format("bust", "vase"), "measures.csv": measures(0.2), "isolators.csv": ISOLATORS.format(0.1)
+        "rules.csv": RULES.format("bust", "vase"), "measures.csv": measures(0.2), "classes.csv": vessels(0.2),
+        "isolators.csv": ISOLATORS.format(0.1), "friction.csv": FRICTION.format(0.2),
     }  # fmt: skip
-    for name in ("rules", "measures"):
+    for name in ("rules", "measures", "friction"):
         museum.set(name, f'"{name}.csv"')
     museum.set("catalogue", '"isolators.csv"')
 
@@ -124,6 +127,16 @@ def limits(museum: Changing) -> None:
 
 def isolator(museum: Changing) -> None:
     museum.tables["isolators.csv"] = ISOLATORS.format(0.2)
+
+
+def friction(museum: Changing) -> None:
+    museum.tables["friction.csv"] = FRICTION.format(0.3)
+
+
+def another_name(museum: Changing) -> None:
+    """The same rows in a file of another name, which reports give as their origin."""
+    museum.tables["tilt.csv"] = museum.tables["friction.csv"]
+    museum.set("friction", '"tilt.csv"')
 
 
 def setting(name: str, value: str) -> Callable[[Changing], None]:
@@ -219,6 +232,9 @@ def accepted(museum: Changing) -> None:
         (rules, ALL),
         (limits, ALL),
         (isolator, ALL),
+        (friction, ALL),
+        (another_name, ALL),
+        (setting("classes", '"classes.csv"'), ALL),
         # A setting of each group.
         (setting("name", '"Another museum"'), PAGES),
         (setting("shrink_limit", "0.5"), NOTHING),
@@ -263,6 +279,14 @@ def test_what_a_change_costs(
     change(museum)
     museum.night()
     assert done.numbers() == expected
+
+
+def test_an_own_table_that_is_not_there_ends_the_night_before_its_work(museum: Changing, done: Done) -> None:
+    museum.set("friction", '"gone.csv"')
+    museum.write()
+    with pytest.raises(UsageError, match=r"gone\.csv is not there; \[tables\] friction names the file"):
+        run(museum.settings, SILENT)
+    assert done.numbers() == NOTHING
 
 
 @pytest.fixture

@@ -18,6 +18,7 @@ from pipeline.settings import DATABASE_VARIABLE, Settings, load_settings
 from pipeline.tools.decisions import Wish, decide
 from pipeline.tools.rerender import compare
 from tests.museum import SILENT, edit, kouros, short_site, workspace
+from tests.night.changing import vessels
 
 pytestmark = pytest.mark.slow_file
 
@@ -104,6 +105,16 @@ def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.
     assert {cause for v in changes.verdicts for cause in {c.kind for c in v.causes}} <= {CauseKind.SETTINGS}
     assert changes.inputs[0].fields[0].name == "scene.object_class"
     edit(toml, 'rules = "own.csv"', 'rules = ""')
+    night(tmp_path)
+
+    # Settings: the museum knows better how much room its vessels have.
+    (tmp_path / "own.csv").write_text(vessels(0.06), encoding="utf-8")
+    edit(toml, 'classes = ""', 'classes = "own.csv"')
+    changes = night(tmp_path)
+    assert [f.name for f in changes.settings] == ["tables.classes"]
+    assert {cause for v in changes.verdicts for cause in {c.kind for c in v.causes}} <= {CauseKind.SETTINGS}
+    assert "parameters.clearance" in {field.name for field in changes.inputs[0].fields}
+    edit(toml, 'classes = "own.csv"', 'classes = ""')
     night(tmp_path)
 
     # Decision: room that is there now.

@@ -1,6 +1,7 @@
 """The paper's Figures 4, 5 and 6: pictures of response charts, which say how far off they may be."""
 
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -10,14 +11,16 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.figures import chart_keys, draw
 from pipeline.analysis.response import respond
 from pipeline.analysis.response_charts import ChartCache, ResponseChart
-from pipeline.cache import CHARTS
+from pipeline.cache import CHARTS, PICTURES, CacheWarning
 from pipeline.execute import Threads
 from pipeline.models import model_named
 from pipeline.models.common import lift_ratios
 from pipeline.models.swing import PICTURED_EVERY
 from pipeline.motions.synthesis import band_limited_random
+from pipeline.night import figures
 from pipeline.quantities import Array, G
-from pipeline.records import Chart, ChartFigure, Motion
+from pipeline.records import Chart, ChartFigure, Motion, Silent
+from pipeline.settings import KEPT, Settings
 
 pytestmark = pytest.mark.slow_file
 
@@ -40,7 +43,7 @@ def motion() -> Motion:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("charts")
+    return tmp_path_factory.mktemp("charts") / KEPT
 
 
 @pytest.fixture(scope="module")
@@ -117,3 +120,65 @@ def test_read_back_it_is_the_same_picture(
     names = [file.name for file in (folder / CHARTS).iterdir()]
     assert len(names) == 1 + len(SWINGS) + len(ISOLATORS)
     assert all(motion.hash[:16] in name for name in names)
+
+
+@pytest.fixture
+def kept(drawn: dict[str, Chart], folder: Path, tmp_path: Path) -> Path:
+    """A cache with the response charts of the motion, so that drawing takes no time, and no pictures yet."""
+    assert drawn
+    return Path(shutil.copytree(folder / CHARTS, tmp_path / KEPT / CHARTS)).parent
+
+
+@pytest.fixture
+def drawing(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The motions whose pictures were drawn, in their order; their hashes."""
+    done: list[str] = []
+
+    def counted(motion: Motion, context: Context) -> dict[str, Chart]:
+        done.append(motion.hash)
+        return draw(motion, context)
+
+    monkeypatch.setattr(figures, "draw", counted)
+    return done
+
+
+def pictures_of(folder: Path, *motions: Motion) -> dict[str, Chart]:
+    pictures = figures.Pictures(Settings(home=folder.parent))
+    try:
+        return pictures.of(motions, Silent())
+    finally:
+        pictures.close()
+
+
+def test_pictures_are_kept_by_the_content_of_their_motion(
+    drawn: dict[str, Chart], motion: Motion, kept: Path, drawing: list[str]
+) -> None:
+    """An unchanged motion costs nothing, whatever it is called; a damaged file is told, and drawn again."""
+    assert pictures_of(kept, motion) == drawn
+    assert pictures_of(kept, motion, motion.called("otherwise")) == drawn
+    assert drawing == [motion.hash]
+    (file,) = (kept / PICTURES).iterdir()
+    whole = file.read_bytes()
+    file.write_bytes(whole.replace(b"Drawn from", b"Drawm from"))
+    with pytest.warns(CacheWarning, match="not what was written"):
+        assert pictures_of(kept, motion) == drawn
+    assert drawing == 2 * [motion.hash]
+    assert file.read_bytes() == whole
+
+
+def test_pictures_of_another_motion_or_by_other_code_are_drawn(
+    motion: Motion, kept: Path, drawing: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whether they are there is asked, and no picture drawn: of a sample changed in its last digit, and by new code."""
+    pictures_of(kept, motion)
+    drawing.clear()
+    shaking = motion.acceleration.copy()
+    shaking[0, 100] = np.nextafter(shaking[0, 100], np.inf)
+    other = Motion(motion.dt, shaking, motion.name)
+    nothing: dict[str, Chart] = {}
+    monkeypatch.setattr(figures, "draw", lambda motion, _: drawing.append(motion.hash) or nothing)
+    pictures_of(kept, motion, other)
+    assert drawing == [other.hash] != [motion.hash]
+    monkeypatch.setattr("pipeline.cache.code_version", lambda: "0" * 64)
+    pictures_of(kept, motion)
+    assert drawing == [other.hash, motion.hash]

@@ -31,6 +31,7 @@ from pipeline.store.migrate import upgrade
 from pipeline.tools.doctor import diagnose
 from pipeline.tools.rerender import render_again
 from pipeline.tools.survey import add_measurements
+from tests.collection.real_exports import read
 from tests.museum import SILENT, workspace
 from tests.report import builder
 
@@ -229,8 +230,6 @@ def test_a_database_is_no_other_source(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["carnegie_2000", "met_27_rows_cp1252", "tms_rows_cut_off", "moma_rows"])
 def test_real_files_are_accounted_for(name: str, tmp_path: Path) -> None:
     """Rows of four real exports: rows, refusals and doubtful objects are those of the reading itself."""
-    from tests.collection.test_real_files import read
-
     reading = read_items(bundled_collection(), load_mapping("carnegie")) if "carnegie" in name else read(name)
     engine = open_database(tmp_path / "k.sqlite")
     upgrade(engine)

@@ -17,6 +17,8 @@ from pipeline.report import publish
 from pipeline.settings import Settings, load_settings
 from pipeline.tools.doctor import Diagnosis, diagnose
 from pipeline.tools.doctor_checks import OVERDUE_H
+from tests.museum import edit
+from tests.night.changing import FRICTION
 
 Museum = Callable[..., Path]
 
@@ -61,6 +63,18 @@ def test_a_night_that_is_overdue_stale_or_interrupted(museum: Museum) -> None:
         looked = found(folder)
     assert "a run is at work" in looked["last report"].message
     assert (looked["lock"].state, f"process {os.getpid()}" in looked["lock"].message) == ("warning", True)
+
+
+def test_tables_of_the_museums_own(museum: Museum) -> None:
+    folder = museum()
+    edit(folder / "kouros.toml", 'friction = ""', 'friction = "tilt.csv"')
+    looked = found(folder)["tables"]
+    assert (looked.state, "[tables] friction names the file" in looked.message) == ("wrong", True)
+    (folder / "tilt.csv").write_text(FRICTION.format(0.2), encoding="utf-8")
+    looked = found(folder)["tables"]
+    assert (looked.state, looked.message) == ("ok", "your own: 1 row of friction.csv")
+    (folder / "tilt.csv").write_text(FRICTION.format("steep"), encoding="utf-8")
+    assert "tilt.csv, line 2, object_material 'Marble': column 'value'" in found(folder)["tables"].message
 
 
 def test_hooks_that_cannot_be_told(museum: Museum, monkeypatch: pytest.MonkeyPatch) -> None:

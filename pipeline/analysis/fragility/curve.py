@@ -9,7 +9,8 @@ import numpy as np
 
 from pipeline.quantities import Array
 from pipeline.records.fragility import ABOVE, BELOW
-from pipeline.tables import Range, spread, table
+from pipeline.tables import Range, table
+from pipeline.tables.rows import RangeRow, Text, checked
 
 _LOG_ROOT = 0.5 * log(2.0 * pi)
 """Of the standard normal density: log f(z) = -z^2 / 2 - log sqrt(2 pi)."""
@@ -43,6 +44,12 @@ class Fit:
     bound: Sequence[str]
 
 
+class Dispersion(RangeRow):
+    """A row of dispersion.csv: standard deviation of ln [-]."""
+
+    name: Text
+
+
 @cache
 def stated(name: str) -> Range:
     """Return a dispersion of tables/dispersion.csv.
@@ -62,8 +69,8 @@ def stated(name: str) -> Range:
     KeyError
         For a name that the table does not have.
     """
-    rows = {row["name"]: row for row in table("dispersion")}
-    return spread(rows[name], "value", "low", "high", f"dispersion.csv, {name}")
+    rows = checked(Dispersion, table("dispersion"), "dispersion.csv", named="name")
+    return {row.name: row for row in rows}[name].range
 
 
 def fit(capacity: Array, least: Array, most: Array) -> Fit:

@@ -10,7 +10,7 @@ from typing import Annotated
 from pydantic import Field
 
 from pipeline.tables import table
-from pipeline.tables.rows import checked
+from pipeline.tables.rows import Entries, Text, checked
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +32,19 @@ class _Row:
     si: Annotated[Fraction, Field(gt=0)]
     smaller: str
     system: str
+    words: Entries
+
+
+@dataclass(frozen=True, slots=True)
+class _Word:
+    kind: Text
+    meaning: str
+    words: Entries
+
+
+@cache
+def _unit_rows() -> tuple[_Row, ...]:
+    return checked(_Row, table("dimension_units"), "dimension_units.csv", named="unit")
 
 
 @cache
@@ -48,18 +61,20 @@ def units() -> dict[str, LexiconUnit]:
     TableError
         Where a unit's value is no decimal number above zero.
     """
-    rows = checked(_Row, table("dimension_units"), "dimension_units.csv", named="unit")
-    return {r.unit: LexiconUnit(r.unit, r.kind, r.si.numerator, r.si.denominator, r.smaller, r.system) for r in rows}
+    return {
+        r.unit: LexiconUnit(r.unit, r.kind, r.si.numerator, r.si.denominator, r.smaller, r.system) for r in _unit_rows()
+    }
 
 
 @cache
 def unit_words() -> dict[str, LexiconUnit]:
     """Return the units by every word and mark that stands for one, in small letters."""
     by_name = units()
-    return {word: by_name[row["unit"]] for row in table("dimension_units") for word in row["words"].split("|")}
+    return {word: by_name[row.unit] for row in _unit_rows() for word in row.words}
 
 
 @cache
 def meanings() -> dict[str, tuple[str, str]]:
     """Return kind and meaning of every word that is not a unit, in small letters."""
-    return {word: (row["kind"], row["meaning"]) for row in table("dimension_words") for word in row["words"].split("|")}
+    rows = checked(_Word, table("dimension_words"), "dimension_words.csv", named="words")
+    return {word: (row.kind, row.meaning) for row in rows for word in row.words}

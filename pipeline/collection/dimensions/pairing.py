@@ -7,7 +7,7 @@ from functools import cache
 from pipeline.collection.dimensions.lexicon import LexiconUnit, units
 from pipeline.collection.dimensions.quantities import DimensionQuantity, troy
 from pipeline.collection.dimensions.result import DimensionNote
-from pipeline.tables import number, table
+from pipeline.collection.record import plausible
 
 _CLOSE = {"length": 0.003, "mass": 0.003}
 _SHARE = 0.03
@@ -224,8 +224,8 @@ def _of(kind: str) -> list[LexiconUnit]:
 
 @cache
 def _limits() -> tuple[float, float]:
-    row = next(r for r in table("plausible") if r["field"] == "height_m")
-    return number(row, "low", "plausible.csv"), number(row, "high", "plausible.csv")
+    row = plausible()["height_m"]
+    return row.low, row.high
 
 
 def _plausible(si: float) -> bool:

@@ -42,7 +42,7 @@ Encoding = Literal[
     "shift-jis",
 ]
 FIELD_LIMIT = 1 << 20
-"""Characters of one cell."""
+"""Characters of one cell: eight times what the csv module takes unasked, which a text of the museum's may exceed."""
 
 RECORD_LIMIT = 16 << 20
 """Characters of one row; a file without line ends must not fill the memory."""
@@ -150,11 +150,8 @@ class _Table:
                 except StopIteration:
                     break
                 except csv.Error as problem:
+                    fault = _row_fault(problem, lines.length)
                     lines.rewind()
-                    fault = (
-                        f"not a row of a CSV file: {problem}",
-                        "close every quotation mark, double those inside a cell, and see whether the file was cut off",
-                    )
                 except UnicodeDecodeError as problem:
                     raise CollectionError(
                         f"{file}, near line {start}: byte {problem.object[problem.start]:#04x} cannot be read as "
@@ -230,6 +227,20 @@ def _mark(binary: BufferedReader, file: str, encoding: str) -> int:
             f'{file}: begins with the mark of UTF-8, and the mapping says {encoding}; say encoding = "utf-8" there'
         )
     return len(BOM_UTF8) if marked else 0
+
+
+def _row_fault(problem: csv.Error, length: int) -> tuple[str, str]:
+    """Return why a row of so many characters is none, and what to do."""
+    # The csv module has one class for all its errors; no shorter row can hold such a cell.
+    if length > FIELD_LIMIT and "field limit" in str(problem):
+        return (
+            f"a cell of more than {FIELD_LIMIT:,} characters",
+            "shorten it or leave its column out, and see whether a quotation mark before it is never closed",
+        )
+    return (
+        f"not a row of a CSV file: {problem}",
+        "close every quotation mark, double those inside a cell, and see whether the file was cut off",
+    )
 
 
 def _cell_fault(cells: list[str], encoding: str) -> tuple[str, str]:

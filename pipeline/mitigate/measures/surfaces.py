@@ -9,7 +9,6 @@ from pipeline.mitigate.measures.base import FRICTION, NOT_FREE, Measure, movemen
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.records import Scene, Support
-from pipeline.tables import number, table
 
 
 class _RougherSurface(Measure, ABC):
@@ -45,18 +44,16 @@ class Surface(_RougherSurface):
     name = "surface"
     gives = ("friction", "movement", "surface")
 
-    def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:  # noqa: ARG002
+    def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
         """Propose the surfaces of Table 3 for the material of its base, least rough first."""
         refusal = self.unsuited(one)
         if refusal:
             return refusal
         item = one.scene.item
-        material = (item.base_material or material_of(item)["friction_as"]).strip().lower()
+        material = (item.base_material or material_of(item, runner.values).friction_as).strip().lower()
         least = one.scene.parameters["friction_static"].low
         pairs = [
-            (number(row, "low", "friction.csv"), row["surface_material"])
-            for row in table("friction")
-            if row["object_material"].lower() == material
+            (row.low, row.surface_material) for row in runner.values.friction if row.object_material.lower() == material
         ]
         rougher = sorted(pair for pair in pairs if least < pair[0] <= self.row.limit)
         candidates = []

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from functools import cache, partial
 from math import pi
+from typing import Literal
 
 import numpy as np
 
@@ -13,7 +14,8 @@ from pipeline.mitigate.proposals import Deficiency, Proposal, refused
 from pipeline.mitigate.trials import TrialRunner
 from pipeline.quantities import G
 from pipeline.records import Check, Estimate, Motion, Origin, Scene, Support, Verdict
-from pipeline.tables import Range, spread, table
+from pipeline.tables import Range, table
+from pipeline.tables.rows import RangeRow, Text, checked
 
 WAX = "museum wax"
 CHECKS = ("Wax, sideways", "Wax, uplift", "Shaking that wax holds")
@@ -63,6 +65,14 @@ class Wax(Measure):
         return self.one_trial(one, {"area": (area, "m2")}, finish=finish, checks=checks)
 
 
+class FixingStrength(RangeRow):
+    """A row of fixings.csv: a strength of a fixing, in the unit of its column."""
+
+    fixing: Text
+    property: Literal["tension", "shear", "acceleration"]
+    unit: Literal["Pa", "m/s2"]
+
+
 @cache
 def strengths(fixing: str) -> dict[str, Range]:
     """Return the rows of fixings.csv for one fixing, by property.
@@ -70,10 +80,10 @@ def strengths(fixing: str) -> dict[str, Range]:
     Raises
     ------
     TableError
-        For a row whose range is not in order.
+        For a row that cannot be used.
     """
-    rows = [row for row in table("fixings") if row["fixing"] == fixing]
-    return {row["property"]: spread(row, "value", "low", "high", f"fixings.csv, {fixing}") for row in rows}
+    rows = checked(FixingStrength, table("fixings"), "fixings.csv", named="fixing")
+    return {row.property: row.range for row in rows if row.fixing == fixing}
 
 
 def uplift_moment(scene: Scene, runner: TrialRunner) -> tuple[float, float]:

@@ -11,8 +11,9 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import toolbox
-from pipeline.motions.formats.toolbox import Lines, Orientation, Series, Source
+from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats.record_text import Lines, Source
+from pipeline.motions.formats.trace_headers import Orientation, Series
 from pipeline.quantities import Array
 
 _TITLE = re.compile(
@@ -41,7 +42,7 @@ _STAGES = {"raw": "V0", "uncorrected": "V1", "corrected": "V2"}
 
 def is_format(source: Source) -> bool:
     """Whether a source is a COSMOS file, from its first line and its integer header."""
-    lines = toolbox.head(source).splitlines()
+    lines = record_text.head(source).splitlines()
     title = _TITLE.search(lines[0]) if lines else None
     return title is not None and any(_HEADER.search(line) for line in lines[: int(title[2]) + 2])
 
@@ -61,7 +62,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     Returns
     -------
     obspy.Stream
-        In the unit that the file says (V0: counts).  `toolbox.make_trace` tells what a header holds.
+        In the unit that the file says (V0: counts).  `trace_headers.make_trace` tells what a header holds.
 
     Raises
     ------
@@ -70,7 +71,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     """
     from obspy import Stream
 
-    lines = toolbox.open_lines(source)
+    lines = record_text.open_lines(source)
     traces: list[Any] = []
     index = 0
     while index == 0 or not lines.blank_until_end(index):
@@ -91,7 +92,7 @@ def _channel(lines: Lines, top: int, traces: list[Any], headonly: bool) -> int:
     absent = (float(unknown[1]), float(unknown[2])) if unknown else (-999.0, -999.0)
     if len(integers) < 60 or len(reals) < 70:
         raise lines.error(at_integers, f"{len(integers)} integers and {len(reals)} reals; 60 and 70 are the least")
-    dt = toolbox.step(lines, at_reals, 0.001 * float(reals[61]))
+    dt = blocks.step(lines, at_reals, 0.001 * float(reals[61]))
     first = index
     series: dict[str, tuple[Array, int]] = {}
     while not _END.match(lines.text(index, "'End-of-data'")):
@@ -111,10 +112,10 @@ def _channel(lines: Lines, top: int, traces: list[Any], headonly: bool) -> int:
     if unit not in _UNITS:
         raise lines.error(first, f"{unit} is no code of a unit of acceleration", "see table 2 of the format")
     units = _UNITS[unit]
-    factor = _sensitivity(reals, absent[1]) if units == "counts" else toolbox.FACTORS[units]
+    factor = _sensitivity(reals, absent[1]) if units == "counts" else trace_headers.FACTORS[units]
     known = all(integers[i] != absent[0] for i in (39, 41, 42, 43, 44)) and reals[29] != absent[1]
     when = [*(integers[i] for i in (39, 41, 42, 43, 44)), reals[29]]
-    trace = toolbox.make_trace(
+    trace = trace_headers.make_trace(
         lines,
         data=values,
         dt=dt,
@@ -127,7 +128,7 @@ def _channel(lines: Lines, top: int, traces: list[Any], headonly: bool) -> int:
         network=names["network"],
         location=names["location"],
         channel=names["channel"],
-        start=toolbox.start_time(lines, at_integers, *map(float, when)) if known else None,
+        start=trace_headers.start_time(lines, at_integers, *map(float, when)) if known else None,
         start_is="record" if known else "unknown",
         headonly=headonly,
         peak={"acceleration": None if factor is None or reals[63] == absent[1] else factor * float(reals[63])},
@@ -143,15 +144,15 @@ def _header(lines: Lines, index: int, kind: str) -> tuple[Array, int]:
     if found[2].lower() != kind:
         raise lines.error(index, f"expected the {kind} header, found the {found[2].lower()} one")
     shape = lines.match(index, _FORMAT, "'Format=(10I8)' or alike")
-    return toolbox.fixed(lines, index + 1, int(found[1]), int(shape[1]), int(shape[2]), f"the {kind} header")
+    return blocks.fixed(lines, index + 1, int(found[1]), int(shape[1]), int(shape[2]), f"the {kind} header")
 
 
 def _series(lines: Lines, index: int) -> tuple[str, Array, int, int]:
     found = lines.match(index, _DATA, "'20000 acceleration pts, approx 100 secs, units=cm/sec2 (04), Format=(8F10.5)'")
     shape = lines.match(index, _FORMAT, "'Format=(10I8)' or alike")
-    count = toolbox.samples(lines, index, int(found[1]))
+    count = blocks.samples(lines, index, int(found[1]))
     kind = _KINDS[found[2].lower()]
-    values, end = toolbox.fixed(lines, index + 1, count, int(shape[1]), int(shape[2]), kind)
+    values, end = blocks.fixed(lines, index + 1, count, int(shape[1]), int(shape[2]), kind)
     return kind, values, int(found[4]), end
 
 
@@ -165,7 +166,7 @@ def _sensitivity(reals: Array, absent: float) -> float | None:
     microvolts, volts_per_g, gain = (float(reals[i]) for i in (21, 41, 46))
     if absent in {microvolts, volts_per_g, gain} or min(microvolts, volts_per_g, gain) <= 0.0:
         return None
-    return 1e-6 * microvolts / volts_per_g / gain * toolbox.FACTORS["g"]
+    return 1e-6 * microvolts / volts_per_g / gain * trace_headers.FACTORS["g"]
 
 
 def _names(text: list[str], comments: list[str], integers: Array, absent: float, dt: float) -> dict[str, Any]:
@@ -177,11 +178,11 @@ def _names(text: list[str], comments: list[str], integers: Array, absent: float,
     elif azimuth != absent and 0 <= azimuth <= 360:
         direction = float(azimuth) % 360.0
     else:
-        direction = toolbox.orientation(said[2]) if said else None
+        direction = trace_headers.orientation(said[2]) if said else None
     code = next((found for line in text if (found := _CODE.search(line))), None)
     station, network = (code[2], code[1]) if code else ("", "")
     number = int(said[1]) if said and said[1].isdigit() else max(0, int(integers[49]))
-    location, channel = f"{number:02d}" if number else "", toolbox.channel_code(1.0 / dt, direction, number)
+    location, channel = f"{number:02d}" if number else "", trace_headers.channel_code(1.0 / dt, direction, number)
     if scnl := next((found for line in comments if (found := _SCNL.search(line))), None):
         station, channel, network, location = scnl[1], scnl[2], scnl[3], scnl[4].replace("-", "")
     return {

@@ -12,8 +12,9 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import toolbox
-from pipeline.motions.formats.toolbox import NUMBER, Lines, Series, Source
+from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats.record_text import NUMBER, Lines, Source
+from pipeline.motions.formats.trace_headers import Series
 from pipeline.quantities import Array
 
 _TITLE = re.compile(r"^\s*(un)?corrected accelerogram\b", re.IGNORECASE)
@@ -47,7 +48,7 @@ _UNITS = {"g": "g", "cm/sec/sec": "cm/s2", "cm/sec2": "cm/s2", "cm/sec**2": "cm/
 
 def is_format(source: Source) -> bool:
     """Whether a source is a CSMIP file of volume 1 or 2, from its first channel's header."""
-    lines = toolbox.head(source).splitlines()
+    lines = record_text.head(source).splitlines()
     # GeoNet and COSMOS open alike; both say who they are in the same line.
     if not lines or not _TITLE.search(lines[0]) or re.search(r"GNS Science|\(Format v", lines[0], re.IGNORECASE):
         return False
@@ -69,7 +70,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     Returns
     -------
     obspy.Stream
-        In g (volume 1) or cm/s2 (volume 2).  `toolbox.make_trace` tells what a header holds.
+        In g (volume 1) or cm/s2 (volume 2).  `trace_headers.make_trace` tells what a header holds.
 
     Raises
     ------
@@ -78,7 +79,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     """
     from obspy import Stream
 
-    lines = toolbox.open_lines(source)
+    lines = record_text.open_lines(source)
     traces: list[Any] = []
     index = 0
     while not traces or not lines.blank_until_end(index):
@@ -93,7 +94,7 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
     named = next(((i, found) for i, line in enumerate(text) if (found := _CHANNEL.match(line))), None)
     if named is None:
         raise lines.error(top + len(text) - 1, "the header ends without a line 'Chan  1: 360 Deg'")
-    direction = toolbox.orientation(named[1][2])
+    direction = trace_headers.orientation(named[1][2])
     station = next((found[1] for line in text if (found := _STATION.search(line))), "")
     index = next((i for i in range(top, min(top + _FARTHEST, len(lines))) if _DATA.search(lines.text(i))), None)
     if index is None:
@@ -116,18 +117,18 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
     if not series:
         raise lines.error(index, "the channel holds no acceleration")
     when = _start(lines, top, text)
-    trace = toolbox.make_trace(
+    trace = trace_headers.make_trace(
         lines,
         data=series["acceleration"],
         dt=dt,
         form=f"CSMIP V{volume}",
         units=unit,
-        si_factor=toolbox.FACTORS[unit],
+        si_factor=trace_headers.FACTORS[unit],
         direction=direction,
         processed=volume == 2,
         station=station,
         location=f"{int(named[1][1]):02d}",
-        channel=toolbox.channel_code(1.0 / dt, direction, int(named[1][1])),
+        channel=trace_headers.channel_code(1.0 / dt, direction, int(named[1][1])),
         start=when,
         start_is="unknown" if when is None else "record",
         headonly=headonly,
@@ -140,7 +141,7 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
 def _series(lines: Lines, index: int, precise: float | None) -> tuple[str, Array, str, float, int]:
     found = lines.match(index, _DATA, f"a line of data, or '{_END}'")
     kind = _KINDS[(found["kind"] or "accel").lower()]
-    count = toolbox.samples(lines, index, int(found["count"]))
+    count = blocks.samples(lines, index, int(found["count"]))
     rest = lines.text(index)[found.end() :]
     said = _UNIT.search(rest)
     if said is None:
@@ -149,12 +150,12 @@ def _series(lines: Lines, index: int, precise: float | None) -> tuple[str, Array
     factor = 1.0
     if kind == "acceleration":
         if word not in _UNITS:
-            raise lines.error(index, f"{toolbox.shown(said[1])} is no unit of acceleration that is known")
+            raise lines.error(index, f"{record_text.shown(said[1])} is no unit of acceleration that is known")
         unit = _UNITS[word]
     else:
         length, _, per = word.partition("/")
         if length not in _LENGTHS or per != ("sec" if kind == "velocity" else ""):
-            raise lines.error(index, f"{toolbox.shown(said[1])} is no unit of {kind} that is known")
+            raise lines.error(index, f"{record_text.shown(said[1])} is no unit of {kind} that is known")
         unit, factor = word, _LENGTHS[length]
     if found["rate"]:
         dt = 1.0 / max(float(found["rate"]), 1e-9)
@@ -164,10 +165,10 @@ def _series(lines: Lines, index: int, precise: float | None) -> tuple[str, Array
         half = 0.51 * 10.0 ** -len(found["step"].partition(".")[2])
         if precise is not None and abs(precise - dt) <= half:
             dt = precise
-    toolbox.step(lines, index, dt)
+    blocks.step(lines, index, dt)
     shape = _FORMAT.search(rest)
     columns, width = (int(shape[1]), int(shape[2])) if shape else (8, 10)
-    values, end = toolbox.fixed(lines, index + 1, count, columns, width, kind)
+    values, end = blocks.fixed(lines, index + 1, count, columns, width, kind)
     return kind, factor * values, unit, dt, end
 
 
@@ -177,8 +178,8 @@ def _precise_step(lines: Lines, data_line: int) -> float | None:
     if top < 0:
         return None
     try:
-        reals, _ = toolbox.fixed(lines, top, 100, 8, 10, "the real header")
-    except toolbox.FormatError:
+        reals, _ = blocks.fixed(lines, top, 100, 8, 10, "the real header")
+    except record_text.FormatError:
         # Older files leave fields of this header blank; the line of data then has the only word on the step.
         return None
     return float(reals[52]) if reals[52] > 0.0 else None
@@ -190,7 +191,7 @@ def _start(lines: Lines, top: int, text: list[str]) -> Any:
             month, day, year, hour, minute, second = (float(part) for part in found.groups()[:6])
             # Two digits of the year: the first accelerogram was written in 1933.
             year += 1900 if year >= 33 else 2000
-            when = toolbox.start_time(lines, top + offset, year, month, day, hour, minute, second)
+            when = trace_headers.start_time(lines, top + offset, year, month, day, hour, minute, second)
             return when + 3600 * _ZONES[found[7].upper()]
     return None
 
@@ -198,7 +199,7 @@ def _start(lines: Lines, top: int, text: list[str]) -> Any:
 def _peaks(text: list[str], volume: int) -> dict[str, float | None]:
     if volume == 1:
         found = next((found for line in text if (found := _UNCORRECTED_PEAK.search(line))), None)
-        return {"acceleration": None if found is None else toolbox.FACTORS["g"] * float(found[1])}
+        return {"acceleration": None if found is None else trace_headers.FACTORS["g"] * float(found[1])}
     peaks: dict[str, float | None] = {}
     for kind, pattern in _PEAKS.items():
         found = next((found for line in text if (found := pattern.search(line))), None)

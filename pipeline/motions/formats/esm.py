@@ -11,8 +11,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import toolbox
-from pipeline.motions.formats.toolbox import Lines, Source
+from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats.record_text import Lines, Source
 
 _KEY = re.compile(r"^([A-Z][A-Z0-9_/^]{1,59}):(.*)$")
 _DATE = re.compile(r"^(\d{4})(\d\d)(\d\d)_(\d\d)(\d\d)(\d\d(?:\.\d{1,6})?)$")
@@ -23,7 +23,7 @@ _UNITS = {"cm/s^2": "cm/s2", "cm/s2": "cm/s2", "cm/s**2": "cm/s2", "m/s^2": "m/s
 
 def is_format(source: Source) -> bool:
     """Whether a source is an ESM file, from its first keys."""
-    text = toolbox.head(source)
+    text = record_text.head(source)
     return text.startswith("EVENT_NAME:") and "\nSTATION_CODE:" in text and "\nSAMPLING_INTERVAL_S:" in text
 
 
@@ -42,7 +42,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     Returns
     -------
     obspy.Stream
-        In the unit that the file says.  `toolbox.make_trace` tells what a header holds.
+        In the unit that the file says.  `trace_headers.make_trace` tells what a header holds.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     """
     from obspy import Stream
 
-    lines = toolbox.open_lines(source)
+    lines = record_text.open_lines(source)
     keys, start = _header(lines)
 
     def said(key: str) -> tuple[int, str]:
@@ -61,32 +61,32 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
 
     at, kind = said("DATA_TYPE")
     if kind.upper() != "ACCELERATION":
-        raise lines.error(at, f"the file holds {toolbox.shown(kind)}", "give the file of the acceleration")
+        raise lines.error(at, f"the file holds {record_text.shown(kind)}", "give the file of the acceleration")
     at, unit = said("UNITS")
     if unit.lower() not in _UNITS:
-        raise lines.error(at, f"expected one of {', '.join(_UNITS)}, found {toolbox.shown(unit)}")
+        raise lines.error(at, f"expected one of {', '.join(_UNITS)}, found {record_text.shown(unit)}")
     unit = _UNITS[unit.lower()]
-    dt = toolbox.step(lines, said("SAMPLING_INTERVAL_S")[0], _number(lines, *said("SAMPLING_INTERVAL_S")))
+    dt = blocks.step(lines, said("SAMPLING_INTERVAL_S")[0], _number(lines, *said("SAMPLING_INTERVAL_S")))
     at, number = said("NDATA")
     if not re.fullmatch(r"\d{1,9}", number):
-        raise lines.error(at, f"expected the number of samples, found {toolbox.shown(number)}")
-    count = toolbox.samples(lines, at, int(number))
-    data = toolbox.free(lines, start, count, "acceleration")
+        raise lines.error(at, f"expected the number of samples, found {record_text.shown(number)}")
+    count = blocks.samples(lines, at, int(number))
+    data = blocks.free(lines, start, count, "acceleration")
     at, first = said("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS")
     date = _DATE.match(first)
     if first and date is None:
-        raise lines.error(at, f"expected a time such as 20190728_160919.870, found {toolbox.shown(first)}")
-    when = None if date is None else toolbox.start_time(lines, at, *map(float, date.groups()))
+        raise lines.error(at, f"expected a time such as 20190728_160919.870, found {record_text.shown(first)}")
+    when = None if date is None else trace_headers.start_time(lines, at, *map(float, date.groups()))
     at, peak = keys.get("PGA_CM/S^2", (0, ""))
     channel = said("STREAM")[1]
-    trace = toolbox.make_trace(
+    trace = trace_headers.make_trace(
         lines,
         data=data,
         dt=dt,
         form="ESM ASCII",
         units=unit,
-        si_factor=toolbox.FACTORS[unit],
-        direction=toolbox.seed_orientation(channel),
+        si_factor=trace_headers.FACTORS[unit],
+        direction=trace_headers.seed_orientation(channel),
         processed=_processed(keys),
         station=said("STATION_CODE")[1],
         network=said("NETWORK")[1],
@@ -115,7 +115,7 @@ def _header(lines: Lines) -> tuple[dict[str, tuple[int, str]], int]:
 
 def _number(lines: Lines, index: int, text: str) -> float:
     if not _NUMBER.match(text):
-        raise lines.error(index, f"expected a number, found {toolbox.shown(text)}")
+        raise lines.error(index, f"expected a number, found {record_text.shown(text)}")
     return float(text)
 
 

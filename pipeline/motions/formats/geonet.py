@@ -11,8 +11,9 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import toolbox
-from pipeline.motions.formats.toolbox import NUMBER, Lines, Series, Source
+from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats.record_text import NUMBER, Lines, Source
+from pipeline.motions.formats.trace_headers import Series
 from pipeline.quantities import Array
 
 _TITLE = re.compile(r"^\s*(Uncorrected|Corrected) accelerogram\b.*GNS Science", re.IGNORECASE)
@@ -27,7 +28,7 @@ _HEADER = 26
 
 def is_format(source: Source) -> bool:
     """Whether a source is a GeoNet V1A or V2A file, from its first two lines."""
-    lines = toolbox.head(source).splitlines()[:2]
+    lines = record_text.head(source).splitlines()[:2]
     return len(lines) == 2 and bool(_TITLE.search(lines[0])) and bool(_SITE.search(lines[1]))
 
 
@@ -46,7 +47,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     Returns
     -------
     obspy.Stream
-        In mm/s2.  `toolbox.make_trace` tells what a header holds.
+        In mm/s2.  `trace_headers.make_trace` tells what a header holds.
 
     Raises
     ------
@@ -55,7 +56,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     """
     from obspy import Stream
 
-    lines = toolbox.open_lines(source)
+    lines = record_text.open_lines(source)
     traces: list[Any] = []
     index = 0
     while not traces or not lines.blank_until_end(index):
@@ -74,12 +75,12 @@ def _component(lines: Lines, top: int, number: int, headonly: bool) -> tuple[Any
         expected = "'Raw readings in units of 1.00 mm/s/s at intervals of 0.005 s'"
         raw = lines.match(top + 10, _RAW, expected)
         scale, dt = float(raw[1]), float(raw[2])
-    toolbox.step(lines, top + 10, dt)
+    blocks.step(lines, top + 10, dt)
     if scale <= 0.0:
         raise lines.error(top + 10, "the readings are in units of 0 mm/s/s")
-    direction = toolbox.orientation(lines.match(top + 12, _COMPONENT, "'Component N16E', or 'Component Up'")[1])
-    integers, _ = toolbox.fixed(lines, top + 16, 40, 10, 8, "the integer header")
-    reals, _ = toolbox.fixed(lines, top + 20, 60, 10, 8, "the real header")
+    direction = trace_headers.orientation(lines.match(top + 12, _COMPONENT, "'Component N16E', or 'Component Up'")[1])
+    integers, _ = blocks.fixed(lines, top + 16, 40, 10, 8, "the integer header")
+    reals, _ = blocks.fixed(lines, top + 20, 60, 10, 8, "the real header")
     counts = integers[33:36]
     if counts[0] != points or any(count not in {0.0, counts[0]} for count in counts[1:]):
         told = ", ".join(f"{count:g}" for count in counts)
@@ -90,26 +91,26 @@ def _component(lines: Lines, top: int, number: int, headonly: bool) -> tuple[Any
         dt = float(reals[25])
     else:
         raise lines.error(top + 22, f"says a time step of {reals[25]:g} s, and line {top + 11} one of {dt:g} s")
-    toolbox.samples(lines, top + 9, points)
+    blocks.samples(lines, top + 9, points)
     index = top + _HEADER
     series: dict[str, Array] = {}
     for what, count in zip(("acceleration", "velocity", "displacement"), counts, strict=True):
         if count:
-            series[what], index = toolbox.fixed(lines, index, points, 10, 8, what)
+            series[what], index = blocks.fixed(lines, index, points, 10, 8, what)
     start = [integers[8], integers[9], integers[18], integers[19], integers[38], integers[39] / 1000.0]
-    trace = toolbox.make_trace(
+    trace = trace_headers.make_trace(
         lines,
         data=scale * series["acceleration"],
         dt=dt,
         form="GeoNet V2A" if corrected else "GeoNet V1A",
         units="mm/s2",
-        si_factor=toolbox.FACTORS["mm/s2"],
+        si_factor=trace_headers.FACTORS["mm/s2"],
         direction=direction,
         processed=corrected,
         station=station,
         network="NZ",
-        channel=toolbox.channel_code(1.0 / dt, direction, number),
-        start=toolbox.start_time(lines, top + 19, *map(float, start)),
+        channel=trace_headers.channel_code(1.0 / dt, direction, number),
+        start=trace_headers.start_time(lines, top + 19, *map(float, start)),
         start_is="record",
         headonly=headonly,
         peak={what: _peak(lines, top + 13 + i) for i, what in enumerate(("acceleration", "velocity", "displacement"))},

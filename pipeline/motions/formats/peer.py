@@ -12,8 +12,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import toolbox
-from pipeline.motions.formats.toolbox import Source
+from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats.record_text import Source
 
 _UNIT = re.compile(r"ACCELERATION TIME (SERIES|HISTORY) IN UNITS OF (G\b|CM/S|.*)", re.IGNORECASE)
 _NEW = re.compile(r"NPTS\s*=\s*(\d{1,9})\s*,\s*DT\s*=\s*(\d{0,4}\.\d{1,9}(?:E-?\d)?)", re.IGNORECASE)
@@ -22,7 +22,7 @@ _OLD = re.compile(r"^\s*(\d{1,9})\s+(\d{0,4}\.\d{1,9})\s+NPTS\s*,\s*DT", re.IGNO
 
 def is_format(source: Source) -> bool:
     """Whether a source is a PEER AT2 file, from its first four lines."""
-    lines = toolbox.head(source).splitlines()[:4]
+    lines = record_text.head(source).splitlines()[:4]
     return len(lines) == 4 and bool(_UNIT.search(lines[2])) and bool(_NEW.search(lines[3]) or _OLD.search(lines[3]))
 
 
@@ -41,7 +41,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     Returns
     -------
     obspy.Stream
-        In g.  `toolbox.make_trace` tells what a header holds.
+        In g.  `trace_headers.make_trace` tells what a header holds.
 
     Raises
     ------
@@ -50,30 +50,30 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     """
     from obspy import Stream
 
-    lines = toolbox.open_lines(source)
+    lines = record_text.open_lines(source)
     unit = lines.match(2, _UNIT, "'ACCELERATION TIME SERIES IN UNITS OF G'")
     if unit[2].upper() != "G":
-        wrong = f"the unit is {toolbox.shown(unit[2])}, and an AT2 file is in g"
+        wrong = f"the unit is {record_text.shown(unit[2])}, and an AT2 file is in g"
         raise lines.error(2, wrong, "give the file as CSV with its unit declared")
     text = lines.text(3, "the number of samples and the step")
     found = _NEW.search(text) or _OLD.search(text)
     if found is None:
-        raise lines.error(3, f"expected 'NPTS= 7818, DT= .0050 SEC', found {toolbox.shown(text)}")
-    count = toolbox.samples(lines, 3, int(found[1]))
-    dt = toolbox.step(lines, 3, float(found[2]))
-    data = toolbox.free(lines, 4, count, "acceleration")
+        raise lines.error(3, f"expected 'NPTS= 7818, DT= .0050 SEC', found {record_text.shown(text)}")
+    count = blocks.samples(lines, 3, int(found[1]))
+    dt = blocks.step(lines, 3, float(found[2]))
+    data = blocks.free(lines, 4, count, "acceleration")
     title = lines.text(1)
-    direction = toolbox.orientation(title.rpartition(",")[2]) if "," in title else None
-    trace = toolbox.make_trace(
+    direction = trace_headers.orientation(title.rpartition(",")[2]) if "," in title else None
+    trace = trace_headers.make_trace(
         lines,
         data=data,
         dt=dt,
         form="PEER AT2",
         units="g",
-        si_factor=toolbox.FACTORS["g"],
+        si_factor=trace_headers.FACTORS["g"],
         direction=direction,
         processed=None,
-        channel=toolbox.channel_code(1.0 / dt, direction, 1),
+        channel=trace_headers.channel_code(1.0 / dt, direction, 1),
         headonly=headonly,
         more={"title": title},
     )

@@ -16,8 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.motions.formats import toolbox
-from pipeline.motions.formats.toolbox import NUMBER, Lines, Orientation, Source
+from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats.record_text import NUMBER, Lines, Source
+from pipeline.motions.formats.trace_headers import Orientation
 from pipeline.quantities import Array
 
 RESAMPLED = 0.005
@@ -35,7 +36,7 @@ _FORMS = {"1": "SMC uncorrected", "2": "SMC corrected"}
 
 def is_format(source: Source) -> bool:
     """Whether a source is an SMC file, from its first line and its integer header."""
-    lines = toolbox.head(source).splitlines()
+    lines = record_text.head(source).splitlines()
     if len(lines) < _TEXT + _INTEGER_LINES or not _TITLE.search(lines[0]):
         return False
     return all(_INTEGERS.match(line.rstrip().ljust(80)) for line in lines[_TEXT : _TEXT + _INTEGER_LINES])
@@ -58,7 +59,7 @@ def read_format(source: Source, headonly: bool = False, resample: float = RESAMP
     Returns
     -------
     obspy.Stream
-        In cm/s2.  `toolbox.make_trace` tells what a header holds.
+        In cm/s2.  `trace_headers.make_trace` tells what a header holds.
 
     Raises
     ------
@@ -67,36 +68,36 @@ def read_format(source: Source, headonly: bool = False, resample: float = RESAMP
     """
     from obspy import Stream
 
-    lines = toolbox.open_lines(source)
+    lines = record_text.open_lines(source)
     kind = lines.match(0, _TITLE, "'1 UNCORRECTED ACCELEROGRAM', or '2 CORRECTED ACCELEROGRAM'")
     if kind[1] not in _FORMS:
         raise lines.error(0, f"the file holds {kind[2].lower()}", "give the file of the acceleration")
-    integers, index = toolbox.fixed(lines, _TEXT, 48, 8, 10, "the integer header")
-    reals, index = toolbox.fixed(lines, index, 50, 5, 15, "the real header")
+    integers, index = blocks.fixed(lines, _TEXT, 48, 8, 10, "the integer header")
+    reals, index = blocks.fixed(lines, index, 50, 5, 15, "the real header")
     index = _after_comments(lines, index, integers)
     count = _whole(lines, _TEXT + 2, integers[16], "the number of values")
-    toolbox.samples(lines, _TEXT + 2, count)
-    values, end = toolbox.fixed(lines, index, count, 8, 10, "acceleration")
+    blocks.samples(lines, _TEXT + 2, count)
+    values, end = blocks.fixed(lines, index, count, 8, 10, "acceleration")
     more = _rest(lines, end)
     direction = _direction(lines, integers)
     if _missing(reals, reals[1]):
         data, dt, more["resampled"] = _resampled(lines, index, values, resample)
     else:
-        data, dt = values, toolbox.step(lines, _TEXT + _INTEGER_LINES, 1.0 / max(float(reals[1]), 1e-9))
+        data, dt = values, blocks.step(lines, _TEXT + _INTEGER_LINES, 1.0 / max(float(reals[1]), 1e-9))
     found, when = _PEAK.search(lines.text(6)), _earthquake(lines, integers)
     if name := _STATION.search(lines.text(5)):
         more["station_name"] = name[1]
-    trace = toolbox.make_trace(
+    trace = trace_headers.make_trace(
         lines,
         data=data,
         dt=dt,
         form=_FORMS[kind[1]],
         units="cm/s2",
-        si_factor=toolbox.FACTORS["cm/s2"],
+        si_factor=trace_headers.FACTORS["cm/s2"],
         direction=direction,
         processed=kind[1] == "2",
         station="" if integers[7] == integers[0] else f"{integers[7]:.0f}",
-        channel=toolbox.channel_code(1.0 / dt, direction, max(0, int(integers[8]))),
+        channel=trace_headers.channel_code(1.0 / dt, direction, max(0, int(integers[8]))),
         start=when,
         start_is="unknown" if when is None else "earthquake",
         headonly=headonly,
@@ -121,7 +122,9 @@ def _after_comments(lines: Lines, index: int, integers: Array) -> int:
     comments = 0 if _missing(integers, integers[15]) else _whole(lines, _TEXT + 1, integers[15], "a number of comments")
     for line in range(index, min(index + comments, len(lines))):
         if not lines.text(line).startswith("|"):
-            raise lines.error(line, f"expected a comment that starts with |, found {toolbox.shown(lines.text(line))}")
+            raise lines.error(
+                line, f"expected a comment that starts with |, found {record_text.shown(lines.text(line))}"
+            )
     return index + comments
 
 
@@ -143,7 +146,7 @@ def _direction(lines: Lines, integers: Array) -> Orientation:
     elif vertical == 90.0 and 0.0 <= azimuth <= 360.0:
         said = float(azimuth) % 360.0
     component = _COMPONENT.search(lines.text(5))
-    words = toolbox.orientation(component[1]) if component else None
+    words = trace_headers.orientation(component[1]) if component else None
     if said is None:
         return words
     if (isinstance(words, float) or words in {"up", "down"}) and words != said:
@@ -160,13 +163,13 @@ def _earthquake(lines: Lines, integers: Array) -> Any:
         raise lines.error(_TEXT, f"day {day:g} of {year:g} is no date")
     when = date(int(year), 1, 1) + timedelta(days=int(day) - 1)
     parts = [0.0 if _missing(integers, part) else part for part in (hour, minute, second)]
-    return toolbox.start_time(lines, _TEXT, when.year, when.month, when.day, *parts)
+    return trace_headers.start_time(lines, _TEXT, when.year, when.month, when.day, *parts)
 
 
 def _resampled(lines: Lines, index: int, values: Array, dt: float) -> tuple[Array, float, str]:
     if len(values) % 2:
         raise lines.error(_TEXT + 2, f"{len(values)} values make no pairs of time and acceleration")
-    toolbox.step(lines, index, dt)
+    blocks.step(lines, index, dt)
     times, data = values[::2], values[1::2]
     spacing = np.diff(times)
     if (spacing < 0.0).any():
@@ -174,7 +177,7 @@ def _resampled(lines: Lines, index: int, values: Array, dt: float) -> tuple[Arra
         wrong = f"time goes back from {times[at - 1]:g} s to {times[at]:g} s"
         raise lines.error(index + (2 * at) // 8, wrong)
     count = int((times[-1] - times[0]) / dt + 1e-9) + 1
-    toolbox.samples(lines, index, count)
+    blocks.samples(lines, index, count)
     # Digitised times come by the thousandth of a second; a time in days or a typing error would ask for gigabytes.
     if count > 100 * len(times):
         wrong = f"{len(times)} pairs over {times[-1] - times[0]:g} s are too few to be resampled to {dt:g} s"

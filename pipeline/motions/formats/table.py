@@ -20,8 +20,9 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.motions.formats import toolbox
-from pipeline.motions.formats.toolbox import FACTORS, Lines, Orientation, Source
+from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats.record_text import Lines, Source
+from pipeline.motions.formats.trace_headers import FACTORS, Orientation
 from pipeline.quantities import Array
 
 _CELL = re.compile(r'^\s*"?\s*([^()\[\]"]{1,60}?)\s*[(\[]\s*([^()\[\]"]{1,20}?)\s*[)\]]\s*"?\s*$')
@@ -41,7 +42,7 @@ _MOST_COLUMNS = 100
 
 def is_format(source: Source) -> bool:
     """Whether a source is such a table: its first row names a time and only accelerations, each with a known unit."""
-    for line in toolbox.head(source).splitlines()[:_MOST_COMMENTS]:
+    for line in record_text.head(source).splitlines()[:_MOST_COMMENTS]:
         if line.strip() and not line.startswith("#"):
             cells = _cells(line.encode("latin-1"))
             return len(cells) >= 2 and all(cell is not None for cell in cells) and _is_table([c for c in cells if c])
@@ -63,7 +64,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     Returns
     -------
     obspy.Stream
-        In the unit that the column declares.  `toolbox.make_trace` tells what a header holds.
+        In the unit that the column declares.  `trace_headers.make_trace` tells what a header holds.
 
     Raises
     ------
@@ -72,13 +73,13 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     """
     from obspy import Stream
 
-    lines = toolbox.open_lines(source)
+    lines = record_text.open_lines(source)
     top, keys = _top(lines)
     row = lines.lines[top]
     cells = [cell for cell in _cells(row) if cell is not None]
     if len(cells) != row.count(_separator(row)) + 1 or not _is_table(cells):
         wrong = f"expected 'time (s), name (unit), ...' with units of {', '.join(FACTORS)}, found"
-        raise lines.error(top, f"{wrong} {toolbox.shown(lines.text(top))}", "declare each column's unit")
+        raise lines.error(top, f"{wrong} {record_text.shown(lines.text(top))}", "declare each column's unit")
     if len(cells) > _MOST_COLUMNS:
         raise lines.error(top, f"{len(cells)} columns are more than a record has", "split it by stations")
     table = _numbers(lines, top + 1, _separator(row), len(cells))
@@ -88,7 +89,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     for number, (name, unit) in enumerate(cells[1:], start=1):
         code, direction = _channel(name)
         traces.append(
-            toolbox.make_trace(
+            trace_headers.make_trace(
                 lines,
                 data=table[:, number].copy(),
                 dt=dt,
@@ -100,7 +101,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
                 network=network,
                 station=station,
                 location=f"{number:02d}",
-                channel=code or toolbox.channel_code(1.0 / dt, direction, number),
+                channel=code or trace_headers.channel_code(1.0 / dt, direction, number),
                 start=when,
                 start_is="unknown" if when is None else "record",
                 headonly=headonly,
@@ -152,10 +153,10 @@ def _numbers(lines: Lines, start: int, separator: bytes, columns: int) -> Array:
     for index in range(start, end):
         line = lines.lines[index]
         if row.fullmatch(line) is None:
-            wrong = f"expected {columns} numbers with a decimal point, found {toolbox.shown(lines.text(index))}"
+            wrong = f"expected {columns} numbers with a decimal point, found {record_text.shown(lines.text(index))}"
             raise lines.error(index, wrong)
         values.extend(map(float, line.split(separator)))
-    toolbox.samples(lines, start, end - start)
+    blocks.samples(lines, start, end - start)
     table = np.array(values).reshape(-1, columns)
     if not np.isfinite(table).all():
         bad = start + int(np.flatnonzero(~np.isfinite(table).all(axis=1))[0])
@@ -165,7 +166,7 @@ def _numbers(lines: Lines, start: int, separator: bytes, columns: int) -> Array:
 
 def _step(lines: Lines, start: int, times: Array, unit: float) -> float:
     dt = float(times[-1] - times[0]) / (len(times) - 1)
-    toolbox.step(lines, start, dt)
+    blocks.step(lines, start, dt)
     # Times may be rounded to what is printed, not more: 1/128 s comes as 0.008, 0.016, 0.023.
     decimals = max(len(line.split()[0].partition(b".")[2]) for line in map(_first, lines.lines[start : start + 20]))
     slack = 0.51 * unit * 10.0 ** -min(decimals, 15) + 1e-9 * abs(float(times[-1]))
@@ -190,24 +191,24 @@ def _channel(name: str) -> tuple[str, Orientation]:
     code, _, said = name.partition(" ")
     seed = code if re.fullmatch(r"[A-Z]{2}[A-Z0-9]", code) else ""
     if said.strip():
-        return seed, toolbox.orientation(said)
-    words = toolbox.orientation(name)
+        return seed, trace_headers.orientation(said)
+    words = trace_headers.orientation(name)
     known = isinstance(words, float) or words in {"up", "down"}
-    return seed, words if known else toolbox.seed_orientation(name)
+    return seed, words if known else trace_headers.seed_orientation(name)
 
 
 def _facts(lines: Lines, keys: dict[str, tuple[int, str]]) -> tuple[bool | None, str, str, Any]:
     at, word = keys.get("processed", (0, ""))
     if word and word.lower() not in _SAID:
-        raise lines.error(at, f"expected processed: yes, or no, found {toolbox.shown(word)}")
+        raise lines.error(at, f"expected processed: yes, or no, found {record_text.shown(word)}")
     processed = _SAID.get(word.lower())
     at, word = keys.get("station", (0, ""))
     station = _STATION.match(word)
     if word and station is None:
-        raise lines.error(at, f"expected station: NETWORK.STATION, found {toolbox.shown(word)}")
+        raise lines.error(at, f"expected station: NETWORK.STATION, found {record_text.shown(word)}")
     at, word = keys.get("start", (0, ""))
     start = _START.match(word)
     if word and start is None:
-        raise lines.error(at, f"expected start: 2019-07-06T03:19:53Z, found {toolbox.shown(word)}")
-    when = None if start is None else toolbox.start_time(lines, at, *map(float, start.groups()))
+        raise lines.error(at, f"expected start: 2019-07-06T03:19:53Z, found {record_text.shown(word)}")
+    when = None if start is None else trace_headers.start_time(lines, at, *map(float, start.groups()))
     return processed, (station[1] or "") if station else "", station[2] if station else "", when

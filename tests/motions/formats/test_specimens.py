@@ -13,7 +13,7 @@ import numpy as np
 import obspy
 import pytest
 
-from pipeline.motions.formats import toolbox
+from pipeline.motions.formats import trace_headers
 from tests.motions.formats import specimens as hand
 from tests.motions.formats.specimens import DT, SHAPE, SPECIMENS, tone
 
@@ -141,7 +141,7 @@ def test_at2_orientations(read, title, said):
     ],
 )  # fmt: skip
 def test_orientation_in_words(text, said):
-    assert toolbox.orientation(text) == said
+    assert trace_headers.orientation(text) == said
 
 
 @pytest.mark.parametrize("name", SPECIMENS)

@@ -1,0 +1,199 @@
+"""The text of record files: read within limits, as lines that messages name by their numbers."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO
+
+from pipeline.motions.errors import MotionError
+
+MAX_BYTES = 64_000_000
+"""Largest text file that is opened; the longest records of many-channel buildings have a quarter of it."""
+
+MAX_LINES = 5_000_000
+"""Most lines; with MAX_BYTES it keeps a file made of line ends below 1 GB of memory (60 bytes a line)."""
+
+MAX_LINE = 10_000
+"""Most characters in a line, of which numbers are made at once."""
+
+HEAD = 8192
+"""Bytes that deciding on a format may read."""
+
+NUMBER = r"-?(?:\d{1,7}\.?\d{0,6}|\.\d{1,6})"
+"""A number in the text of a header, as a pattern; always one that float() takes."""
+
+Source = str | Path | IO[bytes]
+
+
+class FormatError(MotionError):
+    """A record file that does not hold what its format promises.
+
+    The message names the file, the line, what is wrong or was expected, and what to do.
+    """
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """The lines of a record file without their ends; line numbers in messages start at 1, indices at 0.
+
+    Attributes
+    ----------
+    file : str
+        What messages call the file.
+    lines : list of bytes
+        Without line ends.
+    """
+
+    file: str
+    lines: list[bytes]
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+    def error(self, index: int, wrong: str, remedy: str = "fetch the file again, or mend the line") -> FormatError:
+        """Return the error at a line.
+
+        Parameters
+        ----------
+        index : int
+            The line, from 0.
+        wrong : str
+            What is wrong there.
+        remedy : str
+            What mends it.
+
+        Returns
+        -------
+        FormatError
+        """
+        return FormatError(f"{self.file}: line {index + 1}: {wrong}; {remedy}")
+
+    def text(self, index: int, expected: str = "a line") -> str:
+        """Return a line as printable text without trailing blanks.
+
+        Parameters
+        ----------
+        index : int
+            The line, from 0.
+        expected : str
+            What the message says was expected there.
+
+        Returns
+        -------
+        str
+            The line.
+
+        Raises
+        ------
+        FormatError
+            If the file ends before it.
+        """
+        if index >= len(self.lines):
+            raise self.error(len(self.lines), f"the file ends where {expected} was expected", "fetch the file again")
+        return printable(self.lines[index])
+
+    def match(self, index: int, pattern: re.Pattern[str], expected: str) -> re.Match[str]:
+        """Return the match of a pattern anywhere in a line.
+
+        Parameters
+        ----------
+        index : int
+            The line, from 0.
+        pattern : re.Pattern
+            What is looked for.
+        expected : str
+            What the message says was expected there.
+
+        Returns
+        -------
+        re.Match
+            The first one.
+
+        Raises
+        ------
+        FormatError
+            That says what was expected and what is there.
+        """
+        text = self.text(index, expected)
+        found = pattern.search(text)
+        if found is None:
+            raise self.error(index, f"expected {expected}, found {shown(text)}")
+        return found
+
+    def blank_until_end(self, index: int) -> bool:
+        """Whether nothing but blanks, NUL bytes and end-of-file marks follows."""
+        return all(not line.strip(b" \t\0\x1a") for line in self.lines[index:])
+
+
+def printable(raw: bytes) -> str:
+    """Return bytes of a header as text: Latin-1, control characters as blanks, no trailing blanks."""
+    return re.sub(r"[\x00-\x1f\x7f-\x9f]", " ", raw.decode("latin-1")).rstrip()
+
+
+def shown(text: str) -> str:
+    """Quote a piece of a file for a message, shortened."""
+    return repr(text[:60] + ("..." if len(text) > 60 else ""))
+
+
+def head(source: Source) -> str:
+    """Return the first 8 kB of a source as text, "" for what cannot be read as bytes; a stream keeps its position."""
+    try:
+        if isinstance(source, (str, Path)):
+            with Path(source).open("rb") as stream:
+                raw = stream.read(HEAD)
+        else:
+            position = source.tell()
+            raw = source.read(HEAD)
+            source.seek(position)
+    except OSError:
+        return ""
+    # A text may end in NUL bytes or end-of-file marks; in front of anything else they mean that it is no text.
+    if not isinstance(raw, bytes) or b"\0" in raw.rstrip(b"\0\x1a\r\n "):
+        return ""
+    return raw.decode("latin-1")
+
+
+def open_lines(source: Source) -> Lines:
+    """Read a text file with any line ends.
+
+    Parameters
+    ----------
+    source : str, Path or binary stream
+        The file.
+
+    Returns
+    -------
+    Lines
+        Its lines, without an empty last one.
+
+    Raises
+    ------
+    FormatError
+        For a file that is larger than MAX_BYTES, has more than MAX_LINES lines, or a line of more than MAX_LINE
+        characters.
+    OSError
+        For a file that cannot be read.
+    """
+    if isinstance(source, (str, Path)):
+        file = str(source)
+        with Path(source).open("rb") as stream:
+            raw = stream.read(MAX_BYTES + 1)
+    else:
+        file = str(getattr(source, "name", "stream"))
+        raw = source.read(MAX_BYTES + 1)
+    if len(raw) > MAX_BYTES:
+        raise FormatError(f"{file}: line 1: is larger than {MAX_BYTES} bytes; split it into one file a channel")
+    raw = raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    count = raw.count(b"\n") + 1
+    if count > MAX_LINES:
+        raise FormatError(f"{file}: line {MAX_LINES}: has {count} lines, more than a record; split it by channels")
+    lines = raw.split(b"\n")
+    long = next((i for i, line in enumerate(lines) if len(line) > MAX_LINE), None)
+    if long is not None:
+        wrong = f"has {len(lines[long])} characters, which no line of a record has"
+        raise Lines(file, lines).error(long, wrong, "fetch the file again")
+    if not lines[-1].strip(b"\0\x1a "):
+        lines.pop()
+    return Lines(file, lines)

@@ -1,0 +1,243 @@
+"""Traces of single channels as obspy has them, with orientation, unit and time as the headers of files say them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pipeline.motions.formats.record_text import Lines
+from pipeline.quantities import Array, G
+
+FACTORS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "in/s2": 0.0254, "g": G, "mg": 0.001 * G}
+"""Metres per second squared in one of each unit of acceleration."""
+
+Orientation = float | str | None
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """A velocity or displacement that the agency computed, at the samples of the acceleration.
+
+    It stands in for the bare array in a trace's header, because obspy compares headers, which arrays do not stand.
+    ``np.asarray(series)`` gives the values.
+
+    Attributes
+    ----------
+    values : array, shape (n,)
+        In m/s or m.
+    """
+
+    values: Array
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
+        return np.array(self.values, dtype=dtype, copy=copy)
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Series) and np.array_equal(self.values, other.values)
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+_QUADRANT = re.compile(r"([NS])\s*(\d{1,2}(?:\.\d*)?)\s*([EW])")
+_AZIMUTH = re.compile(r"(\d{1,3}(?:\.\d*)?)\s*(?:DEG(?:REES)?)?\.?")
+_WORDS: dict[str, Orientation] = {"UP": "up", "DOWN": "down", "DN": "down", "DWN": "down"}
+_WORDS |= {"N": 0.0, "NORTH": 0.0, "E": 90.0, "EAST": 90.0, "S": 180.0, "SOUTH": 180.0, "W": 270.0, "WEST": 270.0}
+
+
+def orientation(text: str) -> Orientation:
+    """Return what a header's words say of an orientation.
+
+    Parameters
+    ----------
+    text : str
+        Such as "90 Deg", "360", "N16W", "South", "Up".
+
+    Returns
+    -------
+    float, str or None
+        Degrees clockwise from north in [0, 360), "up" or "down"; what is none of these comes back as its own text, None
+        for nothing.
+    """
+    word = text.strip().upper()
+    if word in _WORDS:
+        return _WORDS[word]
+    if (quadrant := _QUADRANT.fullmatch(word)) and float(quadrant[2]) <= 90.0:
+        turn = float(quadrant[2]) if quadrant[1] == "N" else 180.0 - float(quadrant[2])
+        return (turn if quadrant[3] == "E" else -turn) % 360.0
+    if (azimuth := _AZIMUTH.fullmatch(word)) and float(azimuth[1]) <= 360.0:
+        return float(azimuth[1]) % 360.0
+    return text.strip() or None
+
+
+def seed_orientation(channel: str) -> Orientation:
+    """Return what the last letter of a SEED channel code says (N and E within 5 degrees), None where it says nothing.
+
+    Parameters
+    ----------
+    channel : str
+        The code, of three letters.
+
+    Returns
+    -------
+    float, str or None
+        Degrees clockwise from north, or "up".
+
+    References
+    ----------
+    SEED 2.4 manual, appendix A.
+    """
+    letters: dict[str, Orientation] = {"N": 0.0, "E": 90.0, "Z": "up"}
+    return letters.get(channel[2]) if re.fullmatch(r"[A-Z]{2}[A-Z0-9]", channel) else None
+
+
+def channel_code(rate: float, direction: Orientation, number: int) -> str:
+    """Return a SEED code for an accelerometer: Z, N and E where the orientation says so, else the channel's number.
+
+    Parameters
+    ----------
+    rate : float
+        Samples per second.
+    direction : float, str or None
+        As `orientation` returns it.
+    number : int
+        Of the channel; its last digit is used.
+
+    Returns
+    -------
+    str
+        Three letters.
+    """
+    band = "H" if rate >= 80.0 else "B"
+    letters: dict[Orientation, str] = {"up": "Z", "down": "Z", 0.0: "N", 90.0: "E"}
+    return f"{band}N{letters.get(direction) or number % 10}"
+
+
+def start_time(lines: Lines, index: int, *parts: float) -> Any:
+    """Return the time of the parts of a header.
+
+    Parameters
+    ----------
+    lines, index : Lines, int
+        The file, and the line that says it, from 0.
+    *parts : float
+        Year, month, day, hour, minute and second.
+
+    Returns
+    -------
+    obspy.UTCDateTime
+        The time.
+
+    Raises
+    ------
+    FormatError
+        For parts that make no time.
+    """
+    from obspy import UTCDateTime
+
+    year, month, day, hour, minute, second = parts
+    inside = 1850 <= year <= 2200 and 1 <= month <= 12 and 1 <= day <= 31
+    if not (inside and 0 <= hour < 24 and 0 <= minute < 60 and 0 <= second < 61):
+        raise lines.error(index, f"{', '.join(f'{p:g}' for p in parts)} is no date and time")
+    try:
+        return UTCDateTime(int(year), int(month), int(day), int(hour), int(minute)) + float(second)
+    except ValueError as error:
+        raise lines.error(index, f"{year:g}-{month:g}-{day:g} is no date") from error
+
+
+def make_trace(
+    lines: Lines,
+    *,
+    data: Array,
+    dt: float,
+    form: str,
+    units: str,
+    si_factor: float | None,
+    direction: Orientation,
+    processed: bool | None,
+    station: str = "",
+    network: str = "",
+    location: str = "",
+    channel: str = "",
+    start: Any = None,
+    start_is: str = "unknown",
+    headonly: bool = False,
+    peak: Mapping[str, float | None] | None = None,
+    series: Mapping[str, Series] | None = None,
+    more: Mapping[str, str] | None = None,
+) -> Any:
+    """Return the trace of one channel, in the file's own unit.
+
+    Parameters
+    ----------
+    lines : Lines
+        The file.
+    data : array, shape (n,)
+        The samples, in the file's unit.
+    dt : float
+        Time step in s.
+    form : str
+        The format.
+    units : str
+        "g", "cm/s2", "counts", ...
+    si_factor : float or None
+        Times the samples gives m/s2; None where the file does not say.
+    direction : float, str or None
+        Degrees clockwise from north, "up", "down", the header's own words, or None.
+    processed : bool or None
+        Whether the agency has filtered it; None where the file does not say.
+    station, network, location, channel : str
+        SEED codes.
+    start : obspy.UTCDateTime or None
+        The time of the first sample, or of what `start_is` says.
+    start_is : str
+        "record", "earthquake" where only its origin time is known, or "unknown".
+    headonly : bool
+        Whether the header alone is wanted.
+    peak : mapping of str to float or None
+        What the agency printed: acceleration [m/s2], velocity [m/s], displacement [m].
+    series : mapping of str to Series, or None
+        Velocity [m/s] and displacement [m], where there are any.
+    more : mapping of str to str, or None
+        What else there is to know: notes, resampled, title.
+
+    Returns
+    -------
+    obspy.Trace
+        Its ``stats.kouros`` holds units, si_factor, orientation, processed, format, file, start (`start_is`), peak
+        (None for what the agency did not print), and the items of `series` and `more`.
+    """
+    from obspy import Trace
+    from obspy.core import AttribDict
+
+    printed = {"acceleration": None, "velocity": None, "displacement": None} | dict(peak or {})
+    header: dict[str, Any] = {
+        "network": network[:8],
+        "station": station[:20],
+        "location": location[:8],
+        "channel": channel,
+        "delta": dt,
+        "kouros": AttribDict(
+            units=units,
+            si_factor=si_factor,
+            orientation=direction,
+            processed=processed,
+            format=form,
+            file=lines.file,
+            start=start_is,
+            peak=AttribDict(printed),
+            **(series or {}),
+            **(more or {}),
+        ),
+    }
+    if start is not None:
+        header["starttime"] = start
+    if headonly:
+        return Trace(header=header | {"npts": len(data)})
+    return Trace(data=np.ascontiguousarray(data), header=header)

@@ -1,0 +1,203 @@
+"""The museum's own rows of what is assumed: they take the place of Kouros's, and say whose they are."""
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pipeline.analysis.classify import classify
+from pipeline.analysis.context import Context
+from pipeline.analysis.rules import RuleTable, with_own
+from pipeline.execute import Threads
+from pipeline.mitigate import measure_catalogue
+from pipeline.mitigate.measures.surfaces import Surface
+from pipeline.mitigate.proposals import Deficiency
+from pipeline.mitigate.trials import TrialRunner
+from pipeline.models import MODELS
+from pipeline.records import Numerics, Origin, Scene
+from pipeline.tables import TableError, table
+from pipeline.tables.assumed import assumed, assumed_with, span
+from tests.museum import PAINTING, VASE
+
+KEYS = {
+    "classes": {"class": "vessel"},
+    "materials": {"material": "porcelain"},
+    "friction": {"object_material": "Marble", "surface_material": "Formica"},
+    "damping": {"wall_surface": "Paint", "back_surface": "Wood"},
+}
+"""The row of each table that the museum of these tests has an own one of."""
+
+VALUE = {"friction": ("value", "low", "high"), "damping": ("value", "low", "high")}
+
+
+def own(folder: Path, name: str, **cells: str) -> dict[str, Path]:
+    """Write a museum's file of one row, which is Kouros's but for some cells; "-" takes a column out."""
+    row = next(dict(row) for row in table(name) if KEYS[name].items() <= row.items())
+    row = {column: cell for column, cell in (row | cells).items() if cell != "-"}
+    file = folder / f"our-{name}.csv"
+    with file.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.DictWriter(stream, list(row))
+        writer.writeheader()
+        writer.writerow(row)
+    return {name: file}
+
+
+def rules(files: dict[str, Path]) -> RuleTable:
+    return with_own(None, assumed_with(files, [model.name for model in MODELS]))
+
+
+def ends(scene: Scene, name: str) -> list[float]:
+    found = scene.parameters[name]
+    assert found.origin is Origin.ASSUMED
+    return [found.low, found.value, found.high]
+
+
+def test_an_own_class_is_what_is_assumed_and_the_museum_is_named(tmp_path: Path) -> None:
+    cells = {
+        "title": "Vessel on our stands",
+        "cg_low": "0.2",
+        "cg_ratio": "0.25",
+        "cg_high": "0.3",
+        "clearance": "0.12",
+    }
+    files = own(tmp_path, "classes", **cells, source="measured, M. Rossi 2026")
+    scene, before = classify(VASE, rules(files)), classify(VASE)
+    assert ends(scene, "cg_height") == pytest.approx([0.2 * 0.4, 0.25 * 0.4, 0.3 * 0.4])
+    assert ends(scene, "clearance") == [0.05, 0.12, 0.30]
+    for name in ("cg_height", "half_width", "clearance"):
+        found = scene.parameters[name]
+        assert found.source == "the museum's our-classes.csv, vessel (measured, M. Rossi 2026)"
+        assert found.note.endswith("assumed for: vessel on our stands (the museum's our-classes.csv)")
+        assert found.note in scene.assumptions
+    assert "our-classes.csv" in scene.assumptions[0]
+    assert before.parameters["cg_height"].source == "classes.csv, vessel (judgement)"
+    # Nothing else is another: not what the row says as before, not what other classes assume.
+    assert ends(scene, "half_width") == ends(before, "half_width")
+    assert classify(PAINTING, rules(files)) == classify(PAINTING)
+
+
+def test_an_own_class_says_how_it_is_held_and_what_is_run(tmp_path: Path) -> None:
+    changed = {"support": "fastened", "models": "stress|flexible_stress", "why": "is clamped on our mounts"}
+    scene = classify(VASE, rules(own(tmp_path, "classes", **changed)))
+    assert (scene.support, scene.models) == ("fastened", ("stress", "flexible_stress"))
+    scene = classify(VASE, rules(own(tmp_path, "classes", models="held", why="lies on our mounts")))
+    assert scene.models == ()
+    assert scene.missing == ("no generic model applies: it lies on our mounts",)
+
+
+def test_an_own_material_is_named(tmp_path: Path) -> None:
+    numbers = {"density": "2000", "density_low": "1900", "density_high": "2100", "tensile": "4e6", "tensile_low": "3e6"}
+    files = own(tmp_path, "materials", **numbers, words="porcelain|our paste", source="our laboratory")
+    scene, before = classify(VASE, rules(files)), classify(VASE)
+    ratio = [new / old for new, old in zip(ends(scene, "mass"), ends(before, "mass"), strict=True)]
+    assert ratio == pytest.approx([1900 / 2300, 2000 / 2400, 2100 / 2500])
+    assert ends(scene, "allowable_stress") == [3e6, 4e6, 45e6]
+    assert scene.parameters["mass"].source == "the museum's our-materials.csv, porcelain"
+    assert scene.parameters["allowable_stress"].source == "the museum's our-materials.csv, porcelain (our laboratory)"
+    assert "porcelain (the museum's our-materials.csv)" in scene.parameters["allowable_stress"].note
+    assert ends(classify(replace(VASE, medium="our paste"), rules(files)), "mass") == ends(scene, "mass")
+
+
+def test_an_own_friction_counts_for_its_pair_and_in_the_span_of_what_is_not_known(tmp_path: Path) -> None:
+    files = own(tmp_path, "friction", value="0.30", low="0.25", high="0.45", source="tilt tests 2026")
+    values = rules(files).values
+    (pair,) = values.friction_of("marble", "formica")
+    assert (pair.low, pair.value, pair.high) == (0.25, 0.30, 0.45)
+    # Marble on terrazzo 0.15, mosaic 0.13, and Formica: the median and the ends of three.
+    marble = span(values.friction_of("Marble"))
+    assert (marble.low, marble.value, marble.high) == (0.13, 0.15, 0.45)
+    stone = classify(replace(VASE, medium="marble"), rules(files)).parameters["friction_static"]
+    assert stone.source == "Agbabian et al. 1991, Table 3; the museum's our-friction.csv (tilt tests 2026)"
+    assert "Table 3 and the museum's our-friction.csv for Marble on any floor; not measured" in stone.note
+    metal = replace(VASE, medium="bronze")
+    assert classify(metal, rules(files)) == classify(metal)
+
+
+def test_an_own_damping_counts_for_its_pair(tmp_path: Path) -> None:
+    files = own(tmp_path, "damping", value="0.04", low="0.03", high="0.05", source="our wall")
+    wood = classify(replace(PAINTING, wall_surface="paint", back_surface="wood"), rules(files))
+    assert ends(wood, "damping") == [0.03, 0.04, 0.05]
+    assert wood.parameters["damping"].source == "the museum's our-damping.csv (our wall)"
+    unknown = classify(PAINTING, rules(files)).parameters["damping"]
+    assert (unknown.low, unknown.value, unknown.high) == (0.03, 0.03, 0.13)
+    assert "wood on paint, the least of the museum's our-damping.csv and Table 4" in unknown.note
+
+
+def test_a_surface_is_proposed_with_the_museums_own_friction(tmp_path: Path) -> None:
+    """Marble on Formica is 0.18 in Table 3: the museum that measured 0.28 is advised with that, and Kouros's is not."""
+    values = rules(own(tmp_path, "friction", value="0.30", low="0.28", high="0.33", source="tilt tests 2026")).values
+    scene = classify(replace(VASE, base_material="Marble", friction=0.14))
+    (row,) = (one for one in measure_catalogue(values=values).measures if isinstance(one, Surface))
+    offered = []
+    for have in (assumed(), values):
+        runner = TrialRunner((), (), Context(Threads(1)), Numerics(), values=have)
+        proposal = row.propose(Deficiency(0, scene, (), ()), runner)
+        offered.append([float(candidate.numbers["friction"][0]) for candidate in proposal.candidates])
+    assert offered == [[0.15, 0.18], [0.15, 0.28]]
+    assert measure_catalogue(values=values).values is values
+
+
+@pytest.mark.parametrize(
+    ("name", "cells", "message"),
+    [
+        ("classes", {"class": "vesel"}, r"line 2: Kouros's classes.csv has no row 'vesel' .*; write one of vessel"),
+        ("classes", {"support": "standing"}, r"line 2, class 'vessel': column 'support': .*, not 'standing'"),
+        ("classes", {"support": "isolated"}, r"column 'support': is 'isolated', which measures make of an object"),
+        ("classes", {"round": "maybe"}, r"column 'round': .* not 'maybe'"),
+        ("classes", {"cg_low": "0.5"}, r"column 'cg_high': cg_low <= cg_ratio <= cg_high does not hold \(0.5 0.45"),
+        ("classes", {"cg_ratio": "1.2"}, r"column 'cg_ratio': is a share: it must be above 0 and at most 1, not 1.2"),
+        ("classes", {"base_ratio": ""}, r"column 'base_high': base_ratio, base_low and base_high go together"),
+        ("classes", {"section": ""}, r"column 'section_high': a critical section and its size go together"),
+        ("classes", {"section": "waist"}, r"column 'section': .* not 'waist'"),
+        ("classes", {"clearance": "wide"}, r"column 'clearance': .* valid number.* not 'wide'"),
+        ("classes", {"clearance_high": "inf"}, r"column 'clearance_high': .* finite number"),
+        ("classes", {"models": "rocking|flying"}, r"column 'models': there is no model 'flying'; use .*rocking"),
+        ("classes", {"models": "none|rocking"}, r"column 'models': none and held stand alone"),
+        ("classes", {"models": ""}, r"column 'models': is empty; name models parted by \|"),
+        ("classes", {"source": " "}, r"column 'source': is empty; every row needs it"),
+        ("classes", {"title": "-"}, r"column 'title': there is no such column"),
+        ("classes", {"colour": "red"}, r"column 'colour': no column is called so; correct its name, or remove it"),
+        ("materials", {"material": "paper clay"}, r"line 2: Kouros's materials.csv has no row 'paper clay'"),
+        ("materials", {"density": "-5"}, r"column 'density': .* greater than 0, not '-5'"),
+        ("materials", {"tensile_high": "1e6"}, r"column 'tensile_high': tensile_low <= tensile <= tensile_high"),
+        ("materials", {"friction_as": "Felt"}, r"material 'porcelain': column 'friction_as': .* has no 'Felt'"),
+        ("materials", {"words": "porcelain|oak"}, r"material 'porcelain': .* 'oak' is a word of 'wood' too"),
+        ("friction", {"surface_material": "Felt"}, r"line 2: Kouros's friction.csv has no row 'marble on felt'"),
+        ("friction", {"low": "-0.1"}, r"line 2, object_material 'Marble': column 'low': must be 0 or more, not -0.1"),
+        ("friction", {"value": "0,2"}, r"column 'value': .*valid number.*, not '0,2'"),
+        ("damping", {"back_surface": "Cork"}, r"has no row 'paint on cork'"),
+        ("damping", {"value": "2", "high": "5"}, r"column 'high': is a ratio of critical damping: .* below 1"),
+    ],
+)  # fmt: skip
+def test_a_mistake_in_an_own_table_is_named(name: str, cells: dict[str, str], message: str, tmp_path: Path) -> None:
+    """The file, the line, the row, the column, and what to do."""
+    with pytest.raises(TableError, match=rf"our-{name}\.csv.*{message}"):
+        rules(own(tmp_path, name, **cells))
+
+
+def test_a_row_that_is_there_twice_and_a_table_without_rows(tmp_path: Path) -> None:
+    files = own(tmp_path, "friction")
+    text = files["friction"].read_text(encoding="utf-8")
+    files["friction"].write_text(text + text.splitlines()[1].replace("Marble", "MARBLE") + "\n", encoding="utf-8")
+    with pytest.raises(TableError, match=r"our-friction.csv, line 3: 'marble on formica' is there twice; keep one row"):
+        rules(files)
+    files["friction"].write_text(text.splitlines()[0] + "\n", encoding="utf-8")
+    with pytest.raises(TableError, match=r"our-friction.csv: has no rows; write the header"):
+        rules(files)
+
+
+def test_kouros_own_tables_are_the_files(tmp_path: Path) -> None:
+    """Cell by cell: what the models make of a row is what the file says."""
+    for row, one in zip(table("classes"), assumed().classes.values(), strict=True):
+        assert (row["class"], row["title"], row["support"]) == (one.name, one.title, one.support)
+        assert (row["round"] == "yes", tuple(row["models"].split("|"))) == (one.round, one.models)
+        for kind, found in (("cg", one.cg), ("base", one.base), ("section", one.critical)):
+            told = [row[f"{kind}_low"], row[f"{kind}_ratio"], row[f"{kind}_high"]]
+            assert [""] * 3 if found is None else np.array(told, float).tolist() == [found.low, found.value, found.high]
+    for row, stuff in zip(table("materials"), assumed().materials.values(), strict=True):
+        assert row["words"] == "|".join(stuff.words)
+        assert (float(row["density"]), float(row["tensile"])) == (stuff.density, stuff.tensile)
+    assert [float(row["value"]) for row in table("friction")] == [row.value for row in assumed().friction]
+    assert [float(row["value"]) for row in table("damping")] == [row.value for row in assumed().damping]
