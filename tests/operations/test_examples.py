@@ -37,7 +37,7 @@ def placed(museum: Museum, tmp_path: Path) -> Callable[[str], str]:
     program = tmp_path / "bin" / "kouros"
     program.parent.mkdir()
     told = {name: environment({})[name] for name in ("PYTHONPATH", "NUMBA_NUM_THREADS") if name in os.environ}
-    # The home folder is another, where nothing is compiled yet: that takes half a minute, and is no matter of the example.
+    # In another home folder nothing is compiled yet: that takes half a minute, and is no matter of the example.
     told["NUMBA_CACHE_DIR"] = cache_folder()
     words = " ".join([*(f"{name}={shlex.quote(value)}" for name, value in told.items()), *map(shlex.quote, command())])
     program.write_text(f'#!/bin/sh\nexec env {words} "$@"\n', encoding="utf-8")
