@@ -63,6 +63,14 @@ class Listing(Sequence[Listed]):
         columns = list(zip(*objects, strict=True)) or [()] * len(Listed._fields)
         return cls(pa.table([pa.array(list(c), t) for c, t in zip(columns, _schema().types, strict=True)], _schema()))
 
+    @classmethod
+    def joining(cls, parts: Iterable[Listing]) -> Listing:
+        """Return the objects of some listings, one behind the other."""
+        import pyarrow as pa
+
+        tables = [part.table for part in parts]
+        return cls(pa.concat_tables(tables)) if tables else cls.of([])
+
     def sorted(self) -> Listing:
         """Return the objects as `order` sorts them: Arrow compares texts as UTF-8, which is by code points as well."""
         import pyarrow.compute as pc
@@ -94,6 +102,11 @@ class Listing(Sequence[Listed]):
     def __iter__(self) -> Iterator[Listed]:
         """Yield the objects."""
         return map(Listed, *(column.to_pylist() for column in self.table.columns))
+
+    def column(self, name: str) -> list[Any]:
+        """Return one field of all objects."""
+        values: list[Any] = self.table.column(name).to_pylist()
+        return values
 
     @cached_property
     def runs(self) -> tuple[Run, ...]:
@@ -147,10 +160,8 @@ class Listing(Sequence[Listed]):
 
     def joined(self, runs: Iterable[Run]) -> Listing:
         """Return the objects of some runs, one behind the other."""
-        import pyarrow as pa
-
-        parts = [self.table.slice(run.start, run.end - run.start) for run in runs]
-        return Listing(pa.concat_tables(parts).combine_chunks() if parts else self.table.slice(0, 0))
+        parts = [self[run.start : run.end] for run in runs]
+        return Listing(Listing.joining(parts).table.combine_chunks())
 
     def _array(self, name: str) -> Any:
         # Of one piece, so that places in it are places in the listing.

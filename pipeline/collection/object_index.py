@@ -24,6 +24,9 @@ from pipeline.collection.inventory.tables import ITEM, item_seal, newest, number
 from pipeline.collection.listing import Listed, Listing
 from pipeline.records import Item
 
+_AT_ONCE = 10_000
+"""Objects that are listed at a time."""
+
 _COLUMNS = tuple(ITEM.c[name] for name in Listed._fields)
 
 
@@ -130,18 +133,23 @@ def object_index(engine: Engine) -> ObjectIndex:
     DamagedRecordError
         Where what they are told apart by is not what was written, or where some are lost.
     """
+    parts: list[Listing] = []
+    damaged: list[str] = []
     with engine.connect() as connection:
         version = newest(connection) or 0
+        wanted = select(*_COLUMNS, ITEM.c.seal).where(state_at(version))
         try:
-            rows = connection.execute(select(*_COLUMNS, ITEM.c.seal).where(state_at(version))).all()
+            # Some at a time: as rows of Python they take several times as much as in columns.
+            for rows in connection.execute(wanted, execution_options={"yield_per": _AT_ONCE}).partitions():
+                damaged += [str(row[0]) for row in rows if item_seal(*row[:-1]) != row[-1]]
+                parts.append(Listing.of([row[:-1] for row in rows]))
         except DBAPIError as problem:
             broken = damaged_now(connection)
             if not broken:
                 raise
             raise DamagedRecordError(sorted(broken), shown(engine)) from problem
-        damaged = [str(row[0]) for row in rows if item_seal(*row[:-1]) != row[-1]]
         if damaged:
             raise DamagedRecordError(damaged, shown(engine))
-        require_all(connection, version, len(rows))
+        require_all(connection, version, sum(map(len, parts)))
     # Sorted here and not in SQL: servers collate by the locale of their country.
-    return ObjectIndex(engine, version, Listing.of([row[:-1] for row in rows]).sorted())
+    return ObjectIndex(engine, version, Listing.joining(parts).sorted())

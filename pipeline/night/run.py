@@ -17,8 +17,9 @@ from pipeline.motions.site import Site
 from pipeline.night.figures import Pictures, pictures
 from pipeline.night.importing import Imported, import_collection, source_of
 from pipeline.night.prepare import admit, run_context
+from pipeline.night.publication import Publication
 from pipeline.night.reading_summary import doubts_of
-from pipeline.night.scheduler import NightRun
+from pipeline.night.scheduler import Scheduler
 from pipeline.night.source_state import unchanged
 from pipeline.operations.dry_run import DryRunWarning, rehearsed
 from pipeline.operations.report_status import Status, last_good, mark_good, mark_running, status
@@ -111,42 +112,43 @@ def _run(
 
 def _planned(
     workspace: Workspace, site: Site, chosen: Selection, drawing: Pictures, started: datetime, progress: Progress
-) -> NightRun:
+) -> Scheduler:
     """Return the run with all that is shared in it made ready, and what there is to do known."""
     index = workspace.object_index()
     objects = _chosen(index.objects, chosen)
     context = run_context(workspace, site, index, objects, drawing, started, progress)
     charts = admit(context, index, objects, site.manifest.site.x_azimuth)
-    return NightRun(workspace, context, index, objects, decisions_in_force(workspace.engine), charts)
+    return Scheduler(workspace, context, index, objects, decisions_in_force(workspace.engine), charts)
 
 
-def _hold(night: NightRun, progress: Progress, chosen: Selection, *, dry_run: bool, strict: bool) -> Summary:
+def _hold(night: Scheduler, progress: Progress, chosen: Selection, *, dry_run: bool, strict: bool) -> Summary:
     """Do what there is to do, store it, publish it, say what changed."""
     workspace, engine = night.workspace, night.workspace.engine
     night.assess(progress, store=not dry_run)
+    shown = Publication(night)
     if dry_run:
-        return _judged(summarise(_ended(night, chosen), night.pages, night.tally(progress)), strict=strict)
-    with night.writer() as writer:
-        found = night.publish(writer, progress)
+        return _judged(summarise(_ended(night, shown, chosen), shown.pages, shown.tally(progress)), strict=strict)
+    with shown.writer() as writer:
+        found = shown.publish(writer, progress)
         _stand_by(night, found)
-        head = _ended(night, chosen)
+        head = _ended(night, shown, chosen)
         # A part is not compared: what was left out of it has not changed.
         before = None if chosen else comparable(engine, whole_runs(engine))
-        strangers = night.strangers(whole=not chosen)
+        strangers = shown.strangers(whole=not chosen)
         whole = replace(head, decisions=(*head.decisions, *strangers))
         told = counts(found)
-        commit_run(engine, whole, night.pages, night.rows(), counts=told, damaged=night.damaged, published=False)
+        commit_run(engine, whole, shown.pages, shown.rows(), counts=told, damaged=night.damaged, published=False)
         changes = None if before is None else changes_since(engine, before, head.run_id)
         progress.step("report", 0, 1)
         # A part of the collection is worth a report, but not the name of the museum's latest one.
         latest = None if chosen else lasting_name(workspace.reports)
-        summary = summarise(whole, night.pages, found)
+        summary = summarise(whole, shown.pages, found)
         index = writer.folder / "index.html"
         summary = replace(summary, fresh=night.fresh, report=index, latest=latest, changes=changes)
         summary = _judged(summary, strict=strict)
         beside = {SUMMARY: summary_text(summary, writer.folder)}
         doubts = doubts_of(workspace, head)
-        writer.finish(replace(head, decisions=strangers), found, changes, night.links(changes), beside, doubts)
+        writer.finish(replace(head, decisions=strangers), found, changes, shown.links(changes), beside, doubts)
     with uninterrupted():
         # From here on the report is whole: first it is shown, then said to be good.
         if latest is not None:
@@ -158,7 +160,7 @@ def _hold(night: NightRun, progress: Progress, chosen: Selection, *, dry_run: bo
     return summary
 
 
-def _stand_by(night: NightRun, found: Tally) -> None:
+def _stand_by(night: Scheduler, found: Tally) -> None:
     """Refuse a night in which Kouros failed on every object that it assessed: that is no object's doing.
 
     raises : RuntimeError with the first failure; the last report stays
@@ -175,13 +177,13 @@ def _judged(summary: Summary, *, strict: bool) -> Summary:
     return replace(summary, exit_code=3 if strict and summary.cannot else 0)
 
 
-def _ended(night: NightRun, chosen: Selection) -> RunRecord:
+def _ended(night: Scheduler, shown: Publication, chosen: Selection) -> RunRecord:
     head = night.context.head
     more: dict[str, Any] = {SELECTION: bool(chosen)}
     if night.context.surveyed:
         more[SURVEY_SECONDS] = round(night.seconds, 3)
     finished = datetime.now(UTC).isoformat(timespec="milliseconds")
-    return replace(head, finished=finished, settings={**head.settings, **more}, decisions=night.standing)
+    return replace(head, finished=finished, settings={**head.settings, **more}, decisions=shown.standing)
 
 
 def _was_read(workspace: Workspace, cut_off: Status | None) -> bool:

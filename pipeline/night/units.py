@@ -1,6 +1,7 @@
 """Units: what is assessed together, one object or all in one case, and the key that its results are kept under."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import blake2b
 from itertools import pairwise
@@ -18,19 +19,34 @@ Decisions = Mapping[str, tuple[Decision, ...]]
 
 
 @dataclass(frozen=True, slots=True)
-class Unit:
-    """What is assessed together.
+class Units:
+    """What is assessed together, of the objects of one page, in their order.
 
     Attributes
     ----------
-    key
-        Digest of everything that its results depend on.
-    members
-        Its objects, in the order of the catalogue.
+    keys
+        Of each unit the digest of everything that its results depend on.
+    ends
+        Where each ends among the objects of the page.
     """
 
-    key: str
-    members: tuple[Listed, ...]
+    keys: tuple[str, ...]
+    ends: "array[int]"
+
+    def bounds(self, at: int) -> tuple[int, int]:
+        """Return where a unit begins and ends among the objects of the page."""
+        return (self.ends[at - 1] if at else 0), self.ends[at]
+
+    @property
+    def sizes(self) -> list[int]:
+        """How many objects each unit is."""
+        return [end - start for start, end in pairwise((0, *self.ends))]
+
+    def by_object(self) -> Iterator[tuple[str, int]]:
+        """Yield for each object the key of its unit, and its place in that."""
+        for key, size in zip(self.keys, self.sizes, strict=True):
+            for at in range(size):
+                yield key, at
 
 
 class UnitKeys:
@@ -70,8 +86,8 @@ class UnitKeys:
         """Return the digest of what results depend on besides the objects and the decisions about them."""
         return (self._shaken if part.on_display or self._stores else self._aside)[part.floor]
 
-    def units(self, part: PagePart, decisions: Decisions) -> list[Unit]:
-        """Return the units of a page, in the order of its objects.
+    def units(self, part: PagePart, decisions: Decisions) -> Units:
+        """Return the units of a page.
 
         Parameters
         ----------
@@ -81,24 +97,26 @@ class UnitKeys:
             Those in force, by object number.
         """
         basis, objects = self.basis(part), list(part.objects)
-        if not (part.on_display or self._stores):
-            return [Unit(_key(basis, [one], decisions), (one,)) for one in objects]
-        ends = [*part.objects.companies().tolist(), len(objects)]
-        companies = (tuple(objects[start:end]) for start, end in pairwise(ends))
-        return [Unit(_key(basis, members, decisions), members) for members in companies]
+        together = part.on_display or self._stores
+        starts = part.objects.companies().tolist() if together else range(len(objects))
+        bounds = list(pairwise((*starts, len(objects))))
+        keys = tuple(_key(basis, objects[start:end], decisions) for start, end in bounds)
+        return Units(keys, array("I", [end for _, end in bounds]))
 
-    def neighbours(self, part: PagePart, units: Iterable[Unit]) -> str:
+    def neighbours(self, pages: Sequence[tuple[PagePart, Units]]) -> str:
         """Return the key of the gaps between the neighbours of a gallery.
 
         Parameters
         ----------
-        part
-            Any of the gallery's pages.
-        units
-            Of all of them.
+        pages
+            All of the gallery, each with its units.
         """
-        members = [(unit.key, one.digest) for unit in units for one in unit.members]
-        return seal("neighbours", self.basis(part), repr(members))
+        members = [
+            (key, digest)
+            for part, units in pages
+            for (key, _), digest in zip(units.by_object(), part.objects.column("digest"), strict=True)
+        ]
+        return seal("neighbours", self.basis(pages[0][0]), repr(members))
 
 
 def _key(basis: str, members: Sequence[Listed], decisions: Decisions) -> str:

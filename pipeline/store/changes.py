@@ -1,7 +1,8 @@
 """Comparison of two stored runs: objects, inputs, motions, decisions, settings and versions, and verdicts."""
 
-from collections.abc import Mapping, Set
+from collections.abc import Iterable, Mapping, Set
 from functools import cached_property
+from sys import intern
 from typing import Any, get_type_hints
 
 from sqlalchemy import Connection, select
@@ -22,13 +23,13 @@ from pipeline.records import (
 )
 from pipeline.store import codec
 from pipeline.store.causes import Causes, MotionKey
-from pipeline.store.pages import Members, found_of, load_members
+from pipeline.store.pages import found_of, load_members
 from pipeline.store.results import DamagedRunError, fetch, outline_of, outlines
 from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES, TABLES
 from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_PAGE
 
-_Place = tuple[Members, int, str, str, str, int]
-"""An object of a run: page, place on it, gallery, digest of its record, key of its result, place in that."""
+_Place = tuple[str, str, str, str, int]
+"""An object of a run: key of its page, gallery, digest of its record, key of its result, place in that."""
 
 
 def changes(connection: Connection, old: str, new: str) -> RunChanges:
@@ -60,36 +61,34 @@ class _Comparison:
         )
 
     @cached_property
-    def _members(self) -> tuple[list[Members], list[Members]]:
-        """The pages that only one of the two runs has: what both have cannot have changed."""
+    def _places(self) -> tuple[dict[str, _Place], dict[str, _Place]]:
+        """Where the objects are, by number, before and after, of those pages that only one of the two runs has."""
         sides = []
         for run_id in (self.old, self.new):
             query = select(RUN_PAGE.c.key).where(RUN_PAGE.c.run_id == run_id).order_by(RUN_PAGE.c.position)
             sides.append(list(self.connection.execute(query).scalars()))
         before, after = (set(side) for side in sides)
-        own = ([key for key in sides[0] if key not in after], [key for key in sides[1] if key not in before])
-        return tuple([load_members(self.connection, key) for key in keys] for keys in own)  # type: ignore[return-value]
-
-    @cached_property
-    def _places(self) -> tuple[dict[str, _Place], dict[str, _Place]]:
-        """Where the objects of those pages are, by number, before and after."""
-        before, after = (
-            {
-                number: (members, at, gallery, members.digests[at], *members.results[at])
-                for members in side
-                for at, (number, gallery) in enumerate(
-                    zip(members.column("object_number"), members.column("gallery"), strict=True)
-                )
-            }
-            for side in self._members
+        # What both have cannot have changed.
+        return (
+            self._on([key for key in sides[0] if key not in after]),
+            self._on([key for key in sides[1] if key not in before]),
         )
-        return before, after
+
+    def _on(self, pages: Iterable[str]) -> dict[str, _Place]:
+        found: dict[str, _Place] = {}
+        for page in pages:
+            members = load_members(self.connection, page)
+            told = zip(
+                *map(members.column, ("object_number", "gallery")), members.digests, members.results, strict=True
+            )
+            found |= {number: (page, intern(gallery), digest, *result) for number, gallery, digest, result in told}
+        return found
 
     @cached_property
     def _outlines(self) -> tuple[dict[str, Outline], dict[str, Outline]]:
         """The objects of those pages that are not what they were, by number, before and after."""
         before, after = self._places
-        same = {number for number, place in after.items() if number in before and before[number][2:] == place[2:]}
+        same = {number for number, place in after.items() if number in before and before[number][1:] == place[1:]}
         sides = []
         for places in (before, after):
             left = {number: place for number, place in places.items() if number not in same}
@@ -97,7 +96,7 @@ class _Comparison:
             sides.append(
                 {
                     number: outline_of(number, gallery, digest, found[key][at])
-                    for number, (_, _, gallery, digest, key, at) in left.items()
+                    for number, (_, gallery, digest, key, at) in left.items()
                 }
             )
         return sides[0], sides[1]
@@ -140,9 +139,9 @@ class _Comparison:
 
     def _scenes(self, places: Mapping[str, _Place], numbers: Set[str]) -> dict[str, Scene]:
         """Return the scenes of some objects."""
-        pages = {id(places[number][0]): places[number][0] for number in sorted(numbers)}
         found: dict[str, Scene] = {}
-        for members in pages.values():
+        for page in dict.fromkeys(places[number][0] for number in sorted(numbers)):
+            members = load_members(self.connection, page)
             kept, broken = fetch(self.connection, members.wanted)
             if broken:
                 raise DamagedRunError(f"result {broken[0][:12]} changed in the database since it was written")

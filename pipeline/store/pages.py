@@ -15,10 +15,13 @@ from pipeline.collection.object_index import read_packed
 from pipeline.collection.sealing import damaged_rows, seal, sealed, sound_rows
 from pipeline.records import ITEM_FIELDS, Found, Item, Page
 from pipeline.store.codec import StoreError
-from pipeline.store.results import DamagedRunError, decode, decode_spacings, fetch, named, of_object
+from pipeline.store.results import DamagedRunError, Made, decode, decode_spacings, fetch, made_of, of_object
 from pipeline.store.tables import PAGE
 
 NEIGHBOURS = "how near its neighbours come is not known"
+
+_AT_ONCE = 20
+"""Pages that are read at a time: each may be a few hundred kilobytes."""
 
 
 @dataclass(frozen=True)
@@ -98,15 +101,6 @@ class Members:
         return read_packed(self.items)
 
 
-@dataclass(frozen=True)
-class Shown:
-    """A page in the database: its objects, and the run that found the newest of their results, with its time."""
-
-    run: str
-    made: str
-    members: Members
-
-
 def found_of(members: Members, kept: Mapping[str, bytes]) -> Found:
     """Return everything that was found about the objects of a page.
 
@@ -184,18 +178,16 @@ def add_pages(connection: Connection, rows: Iterable[Mapping[str, Any]], damaged
             connection.execute(insert(PAGE), [dict(row)])
 
 
-def fetch_pages(database: Engine | Connection, keys: Collection[str]) -> tuple[dict[str, Shown], list[str]]:
-    """Return the pages that are kept under some keys, and those of the keys whose rows are damaged."""
-    if isinstance(database, Engine):
-        with database.connect() as connection:
-            return fetch_pages(connection, keys)
-    found: dict[str, Shown] = {}
-    damaged: list[str] = []
-    for some in named(keys):
-        rows, broken = sound_rows(database, PAGE, PAGE.c.key.in_(some))
-        found |= {row.key: Shown(row.run_id, row.made, Members.of_packed(bytes(row.members))) for row in rows}
-        damaged += broken
-    return found, damaged
+def known_pages(engine: Engine, keys: Collection[str]) -> tuple[dict[str, Made], list[str]]:
+    """Return of those pages that there are the newest of their results, by key, and the keys of those damaged."""
+    with engine.connect() as connection:
+        return made_of(connection, PAGE, keys, _AT_ONCE)
+
+
+def fetch_members(connection: Connection, key: str) -> tuple[Members | None, bool]:
+    """Return the objects of a page, None where they cannot be had, and whether that is because it is damaged."""
+    rows, broken = sound_rows(connection, PAGE, PAGE.c.key == key)
+    return (Members.of_packed(bytes(rows[0].members)) if rows else None), bool(broken)
 
 
 def load_members(connection: Connection, key: str) -> Members:
@@ -206,11 +198,11 @@ def load_members(connection: Connection, key: str) -> Members:
     DamagedRunError
         Where there is no such page, or where it is damaged.
     """
-    found, damaged = fetch_pages(connection, [key])
-    if key not in found:
+    members, damaged = fetch_members(connection, key)
+    if members is None:
         why = "is damaged: the database was changed by hand or is broken" if damaged else "was pruned while it was read"
         raise DamagedRunError(f"page {key[:12]} {why}; choose another run")
-    return found[key].members
+    return members
 
 
 def load_page(database: Engine | Connection, key: str) -> Found:

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from sqlalchemy import Engine, delete, select
 
-from pipeline.store.pages import fetch_pages
+from pipeline.store.pages import fetch_members
 from pipeline.store.results import forget
 from pipeline.store.tables import PAGE, RESULT, RUN, RUN_PAGE
 
@@ -26,8 +26,7 @@ def remove_runs(engine: Engine, run_ids: Iterable[str]) -> None:
     with engine.connect() as connection:
         # Page by page: a page names a thousand results.
         for key in connection.execute(select(PAGE.c.key)).scalars().all():
-            for page in fetch_pages(connection, [key])[0].values():
-                used.update(page.members.keys)
-                used.add(page.members.spacings)
+            members, _ = fetch_members(connection, key)
+            used.update([] if members is None else members.wanted)
         there = set(connection.execute(select(RESULT.c.key)).scalars())
     forget(engine, there - used)

@@ -10,11 +10,16 @@ import re
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 from math import log
 from pathlib import Path
+
+import psutil
 
 from tests.benchmarks.museum import PGA, Museum, museum
 
@@ -24,11 +29,17 @@ SPREAD = "KOUROS_BENCH_SPREAD"
 
 @dataclass(frozen=True)
 class Cost:
-    """Of one run: seconds, seconds of processors, megabytes of its largest process, exit code."""
+    """Of one run: seconds, seconds of processors, megabytes of its largest process and of all (PSS), exit code.
+
+    database : megabytes of the database after it;  load : of the machine, mean of the last minute, at its end
+    """
 
     wall: float
     cpu: float
     peak: float
+    whole: float
+    database: float
+    load: float
     code: int
 
 
@@ -38,7 +49,10 @@ def scale() -> None:
     motions, spread = int(os.environ.get(MOTIONS, len(PGA))), float(os.environ.get(SPREAD, "0"))
     print(f"copies of a record differ by {spread:.0%}; {os.cpu_count()} cores; seconds")
     print(f"{motions} motions of 20,000 samples, three components")
-    print(f"{'objects':>9} {'night':<24}{'wall':>8}{'cpu':>9}{'ms/object':>11}{'peak MB':>9}{'exit':>6}")
+    print(
+        f"{'objects':>9} {'night':<24}{'wall':>8}{'cpu':>9}{'ms/object':>11}{'peak MB':>9}{'all MB':>8}"
+        f"{'db MB':>7}{'load':>6}{'exit':>6}"
+    )
     first = {}
     with tempfile.TemporaryDirectory() as temporary:
         for size in sizes:
@@ -58,7 +72,7 @@ def _tell(size: int, what: str, made: Museum) -> Cost:
     cost = _run(made)
     print(
         f"{size:>9,} {what:<24}{cost.wall:>8.1f}{cost.cpu:>9.1f}{1e3 * cost.cpu / size:>11.2f}{cost.peak:>9,.0f}"
-        f"{cost.code:>6}",
+        f"{cost.whole:>8,.0f}{cost.database:>7,.0f}{cost.load:>6.1f}{cost.code:>6}",
         flush=True,
     )
     return cost
@@ -70,10 +84,45 @@ def _run(made: Museum) -> Cost:
         [sys.executable, "-c", "from pipeline.cli import main; main()", "-q", "--config", str(made.settings), "run"],
         stdout=subprocess.DEVNULL,
     )
-    _, status, used = os.wait4(process.pid, 0)
+    with _watched(process.pid) as peaks:
+        _, status, used = os.wait4(process.pid, 0)
     wall = time.perf_counter() - start
+    database = sum(file.stat().st_size for file in made.settings.parent.glob("kouros.sqlite*")) / 1e6
     # The processes that it started are counted with it, once they have ended.
-    return Cost(wall, used.ru_utime + used.ru_stime, used.ru_maxrss / 1e3, os.waitstatus_to_exitcode(status))
+    cpu = used.ru_utime + used.ru_stime
+    code = os.waitstatus_to_exitcode(status)
+    return Cost(wall, cpu, used.ru_maxrss / 1e3, max(peaks), database, os.getloadavg()[0], code)
+
+
+@contextmanager
+def _watched(pid: int) -> Iterator[list[float]]:
+    """Measure while the block lasts, every half a second, the megabytes of a process and all that it started."""
+    ended, peaks = threading.Event(), [0.0]
+
+    def watch() -> None:
+        while not ended.wait(0.5):
+            peaks.append(_proportional(pid) / 1e6)
+
+    thread = threading.Thread(target=watch)
+    thread.start()
+    try:
+        yield peaks
+    finally:
+        ended.set()
+        thread.join()
+
+
+def _proportional(pid: int) -> int:
+    """Return the bytes of a process and all below it, those that several share counted once (PSS)."""
+    found = 0
+    try:
+        mine = psutil.Process(pid)
+        for one in (mine, *mine.children(recursive=True)):
+            found += one.memory_full_info().pss
+    except psutil.Error:
+        # One that ends while it is looked at.
+        pass
+    return found
 
 
 def _change_object(made: Museum) -> None:

@@ -103,14 +103,14 @@ def test_a_worker_that_is_killed_in_the_middle_of_a_night_loses_nothing(
     settings = settings.model_copy(update={"execution": execution})
     killed: list[int] = []
 
-    def told(self: scheduler.NightRun, came: Assessments) -> list[Stored]:
+    def told(self: scheduler.Scheduler, came: Assessments) -> list[Stored]:
         if not killed:
             killed.append(next(iter(cluster.workers.values())).process.pid)
             os.kill(killed[0], signal.SIGKILL)
         return true(self, came)
 
-    true = scheduler.NightRun._told
-    monkeypatch.setattr(scheduler.NightRun, "_told", told)
+    true = scheduler.Scheduler._told
+    monkeypatch.setattr(scheduler.Scheduler, "_told", told)
     assert night(settings).fresh == len(OBJECTS)
     assert killed
     assert found(settings).assessments == found(alone).assessments

@@ -13,7 +13,7 @@ from babel.messages.catalog import Catalog
 from babel.messages.mofile import write_mo
 
 from pipeline import resources
-from pipeline.night import scheduler
+from pipeline.night import publication, scheduler
 from pipeline.night.context import RunContext
 from pipeline.night.page_tasks import PageTask, Rendered
 from pipeline.night.run import run
@@ -45,7 +45,7 @@ def done(monkeypatch: pytest.MonkeyPatch) -> Done:
 
 
 def counted(patch: pytest.MonkeyPatch) -> Done:
-    made, assess, render = Done(), scheduler.assess_units, scheduler.render_page
+    made, assess, render = Done(), scheduler.assess_units, publication.render_page
 
     def assessing(context: RunContext, task: UnitTask) -> Assessments:
         if task.assessed:
@@ -59,7 +59,7 @@ def counted(patch: pytest.MonkeyPatch) -> Done:
         return render(context, task)
 
     patch.setattr(scheduler, "assess_units", assessing)
-    patch.setattr(scheduler, "render_page", rendering)
+    patch.setattr(publication, "render_page", rendering)
     patch.setattr(page_renderer, "fill", lambda *_: "")
     patch.setattr(report_writer, "fill", lambda *_: "")
     return made

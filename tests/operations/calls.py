@@ -26,7 +26,7 @@ from sqlalchemy import select
 from pipeline.collection.database import open_database
 from pipeline.operations.report_status import FAILED, GOOD, RUNNING, status
 from pipeline.settings import load_settings
-from pipeline.store.pages import fetch_pages
+from pipeline.store.pages import damaged_pages, load_members
 from pipeline.store.results import damaged as damaged_results
 from pipeline.store.tables import PAGE, RESULT
 from tests.museum import COLUMNS, edit, workspace
@@ -223,8 +223,9 @@ def _database(file: Path) -> Iterator[str]:
     engine = open_database(str(file))
     with engine.connect() as connection:
         there = set(connection.execute(select(RESULT.c.key)).scalars())
-        pages, damaged = fetch_pages(connection, connection.execute(select(PAGE.c.key)).scalars().all())
-    named = {key for page in pages.values() for key in (*page.members.keys, page.members.spacings)} - {""}
+        pages = connection.execute(select(PAGE.c.key)).scalars().all()
+        damaged = list(damaged_pages(engine))
+        named = {key for page in set(pages) - set(damaged) for key in load_members(connection, page).wanted}
     if there != named:
         yield f"results of no page: {len(there - named)}, pages without their results: {len(named - there)}"
     if damaged or [*damaged_results(engine)]:

@@ -1,0 +1,52 @@
+"""Results are compressed with a dictionary of texts, and what was compressed with another one, or none, is read."""
+
+import zlib
+from pathlib import Path
+
+import pytest
+
+from pipeline.store import compression
+from pipeline.store.codec import StoreError
+from pipeline.store.compression import deflated, inflated, joined
+from pipeline.store.results import anonymous, decode, encode
+from tests.store.run_samples import assessment, finding
+
+FOLDER = Path(compression.__file__).with_name("dictionaries")
+RESULT = anonymous(assessment("1", finding("1")), {}, None)
+
+
+def test_every_dictionary_is_what_its_name_says() -> None:
+    """Changed by a letter it would make rows of before unreadable: a new one is a new file."""
+    names = {file.stem for file in FOLDER.glob("*.txt")}
+    assert compression.NEWEST in names
+    for name in names:
+        assert f"{zlib.adler32(joined((FOLDER / f'{name}.txt').read_text(encoding='utf-8'))):08x}" == name
+
+
+def test_what_is_written_names_its_dictionary_and_comes_back() -> None:
+    content = b'{"note":"mass of 3 kg"}' * 9
+    packed = deflated(content)
+    assert packed[2:6].hex() == compression.NEWEST
+    assert inflated(packed) == content
+    assert deflated(content) == packed
+
+
+def test_a_result_of_before_the_dictionary_is_read() -> None:
+    old = zlib.compress(inflated(encode("k", [RESULT]).found), 1)
+    assert decode(old) == (RESULT,)
+
+
+def test_the_dictionary_pays() -> None:
+    """A result of one finding, which is mostly names of fields, takes less than half of what it takes without."""
+    packed = encode("k", [RESULT]).found
+    assert 2 * len(packed) < len(zlib.compress(inflated(packed), 9))
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [lambda p: p[:-1], lambda p: p[:3], lambda p: p + b"0", lambda p: p[:2] + b"none" + p[6:], lambda _: b""],
+    ids=["cut", "cut early", "longer", "another dictionary", "empty"],
+)  # fmt: skip
+def test_what_is_damaged_is_refused(broken) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(StoreError, match="damaged"):
+        decode(broken(encode("k", [RESULT]).found))
