@@ -6,13 +6,14 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from decimal import Context
+from enum import StrEnum
 from math import isinf
 
 from pipeline.collection.mapping import WRITTEN, ColumnMap
 from pipeline.collection.measured_cell import of_cell
-from pipeline.collection.record import plausible, units_of
+from pipeline.collection.record import CHOICES, plausible, units_of
 from pipeline.collection.sources.rows import as_text
-from pipeline.records import Origin, Problem, Provenance, Support
+from pipeline.records import Origin, Problem, Provenance
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
 _INFINITE = re.compile(r"[+-]?inf(inity)?", re.IGNORECASE)
@@ -134,8 +135,8 @@ class Cells:
             text = text[:limit].rstrip()
         return text
 
-    def choice(self, name: str, column: ColumnMap, texts: Sequence[str]) -> Support | None:
-        """Return how the object is held.
+    def choice(self, name: str, column: ColumnMap, texts: Sequence[str]) -> StrEnum | None:
+        """Return a word of the field's vocabulary.
 
         Parameters
         ----------
@@ -144,20 +145,20 @@ class Cells:
 
         Returns
         -------
-        Support or None
+        StrEnum or None
             None where it is not recorded or no known word (then with a problem).
         """
         text = texts[0].strip(_SPACE)
         if _missing(text, column):
             return None
         meaning = str(_translate(column).get(text.casefold(), text.casefold()))
-        known = [support.value for support in Support]
+        known = [one.value for one in CHOICES[name]]
         if meaning not in known:
             given = ", ".join(map(repr, column.values))
             message = f"{_show(text)} is none of {', '.join(known)}{f', nor of {given}' if given else ''}"
             self._note(name, column, message, f"add it to the mapping, [columns.{name}] values")
             return None
-        return Support(meaning)
+        return CHOICES[name](meaning)
 
     def flag(self, name: str, column: ColumnMap, texts: Sequence[str]) -> bool | None:
         """Return yes or no.

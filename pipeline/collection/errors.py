@@ -9,6 +9,10 @@ class CollectionError(InputError):
     exit_code = 5
 
 
+class NoRowsError(CollectionError):
+    """A source that has a header and no rows."""
+
+
 class MappingError(InputError):
     """A mapping that cannot be used: the message names the mapping's file, the field and the remedy."""
 

@@ -24,12 +24,11 @@ from pydantic import (
 )
 
 from pipeline.collection.errors import MappingError
-from pipeline.collection.record import KINDS, REQUIRED, units_of
+from pipeline.collection.record import CHOICES, KINDS, REQUIRED, units_of
 from pipeline.collection.sources.base import Name, Source, SourceSettings
 from pipeline.collection.sources.registry import SOURCES, source_named
 from pipeline.errors import InputError
 from pipeline.quantities import LENGTHS, MASSES
-from pipeline.records import Support
 from pipeline.resources import small_text
 
 PRESETS = Path(__file__).resolve().parent / "presets"
@@ -389,8 +388,9 @@ def _fault(field: str, column: ColumnMap) -> str:
         return "values translate texts, this is a number; use missing instead" if column.values else ""
     if any(not isinstance(value, str) for value in column.missing):
         return "missing must hold texts, in quotes: this field is no number"
-    choices: dict[str, list[Any]] = {"choice": [s.value for s in Support], "flag": [True, False]}
-    allowed = choices.get(kind)
+    allowed: list[Any] | None = [True, False] if kind == "flag" else None
+    if kind == "choice":
+        allowed = [one.value for one in CHOICES[field]]
     for text, meaning in column.values.items():
         if allowed is not None and meaning not in allowed:
             one_of = ", ".join(str(a).lower() for a in allowed)

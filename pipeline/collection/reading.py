@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from pipeline.collection.cells import Cells
 from pipeline.collection.consistency import contradictions
-from pipeline.collection.errors import CollectionError
+from pipeline.collection.errors import CollectionError, NoRowsError
 from pipeline.collection.limits import STANDARD, Limits, Meter
 from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, Texts, check_header
 from pipeline.collection.measured import fill, is_dimension
@@ -187,7 +187,7 @@ def read_items(
         "%s: read %d rows in %.2f s by mapping %r", source.name, reader.rows, perf_counter() - since, mapping.name
     )
     if not reader.rows:
-        raise CollectionError(f"{source.name}: empty collection: a header and no data rows; export it again")
+        raise NoRowsError(f"{source.name}: empty collection: a header and no data rows; export it again")
     return Reading(
         items=tuple(reader.items),
         rows=reader.rows,

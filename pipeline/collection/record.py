@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from functools import cache
 from hashlib import blake2b
 from typing import Any, get_type_hints
@@ -11,9 +12,11 @@ from typing import Any, get_type_hints
 from pydantic import TypeAdapter
 
 from pipeline.quantities import LENGTHS, MASSES
-from pipeline.records import ITEM_FIELDS, Item, Problem, Provenance, Support
+from pipeline.records import ITEM_FIELDS, Furniture, Hanging, Item, Problem, Provenance, Support
 from pipeline.tables import table
 from pipeline.tables.rows import Number, checked
+
+_CHOICES: Mapping[Any, type[StrEnum]] = {kind | None: kind for kind in (Support, Hanging, Furniture)}
 
 KINDS: Mapping[str, str] = {
     name: {
@@ -22,13 +25,18 @@ KINDS: Mapping[str, str] = {
         int | None: "integer",
         bool: "flag",
         bool | None: "flag",
-        Support | None: "choice",
+        **dict.fromkeys(_CHOICES, "choice"),
         tuple[Provenance, ...]: "list",
         tuple[Problem, ...]: "list",
     }[hint]
     for name, hint in get_type_hints(Item).items()
 }
 """Field of Item -> "text", "number", "integer", "flag", "choice" or "list", as its type hint says."""
+
+CHOICES: Mapping[str, type[StrEnum]] = {
+    name: _CHOICES[hint] for name, hint in get_type_hints(Item).items() if hint in _CHOICES
+}
+"""Field of Item of the kind "choice" -> its vocabulary."""
 
 REQUIRED = ("object_number", "gallery")
 """The only fields that every record must have."""
@@ -54,6 +62,8 @@ _MEANINGS = {
     "orientation_deg": "Direction of the object's width, clockwise from north.",
     "support": "How the object is held.",
     "isolator": "Name of the isolator it stands on, if any.",
+    "hanging": "How it hangs.",
+    "furniture": "What it stands on or in, or hangs from.",
     "height_m": "Height.",
     "base_width_m": "Width of the footing.",
     "base_depth_m": "Depth of the footing.",

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pipeline.records.fragility import Fragility
 from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.result import Assessment, Finding, Recommendation, Spacing
-from pipeline.records.scene import Estimate, Support
+from pipeline.records.scene import Estimate, Furniture, Hanging, Support
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +41,8 @@ class Result:
     ----------
     object_class, rule, support, models, parameters, assumptions, missing, skipped, floor
         See `Scene`.
+    hanging, furniture, statements
+        See `Scene`.
     findings : tuple of Finding
         One for each demand and level.
     recommendations : tuple of Recommendation
@@ -62,6 +64,9 @@ class Result:
     missing: tuple[str, ...]
     skipped: Mapping[str, str]
     floor: str
+    hanging: Hanging | None = None
+    furniture: Furniture | None = None
+    statements: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
     recommendations: tuple[Recommendation, ...] = ()
     fragilities: tuple[Fragility, ...] = ()

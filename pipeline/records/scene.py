@@ -17,11 +17,33 @@ class Support(StrEnum):
     ISOLATED = "isolated"
 
 
+class Hanging(StrEnum):
+    """Way in which a work hangs: on one hook or wire, on two hooks or D-rings, on a cleat, by security hardware."""
+
+    WIRE = "wire"
+    TWO_HOOKS = "two_hooks"
+    CLEAT = "cleat"
+    SECURITY = "security"
+    FIXED = "fixed"
+
+
+class Furniture(StrEnum):
+    """Furniture that an object stands on or in, or that it hangs from."""
+
+    FLOOR = "floor"
+    SHOWCASE = "showcase"
+    PEDESTAL = "pedestal"
+    SHELF = "shelf"
+    WALL = "wall"
+    RAIL = "rail"
+
+
 class Origin(StrEnum):
-    """Origin of a number."""
+    """Origin of a number: in the record of the object, derived from it, stated by a house rule, or assumed."""
 
     MEASURED = "measured"
     DERIVED = "derived"
+    STATED = "stated"
     ASSUMED = "assumed"
 
 
@@ -89,6 +111,8 @@ class Item:
         In the gallery, m towards east and north, and the direction of its width, degrees clockwise from north.
     support, isolator : Support or None, str
         How it is held, and by which isolator.
+    hanging, furniture : Hanging or None, Furniture or None
+        How it hangs, and what it stands on or in or hangs from.
     height_m, base_width_m, base_depth_m, width_m, depth_m, cg_height_m : float or None
         Extents, those of the footing, and the height of the centre of gravity above the base, m.
     mass_kg : float or None
@@ -129,6 +153,8 @@ class Item:
     orientation_deg: float | None = None
     support: Support | None = None
     isolator: str = ""
+    hanging: Hanging | None = None
+    furniture: Furniture | None = None
     height_m: float | None = None
     base_width_m: float | None = None
     base_depth_m: float | None = None
@@ -175,7 +201,7 @@ class Estimate:
     unit : str
         SI, or "-".
     origin : Origin
-        Whether it was measured, derived or assumed.
+        Whether it was measured, derived, stated by a house rule or assumed.
     low, high : float
         What the number may be between, in ``unit``; a measured number has no span.
     note : str
@@ -237,6 +263,11 @@ class Scene:
         Models that do not apply, with the reason.
     floor : str
         Of the building that it stands on; "" for the ground.
+    hanging, furniture : Hanging or None, Furniture or None
+        How it hangs, and what it stands on or in or hangs from, by its record or else by a house rule; None where
+        neither says.
+    statements : tuple of str
+        What house rules say of it besides its numbers, and where its record overrules them, in words.
     """
 
     item: Item
@@ -249,3 +280,6 @@ class Scene:
     missing: tuple[str, ...] = ()
     skipped: Mapping[str, str] = field(default_factory=dict)
     floor: str = ""
+    hanging: Hanging | None = None
+    furniture: Furniture | None = None
+    statements: tuple[str, ...] = ()

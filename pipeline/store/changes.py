@@ -25,7 +25,7 @@ from pipeline.store import codec
 from pipeline.store.causes import Causes, MotionKey
 from pipeline.store.pages import found_of, load_members
 from pipeline.store.results import DamagedRunError, fetch, outline_of, outlines
-from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES, TABLES
+from pipeline.store.reuse import CODE, DISPLAY, HOUSE, KERNELS, LEVELS, RULES, TABLES
 from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_PAGE
 
 _Place = tuple[str, str, str, str, int]
@@ -202,7 +202,7 @@ def _verdict(text: str | None) -> Verdict | None:
 
 
 _HINTS = get_type_hints(Scene)
-_SCENE = ("support", "object_class", "models", "parameters")
+_SCENE = ("support", "hanging", "furniture", "object_class", "models", "parameters")
 """What an object is run with besides its item; the floor has a cause of its own."""
 
 _OTHERWISE = frozenset({"gallery", "provenance"})
@@ -227,6 +227,7 @@ def _settings(run: Mapping[str, Any]) -> dict[str, Any]:
     found["site.folder"] = kept.get("site")
     found["collection.rules"] = kept.get(RULES)
     found |= {f"tables.{name}": digest for name, digest in (kept.get(TABLES) or {}).items()}
+    found["house"] = kept.get(HOUSE)
     found |= {f"levels.{name}": how for name, how in (kept.get(LEVELS) or {}).items()}
     return found
 

@@ -97,6 +97,9 @@ def anonymous(assessment: Assessment, needing: dict[str, int], wishes: tuple[Mea
         scene.missing,
         scene.skipped,
         scene.floor,
+        scene.hanging,
+        scene.furniture,
+        scene.statements,
         tuple(replace(one, object_number="", gallery="") for one in assessment.findings),
         tuple(replace(one, object_number="", gallery="") for one in assessment.recommendations),
         tuple(replace(one, object_number="") for one in assessment.fragilities),
@@ -121,6 +124,9 @@ def of_object(result: Result, item: Item) -> Assessment:
         result.missing,
         result.skipped,
         result.floor,
+        result.hanging,
+        result.furniture,
+        result.statements,
     )
     return Assessment(
         scene,
@@ -331,12 +337,13 @@ def _digests(result: Result) -> Digests:
         key = (finding.model, finding.level)
         if key not in worst or _SEVERITY[finding.verdict] > _SEVERITY[worst[key]]:
             worst[key] = finding.verdict
-    run_with = (result.support, result.object_class, result.models, dict(result.parameters))
+    held = (result.support, result.hanging, result.furniture)
+    run_with = (held, result.object_class, result.models, dict(result.parameters))
     verdicts = tuple((model, level, verdict.value) for (model, level), verdict in worst.items())
     return result.floor, _digest(_RunWith, run_with), verdicts
 
 
-_RunWith = tuple[Any, str, tuple[str, ...], dict[str, Any]]
+_RunWith = tuple[tuple[Any, Any, Any], str, tuple[str, ...], dict[str, Any]]
 
 
 def _digest(hint: Any, value: Any) -> str:

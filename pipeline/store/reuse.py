@@ -21,6 +21,10 @@ TABLES = "tables"
 """The same of the hashes of its own rows of what is assumed, by table."""
 
 
+HOUSE = "house"
+"""The same of its house rules, in one hash."""
+
+
 LEVELS = "levels"
 """Key of a run's settings under which it is kept how each level combines its motions."""
 

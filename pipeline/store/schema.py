@@ -21,7 +21,7 @@ _MEANING = {
     "high": "upper end of that range",
     "range_is": "demands where low and high are such; bounds where that range lies between them for certain",
     "capacity": "what the object can bear, in the unit of the finding; null where it is not known",
-    "capacity_origin": "whether the capacity was measured, derived or assumed",
+    "capacity_origin": "whether the capacity was measured, derived, stated by a house rule or assumed",
     "utilisation": "demand / capacity",
     "verdict": "pass, fail, or undetermined where the range of the demand spans the capacity or something is missing",
     "fidelity": "bound, chart, history or reference, from cheapest to dearest",

@@ -29,8 +29,8 @@ from pipeline.collection.inventory import (
 )
 from pipeline.collection.mapping import PRESETS, load_mapping
 from pipeline.collection.reading import Reading, Rejected, read_items
-from pipeline.collection.record import KINDS, NUMBER_LIMIT
-from pipeline.records import Item, Origin, Problem, Provenance, Support
+from pipeline.collection.record import CHOICES, KINDS, NUMBER_LIMIT
+from pipeline.records import Item, Origin, Problem, Provenance
 
 # What `read_items` lets through: no NUL, no halves of surrogate pairs, no negative zero, nothing infinite.
 _TEXT = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=60)
@@ -39,9 +39,9 @@ _VALUES = {
     "number": st.none() | st.floats(allow_nan=False, allow_infinity=False).map(lambda x: x + 0.0),
     "integer": st.none() | st.integers(0, 2**31 - 1),
     "flag": st.none() | st.booleans(),
-    "choice": st.none() | st.sampled_from(Support),
 }
 _SPECIAL = {
+    **{name: st.none() | st.sampled_from(kind) for name, kind in CHOICES.items()},
     "object_number": st.text(
         st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1, max_size=NUMBER_LIMIT
     ),
