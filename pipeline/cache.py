@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 from pipeline.resources import code_version, replacing
 
 MOTIONS, CHARTS, PICTURES, HISTORIES = "motions", "charts", "pictures", "histories"
-SELF_TESTS, TRADEOFFS = "selftests", "tradeoffs"
-KINDS = (MOTIONS, CHARTS, PICTURES, HISTORIES, SELF_TESTS, TRADEOFFS)
+SELF_TESTS, TRADEOFFS, HOUSE = "selftests", "tradeoffs", "house"
+KINDS = (MOTIONS, CHARTS, PICTURES, HISTORIES, SELF_TESTS, TRADEOFFS, HOUSE)
 """What is kept: each kind is a folder."""
 
 LARGEST = 1 << 28

@@ -18,6 +18,7 @@ from pipeline.cache import (
     CHARTS,
     DAY,
     HISTORIES,
+    HOUSE,
     KINDS,
     MOTIONS,
     PICTURES,
@@ -26,6 +27,7 @@ from pipeline.cache import (
     Cache,
     CacheEntry,
     CacheWarning,
+    key_of,
 )
 from pipeline.models import model_named
 from pipeline.motions import read_site
@@ -83,6 +85,11 @@ def put_tradeoff(folder: Path) -> None:
     tradeoff.keep(tradeoff.Tradeoff("2026-01-01", "kernels", ["noise"], [sample], [setting]), folder)
 
 
+def put_house(folder: Path) -> None:
+    effects = {"place": np.array([1, 2], np.uint64), "effect": np.array([0, 1])}
+    Cache(folder).put(HOUSE, key_of("rules"), CacheEntry({"effects": ["", "one"]}, effects))
+
+
 PUT: dict[str, Callable[[Path], None]] = {
     MOTIONS: put_motion,
     CHARTS: put_chart,
@@ -90,6 +97,7 @@ PUT: dict[str, Callable[[Path], None]] = {
     HISTORIES: put_histories,
     SELF_TESTS: put_self_test,
     TRADEOFFS: put_tradeoff,
+    HOUSE: put_house,
 }
 
 

@@ -1,8 +1,8 @@
 """Item -> Scene: which generic class an object belongs to, and every number its models need, with its origin.
 
-The class is what the table of rules says (`pipeline.analysis.rules`).  Numbers that the museum did not record come from
-the row of the class (tables/classes.csv) and the material (tables/materials.csv) as value, low and high, and are named
-as assumed.
+The class is what the table of rules says (`pipeline.analysis.rules`).  Numbers that the museum did not record are what
+its house rules state (`pipeline.analysis.house`), else they come from the row of the class (tables/classes.csv) and the
+material (tables/materials.csv) as value, low and high, and are named as assumed.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import cache, lru_cache
 from math import pi
 
+from pipeline.analysis.house import NO_EFFECT, HouseEffect, HouseRules
 from pipeline.analysis.rules import RuleTable, rule_for
 from pipeline.errors import InputError
 from pipeline.models import MODELS, model_named
@@ -87,8 +88,10 @@ def _wall_damping_of(values: AssumedValues, wall: str, back: str) -> Estimate:
 class _Builder:
     """Collects the parameters of one scene, and what is missing for them."""
 
-    def __init__(self, item: Item, row: ObjectClass, support: Support, values: AssumedValues) -> None:
-        self.item, self.row, self.support, self.values = item, row, support, values
+    def __init__(
+        self, item: Item, row: ObjectClass, support: Support, values: AssumedValues, house: HouseEffect
+    ) -> None:
+        self.item, self.row, self.support, self.values, self.house = item, row, support, values, house
         self.material = material_of(item, values)
         self.found: dict[str, Estimate] = {}
         self.missing: list[str] = []
@@ -105,9 +108,15 @@ class _Builder:
         if estimate is not None:
             self.found[name] = estimate
 
+    def _known(self, name: str, what: str, unit: str) -> Estimate | None:
+        """Return what the record says of a field, or else what a house rule states."""
+        recorded = _measured(getattr(self.item, name), unit)
+        stated = self.house.stated.get(name)
+        return stated.estimate(what, unit) if recorded is None and stated is not None else recorded
+
     def _hanging(self) -> None:
         item = self.item
-        length = _measured(item.suspension_length_m, "m")
+        length = self._length("suspension_length_m", "suspension_ratio", "length from hook to centre of gravity")
         if length is None and item.height_m is None:
             self.missing.append("height or suspension length")
         elif length is None and item.height_m is not None:
@@ -116,7 +125,7 @@ class _Builder:
             note += "a hook further down gives half of that, a cord from a rail up to 1 m more"
             length = _assumed(half, 0.5 * half, half + 1.0, "m", note, "judgement")
         self._keep("length", length)
-        damping = _measured(item.damping, "-")
+        damping = self._known("damping", "damping", "-")
         if damping is None and self.support is Support.HUNG:
             damping = _wall_damping_of(self.values, item.wall_surface, item.back_surface)
         elif damping is None:
@@ -131,8 +140,8 @@ class _Builder:
         if width is not None and depth is not None:
             narrow = min(width, depth, key=lambda e: e.value)
             low, high = min(width.low, depth.low), min(width.high, depth.high)
-            assumed = any(side.origin is Origin.ASSUMED for side in (width, depth))
-            origin = Origin.ASSUMED if assumed else Origin.MEASURED
+            origins = {side.origin for side in (width, depth)}
+            origin = next((one for one in (Origin.ASSUMED, Origin.STATED) if one in origins), Origin.MEASURED)
             note = "; ".join(dict.fromkeys(side.note for side in (width, depth) if side.note))
             source = narrow.source or width.source or depth.source
             half = Estimate(0.5 * narrow.value, "m", origin, 0.5 * low, 0.5 * high, note, source)
@@ -141,7 +150,7 @@ class _Builder:
                 # Along its own axes each half counts in its direction; where nothing is known of them, the narrow one.
                 self._keep("half_base_width", _half(width))
                 self._keep("half_base_depth", _half(depth))
-        cg = _measured(item.cg_height_m, "m")
+        cg = self._length("cg_height_m", "cg_ratio", "height of the centre of gravity")
         if cg is None and item.height_m is not None and self.row.cg is not None:
             cg = _times(self.row, self.row.cg, item.height_m, "m", "height of the centre of gravity", "height")
         if cg is None:
@@ -156,20 +165,32 @@ class _Builder:
                 self.missing.append("mass")
         elif self.support is not Support.FASTENED:
             self.missing.extend(lost)
-        if item.frequency_hz is not None:
-            self._keep("frequency", _measured(item.frequency_hz, "Hz"))
+        frequency = self._known("frequency_hz", "lowest natural frequency", "Hz")
+        if frequency is not None:
+            self._keep("frequency", frequency)
             note = "damping of the object itself: 2 % (1 to 5 %), assumed"
-            self._keep("damping", _measured(item.damping, "-") or _assumed(0.02, 0.01, 0.05, "-", note, "judgement"))
+            damping = self._known("damping", "damping of the object itself", "-")
+            self._keep("damping", damping or _assumed(0.02, 0.01, 0.05, "-", note, "judgement"))
+
+    def _length(self, name: str, share: str, what: str) -> Estimate | None:
+        """Return a length that is recorded, or stated as such or as a share of the height."""
+        stated, height = self.house.stated.get(name), self.item.height_m
+        if getattr(self.item, name) is None and stated is not None and stated.field == share:
+            return None if height is None else stated.estimate(what, "m", height)
+        return self._known(name, what, "m")
 
     def _plan(self) -> tuple[Estimate | None, Estimate | None, list[str]]:
         """Return the sides of its base, None where they are not known, and what must be recorded to know them."""
         item, row = self.item, self.row
-        assumes = row.base is not None
+        share = self.house.stated.get("base_ratio")
+        assumes = row.base is not None or share is not None
         sides: list[Estimate | None] = []
         pairs = ((item.base_width_m, item.width_m, "width"), (item.base_depth_m, item.depth_m, "depth"))
         for measured, largest, name in pairs:
             side = _measured(measured, "m")
-            if side is None and largest is not None and row.base is not None:
+            if side is None and largest is not None and share is not None:
+                side = share.estimate(f"base {name}", "m", largest)
+            elif side is None and largest is not None and row.base is not None:
                 side = _times(row, row.base, largest, "m", f"base {name}", name)
             sides.append(side)
         width, depth = sides
@@ -187,14 +208,14 @@ class _Builder:
 
     def _friction(self) -> None:
         item = self.item
-        friction = _measured(item.friction, "-")
+        friction = self._known("friction", "friction", "-")
         if friction is None:
             material = item.base_material or self.material.friction_as
             friction = _friction_of(self.values, material, item.surface_material)
         self._keep("friction_static", friction)
 
     def _clearance(self) -> None:
-        clearance = _measured(self.item.clearance_m, "m")
+        clearance = self._known("clearance_m", "clearance", "m")
         if clearance is None:
             clearance = _clearance_of(self.values, self.row.name)
         self._keep("clearance", clearance)
@@ -338,35 +359,61 @@ def object_classes() -> Mapping[str, str]:
     return {name: row.title for name, row in assumed().classes.items()}
 
 
-def classify(item: Item, rules: RuleTable | None = None, decided: tuple[str, str] | None = None) -> Scene:
+def house_effect(
+    item: Item, house: HouseRules, rules: RuleTable | None = None, decided: tuple[str, str] | None = None
+) -> HouseEffect:
+    """Return what a museum's house rules come to for an object: see `classify`."""
+    object_class = _class_of(item, rules, decided)[0]
+    values = assumed() if rules is None else rules.values
+    return house.effect(item, object_class, item.support or values.classes[object_class].support)
+
+
+def _class_of(item: Item, rules: RuleTable | None, decided: tuple[str, str] | None) -> tuple[str, str]:
+    """Return the class of an object, and why it is that."""
+    if decided is not None:
+        return decided
+    decision = rule_for(item, rules)
+    return decision.rule.object_class, decision.words
+
+
+def classify(
+    item: Item,
+    rules: RuleTable | None = None,
+    decided: tuple[str, str] | None = None,
+    house: HouseRules | None = None,
+) -> Scene:
     """Return the scene of one object: class, support, models to try, estimates, and the fields that are missing.
 
     rules   : the table that decides the class, with what is assumed of each; None for Kouros's own
     decided : the class that a person gave it, and their words, in place of the rules
+    house   : what the museum states once for many objects; None for nothing
     raises  : KeyError for a decided class that is no row of classes.csv
     """
+    object_class, words = _class_of(item, rules, decided)
     values = assumed() if rules is None else rules.values
-    if decided is None:
-        decision = rule_for(item, rules)
-        object_class, words = decision.rule.object_class, decision.words
-    else:
-        object_class, words = decided
     row = values.classes[object_class]
-    support = item.support or row.support
-    models = _tried(item, row)
+    said = NO_EFFECT if house is None else house.effect(item, object_class, item.support or row.support)
+    scene = _scene(item, row, words, values, said)
+    return replace(scene, hanging=said.hanging(item), furniture=said.furniture(item), statements=said.statements)
+
+
+def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:
+    stands = house.laid_over(item)
+    support = stands.support or row.support
+    models = _tried(stands, row)
     if not models:
         why = f"no generic model applies: it {row.why}"
         return Scene(item, row.name, words, support, (), {}, (), (why,))
-    builder = _Builder(item, row, support, values)
+    builder = _Builder(item, row, support, values, house)
     builder.build()
-    builder.missing.extend(_unheld(item, support))
+    builder.missing.extend(_unheld(stands, support))
     missing = tuple(builder.missing) if _needs_size(models) else ()
     known = builder.found
     for estimates in _estimates_of(models):
         scene = Scene(item, row.name, words, support, models, dict(known), (), missing)
         known |= {name: one for name, one in estimates(scene).items() if name not in known}
     assumptions = [e.note for e in known.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
-    if item.support is None:
+    if stands.support is None:
         assumptions.insert(0, f"support: {support.value}, assumed for: {row.told}; not recorded")
     return Scene(item, row.name, words, support, models, known, tuple(dict.fromkeys(assumptions)), missing)
 

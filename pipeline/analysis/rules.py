@@ -15,7 +15,7 @@ The naming word is the last known word of the object name or, if it knows none, 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
@@ -110,9 +110,14 @@ def fold(text: str) -> str:
 
 
 @lru_cache(maxsize=65536)
-def _stuff(material: str, medium: str) -> str:
+def stuff(material: str, medium: str) -> str:
     """Return what a thing is made of, folded, without what is said of its base."""
     return _SUPPORT.sub(" ", fold(f"{material} {medium}"))
+
+
+def words_of(entries: Iterable[str]) -> re.Pattern[str]:
+    """Return what finds any of some words in what `stuff` returns, in singular or plural."""
+    return re.compile(rf"\b(?:{'|'.join(re.escape(fold(entry)) for entry in entries)})s?\b")
 
 
 def identifiers(text: str) -> frozenset[str]:
@@ -190,7 +195,7 @@ class Rule:
 
     def fits(self, item: Item) -> bool:
         """Say whether the object's medium and measures are those of the row."""
-        if self.medium is not None and not self.medium.search(_stuff(item.material, item.medium)):
+        if self.medium is not None and not self.medium.search(stuff(item.material, item.medium)):
             return False
         return all(shape(item) for shape in self.shapes)
 
@@ -265,7 +270,6 @@ def read_rules(rows: tuple[Row, ...], values: AssumedValues, file: str = "rules.
 
 def _rule(row: _RuleRow, position: int) -> Rule:
     words = [(" ".join(_WORD.findall(fold(entry))), entry.startswith("*")) for entry in row.words]
-    medium = [re.escape(fold(entry)) for entry in row.medium]
     return Rule(
         position,
         row.rule,
@@ -274,7 +278,7 @@ def _rule(row: _RuleRow, position: int) -> Rule:
         frozenset(_singular(fold(kind)) for kind in row.classification),
         frozenset(word for word, ends in words if not ends),
         tuple(word for word, ends in words if ends),
-        re.compile(rf"\b(?:{'|'.join(medium)})s?\b") if medium else None,
+        words_of(row.medium) if row.medium else None,
         tuple(SHAPES[name] for name in row.shape),
         row.why,
     )

@@ -14,6 +14,7 @@ from pipeline.analysis.classify import classify, object_classes
 from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, each_apart, fault, unassessed
 from pipeline.analysis.fragility.objects import fragilities
+from pipeline.analysis.house import HouseRules
 from pipeline.analysis.rules import RuleTable
 from pipeline.analysis.survey import measurement_requests
 from pipeline.collection.record import INDIVIDUAL
@@ -62,17 +63,27 @@ class Assessed:
 
 
 def place(
-    item: Item, rules: RuleTable | None, decisions: Sequence[Decision], measures: MeasureCatalogue | None = None
+    item: Item,
+    rules: RuleTable | None,
+    decisions: Sequence[Decision],
+    measures: MeasureCatalogue | None = None,
+    house: HouseRules | None = None,
 ) -> Placed:
     """Return an object as people say that it is and stands: of the class decided, with the measures installed.
 
     decisions : those in force about it
     measures  : what the museum has; None: Kouros's own
+    house     : what the museum states once for many objects; None: nothing
     """
-    classes = [d for d in decisions if d.kind is DecisionKind.CLASS and d.object_class in object_classes()]
-    scene = classify(item, rules, (classes[-1].object_class, classes[-1].by) if classes else None)
+    scene = classify(item, rules, decided_class(decisions), house)
     there = [InstalledMeasure(d.measure, d.parameters, d.by) for d in decisions if d.kind is DecisionKind.INSTALLED]
     return placed(scene, there, measures)
+
+
+def decided_class(decisions: Sequence[Decision]) -> tuple[str, str] | None:
+    """Return the class that people gave an object, and who did; None where nobody did, or it is no class any more."""
+    classes = [d for d in decisions if d.kind is DecisionKind.CLASS and d.object_class in object_classes()]
+    return (classes[-1].object_class, classes[-1].by) if classes else None
 
 
 def assess_objects(
@@ -177,7 +188,7 @@ def likeness(scene: Scene) -> Hashable | None:
         return None
     return (
         *(scene.object_class, scene.rule, scene.support, scene.models, tuple(scene.parameters.items())),
-        *(scene.assumptions, scene.missing, scene.floor),
+        *(scene.assumptions, scene.missing, scene.floor, scene.hanging, scene.furniture, scene.statements),
         *_shared(scene.item),
     )
 
@@ -214,7 +225,10 @@ def placed_each(
     """Return each object as it stands, or the error that placing it came to."""
 
     def some(these: Sequence[Item]) -> list[Placed]:
-        objects = [place(item, context.rules, about.get(item.object_number, ()), context.measures) for item in these]
+        objects = [
+            place(item, context.rules, about.get(item.object_number, ()), context.measures, context.house)
+            for item in these
+        ]
         return [replace(one, scene=replace(one.scene, floor=floor.name)) for one in objects]
 
     return apart(some, items, lambda item: item.support)

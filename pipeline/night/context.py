@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.analysis.context import Context, remembered
+from pipeline.analysis.house import HouseRules
 from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.rules import RuleTable
 from pipeline.cache import Cache, key_of
@@ -32,6 +33,7 @@ class RunContext:
     head      : the run without its objects: its motions and its charts, what pages say of it
     floors   : the floors by name
     surveyed, fragile : whether to find out what is worth measuring, and from what shaking objects fail
+    house     : the museum's house rules
     stores    : whether what is not on display is assessed too
     admitted  : which response charts are built (see `response_charts.ChartCache`); None: those that pay
     kept      : folder of the cache; None: in memory only
@@ -45,6 +47,7 @@ class RunContext:
     measures: MeasureCatalogue
     surveyed: bool
     fragile: bool
+    house: HouseRules | None = None
     stores: bool = False
     admitted: frozenset[str] | None = None
     kept: Path | None = None

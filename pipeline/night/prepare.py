@@ -11,6 +11,7 @@ import numpy as np
 from pipeline import __version__
 from pipeline.analysis.classify import classify
 from pipeline.analysis.faults import sound, without_failing
+from pipeline.analysis.house import HouseRules
 from pipeline.analysis.plan import Work, plan
 from pipeline.analysis.response_charts.grouping import group_name, groups
 from pipeline.analysis.rules import RuleTable
@@ -26,14 +27,14 @@ from pipeline.night.context import RunContext, motions_of
 from pipeline.night.figures import Pictures
 from pipeline.night.floors import floors_of, notes
 from pipeline.night.reading_summary import told
-from pipeline.night.source_state import rules_digest, tables_digest
+from pipeline.night.source_state import house_digest, rules_digest, tables_digest
 from pipeline.night.unit_tasks import ChartTask
 from pipeline.operations.presentation import presentation
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Model, Progress, RunRecord, Scene
 from pipeline.report.pages.reading import INVENTORY, READING
 from pipeline.resources import code_version
-from pipeline.store.reuse import CODE, DISPLAY, KERNELS, LEVELS, RULES, TABLES
+from pipeline.store.reuse import CODE, DISPLAY, HOUSE, KERNELS, LEVELS, RULES, TABLES
 from pipeline.verification import selftest, tradeoff
 
 FRAGILE, SURVEYED = 1e8, 2e8
@@ -68,7 +69,8 @@ def run_context(
     """
     settings = workspace.settings
     # What is wrong with the museum's own tables, or that a catalogue of phrases is missing, is said before the work.
-    rules, measures, written = workspace.rules, workspace.measures, presentation(settings)
+    rules, measures, house = workspace.rules, workspace.measures, workspace.house
+    written = presentation(settings)
     floors = floors_of(settings, site, chosen.galleries)
     motions = motions_of(floors)
     samples = sum(motion.acceleration.shape[1] for motion in motions.values())
@@ -106,6 +108,7 @@ def run_context(
         measures=measures,
         surveyed=surveyed,
         fragile=fragile,
+        house=house,
         stores=settings.display.stores,
         kept=settings.kept,
         threads=settings.analysis.workers or Threads().workers,
@@ -125,7 +128,7 @@ def run_context(
 
 def admit(context: RunContext, index: ObjectIndex, chosen: Listing, x_azimuth: float) -> list[ChartTask]:
     """Decide which response charts are used (see `popular`), and return those to be built before the sheets."""
-    found = popular(index, assessed(chosen, context.stores), context.rules, context.measures, x_azimuth)
+    found = popular(index, assessed(chosen, context.stores), context.rules, context.measures, x_azimuth, context.house)
     context.admitted = frozenset(found)
     return [
         ChartTask(model.name, motion, angle, alike)
@@ -144,7 +147,12 @@ Group = tuple[Model, float | None, dict[str, float]]
 
 
 def popular(
-    index: ObjectIndex, chosen: Listing, rules: RuleTable | None, measures: MeasureCatalogue, x_azimuth: float
+    index: ObjectIndex,
+    chosen: Listing,
+    rules: RuleTable | None,
+    measures: MeasureCatalogue,
+    x_azimuth: float,
+    house: HouseRules | None = None,
 ) -> dict[str, Group]:
     """Return the groups of parameters whose charts pay for a collection, as a sample of its objects says, by name.
 
@@ -154,7 +162,7 @@ def popular(
     every = max(1, len(chosen) // SAMPLE)
     sample = index.items([one.object_number for one in chosen[::every]])
     # What cannot even be planned for is told where it is assessed.
-    scenes = sound(lambda some: [classify(item, rules) for item in some], list(sample.values()))
+    scenes = sound(lambda some: [classify(item, rules, house=house) for item in some], list(sample.values()))
 
     def planned(some: Sequence[Scene]) -> list[tuple[Work, float]]:
         return [
@@ -196,6 +204,7 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
         CODE: code_version()[:12],
         RULES: rules_digest(settings),
         TABLES: tables_digest(settings),
+        HOUSE: house_digest(settings),
         LEVELS: {level.name: level.combine for level in site.levels},
         "credit": credit,
         "analysis": settings.analysis.model_dump(),

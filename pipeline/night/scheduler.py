@@ -19,6 +19,7 @@ from pipeline.errors import DamageWarning
 from pipeline.execute.memory import give_back
 from pipeline.execute.pool import WorkerPool, cores, pool
 from pipeline.night.context import RunContext
+from pipeline.night.house_effects import house_effects
 from pipeline.night.paging import PagePart, paged
 from pipeline.night.source_state import rules_digest, tables_digest
 from pipeline.night.unit_tasks import (
@@ -149,7 +150,8 @@ class Scheduler:
 
     def _planned(self, objects: Listing) -> list[PlannedPage]:
         settings = self.workspace.settings
-        keys = UnitKeys(self.context, rules_digest(settings), tables_digest(settings))
+        house = house_effects(self.workspace, self.context, self.index, objects, self.decisions)
+        keys = UnitKeys(self.context, rules_digest(settings), tables_digest(settings), house)
         planned = [PlannedPage(part, keys.units(part, self.decisions)) for part in paged(objects, settings)]
         placed = self.index.placed()
         for (gallery, shown), several in groupby(planned, lambda one: (one.part.gallery, one.part.on_display)):

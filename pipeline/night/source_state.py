@@ -68,6 +68,12 @@ def unchanged(workspace: Workspace, source: str, mapping: str) -> bool:
     return is_unchanged(workspace.engine, source_key(workspace.settings, path, mapping), content)
 
 
+def house_digest(settings: Settings) -> str:
+    """Return a digest of the museum's house rules; "" where it has none."""
+    told = repr([rule.plain() for rule in settings.house])
+    return hashlib.sha256(told.encode("utf-8", "surrogatepass")).hexdigest()[:12] if settings.house else ""
+
+
 def rules_digest(settings: Settings) -> str:
     """Return a digest of the museum's own rules of classification; "" where it has none."""
     own = settings.collection.rules

@@ -54,8 +54,8 @@ class UnitKeys:
 
     A key is a digest of the version of the code that computes, with its libraries and tables; of the settings, the
     museum's own rules and tables, measures and isolators, and which response charts are used; of the shaking of the
-    floor; of the records of the unit's objects, without what nothing computed rests on; and of the decisions about
-    them that change what is computed.
+    floor; of the records of the unit's objects, without what nothing computed rests on; of the decisions about them
+    that change what is computed; and of what the house rules come to for them.
 
     Parameters
     ----------
@@ -65,9 +65,11 @@ class UnitKeys:
         Digest of the museum's own rules of classification; "" where it has none.
     tables
         Digests of the museum's own rows of what is assumed, by table.
+    house
+        By object number what the house rules come to, of those for whom they come to anything.
     """
 
-    def __init__(self, context: RunContext, rules: str, tables: Mapping[str, str]) -> None:
+    def __init__(self, context: RunContext, rules: str, tables: Mapping[str, str], house: Mapping[str, str]) -> None:
         analysis = context.analysis.model_dump(exclude={"workers", "fragility"})
         measures = repr(context.measures)
         charts = None if context.admitted is None else sorted(context.admitted)
@@ -80,7 +82,7 @@ class UnitKeys:
         self._aside = {
             name: seal(code_version(), repr((told, context.surveyed, "aside", name))) for name in context.floors
         }
-        self._stores = context.stores
+        self._stores, self._house = context.stores, house
 
     def basis(self, part: PagePart) -> str:
         """Return the digest of what results depend on besides the objects and the decisions about them."""
@@ -100,7 +102,7 @@ class UnitKeys:
         together = part.on_display or self._stores
         starts = part.objects.companies().tolist() if together else range(len(objects))
         bounds = list(pairwise((*starts, len(objects))))
-        keys = tuple(_key(basis, objects[start:end], decisions) for start, end in bounds)
+        keys = tuple(self._key(basis, objects[start:end], decisions) for start, end in bounds)
         return Units(keys, array("I", [end for _, end in bounds]))
 
     def neighbours(self, pages: Sequence[tuple[PagePart, Units]]) -> str:
@@ -118,19 +120,19 @@ class UnitKeys:
         ]
         return seal("neighbours", self.basis(pages[0][0]), repr(members))
 
-
-def _key(basis: str, members: Sequence[Listed], decisions: Decisions) -> str:
-    digest = blake2b(basis.encode(), digest_size=16)
-    for one in members:
-        digest.update(one.assessment_digest.encode())
-        if len(members) > 1:
-            # What is advised for a case may name its objects.
-            digest.update(repr((one.gallery, one.object_number)).encode("utf-8", "surrogatepass"))
-        for decision in decisions.get(one.object_number, ()):
-            # The others never change what is computed.
-            if decision.kind in (DecisionKind.CLASS, DecisionKind.INSTALLED):
-                digest.update(repr(decision).encode("utf-8", "surrogatepass"))
-    return digest.hexdigest()
+    def _key(self, basis: str, members: Sequence[Listed], decisions: Decisions) -> str:
+        digest = blake2b(basis.encode(), digest_size=16)
+        for one in members:
+            digest.update(one.assessment_digest.encode())
+            if len(members) > 1:
+                # What is advised for a case may name its objects.
+                digest.update(repr((one.gallery, one.object_number)).encode("utf-8", "surrogatepass"))
+            for decision in decisions.get(one.object_number, ()):
+                # The others never change what is computed.
+                if decision.kind in (DecisionKind.CLASS, DecisionKind.INSTALLED):
+                    digest.update(repr(decision).encode("utf-8", "surrogatepass"))
+            digest.update(self._house.get(one.object_number, "").encode())
+        return digest.hexdigest()
 
 
 def _shaking(floor: Floor) -> list[object]:

@@ -14,6 +14,7 @@ from pipeline.operations.dry_run import SCRATCH, read_only
 from pipeline.resources import resource, sweep
 
 if TYPE_CHECKING:
+    from pipeline.analysis.house import HouseRules
     from pipeline.analysis.response_charts import ChartCache
     from pipeline.analysis.rules import RuleTable
     from pipeline.collection.database import Database
@@ -89,6 +90,24 @@ class Workspace:
             if path is not None:
                 own[name] = path
         return assumed_with(own, [model.name for model in MODELS]) if own else assumed()
+
+    @cached_property
+    def house(self) -> "HouseRules | None":
+        """The house rules, where the museum has any.
+
+        Raises
+        ------
+        UsageError
+            For rules that cannot be used together.
+        """
+        if not self.settings.house:
+            return None
+        from pipeline.analysis.house import HouseRules
+
+        try:
+            return HouseRules(self.settings.house, tuple(self.values.classes))
+        except InputError as problem:
+            raise UsageError(f"kouros.toml: {problem}") from None
 
     @cached_property
     def measures(self) -> "MeasureCatalogue":

@@ -3,11 +3,13 @@
 import os
 import re
 import tomllib
+from datetime import date
 from pathlib import Path
 from typing import Literal
 
 from pydantic import ConfigDict, Field, RootModel, ValidationError, field_validator, model_validator
 
+from pipeline.analysis.house import HouseRule
 from pipeline.errors import InputError
 from pipeline.records import Numerics
 from pipeline.resources import small_text
@@ -245,6 +247,23 @@ class Settings(_Part):
     collection: Collection = Collection()
     site: SiteFolder = SiteFolder()
     floors: Floors = Field(default=Floors({}), examples=[{"2": ["Hall of Sculpture", "Gallery 12"]}])
+    house: tuple[HouseRule, ...] = Field(
+        default=(),
+        max_length=500,
+        description="Your house rules: what is so of all objects that a rule matches, stated once. One table [[house]] "
+        "a rule; a quantity is a number, or a table of low, best and high. For each quantity the most particular rule "
+        "that matches is taken, and what an object's record says before any rule.",
+        examples=[
+            {
+                "class": "framed",
+                "gallery": ["Gallery 3", "Gallery 4"],
+                "hanging": "two_hooks",
+                "clearance_m": {"low": 0.1, "best": 0.2, "high": 0.3},
+                "said_by": "A. Smith, mount-maker",
+                "said_on": date(2031, 5, 1),
+            }
+        ],
+    )
     display: DisplaySettings = DisplaySettings()
     analysis: Analysis = Analysis()
     execution: Execution = Execution()
@@ -316,10 +335,18 @@ def load_settings(file: str | Path) -> Settings:
         return Settings(**data, home=where.resolve().parent)
     except ValidationError as problem:
         first = problem.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
+        key = _key_of(first["loc"])
         shown = "" if _SECRETIVE.fullmatch(key) else f" (is {first.get('input')!r})"
         # Not chained: pydantic would repeat the input.
         raise SettingsError(f"{where}: {key}: {first['msg']}{shown}; see `kouros init`") from None
+
+
+def _key_of(where: tuple[int | str, ...]) -> str:
+    """Return the name of a key in messages; house rules are counted from 1, as people count."""
+    parts = [str(part) for part in where]
+    if len(where) > 1 and where[0] == "house" and isinstance(where[1], int):
+        parts[:2] = [f"[[house]] {where[1] + 1}"]
+    return ".".join(parts)
 
 
 _HEAD = (

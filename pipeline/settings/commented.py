@@ -7,6 +7,7 @@ from typing import Any
 import tomlkit
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
+from tomlkit import TOMLDocument
 from tomlkit.items import Table
 
 _WIDTH = 118
@@ -18,9 +19,9 @@ def commented(model: type[BaseModel], given: Mapping[tuple[str, str], object], h
     Parameters
     ----------
     model : type of BaseModel
-        Its fields whose defaults are models are the tables; other fields are left out.  A table's comment is the
-        docstring of its model, a key's the description of its field.  Examples of a field become comments that can be
-        uncommented.
+        Its fields whose defaults are models are the tables, those with examples lists of tables; other fields are left
+        out.  A table's comment is the docstring of its model, a key's the description of its field.  Examples of a
+        field become comments that can be uncommented.
     given : mapping
         Values in place of defaults, by table and key.
     head : str
@@ -41,6 +42,42 @@ def commented(model: type[BaseModel], given: Mapping[tuple[str, str], object], h
             document.add(tomlkit.nl())
             mine = {key: value for (of, key), value in given.items() if of == name}
             document.add(name, _table(f"{place}{name}", field, mine))
+        elif field.examples:
+            # A list of tables that is empty cannot be written in a way in which one can be added below.
+            document.add(tomlkit.nl())
+            _say(document, field.description or "")
+            for example in field.examples:
+                for line in listed_table(name, example).splitlines():
+                    document.add(tomlkit.comment(line))
+    return tomlkit.dumps(document)
+
+
+def listed_table(name: str, values: Mapping[str, Any]) -> str:
+    """Return one table of a list of tables as TOML; tables in it stand on one line.
+
+    Parameters
+    ----------
+    name : str
+        Of the list.
+    values : mapping
+        By key: texts, numbers, dates, lists and tables.
+
+    Returns
+    -------
+    str
+        Lines that can be added to a file.
+    """
+    table = tomlkit.table()
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            inline = tomlkit.inline_table()
+            inline.update(value)
+            table.add(key, inline)
+        else:
+            table.add(key, value)
+    document = tomlkit.document()
+    document.add(name, tomlkit.aot())
+    document[name].append(table)
     return tomlkit.dumps(document)
 
 
@@ -67,7 +104,7 @@ def _sentence(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}{'' if text.endswith('.') else '.'}"
 
 
-def _say(table: Table, text: str) -> None:
+def _say(table: Table | TOMLDocument, text: str) -> None:
     for line in wrap(text, _WIDTH):
         table.add(tomlkit.comment(line))
 

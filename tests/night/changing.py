@@ -76,6 +76,7 @@ class Changing:
     scale: float = 1.0
     v_max: float | None = None
     upstairs: list[str] = field(default_factory=list)
+    house: str = ""
     sheets: list[str] = field(default_factory=list)
     held: bytes | None = None
     imports: list[tuple[int, bytes, int]] = field(default_factory=list)
@@ -148,7 +149,8 @@ class Changing:
             lines[at] = f"{name} = {value}"
             said = "\n".join(lines)
         floors = f'[floors]\n"2" = {self.upstairs!r}'.replace("'", '"') if self.upstairs else "[floors]"
-        (self.home / "kouros.toml").write_text(said.replace("[floors]", floors), encoding="utf-8")
+        text = f"{said.replace('[floors]', floors)}\n{self.house}"
+        (self.home / "kouros.toml").write_text(text, encoding="utf-8")
 
     @property
     def settings(self) -> Settings:
@@ -286,6 +288,15 @@ class Changing:
         self.set("friction", self.random.choice(('"friction.csv"', '""')))
         self.tables["friction.csv"] = FRICTION.format(self.random.choice((0.1, 0.4)))
 
+    def other_house_rules(self) -> None:
+        what, states = self.random.choice((
+            ('gallery = "A"', "clearance_m = 0.02"), ('class = "vessel"', "friction = 0.3"),
+            ('medium = "oil"', "damping = 0.1"), ('number = "00*"', 'furniture = "showcase"'),
+            ('gallery = "Z"', "friction = 0.2"),
+        ))  # fmt: skip
+        one = f'[[house]]\n{what}\n{states}\nsaid_by = "Ann"\nsaid_on = 2031-05-01\n'
+        self.house = self.random.choice(("", one, one + self.house if what not in self.house else one))
+
     def other_floors(self) -> None:
         self.upstairs = self.random.choice(([], ["A"], ["B"], ["A", "C"]))
 
@@ -329,7 +340,8 @@ class Changing:
             self.swap_rows, self.add_row, self.remove_row, self.change_row, self.change_row, self.make_alike,
             self.exchange_numbers, self.reorder_columns, self.other_line_ends, self.rename_gallery, self.lay_sheet_over,
             self.other_v_max, self.other_scale, self.other_settings, self.stores, self.own_rules, self.own_measures,
-            self.own_isolators, self.own_rows, self.other_floors, self.decide, self.withdraw, self.run_a_part,
+            self.own_isolators, self.own_rows, self.other_house_rules, self.other_floors, self.decide, self.withdraw,
+            self.run_a_part,
             self.go_back,
         ]  # fmt: skip
 

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import date
 from pathlib import Path
 
 import pytest
 from lxml import etree
 from markupsafe import Markup
 
+from pipeline.analysis.classify import classify
+from pipeline.analysis.house import HouseRule, HouseRules
 from pipeline.records import Item, Mark, Verdict
-from pipeline.report import Units
+from pipeline.report import Units, render
 from pipeline.report.pages.museum_views import GalleryView
 from pipeline.report.pages.notes import Notes, PageNotes
 from pipeline.report.pages.views import NumberView
@@ -103,3 +106,27 @@ def test_a_passing_finding_marks_no_chart() -> None:
         both = replace(whole, findings=(failing, replace(marked, verdict=verdict)))
         (gallery,) = shown(replace(builder.record(), assessments=(both,)), Units()).galleries
         assert [figure.chart.partition(":")[0] for figure in gallery.objects[0].figures] == kinds
+
+
+def test_a_page_names_the_house_rule_behind_each_number_and_each_word(tmp_path: Path) -> None:
+    """What a rule states, what it says of how the object stands, and where the record overrules it."""
+    rules = [
+        HouseRule(gallery="Hall <1>", friction=0.31, clearance_m=0.5, furniture="showcase", said_by="A. Smith & Co",
+                  said_on=date(2031, 5, 1)),
+    ]  # fmt: skip
+    vase = Item("1", "Hall <1>", "Vase", height_m=0.4, width_m=0.2, depth_m=0.2, clearance_m=0.2)
+    scene = classify(vase, house=HouseRules(rules, ["vessel"]))
+    run = builder.record()
+    finding = next(f for a in run.assessments for f in a.findings if f.verdict is Verdict.FAIL)
+    told = replace(finding, object_number="1", gallery="Hall <1>", mark=None)
+    assessment = replace(run.assessments[0], scene=scene, findings=(told,), recommendations=(), fragilities=())
+    folder = render(replace(run, assessments=(assessment,), wishes=None, decisions=()), tmp_path / "one").parent
+    page = next(file for file in folder.glob("*.html") if 'class="card' in file.read_text(encoding="utf-8"))
+    text = " ".join("".join(etree.parse(str(page)).getroot().itertext()).split())
+    rule = "by the house rule for gallery Hall <1>"
+    assert f"House rules: it stands in a showcase, {rule} (A. Smith & Co, 2031-05-01)" in text
+    assert f"Stated by a house rule: friction static 0.31 (friction: {rule}; A. Smith & Co, 2031-05-01)" in text, text[
+        text.index("Stated by") :
+    ][:200]
+    assert "clearance_m: its record says 0.2, which is used; the house rule for gallery Hall <1>" in text
+    assert "clearance 20 cm" in text.replace("\u202f", " ")

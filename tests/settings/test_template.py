@@ -2,10 +2,13 @@
 
 import re
 import tomllib
+from datetime import date
 
 import pytest
 from pydantic import BaseModel
 
+from pipeline.analysis.house import Span
+from pipeline.records import Hanging
 from pipeline.settings import Settings, template
 
 PLAIN = template(museum="", source="", mapping="kouros", site="site_motions/site")
@@ -32,10 +35,13 @@ def test_every_setting_is_there_with_its_default_and_its_description() -> None:
 
 
 def test_its_examples_can_be_uncommented() -> None:
-    """Lines behind # that are TOML: the floors and the hooks."""
-    examples = re.sub(r'^# (?=\[\[hooks\.|[a-z_]+ = |"?2"? = )', "", PLAIN, flags=re.M)
+    """Lines behind # that are TOML: the floors, the house rules and the hooks."""
+    examples = re.sub(r'^# (?=\[\[hooks\.|\[\[house\]\]|[a-z_]+ = |"?2"? = )', "", PLAIN, flags=re.M)
     settings = Settings(**tomllib.loads(examples))
     assert settings.floors.of("Gallery 12") == "2"
+    (rule,) = settings.house
+    assert (rule.object_class, rule.hanging, rule.said_on) == (("framed",), Hanging.TWO_HOOKS, date(2031, 5, 1))
+    assert rule.clearance_m == Span(low=0.1, best=0.2, high=0.3)
     assert [len(hooks) for hooks in (settings.hooks.command, settings.hooks.webhook, settings.hooks.email)] == [1, 1, 1]
     assert settings.hooks.variables == ("KOUROS_WEBHOOK_TOKEN", "KOUROS_SMTP_PASSWORD")
 

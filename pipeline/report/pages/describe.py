@@ -45,7 +45,7 @@ _PLACEHOLDER = re.compile(r"{(\w+)}")
 _RANGE = re.compile(r" \([^()]*{(?:low|high)}[^()]*\)")
 """Brackets of a sentence that tell the range of a demand."""
 
-_ORIGIN_ORDER = {Origin.MEASURED: 0, Origin.DERIVED: 1, Origin.ASSUMED: 2}
+_ORIGIN_ORDER = {Origin.MEASURED: 0, Origin.DERIVED: 1, Origin.STATED: 2, Origin.ASSUMED: 3}
 
 
 @lru_cache(maxsize=1024)
@@ -86,7 +86,13 @@ def decided(by: str) -> str:
 
 def origin(of: Origin) -> str:
     """Say in words where a number comes from."""
-    return {Origin.MEASURED: _("measured"), Origin.DERIVED: _("derived"), Origin.ASSUMED: _("assumed")}[of]
+    told = {
+        Origin.MEASURED: _("measured"),
+        Origin.DERIVED: _("derived"),
+        Origin.STATED: _("stated by a house rule"),
+        Origin.ASSUMED: _("assumed"),
+    }
+    return told[of]
 
 
 def support(of: Support) -> str:
@@ -172,6 +178,7 @@ class Describer:
             figures=self._figures(ordered, assessment.recommendations) if state is State.ACT else (),
             numbers=tuple(self._number(name, estimate) for name, estimate in estimates),
             assumptions=tuple(dict.fromkeys(said(clean(text)) for text in named)),
+            statements=tuple(said(clean(text)) for text in scene.statements),
             missing=tuple(words(clean(m)) for m in scene.missing),
             problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
             wishes=wish_views(self.wishes.get(item.object_number, ()), self._units),

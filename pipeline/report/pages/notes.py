@@ -121,7 +121,7 @@ def page_notes(objects: Iterable[ObjectView]) -> PageNotes:
                 pair
                 for o in told
                 for pair in (
-                    *((text, "") for text in o.assumptions),
+                    *((text, "") for text in (*o.statements, *o.assumptions)),
                     *((n.note, n.source) for n in o.numbers if n.note),
                 )
             ),

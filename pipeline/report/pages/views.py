@@ -186,6 +186,7 @@ class ObjectView:
     figures: tuple[FigureView, ...]
     numbers: tuple[NumberView, ...]
     assumptions: tuple[str, ...]
+    statements: tuple[str, ...]
     missing: tuple[str, ...]
     problems: tuple[tuple[str, str, str], ...]
     skipped: tuple[str, ...]
