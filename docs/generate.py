@@ -172,6 +172,10 @@ def settings() -> str:
         if name == "demonstration":
             continue
         part = _resolved(field, schema)
+        if part.get("type") == "array":
+            table = _resolved(part["items"], schema)
+            parts.append(f"## `[[{name}]]`\n\n{_plain(part['description'])}\n\n{_keys(table, schema)}")
+            continue
         parts.append(f"## `[{name}]`\n\n{_plain(part.get('description', ''))}")
         parts += [_keys(part, schema, skip={"command", "webhook", "email"} if name == "hooks" else set())]
         if name == "hooks":

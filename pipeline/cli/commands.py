@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import asdict
+from datetime import datetime
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +18,9 @@ from pipeline.cli.options import Options, as_json, dry_run, say_dry
 from pipeline.quantities import counted
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from pipeline.analysis.house import RuleQuestion
     from pipeline.operations.run_summary import Summary
 
 
@@ -83,6 +87,7 @@ def init(folder: Path, dry_run: bool) -> None:
 def survey(options: Options, galleries: tuple[str, ...], out: Path | None, dry_run: bool, as_json: bool) -> None:
     """Write a workbook of what is worth measuring: which missing numbers would settle a verdict.
 
+    What one house rule answers for many objects is asked for first, as text for kouros.toml and on a sheet "Rules".
     Print it, fill it in, and read it back with `kouros import FILE --sheet`.
 
     Example: kouros survey --gallery "Gallery 12"
@@ -96,6 +101,7 @@ def survey(options: Options, galleries: tuple[str, ...], out: Path | None, dry_r
     if as_json:
         click.echo(json.dumps(asdict(found), indent=2, default=str))
     else:
+        _print_rules(found.rules)
         what = counted(found.quantities, "measurement")
         click.echo(
             f"{what} on {counted(found.objects, 'object')} {'is' if found.quantities == 1 else 'are'} worth making: "
@@ -114,13 +120,27 @@ def survey(options: Options, galleries: tuple[str, ...], out: Path | None, dry_r
         say_dry(as_json)
 
 
+def _print_rules(questions: "Sequence[RuleQuestion]") -> None:
+    from pipeline.tools.house_answers import to_paste
+
+    if not questions:
+        return
+    told = [
+        f"one answer for {counted(q.objects, 'object')}: {q.field} of {', '.join(map(' '.join, q.criteria.items()))}"
+        for q in questions
+    ]
+    listed("house rule", told)
+    click.echo('To answer, mend and sign these lines and add them to kouros.toml, or fill in the sheet "Rules":\n')
+    click.echo(to_paste(questions, datetime.now().date()))
+
+
 @click.command()
 @click.option("--numerics", is_flag=True, help="Run the models at their extremes instead, against exact limits.")
 @click.option("--deep", is_flag=True, help="Compare all that is kept with what was written instead; nothing changes.")
 @as_json
 @click.pass_obj
 def check(options: Options, numerics: bool, deep: bool, as_json: bool) -> None:
-    """Look at settings, database, mapping, motions, clock and disk, and say what to mend.
+    """Look at settings, database, mapping, motions, house rules, clock and disk, and say what to mend.
 
     With --numerics: whether this machine's compiled code is right at the extremes; exit code 1 if not.  Beside a
     kouros.toml the result is kept, and the next report shows it.

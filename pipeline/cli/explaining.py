@@ -50,6 +50,8 @@ def explanation_lines(explained: "Explanation") -> Iterator[str]:
     yield f"{item.object_number}  {item.title}  ({item.gallery})"
     yield f"  class    {scene.object_class}, by rule {scene.rule}"
     yield f"  support  {scene.support.value}" + (f", on floor {scene.floor}" if scene.floor else "")
+    for statement in scene.statements:
+        yield f"  house    {statement}"
     for missing in scene.missing:
         yield f"  missing  {missing}"
     yield "  numbers"

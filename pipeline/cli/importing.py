@@ -28,7 +28,11 @@ if TYPE_CHECKING:
 @click.option("--guess", is_flag=True, help="Propose a mapping from the columns, and show ten rows as understood.")
 @click.option("--table", metavar="NAME", help="With --guess: the workbook's sheet, or the database's table or SELECT.")
 @click.option("--write", type=click.Path(dir_okay=False, path_type=Path), help="With --guess: write it here, unasked.")
-@click.option("--sheet", is_flag=True, help="SOURCE is a survey's sheet that was filled in: lay it over the inventory.")
+@click.option(
+    "--sheet",
+    is_flag=True,
+    help="SOURCE is a survey that was filled in: lay it over the inventory, add its rules to the settings.",
+)
 @click.option("--presets", is_flag=True, help="List the mappings that come with Kouros.")
 @click.option("--versions", is_flag=True, help="List the versions of the inventory, one for each import.")
 @click.option("--return-to", type=int, metavar="VERSION", help="Make the inventory what it was after that import.")
@@ -156,23 +160,28 @@ def _guess(source: str, table: str | None, target: Path | None, dry_run: bool, w
 def _sheet(options: Options, source: str, dry_run: bool, wanted_json: bool) -> None:
     from pipeline.operations.dry_run import rehearsed
     from pipeline.operations.workspace import locked, open_workspace
-    from pipeline.tools.survey import add_measurements
+    from pipeline.tools.survey import take_sheet
 
     with rehearsed(options.settings(), dry_run) as settings, locked(settings):
-        reading, changes, unknown = add_measurements(open_workspace(settings), Path(source), dry_run=dry_run)
-    problems = _problems(reading)
+        taken = take_sheet(open_workspace(settings), Path(options.config), Path(source), dry_run=dry_run)
+    reading, changes = taken.reading, taken.changes
+    problems = [] if reading is None else _problems(reading)
+    refused = () if reading is None else reading.rejected
     if wanted_json:
-        rejected = [asdict(r) for r in reading.rejected]
-        found = {"changes": asdict(changes), "unknown": unknown, "problems": problems, "rejected": rejected}
-        click.echo(json.dumps(found, indent=2))
+        rejected = [asdict(r) for r in refused]
+        found = {"changes": None if changes is None else asdict(changes), "unknown": taken.unknown}
+        click.echo(json.dumps(found | {"problems": problems, "rejected": rejected, "rules": taken.rules}, indent=2))
         return
-    listed("rejected", [f"{r.message}; {r.remedy}" for r in reading.rejected])
+    listed("rejected", [f"{r.message}; {r.remedy}" for r in refused])
     listed("problem", problems)
-    listed("not in the inventory", unknown)
-    _changed(changes)
-    given = counted(len(changes.changed), "object")
-    was = "would be" if dry_run else "was" if len(changes.changed) == 1 else "were"
-    click.echo(f"{reading.source}: {given} {was} given measurements")
+    listed("not in the inventory", taken.unknown)
+    if changes is not None:
+        _changed(changes)
+        given = counted(len(changes.changed), "object")
+        was = "would be" if dry_run else "was" if len(changes.changed) == 1 else "were"
+        click.echo(f"{Path(source).name}: {given} {was} given measurements")
+    if taken.rules:
+        click.echo(f"{'would be added' if dry_run else 'added'} to {options.config}:\n\n{taken.rules}")
 
 
 def _return(options: Options, version: int, dry_run: bool, wanted_json: bool) -> None:

@@ -17,6 +17,7 @@ from pipeline.quantities import counted
 from pipeline.records import Item
 from pipeline.settings import Settings, load_settings
 from pipeline.tools import doctor_checks as checkup
+from pipeline.tools.house_check import look_at_house_rules
 
 LONGEST = 10.0
 """Seconds that objects are tried for: some 100,000 of them."""
@@ -59,6 +60,7 @@ def _each(settings: Settings, workspace: Workspace | None) -> list[Diagnosis]:
             ("measures", lambda: _measures(workspace)),
             ("inventory", lambda: _inventory(workspace, items())),
             ("objects", lambda: _objects(workspace, items())),
+            *([("house rules", lambda: look_at_house_rules(workspace, items()))] if settings.house else []),
         ]
     looks += checkup.looks(settings, workspace)
     hide = hider(settings)
@@ -163,10 +165,10 @@ def _objects(workspace: Workspace, inventory: Sequence[Item]) -> tuple[str, str]
 
     items, decisions = [item for item in inventory if item.on_display], decisions_in_force(workspace.engine)
 
-    rules, measures = workspace.rules, workspace.measures
+    rules, measures, house = workspace.rules, workspace.measures, workspace.house
 
     def tried(some: Sequence[Item]) -> Sequence[Item]:
-        objects = [place(item, rules, decisions.get(item.object_number, ()), measures) for item in some]
+        objects = [place(item, rules, decisions.get(item.object_number, ()), measures, house) for item in some]
         plan([one.scene for one in objects])
         return some
 

@@ -118,7 +118,7 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
         levels = floor.shaking
         # The charts that a night uses, so that the reasons are those of the night.
         asked = assessed(everything.objects, settings.display.stores)
-        charted = popular(everything, asked, workspace.rules, workspace.measures, floor.x_azimuth)
+        charted = popular(everything, asked, workspace.rules, workspace.measures, floor.x_azimuth, workspace.house)
         with charts_of(settings, [m.hash for level in levels for m in level.motions], charted) as charts:
             context = Context(executor, progress, charts)
             for index in floor.members:
@@ -131,7 +131,7 @@ def explain(workspace: Workspace, number: str, progress: Progress) -> list[Expla
 
 
 def _placed(workspace: Workspace, item: Item, decisions: InForce) -> Placed:
-    return place(item, workspace.rules, decisions.get(item.object_number, ()), workspace.measures)
+    return place(item, workspace.rules, decisions.get(item.object_number, ()), workspace.measures, workspace.house)
 
 
 def _neighbours(item: Item, inventory: Sequence[Item]) -> list[Item]:

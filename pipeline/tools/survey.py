@@ -9,20 +9,24 @@ from pathlib import Path
 from pipeline.analysis.assess import assess
 from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, fault
+from pipeline.analysis.house import RuleQuestion, rule_questions
 from pipeline.analysis.survey import in_order, measurables, measurement_requests
 from pipeline.analysis.verdicts import LevelMotions
-from pipeline.collection.errors import CollectionError
+from pipeline.collection.errors import CollectionError, NoRowsError
 from pipeline.collection.inventory import Difference, add_sheet, read_inventory
+from pipeline.collection.inventory.local_measurements import filled_in
 from pipeline.collection.mapping import Mapping, load_mapping
 from pipeline.collection.reading import Reading, read_items
 from pipeline.execute import Threads
 from pipeline.night.assessment import place
 from pipeline.night.floors import floors_with
 from pipeline.operations.workspace import Workspace
-from pipeline.records import Item, MeasurementRequest, Progress
+from pipeline.records import Item, MeasurementRequest, Progress, Scene
 from pipeline.records.numerics import AUTO, CHART
-from pipeline.report.files.survey_sheet import HEADER_ROW, column_name, sheet_title, write_survey
+from pipeline.report.files.sheet_cells import HEADER_ROW
+from pipeline.report.files.survey_sheet import column_name, sheet_title, write_survey
 from pipeline.store.decisions import decisions_in_force
+from pipeline.tools.house_answers import add_rules, read_rules
 
 LENGTH_UNITS = ("cm", "mm", "m", "in", "ft")
 
@@ -39,6 +43,8 @@ class Surveyed:
         What is worth measuring, the most useful first.
     objects, quantities, waste : int
         As the workbook counts them.
+    rules : tuple of RuleQuestion
+        The questions that one house rule answers for many objects, the most useful first.
     faults : tuple of Fault
         The objects that Kouros failed on.
     """
@@ -49,6 +55,7 @@ class Surveyed:
     quantities: int
     waste: int
     faults: tuple[Fault, ...] = ()
+    rules: tuple[RuleQuestion, ...] = ()
 
 
 def survey(
@@ -95,12 +102,14 @@ def survey(
     found: list[MeasurementRequest] = []
     decisions = decisions_in_force(workspace.engine)
     faults: list[Fault] = []
+    known: dict[str, Scene] = {}
 
-    rules, measures = workspace.rules, workspace.measures
+    rules, measures, house = workspace.rules, workspace.measures, workspace.house
 
     def asked(shaking: Sequence[LevelMotions], some: Sequence[Item]) -> list[list[MeasurementRequest]]:
-        objects = [place(item, rules, decisions.get(item.object_number, ()), measures) for item in some]
+        objects = [place(item, rules, decisions.get(item.object_number, ()), measures, house) for item in some]
         scenes = [one.scene for one in objects]
+        known.update((scene.item.object_number, scene) for scene in scenes)
         _, findings = assess(scenes, shaking, context, numerics, outcomes=False)
         by_object: dict[str, list[MeasurementRequest]] = {item.object_number: [] for item in some}
         for request in measurement_requests(scenes, findings, shaking, context, numerics):
@@ -118,8 +127,9 @@ def survey(
     target = path or settings.path(f"survey-{datetime.now():%Y-%m-%d}.xlsx")
     # The counts are those of the workbook; that of a dry run goes with it.
     written = target if settings.rehearsal is None else settings.rehearsal / target.name
-    counts = write_survey(written, found, measurables(), length=settings.report.length)
-    return Surveyed(target, tuple(found), **counts, faults=tuple(faults))
+    questions = rule_questions(known.values(), found)
+    counts = write_survey(written, found, measurables(), length=settings.report.length, rules=questions)
+    return Surveyed(target, tuple(found), **counts, faults=tuple(faults), rules=tuple(questions))
 
 
 def read_sheet(path: Path) -> Reading:
@@ -173,6 +183,68 @@ def sheet_mapping(length: str) -> Mapping:
         unit = {"unit": length} if field.endswith("_m") else {}
         columns[field] = column | {"column": column_name(field, length)} | unit
     return Mapping.model_validate(whole | {"columns": columns})
+
+
+@dataclass(frozen=True)
+class SheetTaken:
+    """What was taken from a sheet that was filled in.
+
+    Attributes
+    ----------
+    reading : Reading or None
+        What was read of its measurements; None where it has no rows for any.
+    changes : Difference or None
+        What these changed; None where there are rules alone.
+    unknown : list of str
+        The objects of the sheet that the inventory does not have.
+    rules : str
+        The house rules that were added to the settings, as TOML; "" for none.
+    """
+
+    reading: Reading | None
+    changes: Difference | None
+    unknown: list[str]
+    rules: str
+
+
+def take_sheet(workspace: Workspace, config: Path, path: Path, *, dry_run: bool = False) -> SheetTaken:
+    """Lay the measurements of a filled-in sheet over the inventory, and add its house rules to the settings.
+
+    Parameters
+    ----------
+    workspace : Workspace
+        Whose inventory gets the measurements.
+    config : Path
+        The settings' file.
+    path : Path
+        The sheet.
+    dry_run : bool
+        Only say what that would change.
+
+    Returns
+    -------
+    SheetTaken
+        What was taken.
+
+    Raises
+    ------
+    CollectionError, SettingsError
+        As `read_sheet`, `read_rules` and `add_rules`; nothing is changed then.
+    """
+    rules = read_rules(path)
+    # What would be refused is refused before anything is changed.
+    add_rules(config, rules, dry_run=True)
+    changes: Difference | None = None
+    unknown: list[str] = []
+    try:
+        reading: Reading | None = read_sheet(path)
+    except NoRowsError:
+        if not rules:
+            raise
+        reading = None
+    if reading is not None and (not rules or any(filled_in(item) for item in reading.items)):
+        changes, unknown = add_sheet(workspace.engine, reading, dry_run=dry_run)
+    return SheetTaken(reading, changes, unknown, add_rules(config, rules, dry_run=dry_run))
 
 
 def add_measurements(

@@ -21,7 +21,8 @@ from pipeline.mitigate.installed import InstalledMeasure, placed
 from pipeline.operations.workspace import open_workspace
 from pipeline.quantities import G
 from pipeline.records import ITEM_FIELDS, Item, MeasurementRequest, Motion, Origin, Support, Verdict
-from pipeline.report.files.survey_sheet import HEADER_ROW, column_name, sheet_title, write_survey
+from pipeline.report.files.sheet_cells import HEADER_ROW
+from pipeline.report.files.survey_sheet import column_name, sheet_title, write_survey
 from pipeline.settings import load_settings
 from pipeline.tools.survey import LENGTH_UNITS, read_sheet
 

@@ -4,31 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pipeline.quantities import LENGTHS
 from pipeline.records import MeasurementRequest
-from pipeline.report.files.workbook import saved, write_text
-from pipeline.report.text import safe_cell
+from pipeline.report.files.rules_sheet import RULES_SHEET, write_rules
+from pipeline.report.files.sheet_cells import HEADER_ROW, headed, to_fill_in, write_cell
+from pipeline.report.files.workbook import saved
 from pipeline.resources import replacing
 
 if TYPE_CHECKING:
     from openpyxl.worksheet.worksheet import Worksheet
 
+    from pipeline.analysis.house import RuleQuestion
     from pipeline.analysis.survey import Measurable
-
-HEADER_ROW = 2
-"""The row of the column names that the import reads; above it stand the words for people."""
 
 SHOWN = ("object_number", "gallery", "title")
 """Columns that say which object it is."""
 
 WHY = "why"
-
-_INK = "FF1F2A37"
-_QUIET = "FF6B7280"
-_FILL = "FFFFF6DB"
-_LINE = "FF9CA3AF"
 
 
 def sheet_title(length: str) -> str:
@@ -42,13 +36,19 @@ def column_name(field: str, length: str) -> str:
 
 
 def write_survey(
-    path: Path, found: Sequence[MeasurementRequest], fields: Sequence[Measurable], *, length: str = "cm"
+    path: Path,
+    found: Sequence[MeasurementRequest],
+    fields: Sequence[Measurable],
+    *,
+    length: str = "cm",
+    rules: Sequence[RuleQuestion] = (),
 ) -> dict[str, int]:
     """Write the workbook of what is worth measuring; what would settle nothing is counted and left out.
 
     found  : measurements, in the order in which they should be done
     fields : all that a survey may ask for, with words and how to measure it
     length : unit of lengths
+    rules  : questions that one house rule answers for many objects
     returns: how many objects and quantities it asks for, and how many would settle nothing
     """
     from openpyxl import Workbook
@@ -61,6 +61,7 @@ def write_survey(
         first = book.create_sheet()
     first.title = sheet_title(length)
     _fill_in(first, asked, names, length)
+    write_rules(book.create_sheet(RULES_SHEET), rules, length)
     _ranking(book.create_sheet("what first"), asked, {m.field: m.label for m in fields})
     _how(book.create_sheet("how to measure"), names, length)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -74,7 +75,7 @@ def write_survey(
 
 
 def _fill_in(sheet: Worksheet, asked: Sequence[MeasurementRequest], fields: Sequence[Measurable], length: str) -> None:
-    from openpyxl.styles import Alignment, Border, PatternFill, Side
+    from openpyxl.styles import Alignment
 
     columns = [*SHOWN, *(m.field for m in fields), WHY]
     labels = ["Object", "Gallery", "Title", *(_labelled(m, length) for m in fields), "Why"]
@@ -86,7 +87,6 @@ def _fill_in(sheet: Worksheet, asked: Sequence[MeasurementRequest], fields: Sequ
         objects.setdefault(request.object_number, []).append(request)
     # By gallery, for a person walks from one to the next; in each the objects that settle most come first.
     order = sorted(objects.values(), key=lambda mine: mine[0].gallery)
-    box = Border(*(Side(style="thin", color=_LINE) for _ in range(4)))
     for row, mine in enumerate(order, start=HEADER_ROW + 1):
         why = "; ".join(_reason(request, length) for request in mine)
         texts = {"object_number": mine[0].object_number, "gallery": mine[0].gallery, "title": mine[0].title, WHY: why}
@@ -94,11 +94,11 @@ def _fill_in(sheet: Worksheet, asked: Sequence[MeasurementRequest], fields: Sequ
         for at, name in enumerate(columns, start=1):
             cell = sheet.cell(row, at)
             if name in texts:
-                _write_text(cell, texts[name])
+                write_cell(cell, texts[name])
                 cell.alignment = Alignment(wrap_text=True, vertical="top")
             if name in wanted:
-                cell.fill, cell.border = PatternFill("solid", fgColor=_FILL), box
-    _headed(sheet, [16, 24, 32, *(14 for _ in fields), 60], rows=HEADER_ROW)
+                to_fill_in(cell)
+    headed(sheet, [16, 24, 32, *(14 for _ in fields), 60], rows=HEADER_ROW)
     sheet.freeze_panes = sheet.cell(HEADER_ROW + 1, len(SHOWN) + 1)
 
 
@@ -112,11 +112,11 @@ def _ranking(sheet: Worksheet, asked: Sequence[MeasurementRequest], labels: Mapp
         total[2] += request.unlocks
     ranked = sorted(totals.items(), key=lambda entry: (-(entry[1][1] + entry[1][2]), entry[0]))
     for row, ((gallery, field), (objects, settles, unlocks)) in enumerate(ranked, start=2):
-        _write_text(sheet.cell(row, 1), gallery)
-        _write_text(sheet.cell(row, 2), labels[field])
+        write_cell(sheet.cell(row, 1), gallery)
+        write_cell(sheet.cell(row, 2), labels[field])
         for at, number in ((3, objects), (4, round(settles, 1)), (5, unlocks)):
             sheet.cell(row, at).value = number
-    _headed(sheet, [32, 36, 10, 22, 26], rows=1)
+    headed(sheet, [32, 36, 10, 22, 26], rows=1)
 
 
 def _how(sheet: Worksheet, fields: Sequence[Measurable], length: str) -> None:
@@ -125,9 +125,9 @@ def _how(sheet: Worksheet, fields: Sequence[Measurable], length: str) -> None:
     sheet.append(["Quantity", "Column", "How to measure it"])
     for row, m in enumerate(fields, start=2):
         for at, text in enumerate((m.label, column_name(m.field, length), m.how), start=1):
-            _write_text(sheet.cell(row, at), text)
+            write_cell(sheet.cell(row, at), text)
             sheet.cell(row, at).alignment = Alignment(wrap_text=True, vertical="top")
-    _headed(sheet, [36, 24, 100], rows=1)
+    headed(sheet, [36, 24, 100], rows=1)
 
 
 def _labelled(m: Measurable, length: str) -> str:
@@ -145,28 +145,3 @@ def _reason(request: MeasurementRequest, length: str) -> str:
         span = f"{request.low / per:.3g} to {request.high / per:.3g} {unit}".strip()
         span = f", taken as {span} now"
     return f"{column_name(request.field, length)}: settles {request.settles:.2g} of {request.open} open verdicts{span}"
-
-
-def _headed(sheet: Worksheet, widths: Sequence[int], *, rows: int) -> None:
-    from openpyxl.styles import Alignment, Font
-    from openpyxl.utils import get_column_letter
-
-    for at, width in enumerate(widths, start=1):
-        sheet.column_dimensions[get_column_letter(at)].width = width
-        for row in range(1, rows + 1):
-            cell = sheet.cell(row, at)
-            cell.font = Font(bold=row == 1, color=_INK if row == 1 else _QUIET, size=10 if row == 1 else 8)
-            cell.alignment = Alignment(wrap_text=True, vertical="bottom")
-    sheet.page_setup.orientation = "landscape"
-    sheet.page_setup.fitToWidth, sheet.page_setup.fitToHeight = 1, 0
-    sheet.sheet_properties.pageSetUpPr.fitToPage = True
-    sheet.print_title_rows = f"1:{rows}"
-    if sheet.freeze_panes is None:
-        sheet.freeze_panes = sheet.cell(rows + 1, 1)
-
-
-def _write_text(cell: Any, text: str) -> None:
-    write_text(cell, text)
-    # Object numbers must come back as they are: in a sheet that people edit a quotation prefix keeps the text one.
-    if safe_cell(text) != text:
-        cell.quotePrefix = True

@@ -1,0 +1,55 @@
+"""Cells of the sheets that people print and fill in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from pipeline.report.files.workbook import write_text
+from pipeline.report.text import safe_cell
+
+if TYPE_CHECKING:
+    from openpyxl.worksheet.worksheet import Worksheet
+
+HEADER_ROW = 2
+"""The row of the column names that the import reads; above it stand the words for people."""
+
+_INK = "FF1F2A37"
+_QUIET = "FF6B7280"
+_FILL = "FFFFF6DB"
+_LINE = "FF9CA3AF"
+
+
+def to_fill_in(cell: Any) -> None:
+    """Mark a cell as one that is to be filled in."""
+    from openpyxl.styles import Border, PatternFill, Side
+
+    cell.fill = PatternFill("solid", fgColor=_FILL)
+    cell.border = Border(*(Side(style="thin", color=_LINE) for _ in range(4)))
+
+
+def headed(sheet: Worksheet, widths: Sequence[int], *, rows: int) -> None:
+    """Set the widths of a sheet's columns, and its first rows apart as heads that every printed page repeats."""
+    from openpyxl.styles import Alignment, Font
+    from openpyxl.utils import get_column_letter
+
+    for at, width in enumerate(widths, start=1):
+        sheet.column_dimensions[get_column_letter(at)].width = width
+        for row in range(1, rows + 1):
+            cell = sheet.cell(row, at)
+            cell.font = Font(bold=row == 1, color=_INK if row == 1 else _QUIET, size=10 if row == 1 else 8)
+            cell.alignment = Alignment(wrap_text=True, vertical="bottom")
+    sheet.page_setup.orientation = "landscape"
+    sheet.page_setup.fitToWidth, sheet.page_setup.fitToHeight = 1, 0
+    sheet.sheet_properties.pageSetUpPr.fitToPage = True
+    sheet.print_title_rows = f"1:{rows}"
+    if sheet.freeze_panes is None:
+        sheet.freeze_panes = sheet.cell(rows + 1, 1)
+
+
+def write_cell(cell: Any, text: str) -> None:
+    """Write a text into a cell that people may edit: it comes back as it is."""
+    write_text(cell, text)
+    # Object numbers must come back as they are: in a sheet that people edit a quotation prefix keeps the text one.
+    if safe_cell(text) != text:
+        cell.quotePrefix = True
