@@ -153,9 +153,24 @@ def test_a_survey_is_printed_filled_in_and_read_back(run: Run, tmp_path: Path) -
     keys = [cell.value for cell in sheet[2]]
     row = next(r for r in range(3, sheet.max_row + 1) if sheet.cell(r, 1).value == "3")
     sheet.cell(row, keys.index("height [cm]") + 1).value = 41
+    rule = {
+        "number": "*",
+        "states": "clearance_m",
+        "value": 12,
+        "unit": "cm",
+        "said_by": "Ann",
+        "said_on": "2031-05-01",
+    }
+    keys = [cell.value for cell in book["Rules"][2]]
+    row = next(r for r in range(3, 100) if not book["Rules"].cell(r, keys.index("states") + 1).value)
+    for name, value in rule.items():
+        book["Rules"].cell(row, keys.index(name) + 1).value = value
     book.save(tmp_path / "s.xlsx")
     read = run("import", "s.xlsx", "--sheet")
     assert "changed: 3: height_m: null -> 0.41" in read.stdout
+    assert 'added to kouros.toml:\n\n[[house]]\nnumber = "*"\nclearance_m = 0.12\nsaid_by = "Ann"' in read.stdout
+    told = run("run", "--explain", "3")
+    assert "0.12 m, stated: clearance: by the house rule for number * [Ann, 2031-05-01]" in told.stdout
     # The night reads the museum's file again: what was measured stays.
     night = run("-q", "run")
     assert night.returncode == 0, night.stderr
