@@ -10,7 +10,8 @@ from dataclasses import replace
 from functools import cache, lru_cache
 from math import pi
 
-from pipeline.analysis.house import NO_EFFECT, HouseEffect, HouseRules
+from pipeline.analysis.house.effect import NO_EFFECT, HouseEffect
+from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.rules import RuleTable, rule_for
 from pipeline.errors import InputError
 from pipeline.models import MODELS, model_named

@@ -20,7 +20,7 @@ from pipeline.quantities import counted
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from pipeline.analysis.house import RuleQuestion
+    from pipeline.analysis.house.questions import RuleQuestion
     from pipeline.operations.run_summary import Summary
 
 

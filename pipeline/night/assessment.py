@@ -14,7 +14,7 @@ from pipeline.analysis.classify import classify, object_classes
 from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, each_apart, fault, unassessed
 from pipeline.analysis.fragility.objects import fragilities
-from pipeline.analysis.house import HouseRules
+from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.rules import RuleTable
 from pipeline.analysis.survey import measurement_requests
 from pipeline.collection.record import INDIVIDUAL

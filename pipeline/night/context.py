@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.analysis.context import Context, remembered
-from pipeline.analysis.house import HouseRules
+from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.rules import RuleTable
 from pipeline.cache import Cache, key_of

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pipeline.analysis.classify import house_effect
 from pipeline.analysis.faults import apart
-from pipeline.analysis.house import HouseRules
+from pipeline.analysis.house.matching import HouseRules
 from pipeline.cache import HOUSE, Cache, CacheEntry, key_of
 from pipeline.collection.listing import Listed, Listing
 from pipeline.collection.object_index import ObjectIndex

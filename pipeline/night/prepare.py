@@ -11,7 +11,7 @@ import numpy as np
 from pipeline import __version__
 from pipeline.analysis.classify import classify
 from pipeline.analysis.faults import sound, without_failing
-from pipeline.analysis.house import HouseRules
+from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.plan import Work, plan
 from pipeline.analysis.response_charts.grouping import group_name, groups
 from pipeline.analysis.rules import RuleTable

@@ -14,7 +14,7 @@ from pipeline.operations.dry_run import SCRATCH, read_only
 from pipeline.resources import resource, sweep
 
 if TYPE_CHECKING:
-    from pipeline.analysis.house import HouseRules
+    from pipeline.analysis.house.matching import HouseRules
     from pipeline.analysis.response_charts import ChartCache
     from pipeline.analysis.rules import RuleTable
     from pipeline.collection.database import Database
@@ -102,7 +102,7 @@ class Workspace:
         """
         if not self.settings.house:
             return None
-        from pipeline.analysis.house import HouseRules
+        from pipeline.analysis.house.matching import HouseRules
 
         try:
             return HouseRules(self.settings.house, tuple(self.values.classes))

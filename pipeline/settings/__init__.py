@@ -9,7 +9,7 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field, RootModel, ValidationError, field_validator, model_validator
 
-from pipeline.analysis.house import HouseRule
+from pipeline.analysis.house.rule import HouseRule
 from pipeline.errors import InputError
 from pipeline.records import Numerics
 from pipeline.resources import small_text

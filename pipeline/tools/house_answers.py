@@ -10,7 +10,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from pipeline.analysis.classify import object_classes
-from pipeline.analysis.house import QUANTITIES, VOCABULARIES, HouseRule, HouseRules, RuleQuestion
+from pipeline.analysis.house.matching import HouseRules
+from pipeline.analysis.house.questions import VOCABULARIES, RuleQuestion
+from pipeline.analysis.house.rule import QUANTITIES, HouseRule
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.xlsx import read_sheet as rows_of_sheet
 from pipeline.collection.sources.xlsx import visible_sheets

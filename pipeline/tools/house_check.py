@@ -5,7 +5,8 @@ from collections.abc import Sequence
 
 from pipeline.analysis.classify import house_effect
 from pipeline.analysis.faults import apart
-from pipeline.analysis.house import HouseEffect, HouseRules
+from pipeline.analysis.house.effect import HouseEffect
+from pipeline.analysis.house.matching import HouseRules
 from pipeline.night.assessment import decided_class
 from pipeline.operations.workspace import Workspace, near
 from pipeline.quantities import counted

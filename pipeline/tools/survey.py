@@ -9,7 +9,7 @@ from pathlib import Path
 from pipeline.analysis.assess import assess
 from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, fault
-from pipeline.analysis.house import RuleQuestion, rule_questions
+from pipeline.analysis.house.questions import RuleQuestion, rule_questions
 from pipeline.analysis.survey import in_order, measurables, measurement_requests
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.errors import CollectionError, NoRowsError

@@ -11,7 +11,8 @@ import pytest
 from pydantic import ValidationError
 
 from pipeline.analysis.classify import classify, house_effect, object_classes
-from pipeline.analysis.house import HouseRule, HouseRules, Span
+from pipeline.analysis.house.matching import HouseRules
+from pipeline.analysis.house.rule import HouseRule, Span
 from pipeline.errors import InputError
 from pipeline.records import Furniture, Hanging, Item, Origin, Scene, Support
 

@@ -11,7 +11,8 @@ from lxml import etree
 from markupsafe import Markup
 
 from pipeline.analysis.classify import classify
-from pipeline.analysis.house import HouseRule, HouseRules
+from pipeline.analysis.house.matching import HouseRules
+from pipeline.analysis.house.rule import HouseRule
 from pipeline.records import Item, Mark, Verdict
 from pipeline.report import Units, render
 from pipeline.report.pages.museum_views import GalleryView

@@ -7,7 +7,7 @@ from datetime import date
 import pytest
 from pydantic import BaseModel
 
-from pipeline.analysis.house import Span
+from pipeline.analysis.house.rule import Span
 from pipeline.records import Hanging
 from pipeline.settings import Settings, template
 

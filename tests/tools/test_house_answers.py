@@ -11,7 +11,8 @@ import openpyxl
 import pytest
 
 from pipeline.analysis.classify import classify
-from pipeline.analysis.house import HouseRule, RuleQuestion, Span, rule_questions
+from pipeline.analysis.house.questions import RuleQuestion, rule_questions
+from pipeline.analysis.house.rule import HouseRule, Span
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.inventory import replace_inventory
 from pipeline.collection.reading import Reading

@@ -10,22 +10,3 @@ hold.  For each quantity by itself the most particular of the rules that match a
 Rules that are equally particular and say different things are an error, told of the object and by `kouros check`:
 neither is taken.  What the record of an object says is taken before any rule.
 """
-
-from pipeline.analysis.house.effect import NO_EFFECT, HouseEffect, HouseStatement
-from pipeline.analysis.house.matching import HouseRules
-from pipeline.analysis.house.questions import VOCABULARIES, RuleQuestion, rule_questions
-from pipeline.analysis.house.rule import CRITERIA, QUANTITIES, HouseRule, Span
-
-__all__ = [
-    "CRITERIA",
-    "NO_EFFECT",
-    "QUANTITIES",
-    "VOCABULARIES",
-    "HouseEffect",
-    "HouseRule",
-    "HouseRules",
-    "HouseStatement",
-    "RuleQuestion",
-    "Span",
-    "rule_questions",
-]

@@ -10,7 +10,6 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, StrictFloat, model_validator
 
-from pipeline.collection.record import plausible
 from pipeline.errors import InputError
 from pipeline.records import Furniture, Hanging, Support
 
@@ -178,6 +177,9 @@ class HouseRule(BaseModel):
 
 
 def _believable(name: str, span: Span) -> None:
+    # Settings are read at every start of the command, which need not wait for tables that most do not need.
+    from pipeline.collection.record import plausible
+
     limits = plausible().get(name)
     low, high, unit = (*SHARES[name], "-") if limits is None else (limits.low, limits.high, limits.unit)
     if not low <= span.low <= span.high <= high:

@@ -12,7 +12,7 @@ from pipeline.report.text import words
 if TYPE_CHECKING:
     from openpyxl.worksheet.worksheet import Worksheet
 
-    from pipeline.analysis.house import RuleQuestion
+    from pipeline.analysis.house.questions import RuleQuestion
 
 RULES_SHEET = "Rules"
 
@@ -53,7 +53,7 @@ def write_rules(sheet: Worksheet, questions: Sequence[RuleQuestion], length: str
     from openpyxl.styles import Alignment
     from openpyxl.worksheet.datavalidation import DataValidation
 
-    from pipeline.analysis.house import VOCABULARIES
+    from pipeline.analysis.house.questions import VOCABULARIES
 
     columns = [*FOR, *STATES, *SIGNED, "why"]
     sheet.append([_LABELS[name] for name in columns])

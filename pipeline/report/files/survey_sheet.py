@@ -16,7 +16,7 @@ from pipeline.resources import replacing
 if TYPE_CHECKING:
     from openpyxl.worksheet.worksheet import Worksheet
 
-    from pipeline.analysis.house import RuleQuestion
+    from pipeline.analysis.house.questions import RuleQuestion
     from pipeline.analysis.survey import Measurable
 
 SHOWN = ("object_number", "gallery", "title")
