@@ -212,20 +212,22 @@ def _open(mesh: Trimesh) -> str:
 
 
 def _hull(file: str, mesh: Trimesh) -> Trimesh:
+    """Return the convex hull as a solid.  trimesh's own would need another library to turn its triangles outwards."""
+    import trimesh
     from scipy.spatial import ConvexHull, QhullError
-    from trimesh.convex import convex_hull
 
+    points = _array(mesh.vertices)
     try:
-        volume = float(ConvexHull(mesh.vertices).volume)
+        hull = ConvexHull(points)
     except (QhullError, ValueError):
-        volume = 0.0
-    if volume <= FLAT * float(np.prod(mesh.extents)):
+        hull = None
+    if hull is None or hull.volume <= FLAT * float(np.prod(np.ptp(points, axis=0))):
         raise MeshError(f"{file}: its points lie in one plane, so that it has no volume; scan all of it")
-    # Without repair, which would need another library: a hull that is no solid after all is refused.
-    hull: Trimesh = convex_hull(mesh.vertices, repair=False)
-    if not hull.is_volume:
-        raise MeshError(f"{file}: its convex hull is no solid; export it with fewer triangles")
-    return hull
+    faces = hull.simplices.copy()
+    a, b, c = (points[faces[:, at]] for at in range(3))
+    inwards = (np.cross(b - a, c - a) * hull.equations[:, :3]).sum(axis=1) < 0.0
+    faces[inwards] = faces[inwards][:, ::-1]
+    return trimesh.Trimesh(points, faces, process=False)
 
 
 def _bodies(file: str, mesh: Trimesh, bodies: str) -> tuple[Trimesh, tuple[float, ...], tuple[str, ...]]:
