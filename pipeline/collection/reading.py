@@ -428,7 +428,7 @@ def _read(cells: Cells, field: str, column: ColumnMap, texts: Sequence[str]) -> 
         raise
     except Exception as problem:  # noqa: BLE001 - whatever it is, it is this cell's, and told
         cells.problems.append(Problem(field, f"{FAILED}: {fault_words(problem)}", TELL))
-        return "" if kind == "text" else None
+        return {"text": "", "polygon": ()}.get(kind)
 
 
 def _text(cells: Cells, field: str, column: ColumnMap, texts: Sequence[str]) -> str:
@@ -442,4 +442,5 @@ _READ: dict[str, Callable[[Cells, str, ColumnMap, Sequence[str]], Any]] = {
     "integer": Cells.integer,
     "choice": Cells.choice,
     "flag": Cells.flag,
+    "polygon": Cells.polygon,
 }
