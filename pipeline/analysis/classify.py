@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import cache, lru_cache
 from math import pi
 
+from pipeline.analysis.footing import base_extents, half_widths
 from pipeline.analysis.rules import RuleTable, rule_for
 from pipeline.errors import InputError
 from pipeline.models import MODELS, model_named
@@ -37,10 +38,6 @@ def _assumed(value: float, low: float, high: float, unit: str, note: str, source
 
 def _measured(value: float | None, unit: str) -> Estimate | None:
     return None if value is None else Estimate.measured(value, unit)
-
-
-def _half(side: Estimate) -> Estimate:
-    return replace(side, value=0.5 * side.value, low=0.5 * side.low, high=0.5 * side.high)
 
 
 def _times(row: ObjectClass, share: Range, base: float, unit: str, what: str, of: str) -> Estimate:
@@ -128,25 +125,14 @@ class _Builder:
     def _standing(self) -> None:
         item = self.item
         width, depth, lost = self._plan()
-        if width is not None and depth is not None:
-            narrow = min(width, depth, key=lambda e: e.value)
-            low, high = min(width.low, depth.low), min(width.high, depth.high)
-            assumed = any(side.origin is Origin.ASSUMED for side in (width, depth))
-            origin = Origin.ASSUMED if assumed else Origin.MEASURED
-            note = "; ".join(dict.fromkeys(side.note for side in (width, depth) if side.note))
-            source = narrow.source or width.source or depth.source
-            half = Estimate(0.5 * narrow.value, "m", origin, 0.5 * low, 0.5 * high, note, source)
-            self._keep("half_width", half)
-            if item.orientation_deg is not None:
-                # Along its own axes each half counts in its direction; where nothing is known of them, the narrow one.
-                self._keep("half_base_width", _half(width))
-                self._keep("half_base_depth", _half(depth))
         cg = _measured(item.cg_height_m, "m")
         if cg is None and item.height_m is not None and self.row.cg is not None:
             cg = _times(self.row, self.row.cg, item.height_m, "m", "height of the centre of gravity", "height")
         if cg is None:
             self.missing.append("height" if self.row.cg is not None else "height of the centre of gravity")
         self._keep("cg_height", cg)
+        halves = half_widths(item, "" if self.row.own else self.row.name, width, depth, cg)
+        self.found |= halves
         self._friction()
         self._mass()
         if not self._section(width, depth) and self.support is Support.FASTENED:
@@ -154,7 +140,7 @@ class _Builder:
             self.missing.extend(lost if self.row.section else ["width of its weakest section"])
             if "mass" not in self.found:
                 self.missing.append("mass")
-        elif self.support is not Support.FASTENED:
+        elif self.support is not Support.FASTENED and not halves:
             self.missing.extend(lost)
         if item.frequency_hz is not None:
             self._keep("frequency", _measured(item.frequency_hz, "Hz"))
@@ -164,6 +150,9 @@ class _Builder:
     def _plan(self) -> tuple[Estimate | None, Estimate | None, list[str]]:
         """Return the sides of its base, None where they are not known, and what must be recorded to know them."""
         item, row = self.item, self.row
+        scanned = base_extents(item)
+        if scanned is not None:
+            return *scanned, []
         assumes = row.base is not None
         sides: list[Estimate | None] = []
         pairs = ((item.base_width_m, item.width_m, "width"), (item.base_depth_m, item.depth_m, "depth"))

@@ -190,6 +190,8 @@ class Estimate:
         The field it was derived from or the default that was assumed.
     source : str
         Who says so.
+    per : str
+        The parameter that it is proportional to: of a range of both, they go up and down together; "" for none.
     """
 
     value: float
@@ -199,6 +201,7 @@ class Estimate:
     high: float
     note: str = ""
     source: str = ""
+    per: str = ""
 
     @classmethod
     def measured(cls, value: float, unit: str, note: str = "") -> Estimate:
