@@ -234,9 +234,12 @@ def _bodies(file: str, mesh: Trimesh, bodies: str) -> tuple[Trimesh, tuple[float
     """Return the solid with normals outwards, the shares of its bodies, and notes; cavities belong to their bodies."""
     from trimesh.util import concatenate
 
-    parts = sorted(mesh.split(only_watertight=False), key=lambda part: -abs(part.volume))
+    parts = mesh.split(only_watertight=False)
     if len(parts) > MOST_BODIES:
         raise MeshError(f"{file}: {len(parts):,} separate bodies, more than {MOST_BODIES}; delete what is no object")
+    # trimesh divides by the volume for the centre of gravity: of a flat body there is none.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        parts = sorted(parts, key=lambda part: -abs(part.volume))
     least = FLAT * float(np.prod(mesh.extents))
     solids: list[Trimesh] = []
     cavities: list[Trimesh] = []
