@@ -67,8 +67,8 @@ class ContactPolygon:
         if nearest <= FLAT * extent:
             raise InputError(
                 f"the contact polygon does not hold the centre of gravity, which lies {max(-nearest, 0.0):.4g} m "
-                "outside of it: it would fall over by itself; its points are meant about the projected centre of "
-                "gravity"
+                "beyond one of its edges: it would fall over by itself; its points are meant about the projected "
+                "centre of gravity"
             )
         return polygon
 
