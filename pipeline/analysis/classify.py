@@ -6,7 +6,6 @@ as assumed.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from functools import cache, lru_cache
 from math import pi
 
