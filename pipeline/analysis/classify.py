@@ -80,6 +80,13 @@ def _wall_damping_of(values: AssumedValues, wall: str, back: str) -> Estimate:
     return _assumed(found.value if back else found.low, found.low, found.high, "-", note, found.source)
 
 
+def _own_base(row: ObjectClass) -> bool:
+    """Say whether the museum's own row of a class states the base, and does not leave it as it was."""
+    kouros = assumed().classes.get(row.name)
+    cells = ("base_low", "base_ratio", "base_high")
+    return bool(row.own) and (kouros is None or any(getattr(row, one) != getattr(kouros, one) for one in cells))
+
+
 class _Builder:
     """Collects the parameters of one scene, and what is missing for them."""
 
@@ -130,7 +137,7 @@ class _Builder:
         if cg is None:
             self.missing.append("height" if self.row.cg is not None else "height of the centre of gravity")
         self._keep("cg_height", cg)
-        halves = half_widths(item, "" if self.row.own else self.row.name, width, depth, cg)
+        halves = half_widths(item, "" if _own_base(self.row) else self.row.name, width, depth, cg)
         self.found |= halves
         self._friction()
         self._mass()

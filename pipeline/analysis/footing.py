@@ -211,5 +211,5 @@ def _borne(side: Estimate, item: Item, object_class: str) -> Estimate:
     row = bearing_of(item, object_class)
     if not object_class or side.origin is not Origin.ASSUMED or side.low == side.high or row is None:
         return side
-    note = f"{side.note}; of that {row.share:g} ({row.low:g} to {row.high:g}) bears, assumed: {row.title}"
+    note = f"{row.share:g} ({row.low:g} to {row.high:g}) of its base bears, assumed: {row.title}; {side.note}"
     return replace(side, value=row.share * side.value, low=row.low * side.low, high=row.high * side.high, note=note)
