@@ -39,4 +39,5 @@ numpydoc_show_class_members = False
 def setup(app: Sphinx) -> None:
     """Write the generated pages before Sphinx looks for pages."""
     app.add_lexer("csv", TextLexer)
+    app.add_lexer("obj", TextLexer)
     app.connect("builder-inited", lambda _app: generate.write(Path(__file__).parent / "reference" / "generated"))

@@ -33,6 +33,7 @@ Schema = Mapping[str, Any]
 
 TABLE_WORDS = {
     "classes": "What a class of objects assumes where the museum's record is silent.",
+    "contacts": "How much of a base that is only assumed may really bear.",
     "column_names": "Names of columns by which `kouros import --guess` knows a field.",
     "damping": "Damping of a hung object by wall and back (Table 4 of the paper).",
     "dimension_units": "Units of dimension texts.",

@@ -25,8 +25,8 @@ SMALL = 8 << 20
 _PACKAGE = Path(__file__).resolve().parent
 
 
-_ELSEWHERE = frozenset({"cli", "operations", "report", "tools", "verification"})
-"""Rooms at the top of the package that no stored result depends on: they ask for results, show and compare them."""
+_ELSEWHERE = frozenset({"cli", "meshes", "operations", "report", "tools", "verification"})
+"""Rooms that no stored result depends on: they ask for results, show and compare them, or fill in records."""
 
 _SOURCES = frozenset({".py", ".csv", ".toml"})
 """Endings of the files that are code, or tables that code reads."""

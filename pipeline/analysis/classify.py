@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import cache, lru_cache
 from math import pi
 
+from pipeline.analysis.footing import base_extents, half_widths
 from pipeline.analysis.house.effect import NO_EFFECT, HouseEffect
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.rules import RuleTable, rule_for
@@ -39,10 +40,6 @@ def _assumed(value: float, low: float, high: float, unit: str, note: str, source
 
 def _measured(value: float | None, unit: str) -> Estimate | None:
     return None if value is None else Estimate.measured(value, unit)
-
-
-def _half(side: Estimate) -> Estimate:
-    return replace(side, value=0.5 * side.value, low=0.5 * side.low, high=0.5 * side.high)
 
 
 def _times(row: ObjectClass, share: Range, base: float, unit: str, what: str, of: str) -> Estimate:
@@ -84,6 +81,13 @@ def _wall_damping_of(values: AssumedValues, wall: str, back: str) -> Estimate:
         note = f"damping against the wall: {pair}, the least of {tables_of(rows)}; wall and back surfaces not recorded"
     # With nothing known of its back the lowest damping counts.
     return _assumed(found.value if back else found.low, found.low, found.high, "-", note, found.source)
+
+
+def _own_base(row: ObjectClass) -> bool:
+    """Say whether the museum's own row of a class states the base, and does not leave it as it was."""
+    kouros = assumed().classes.get(row.name)
+    cells = ("base_low", "base_ratio", "base_high")
+    return bool(row.own) and (kouros is None or any(getattr(row, one) != getattr(kouros, one) for one in cells))
 
 
 class _Builder:
@@ -138,25 +142,14 @@ class _Builder:
     def _standing(self) -> None:
         item = self.item
         width, depth, lost = self._plan()
-        if width is not None and depth is not None:
-            narrow = min(width, depth, key=lambda e: e.value)
-            low, high = min(width.low, depth.low), min(width.high, depth.high)
-            origins = {side.origin for side in (width, depth)}
-            origin = next((one for one in (Origin.ASSUMED, Origin.STATED) if one in origins), Origin.MEASURED)
-            note = "; ".join(dict.fromkeys(side.note for side in (width, depth) if side.note))
-            source = narrow.source or width.source or depth.source
-            half = Estimate(0.5 * narrow.value, "m", origin, 0.5 * low, 0.5 * high, note, source)
-            self._keep("half_width", half)
-            if item.orientation_deg is not None:
-                # Along its own axes each half counts in its direction; where nothing is known of them, the narrow one.
-                self._keep("half_base_width", _half(width))
-                self._keep("half_base_depth", _half(depth))
         cg = self._length("cg_height_m", "cg_ratio", "height of the centre of gravity")
         if cg is None and item.height_m is not None and self.row.cg is not None:
             cg = _times(self.row, self.row.cg, item.height_m, "m", "height of the centre of gravity", "height")
         if cg is None:
             self.missing.append("height" if self.row.cg is not None else "height of the centre of gravity")
         self._keep("cg_height", cg)
+        halves = half_widths(item, "" if _own_base(self.row) else self.row.name, width, depth, cg)
+        self.found |= halves
         self._friction()
         self._mass()
         if not self._section(width, depth) and self.support is Support.FASTENED:
@@ -164,7 +157,7 @@ class _Builder:
             self.missing.extend(lost if self.row.section else ["width of its weakest section"])
             if "mass" not in self.found:
                 self.missing.append("mass")
-        elif self.support is not Support.FASTENED:
+        elif self.support is not Support.FASTENED and not halves:
             self.missing.extend(lost)
         frequency = self._known("frequency_hz", "lowest natural frequency", "Hz")
         if frequency is not None:
@@ -183,6 +176,9 @@ class _Builder:
     def _plan(self) -> tuple[Estimate | None, Estimate | None, list[str]]:
         """Return the sides of its base, None where they are not known, and what must be recorded to know them."""
         item, row = self.item, self.row
+        scanned = base_extents(item)
+        if scanned is not None:
+            return *scanned, []
         share = self.house.stated.get("base_ratio")
         assumes = row.base is not None or share is not None
         sides: list[Estimate | None] = []

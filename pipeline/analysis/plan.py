@@ -181,6 +181,8 @@ def _gather(model: Model, scenes: Sequence[Scene], chosen: Sequence[int], x_azim
     axes = model.axes if model.directions == 1 else ({},)
     angles = np.array([own_angle(model, scenes[index], x_azimuth) for index in chosen])
     turned = ~np.isnan(angles)
+    two_sided = "half_width_other" in (q.name for q in model.needs)
+    turn = np.array([360.0 if two_sided and "half_width_other" in scenes[at].parameters else 180.0 for at in chosen])
     if not turned.any():
         axes = ({},)
     names = [q.name for q in model.needs]
@@ -194,15 +196,21 @@ def _gather(model: Model, scenes: Sequence[Scene], chosen: Sequence[int], x_azim
     for _, name, _ in own:
         uncertain[turned, names.index(name)] = False
     uncertain[~turned, len(names) :] = False
+    ratios, of = _proportions(
+        scenes, chosen, [(name, name) for name in names] + [(other, n) for _, n, other in own], names
+    )
+    uncertain &= np.isnan(ratios)
     sets, analysis = corners(base, low, high, uncertain)
+    tied = ~np.isnan(ratios[analysis])
+    sets[tied] = (ratios[analysis] * np.take_along_axis(sets, of[analysis], axis=1))[tied]
     along = []
     for at in range(len(axes)):
         one = sets[:, : len(names)].copy()
         for place, (axis, name, _) in enumerate(own, start=len(names)):
             if axis == at:
                 one[turned[analysis], names.index(name)] = sets[turned[analysis], place]
-        # Objects of a collection have one half width: turned by half a turn they are the same.
-        angle = np.where(turned, (angles + 90.0 * at) % 180.0, np.nan)[analysis]
+        # What has one half width is the same, turned by half a turn.
+        angle = np.where(turned, (angles + 90.0 * at) % turn, np.nan)[analysis]
         along.append(np.column_stack([one, angle]))
     asked = _questions(model, scenes, chosen, analysis, along)[analysis]
     every = np.concatenate([np.column_stack([one, asked]) for one in along])
@@ -262,6 +270,26 @@ def _estimates(
             low.append(estimate.low)
             high.append(estimate.high)
     return value, low, high
+
+
+def _proportions(
+    scenes: Sequence[Scene], chosen: Sequence[int], columns: Sequence[tuple[str, str]], names: Sequence[str]
+) -> tuple[Array, Indices]:
+    """Return which parameters go up and down with another one: how many times that they are, and its column, (m, n).
+
+    NaN for those that stand by themselves.
+    """
+    ratios = np.full((len(chosen), len(columns)), np.nan)
+    of = np.zeros(ratios.shape, dtype=np.intp)
+    for row, index in enumerate(chosen):
+        known = scenes[index].parameters
+        tied = {name for name, estimate in known.items() if estimate.per}
+        for column, pair in enumerate(columns if tied else ()):
+            name = next((name for name in pair if name in known), "")
+            if name in tied and (of_name := known[name].per) in names and known[of_name].value:
+                ratios[row, column] = known[name].value / known[of_name].value
+                of[row, column] = names.index(of_name)
+    return ratios, of
 
 
 def corners(base: Array, low: Array, high: Array, uncertain: NDArray[np.bool_]) -> tuple[Array, Indices]:

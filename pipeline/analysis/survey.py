@@ -11,6 +11,7 @@ from functools import cache
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.context import Context
+from pipeline.analysis.footing import HALVES, tilted
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.models import model_named
 from pipeline.records import Estimate, Finding, MeasurementRequest, Numerics, Origin, Scene, Verdict
@@ -23,6 +24,12 @@ BATCH = 1000
 
 ENDS = ("low", "value", "high")
 
+TILT = "tilt_angle_deg"
+"""The field of a tilt test, which says how half width and height of the centre of gravity stand to each other."""
+
+SOUND = 0.5
+"""Condition from which an object may be handled; judgement."""
+
 
 @dataclass(frozen=True, slots=True)
 class Measurable:
@@ -30,6 +37,7 @@ class Measurable:
 
     parameters : of the scene, that hang on it; none for a field that is only ever missing
     factor     : the field's number for a number 1 of the first parameter; None where it cannot be said in one number
+    heaviest   : kg of an object that may be handled for it; None where nothing is handled
     how        : how it is measured, for the sheet
     """
 
@@ -38,6 +46,7 @@ class Measurable:
     unit: str
     parameters: Entries
     factor: Optional
+    heaviest: Optional
     how: str
 
 
@@ -135,9 +144,10 @@ def in_order(found: Sequence[MeasurementRequest]) -> list[MeasurementRequest]:
     Returns
     -------
     list of MeasurementRequest
-        Ties by gallery, object and field.
+        Ties by gallery and object, and of one object in the order of the table: a tilt test first.
     """
-    return sorted(found, key=lambda w: (-w.gain, -w.unlocks, w.gallery, w.object_number, w.field))
+    order = {measurable.field: at for at, measurable in enumerate(measurables())}
+    return sorted(found, key=lambda w: (-w.gain, -w.unlocks, w.gallery, w.object_number, order[w.field]))
 
 
 def by_gallery(found: Sequence[MeasurementRequest]) -> Mapping[str, Sequence[MeasurementRequest]]:
@@ -178,6 +188,8 @@ def _trials(scene: Scene, findings: Sequence[Finding]) -> list[_Trial]:
         return []
     out = []
     for measurable in measurables():
+        if not _may_be_asked(scene, measurable):
+            continue
         uncertain = [
             scene.parameters[name]
             for name in measurable.parameters
@@ -188,6 +200,18 @@ def _trials(scene: Scene, findings: Sequence[Finding]) -> list[_Trial]:
             models = tuple(dict.fromkeys(model for model, _ in sorted(mine)))
             out.append(_Trial(scene, measurable, mine, models, uncertain[0].note or "derived"))
     return out
+
+
+def _may_be_asked(scene: Scene, measurable: Measurable) -> bool:
+    """Say whether an object may be handled as a measurement asks for, and whether that was not done yet."""
+    if measurable.heaviest is None:
+        return True
+    item, mass = scene.item, scene.parameters.get("mass")
+    done = measurable.field == TILT and item.tilt_angle_deg is not None
+    # What may be heavier, is shaken to pieces by rocking, or is no longer sound, nobody tilts.
+    light = mass is not None and mass.value <= measurable.heaviest
+    sound = item.condition is None or item.condition >= SOUND
+    return not done and light and sound and item.susceptible is not True
 
 
 @cache
@@ -216,19 +240,29 @@ def _missing(scene: Scene) -> list[_Trial]:
     out = []
     for words in scene.missing:
         field = measurable_of(words)
-        if field is not None:
-            measurable = next(m for m in measurables() if m.field == field)
+        # Instead of a base that nobody measured, a tilt test does.
+        instead = (TILT,) if field == "base_width_m" else ()
+        for measurable in (m for m in measurables() if m.field in (*instead, field) and _may_be_asked(scene, m)):
             out.append(_Trial(scene, measurable, frozenset(), (), f"not recorded: {words}", len(scene.models)))
     return out
 
 
 def _measured(trial: _Trial, end: str) -> Scene:
     pinned = dict(trial.scene.parameters)
+    if trial.measurable.field == TILT:
+        half, height = pinned["half_width"], pinned["cg_height"]
+        slope = {"low": half.low / height.high, "value": half.value / height.value, "high": half.high / height.low}[end]
+        halves = {name: pinned[name] for name in HALVES if name in pinned}
+        return replace(trial.scene, parameters=pinned | tilted(halves, slope, height), models=trial.models)
     for name in trial.measurable.parameters:
         if name in pinned:
             old = pinned[name]
             value = float(getattr(old, end))
             pinned[name] = Estimate(value, old.unit, Origin.MEASURED, value, value)
+    for name, tied in pinned.items():
+        if tied.per in trial.measurable.parameters and name not in trial.measurable.parameters:
+            times = pinned[tied.per].value / trial.scene.parameters[tied.per].value
+            pinned[name] = replace(tied, value=times * tied.value, low=times * tied.value, high=times * tied.value)
     return replace(trial.scene, parameters=pinned, models=trial.models)
 
 

@@ -15,6 +15,7 @@ from pipeline.cli.explaining import print_explanation
 from pipeline.cli.importing import import_
 from pipeline.cli.motions import motions
 from pipeline.cli.options import Options, as_json, dry_run, say_dry
+from pipeline.cli.scanning import scan
 from pipeline.quantities import counted
 
 if TYPE_CHECKING:
@@ -449,4 +450,4 @@ def tradeoff(
     click.echo("\n".join(tradeoff_lines(found, wanted)))
 
 
-ALL = (demo, init, import_, survey, check, run, prune, report, decide, diff, motions, models, respond, tradeoff)
+ALL = (demo, init, import_, survey, scan, check, run, prune, report, decide, diff, motions, models, respond, tradeoff)

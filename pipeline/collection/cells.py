@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -13,11 +14,15 @@ from pipeline.collection.mapping import WRITTEN, ColumnMap
 from pipeline.collection.measured_cell import of_cell
 from pipeline.collection.record import CHOICES, plausible, units_of
 from pipeline.collection.sources.rows import as_text
-from pipeline.records import Origin, Problem, Provenance
+from pipeline.errors import InputError
+from pipeline.quantities import LENGTHS
+from pipeline.records import ContactPolygon, Origin, Problem, Provenance
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
 _INFINITE = re.compile(r"[+-]?inf(inity)?", re.IGNORECASE)
 _LONGEST_NUMBER = 40
+_LONGEST_WRITTEN = 200
+_MOST_POINTS = 1000
 _BREAKS = re.compile("[\t\n\v\f\r\x85\u2028\u2029]+")
 # The C0 and C1 controls; and the marks that turn the direction of all text that follows, also outside of the cell.
 # Half a surrogate pair is no letter, and no database takes it.
@@ -160,6 +165,40 @@ class Cells:
             return None
         return CHOICES[name](meaning)
 
+    def polygon(self, name: str, column: ColumnMap, texts: Sequence[str]) -> tuple[tuple[float, float], ...]:
+        """Return the points of a contact polygon, in SI units.
+
+        Parameters
+        ----------
+        name, column, texts : str, ColumnMap, sequence of str
+            As of `number`; the cell holds "x y; x y; x y" or a JSON array of pairs.
+
+        Returns
+        -------
+        tuple of (float, float)
+            () where none is recorded or none can be accepted (then with a problem).
+        """
+        text = texts[0].strip(_SPACE)
+        if _missing(text, column):
+            return ()
+        unit = column.unit or plausible()[name].unit
+        pairs = _pairs(text, self.decimal)
+        if pairs is None:
+            self._note(name, column, f"{_show(text)} is no list of points", 'write it as "x y; x y; x y"')
+            return ()
+        points = tuple((x * LENGTHS[unit], y * LENGTHS[unit]) for x, y in pairs)
+        for value in (value for point in points for value in point):
+            if not plausible()[name].low <= value <= plausible()[name].high:
+                self._note(name, column, f"the coordinate {value:.6g} m {_implausible(name, value)}", _remedy(value))
+                return ()
+        try:
+            ContactPolygon.around(points)
+        except InputError as problem:
+            self._note(name, column, str(problem), "measure the points from under the centre of gravity")
+            return ()
+        self.provenance.append(Provenance(name, Origin.MEASURED, f"{text[:_LONGEST_WRITTEN]} {unit}"))
+        return points
+
     def flag(self, name: str, column: ColumnMap, texts: Sequence[str]) -> bool | None:
         """Return yes or no.
 
@@ -264,6 +303,22 @@ class Cells:
     def _note(self, name: str, column: ColumnMap, message: str, remedy: str) -> None:
         source = " + ".join(_show(part) for part in column.sources)
         self.problems.append(Problem(name, f"column {source}: {message}", remedy))
+
+
+def _pairs(text: str, decimal: str) -> list[tuple[float, float]] | None:
+    """Return the points that a cell holds, as they are written; None for what holds none."""
+    try:
+        if text.startswith("["):
+            found = [[float(value) for value in point] for point in json.loads(text)]
+        else:
+            # A decimal comma cannot part x from y as well.
+            plain = text.replace(".", "?").replace(",", ".") if decimal == "," else text.replace(",", " ")
+            found = [[float(word) for word in part.split()] for part in plain.split(";") if part.strip()]
+    except (ValueError, TypeError, RecursionError):
+        return None
+    if not 0 < len(found) <= _MOST_POINTS or any(len(point) != 2 for point in found):
+        return None
+    return [(x, y) for x, y in found]
 
 
 def _missing(text: str, column: ColumnMap) -> bool:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import radians, tan
 from typing import Any
 
-from pipeline.records import SECTION_SHAPES, Problem
+from pipeline.records import SECTION_SHAPES, ContactPolygon, Problem
 
 HEAVIEST = 22_600.0
 """Density of osmium [kg/m3], the heaviest thing there is: no object is heavier than a box of it."""
@@ -15,6 +16,9 @@ LIGHTEST = 0.1
 
 _TOLERANCE = 1.03
 """Two rounded measurements of the same thing."""
+
+_ROUGHLY = 1.2
+"""A tilt test beside a base and a centre of gravity that were measured with a rule."""
 
 
 def contradictions(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
@@ -44,12 +48,41 @@ def contradictions(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
             message = f"the base is {value:.4g} m wide, the object at its widest {across:.4g} m"
             remedy = "measure both again; the base is used, as overall sizes are often given without it"
             out.append(("", Problem(field, message, remedy)))
+    out += _contact(values)
     shape = str(values.get("section_shape") or "").strip()
     if shape and shape.casefold() not in SECTION_SHAPES:
         message = f"{shape[:40]!r} is no shape of a section that Kouros knows"
         remedy = f"record one of {', '.join(sorted(set(SECTION_SHAPES.values())))}; it is not used until then"
         out.append(("", Problem("section_shape", message, remedy)))
     out += _density(values)
+    return out
+
+
+def _contact(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
+    """Return what contradicts the contact polygon and the tilt test."""
+    out = []
+    polygon = ContactPolygon.around(values["contact_polygon"]) if values.get("contact_polygon") else None
+    if polygon is not None:
+        for extent, field in zip(polygon.extents, ("width_m", "depth_m"), strict=True):
+            most = values.get(field)
+            if most is not None and extent > most * _TOLERANCE:
+                message = f"the contact polygon is {extent:.4g} m across where the object itself is {most:.4g} m"
+                remedy = "see whether unit and axes of the polygon are right (x along the width); the polygon is used"
+                out.append(("", Problem("contact_polygon", message, remedy)))
+    least, tilt = values.get("contact_polygon_least"), values.get("tilt_angle_deg")
+    if least and polygon is None:
+        message = "the least that the contact polygon may be is recorded, and the polygon itself is not"
+        out.append(("contact_polygon_least", Problem("contact_polygon_least", message, "record both")))
+    height = values.get("cg_height_m")
+    base = values.get("base_width_m") if polygon is None else 2.0 * polygon.narrowest()[0]
+    if tilt is not None and height is not None and base is not None:
+        half = height * tan(radians(tilt))
+        if half > 0.5 * base * _ROUGHLY:
+            message = (
+                f"it tips at {tilt:.4g} degrees, as if its base were {2.0 * half:.4g} m wide; recorded are {base:.4g} m"
+            )
+            remedy = "measure base, height of the centre of gravity and tilt again; the tilt test is used"
+            out.append(("", Problem("tilt_angle_deg", message, remedy)))
     return out
 
 

@@ -382,6 +382,8 @@ def _fault(field: str, column: ColumnMap) -> str:
         return f"unit is for lengths ({', '.join(LENGTHS)}) and masses ({', '.join(MASSES)}) only; leave it out"
     if column.columns and kind != "text":
         return f"only texts can be joined from several columns, this is a {kind}; name one column"
+    if kind == "polygon" and (column.values or column.unit == WRITTEN):
+        return f"a polygon needs a unit of {', '.join(LENGTHS)}, and no values; leave out {WRITTEN!r} and values"
     if field in REQUIRED and column.optional:
         return "every object needs it; leave out optional"
     if kind in ("number", "integer"):

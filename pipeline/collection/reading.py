@@ -348,7 +348,7 @@ class RowReader:
         for field, problem in contradictions(values):
             cells.problems.append(problem)
             if field:
-                values[field] = None
+                values[field] = _NOTHING.get(KINDS[field])
                 cells.provenance = [of for of in cells.provenance if of.field != field]
         number = values["object_number"]
         if not number:
@@ -419,6 +419,10 @@ FAILED = "Kouros failed to read it, which is not your fault"
 TELL = "please tell its makers, with the characters of this row"
 
 
+_NOTHING: abc.Mapping[str, Any] = {"text": "", "polygon": ()}
+"""What a field of a kind holds where nothing is recorded; None for all others."""
+
+
 def _read(cells: Cells, field: str, column: ColumnMap, texts: Sequence[str]) -> Any:
     """Return what a row's cells say for a field; what Kouros itself fails on is a problem, and no value."""
     kind = KINDS.get(field, "number")
@@ -428,7 +432,7 @@ def _read(cells: Cells, field: str, column: ColumnMap, texts: Sequence[str]) -> 
         raise
     except Exception as problem:  # noqa: BLE001 - whatever it is, it is this cell's, and told
         cells.problems.append(Problem(field, f"{FAILED}: {fault_words(problem)}", TELL))
-        return "" if kind == "text" else None
+        return _NOTHING.get(kind)
 
 
 def _text(cells: Cells, field: str, column: ColumnMap, texts: Sequence[str]) -> str:
@@ -442,4 +446,5 @@ _READ: dict[str, Callable[[Cells, str, ColumnMap, Sequence[str]], Any]] = {
     "integer": Cells.integer,
     "choice": Cells.choice,
     "flag": Cells.flag,
+    "polygon": Cells.polygon,
 }

@@ -26,12 +26,16 @@ KINDS: Mapping[str, str] = {
         bool: "flag",
         bool | None: "flag",
         **dict.fromkeys(_CHOICES, "choice"),
+        tuple[tuple[float, float], ...]: "polygon",
         tuple[Provenance, ...]: "list",
         tuple[Problem, ...]: "list",
     }[hint]
     for name, hint in get_type_hints(Item).items()
 }
-"""Field of Item -> "text", "number", "integer", "flag", "choice" or "list", as its type hint says."""
+"""Field of Item -> "text", "number", "integer", "flag", "choice", "polygon" or "list", as its type hint says."""
+
+STRUCTURED = frozenset({"polygon", "list"})
+"""Kinds whose values are kept as JSON."""
 
 CHOICES: Mapping[str, type[StrEnum]] = {
     name: _CHOICES[hint] for name, hint in get_type_hints(Item).items() if hint in _CHOICES
@@ -67,6 +71,10 @@ _MEANINGS = {
     "height_m": "Height.",
     "base_width_m": "Width of the footing.",
     "base_depth_m": "Depth of the footing.",
+    "contact_polygon": "Points of the outline on which it stands, about the projected centre of gravity: x along its "
+    "width, y a quarter turn counter-clockwise seen from above.",
+    "contact_polygon_least": "The least that the outline may be, such as the three points that a rigid body rests on.",
+    "tilt_angle_deg": "Angle of a tilt test at which it begins to tip over its nearest edge.",
     "width_m": "Largest width.",
     "depth_m": "Largest depth.",
     "cg_height_m": "Height of the centre of gravity above the base.",
@@ -250,5 +258,9 @@ def _limited(name: str, shape: dict[str, Any]) -> dict[str, Any]:
     limits = plausible().get(name)
     if limits is None:
         return shape
+    if KINDS[name] == "polygon":
+        sides = [{"minimum": limits.low, "maximum": limits.high, "type": "number"}] * 2
+        point = {**shape["items"], "prefixItems": sides}
+        return {**shape, "items": point}
     first, *others = shape["anyOf"]
     return {**shape, "anyOf": [{**first, "minimum": limits.low, "maximum": limits.high}, *others]}

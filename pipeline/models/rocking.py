@@ -390,7 +390,10 @@ ROCKING = Model(
         Quantity("uplift_ratio", "-", "largest |a_h| / (max(0, g + a_z) b/h)"),
     ),
     directions=1,
-    axes=({"half_width": "half_base_width"}, {"half_width": "half_base_depth"}),
+    axes=(
+        {"half_width": "half_base_width", "half_width_other": "half_base_width_other"},
+        {"half_width": "half_base_depth", "half_width_other": "half_base_depth_other"},
+    ),
     run=_run,
     screen=_screen,
     say_screen=_say,

@@ -31,7 +31,7 @@ from pipeline.night.unit_tasks import (
     build_chart,
     find_neighbours,
 )
-from pipeline.night.units import Decisions, UnitKeys, Units
+from pipeline.night.units import Decisions, PageUnits, UnitKeys
 from pipeline.operations.event_log import note
 from pipeline.operations.workspace import Workspace
 from pipeline.quantities import counted
@@ -67,7 +67,7 @@ class PlannedPage:
     """
 
     part: PagePart
-    units: Units
+    units: PageUnits
     spacings: str = ""
     kept: Made | None = None
 

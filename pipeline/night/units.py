@@ -19,7 +19,7 @@ Decisions = Mapping[str, tuple[Decision, ...]]
 
 
 @dataclass(frozen=True, slots=True)
-class Units:
+class PageUnits:
     """What is assessed together, of the objects of one page, in their order.
 
     Attributes
@@ -88,7 +88,7 @@ class UnitKeys:
         """Return the digest of what results depend on besides the objects and the decisions about them."""
         return (self._shaken if part.on_display or self._stores else self._aside)[part.floor]
 
-    def units(self, part: PagePart, decisions: Decisions) -> Units:
+    def units(self, part: PagePart, decisions: Decisions) -> PageUnits:
         """Return the units of a page.
 
         Parameters
@@ -103,9 +103,9 @@ class UnitKeys:
         starts = part.objects.companies().tolist() if together else range(len(objects))
         bounds = list(pairwise((*starts, len(objects))))
         keys = tuple(self._key(basis, objects[start:end], decisions) for start, end in bounds)
-        return Units(keys, array("I", [end for _, end in bounds]))
+        return PageUnits(keys, array("I", [end for _, end in bounds]))
 
-    def neighbours(self, pages: Sequence[tuple[PagePart, Units]]) -> str:
+    def neighbours(self, pages: Sequence[tuple[PagePart, PageUnits]]) -> str:
         """Return the key of the gaps between the neighbours of a gallery.
 
         Parameters

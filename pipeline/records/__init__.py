@@ -12,6 +12,7 @@ from pipeline.records.change import (
     RunChanges,
     VerdictChange,
 )
+from pipeline.records.contact_polygon import ContactPolygon
 from pipeline.records.decision import Basis, Decision, DecisionKind, DecisionStatus, in_force
 from pipeline.records.fragility import Fragility
 from pipeline.records.measurement_request import MeasurementRequest
@@ -53,6 +54,7 @@ __all__ = [
     "ChartFigure",
     "Check",
     "Columns",
+    "ContactPolygon",
     "Curve",
     "Decision",
     "DecisionChange",

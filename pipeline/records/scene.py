@@ -115,6 +115,11 @@ class Item:
         How it hangs, and what it stands on or in or hangs from.
     height_m, base_width_m, base_depth_m, width_m, depth_m, cg_height_m : float or None
         Extents, those of the footing, and the height of the centre of gravity above the base, m.
+    contact_polygon, contact_polygon_least : tuple of (float, float)
+        Points of the outline on which it stands, and of the least that it may be, m about the projected centre of
+        gravity: x along its width, y a quarter turn counter-clockwise from it seen from above; () where not recorded.
+    tilt_angle_deg : float or None
+        At which it begins to tip over its nearest edge, degrees: atan(half width / height of the centre of gravity).
     mass_kg : float or None
         In kg.
     material, base_material, surface_material : str
@@ -158,6 +163,9 @@ class Item:
     height_m: float | None = None
     base_width_m: float | None = None
     base_depth_m: float | None = None
+    contact_polygon: tuple[tuple[float, float], ...] = ()
+    contact_polygon_least: tuple[tuple[float, float], ...] = ()
+    tilt_angle_deg: float | None = None
     width_m: float | None = None
     depth_m: float | None = None
     cg_height_m: float | None = None
@@ -208,6 +216,8 @@ class Estimate:
         The field it was derived from or the default that was assumed.
     source : str
         Who says so.
+    per : str
+        The parameter that it is proportional to: of a range of both, they go up and down together; "" for none.
     """
 
     value: float
@@ -217,6 +227,7 @@ class Estimate:
     high: float
     note: str = ""
     source: str = ""
+    per: str = ""
 
     @classmethod
     def measured(cls, value: float, unit: str, note: str = "") -> Estimate:

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from pipeline.analysis.classify import NO_MODEL, WHEN_HELD, classify, material_of, section_properties
+from pipeline.analysis.footing import bearing_of
 from pipeline.analysis.survey import measurable_of, measurables
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
@@ -155,7 +156,10 @@ def test_every_range_of_class_and_material_travels_to_the_models(row: Row, mater
         return
     shares = [item.height_m * float(row[c]) for c in ("cg_low", "cg_ratio", "cg_high")]  # type: ignore[operator]
     assert [getattr(found["cg_height"], s) for s in ends] == pytest.approx(shares)
-    halves = [0.15 * float(row[c]) for c in ("base_low", "base_ratio", "base_high")]
+    bears = bearing_of(item, row["class"])
+    assert bears is not None
+    borne = zip(("base_low", "base_ratio", "base_high"), (bears.low, bears.share, bears.high), strict=True)
+    halves = [0.15 * float(row[c]) * share for c, share in borne]
     assert [getattr(found["half_width"], s) for s in ends] == pytest.approx(halves)
     friction = span(assumed().friction_of(stuff["friction_as"]))
     assert [getattr(found["friction_static"], s) for s in ends] == [friction.low, friction.value, friction.high]
@@ -192,10 +196,10 @@ def test_what_the_museum_measured_wins_and_is_not_called_assumed() -> None:
 
 
 def test_derived_numbers_follow_the_table_of_classes() -> None:
-    """vessel: base 0.6 of the width, centre of gravity at 0.45 of the height (classes.csv)."""
+    """vessel: base 0.6 of the width, of which 0.9 bears, centre of gravity at 0.45 of the height (tables)."""
     parameters = classify(VASE).parameters
-    assert parameters["half_width"].value == pytest.approx(0.5 * 0.6 * 0.2)
-    assert parameters["half_width"].low == pytest.approx(0.5 * 0.4 * 0.2)
+    assert parameters["half_width"].value == pytest.approx(0.5 * 0.6 * 0.9 * 0.2)
+    assert parameters["half_width"].low == pytest.approx(0.5 * 0.4 * 0.5 * 0.2)
     assert parameters["cg_height"].value == pytest.approx(0.45 * 0.4)
 
 

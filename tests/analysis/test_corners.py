@@ -82,7 +82,8 @@ def test_decided_verdicts_hold_at_all_corners_and_between_them(
         decided[found.model] += 1
         broken += max(each) > low if found.verdict is Verdict.PASS else min(each) <= high
     assert broken == 0
-    assert min(decided.values()) > COUNT / 8
+    # Of few bases that are only assumed is a verdict on rocking sure.
+    assert min(decided.values()) > COUNT / 16
 
 
 def test_every_combination_of_ends_comes_once() -> None:
@@ -120,7 +121,7 @@ def test_falling_is_looked_for_at_every_corner(motion: Motion) -> None:
     items = [
         Item(str(at), "G", title="Vase", object_name="Vase", susceptible=False, support=Support.FREESTANDING,
              height_m=height, width_m=float(slope * height), depth_m=float(slope * height))
-        for at, (slope, height) in enumerate(product(np.linspace(0.6, 1.1, 9), (0.1, 0.3, 0.8)))
+        for at, (slope, height) in enumerate(product(np.linspace(0.6, 2.2, 9), (0.1, 0.3, 0.8)))
     ]  # fmt: skip
     scenes = [classify(item) for item in items]
     strong = Motion(motion.dt, motion.acceleration[:, 1500:3500], "strong")

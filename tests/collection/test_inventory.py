@@ -34,11 +34,13 @@ from pipeline.records import Item, Origin, Problem, Provenance
 
 # What `read_items` lets through: no NUL, no halves of surrogate pairs, no negative zero, nothing infinite.
 _TEXT = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=60)
+_COORDINATE = st.floats(allow_nan=False, allow_infinity=False).map(lambda x: x + 0.0)
 _VALUES = {
     "text": _TEXT,
     "number": st.none() | st.floats(allow_nan=False, allow_infinity=False).map(lambda x: x + 0.0),
     "integer": st.none() | st.integers(0, 2**31 - 1),
     "flag": st.none() | st.booleans(),
+    "polygon": st.lists(st.tuples(_COORDINATE, _COORDINATE), max_size=4).map(tuple),
 }
 _SPECIAL = {
     **{name: st.none() | st.sampled_from(kind) for name, kind in CHOICES.items()},

@@ -21,7 +21,7 @@ from pipeline.collection.mapping import (
     mapping_schema,
     preset_names,
 )
-from pipeline.collection.record import units_of
+from pipeline.collection.record import KINDS, units_of
 from pipeline.quantities import LENGTHS, MASSES
 from pipeline.records import ITEM_FIELDS
 from pipeline.resources import resource
@@ -126,9 +126,10 @@ def test_the_template_sheet_has_every_field_under_its_own_name() -> None:
 
 
 def test_every_length_and_mass_of_the_record_needs_a_unit() -> None:
-    """The contract writes a field's unit at the end of its name."""
+    """The contract writes a field's unit at the end of its name; a polygon's coordinates are lengths."""
     for field in MAPPABLE:
-        assert units_of(field) == (LENGTHS if field.endswith("_m") else MASSES if field.endswith("_kg") else {})
+        length = field.endswith("_m") or KINDS.get(field) == "polygon"
+        assert units_of(field) == (LENGTHS if length else MASSES if field.endswith("_kg") else {})
 
 
 def test_an_unknown_name_lists_the_presets() -> None:

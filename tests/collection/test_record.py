@@ -39,7 +39,7 @@ def test_what_may_be_null_is_the_same_everywhere() -> None:
 
 
 def test_every_number_has_a_plausible_range_and_a_reason() -> None:
-    numbers = {name for name, kind in KINDS.items() if kind in ("number", "integer")}
+    numbers = {name for name, kind in KINDS.items() if kind in ("number", "integer", "polygon")}
     assert set(plausible()) == numbers | {DIAMETER}
     for limits in plausible().values():
         assert limits.low < limits.high

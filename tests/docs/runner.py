@@ -101,7 +101,7 @@ class Reader:
     def _file(self, block: Block, name: str, how: str) -> None:
         """Write a file, or lay keys over one that is there; settings, mappings and manifests must be good ones."""
         path = Path(name)
-        if block.language == "csv":
+        if block.language in {"csv", "obj"}:
             path.write_text(block.text, encoding="utf-8")
             return
         data = tomllib.loads(block.text)

@@ -17,6 +17,9 @@ from pipeline.store.runs import load_run
 from pipeline.tools.doctor import diagnose
 from tests.museum import SILENT, own_site, workspace
 
+BASE = "".join(f'[columns.base_{side}_m]\ncolumn = "{side}_m"\nunit = "m"\n' for side in ("width", "depth"))
+"""What it stands on is as wide as it is."""
+
 SITE = SiteTable(name="Test", latitude=0.0, longitude=0.0)
 
 
@@ -120,8 +123,8 @@ def test_an_object_overturns_when_half_of_the_motions_overturn_it(tmp_path: Path
     settings = museum(tmp_path, pulses(tmp_path / "few", *[0.1] * 5, *[1.5] * 3, combine="mean"))
     # The export has no such column: the museum's own sheet would.
     text = (tmp_path / "mapping.toml").read_text()
-    (tmp_path / "mapping.toml").write_text(f'{text}[columns.susceptible]\ncolumn = "susceptible"\n')
-    rows = ["object_number,gallery,title,height_m,width_m,depth_m,susceptible", "1,A,Block,0.4,0.1,0.1,no"]
+    (tmp_path / "mapping.toml").write_text(f'{text}[columns.susceptible]\ncolumn = "susceptible"\n{BASE}')
+    rows = ["object_number,gallery,title,height_m,width_m,depth_m,susceptible", "1,A,Block,0.4,0.08,0.08,no"]
     (tmp_path / "export.csv").write_text("\n".join(rows) + "\n")
     few = record_of(settings)
     (found,) = [f for f in few.assessments[0].findings if f.model == "rocking"]

@@ -11,7 +11,7 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 from hypothesis import strategies as st
 from sqlalchemy import Engine
 
-from pipeline.collection.record import KINDS, digest_of, to_records
+from pipeline.collection.record import KINDS, STRUCTURED, digest_of, to_records
 from pipeline.collection.sealing import seal
 from pipeline.records import (
     ITEM_FIELDS,
@@ -71,6 +71,8 @@ def values_of(hint: Any) -> st.SearchStrategy[Any]:
     origin, parts = get_origin(hint), get_args(hint)
     if origin in {Union, types.UnionType}:
         return st.one_of(*map(values_of, parts))
+    if origin is tuple and parts[-1] is not Ellipsis:
+        return st.tuples(*map(values_of, parts))
     if origin is tuple:
         return st.lists(values_of(parts[0]), max_size=2).map(tuple)
     if origin is Mapping:
@@ -84,12 +86,17 @@ def values_of(hint: Any) -> st.SearchStrategy[Any]:
     )
 
 
+_COORDINATES = st.floats(allow_nan=False, allow_infinity=False)
+POLYGONS = st.lists(st.tuples(_COORDINATES, _COORDINATES), max_size=4).map(tuple)
+
 ITEMS = st.builds(
     Item,
     **{
         # The inventory has no record whose numbers are not finite.
         name: st.none() | st.floats(allow_nan=False, allow_infinity=False)
         if KINDS[name] == "number"
+        else POLYGONS
+        if KINDS[name] == "polygon"
         else values_of(hint)
         for name, hint in get_type_hints(Item).items()
     },
@@ -204,7 +211,7 @@ def run(run_id: str, *assessments: Assessment, day: int = 1, motions: tuple[Moti
 def packed(items: Sequence[Item]) -> bytes:
     """Return records as the inventory gives them away."""
     rows = [
-        [*(json.dumps(row[name]) if KINDS[name] == "list" else row[name] for name in ITEM_FIELDS), digest_of(item)]
+        [*(json.dumps(row[name]) if KINDS[name] in STRUCTURED else row[name] for name in ITEM_FIELDS), digest_of(item)]
         for item, row in zip(items, to_records(list(items)), strict=True)
     ]
     return json.dumps(["an inventory", rows]).encode()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import atan, degrees
 from pathlib import Path
 
 import numpy as np
@@ -90,6 +91,45 @@ def test_what_is_missing_comes_first_and_what_is_not_on_display_never() -> None:
     assert first.unlocks > 0
     assert {request.object_number for request in found} == {"1", "2"}
     assert list(by_gallery(found)) == ["East", "West"]
+
+
+ROCKS = replace(BOX, base_width_m=None, base_depth_m=None, width_m=0.1, depth_m=0.1, cg_height_m=None, friction=0.9,
+                susceptible=None)  # fmt: skip
+"""How wide it stands and how high its mass is, nobody measured."""
+
+
+def test_a_tilt_test_is_the_first_question_and_settles_what_it_says() -> None:
+    """The truth is the assessment of the record with the angle filled in, low, best and high."""
+    assert ("rocking", Verdict.UNDETERMINED) in verdicts(ROCKS)
+    assert measurables()[0].field == "tilt_angle_deg"
+    first, *others = surveyed(ROCKS)
+    assert first.field == "tilt_angle_deg"
+    assert all(first.gain >= other.gain for other in others)
+    known = classify(ROCKS).parameters
+    half, height = known["half_width"], known["cg_height"]
+    slopes = (half.low / height.high, half.value / height.value, half.high / height.low)
+    filled = [verdicts(replace(ROCKS, tilt_angle_deg=degrees(atan(slope)))) for slope in slopes]
+    settled = sum(("rocking", Verdict.UNDETERMINED) not in found for found in filled)
+    assert first.settles == pytest.approx(settled / 3)
+    assert settled == 3
+
+
+@pytest.mark.parametrize("change", [{"mass_kg": 80.0}, {"susceptible": True}, {"condition": 0.2}])
+def test_what_may_not_be_handled_is_not_tilted(change: dict[str, object]) -> None:
+    asked = {request.field for request in surveyed(replace(ROCKS, **change))}  # type: ignore[arg-type]
+    assert "tilt_angle_deg" not in asked
+    assert "base_width_m" in asked
+
+
+def test_what_was_tilted_is_not_tilted_again() -> None:
+    assert "tilt_angle_deg" not in {request.field for request in surveyed(replace(ROCKS, tilt_angle_deg=5.0))}
+
+
+def test_a_tilt_test_is_asked_for_where_no_base_is_known() -> None:
+    lost = replace(BOX, title="Mask", base_width_m=None, base_depth_m=None)
+    assert "base width" in classify(lost).missing
+    assert next(request.field for request in surveyed(lost)) == "tilt_angle_deg"
+    assert not classify(replace(lost, tilt_angle_deg=9.0)).missing
 
 
 def test_every_field_of_the_survey_is_one_of_the_record() -> None:

@@ -37,6 +37,9 @@ _MUSEUMS = frozenset(
 _SHEET = "sheet "
 """How the provenance of a number from a sheet begins."""
 
+_NOTHING: tuple[Any, ...] = (None, "", [])
+"""What a field holds where nothing is recorded."""
+
 FILLED = tuple(name for name in ITEM_FIELDS if name not in _MUSEUMS and KINDS[name] != "list")
 """Fields that a sheet may fill in."""
 
@@ -44,7 +47,7 @@ FILLED = tuple(name for name in ITEM_FIELDS if name not in _MUSEUMS and KINDS[na
 def filled_in(item: Item) -> dict[str, Any]:
     """Return what a row of a sheet fills in, JSON-ready, with its provenance; empty where it fills in nothing."""
     (record,) = to_records([item])
-    fields = {name: record[name] for name in FILLED if record[name] not in (None, "")}
+    fields = {name: record[name] for name in FILLED if record[name] not in _NOTHING}
     if not fields:
         return {}
     return fields | {"provenance": [of for of in record["provenance"] if of["field"] in fields]}
@@ -133,7 +136,7 @@ def _laid_over(item: Item, source: str, record: Mapping[str, Any]) -> Item:
     ours = {of.field for of in item.provenance if of.note.startswith(_SHEET)}
     for name, value in fields.items():
         theirs = before[name]
-        if theirs not in (None, "", value) and name not in ours:
+        if theirs not in (*_NOTHING, value) and name not in ours:
             problems.append(
                 Problem(
                     name,

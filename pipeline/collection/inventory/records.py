@@ -17,15 +17,15 @@ from sqlalchemy.exc import DBAPIError
 from pipeline.collection.inventory.differences import fields_changed
 from pipeline.collection.inventory.source_rows import forget_source
 from pipeline.collection.inventory.tables import IMPORT_BATCH, INDEXED, ITEM, current, item_seal, newest, numbered
-from pipeline.collection.record import KINDS, assessment_digest_of, digest_of, to_items
+from pipeline.collection.record import KINDS, STRUCTURED, assessment_digest_of, digest_of, to_items
 from pipeline.errors import DamageWarning, KourosError
 from pipeline.records import ITEM_FIELDS, Item
 
-_LISTS = tuple(at for at, name in enumerate(ITEM_FIELDS) if KINDS[name] == "list")
+_LISTS = tuple(at for at, name in enumerate(ITEM_FIELDS) if KINDS[name] in STRUCTURED)
 
 # JSON as it was written: what cannot be read is that record's damage, and not the end of the whole statement.
 RECORD_COLUMNS = (
-    *(cast(ITEM.c[name], Text).label(name) if KINDS[name] == "list" else ITEM.c[name] for name in ITEM_FIELDS),
+    *(cast(ITEM.c[name], Text).label(name) if KINDS[name] in STRUCTURED else ITEM.c[name] for name in ITEM_FIELDS),
     ITEM.c.digest,
 )
 """The columns of a record and its digest, as `checked` reads them."""

@@ -21,7 +21,7 @@ from sqlalchemy import (
 )
 
 from pipeline.collection.database import METADATA
-from pipeline.collection.record import KINDS
+from pipeline.collection.record import KINDS, STRUCTURED
 from pipeline.collection.sealing import seal, seal_column
 from pipeline.records import ITEM_FIELDS
 
@@ -34,9 +34,10 @@ _TYPES: dict[str, type[Any]] = {
     "integer": Integer,
     "flag": Boolean,
     "choice": Text,
+    "polygon": JSON,
     "list": JSON,
 }
-_ALWAYS = {"on_display", *(name for name, kind in KINDS.items() if kind in ("text", "list"))}
+_ALWAYS = {"on_display", *(name for name, kind in KINDS.items() if kind == "text" or kind in STRUCTURED)}
 
 ITEM = Table(
     "item",

@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import partial
 
 from pipeline.analysis.classify import models_of
+from pipeline.analysis.footing import HALVES
 from pipeline.mitigate.measures.base import (
     CLEARANCE,
     MARGIN,
@@ -23,8 +24,6 @@ from pipeline.mitigate.proposals import Deficiency, Proposal, refused
 from pipeline.mitigate.trials import TrialRunner
 from pipeline.quantities import Quantity
 from pipeline.records import Estimate, Scene, Support
-
-HALVES = ("half_width", "half_base_width", "half_base_depth")
 
 
 class WideBase(Measure):

@@ -15,7 +15,8 @@ SURVEY_SECONDS = "survey_seconds"
 
 def wish_views(wishes: Iterable[MeasurementRequest], units: Units) -> tuple[WishView, ...]:
     """Return what is worth measuring on one object, what settles most first; what settles nothing comes last."""
-    ordered = sorted(wishes, key=lambda w: (-w.gain, w.field))
+    order = [m.field for m in measurables()]
+    ordered = sorted(wishes, key=lambda w: (-w.gain, order.index(w.field)))
     return tuple(
         WishView(
             what=_label(one.field),
@@ -32,13 +33,14 @@ def errands(
 ) -> tuple[SurveyView, ...]:
     """Group what is worth measuring in a gallery by quantity, for one tool serves many objects."""
     how = {m.field: said(m.how) for m in measurables()}
+    order = list(how)
     found: dict[str, list[tuple[float, MeasurementRequest, ObjectView]]] = {}
     for assessment, view in pairs:
         item = assessment.scene.item
         for request in wishes.get(item.object_number, ()):
             if item.on_display and not request.settles_nothing and request.gallery == item.gallery:
                 found.setdefault(request.field, []).append((request.gain, request, view))
-    ranked = sorted(found.items(), key=lambda entry: (-sum(gain for gain, _request, _view in entry[1]), entry[0]))
+    ranked = sorted(found.items(), key=lambda entry: (-sum(e[0] for e in entry[1]), order.index(entry[0])))
     out = []
     for name, entries in ranked:
         entries.sort(key=lambda entry: -entry[0])

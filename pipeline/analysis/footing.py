@@ -1,0 +1,215 @@
+"""Footing: how far it is from the projected centre of gravity to the edges about which an object rocks.
+
+A tilt test says it best, then a contact polygon, then the sides of a base.  Of a base that is itself only assumed from
+the overall size, not all may bear (tables/contacts.csv).
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
+from math import radians, tan
+from typing import Self
+
+from pydantic import BaseModel, Field, model_validator
+
+from pipeline.errors import InputError
+from pipeline.records import ContactPolygon, Estimate, Item, Origin
+from pipeline.tables import table
+from pipeline.tables.rows import Entries, Number, checked
+
+ALONG = {
+    "half_base_width": 0.0,
+    "half_base_width_other": 180.0,
+    "half_base_depth": 90.0,
+    "half_base_depth_other": 270.0,
+}
+"""Half widths along an object's own axes, and their directions in its contact polygon [degrees from x towards y]."""
+
+HALVES = ("half_width", "half_width_other", *ALONG)
+"""All half widths that a scene may have."""
+
+
+def half_widths(
+    item: Item, object_class: str, width: Estimate | None, depth: Estimate | None, cg_height: Estimate | None
+) -> dict[str, Estimate]:
+    """Return the half widths of an object.
+
+    Parameters
+    ----------
+    item : Item
+        Its record.
+    object_class : str
+        Row of tables/classes.csv; "" where the museum's own row says of its base what bears.
+    width, depth : Estimate or None
+        Sides of its base, m; None where they are not known.
+    cg_height : Estimate or None
+        Height of its centre of gravity, m.
+
+    Returns
+    -------
+    dict of str to Estimate
+        half_width, towards the nearest edge, with half_width_other opposite of it where that differs; and those ALONG
+        its own axes where its orientation is known.  Empty where nothing is known of its base.
+    """
+    found: dict[str, Estimate] = {}
+    if item.contact_polygon:
+        found = _of_polygon(item)
+    elif width is not None and depth is not None:
+        found = _of_sides(_borne(width, item, object_class), _borne(depth, item, object_class))
+    if item.tilt_angle_deg is not None and cg_height is not None:
+        found = tilted(found, tan(radians(item.tilt_angle_deg)), cg_height)
+    if item.orientation_deg is None:
+        found = {name: half for name, half in found.items() if name not in ALONG}
+    return found
+
+
+def base_extents(item: Item) -> tuple[Estimate, Estimate] | None:
+    """Return how wide and deep an object's contact polygon is [m]; None where none is recorded."""
+    if not item.contact_polygon:
+        return None
+    width, depth = ContactPolygon.around(item.contact_polygon).extents
+    return Estimate.measured(width, "m"), Estimate.measured(depth, "m")
+
+
+def _of_sides(width: Estimate, depth: Estimate) -> dict[str, Estimate]:
+    narrow = min(width, depth, key=lambda side: side.value)
+    low, high = min(width.low, depth.low), min(width.high, depth.high)
+    origins = {side.origin for side in (width, depth)}
+    origin = next((one for one in (Origin.ASSUMED, Origin.STATED) if one in origins), Origin.MEASURED)
+    note = "; ".join(dict.fromkeys(side.note for side in (width, depth) if side.note))
+    source = narrow.source or width.source or depth.source
+    half = Estimate(0.5 * narrow.value, "m", origin, 0.5 * low, 0.5 * high, note, source)
+    # Along its own axes each half counts in its direction; where nothing is known of them, the narrow one.
+    return {"half_width": half, "half_base_width": _half(width), "half_base_depth": _half(depth)}
+
+
+def _half(side: Estimate) -> Estimate:
+    return replace(side, value=0.5 * side.value, low=0.5 * side.low, high=0.5 * side.high)
+
+
+def _of_polygon(item: Item) -> dict[str, Estimate]:
+    outline = ContactPolygon.around(item.contact_polygon)
+    least = ContactPolygon.around(item.contact_polygon_least) if item.contact_polygon_least else outline
+    nearest, way = outline.narrowest()
+    found = {"half_width": _between(nearest, min(least.narrowest()[0], least.reach(way)))}
+    opposite = (way + 180.0) % 360.0
+    found["half_width_other"] = _between(outline.reach(opposite), least.reach(opposite))
+    return found | {name: _between(outline.reach(angle), least.reach(angle)) for name, angle in ALONG.items()}
+
+
+def _between(value: float, least: float) -> Estimate:
+    if least >= value:
+        return Estimate.measured(value, "m", "contact polygon, as recorded")
+    note = f"contact polygon, as recorded: {value:.4g} m, or {least:.4g} m by the least that it may be"
+    return Estimate(value, "m", Origin.DERIVED, least, value, note)
+
+
+def tilted(found: Mapping[str, Estimate], slope: float, cg_height: Estimate) -> dict[str, Estimate]:
+    """Return half widths of which the least is what a tilt test says.
+
+    Parameters
+    ----------
+    found : mapping of str to Estimate
+        Half widths that are known otherwise, m.
+    slope : float
+        Tangent of the angle at which it begins to tip: half width over height of the centre of gravity [-].
+    cg_height : Estimate
+        Height of the centre of gravity, m; the half width is proportional to it.
+
+    Returns
+    -------
+    dict of str to Estimate
+        half_width, and what was found of the others: none is less.
+    """
+    low, value, high = (slope * height for height in (cg_height.low, cg_height.value, cg_height.high))
+    note = f"half width: {slope:.3g} times the height of the centre of gravity, by a tilt test"
+    tested = Estimate(value, "m", Origin.DERIVED, low, high, note, "tilt test", "cg_height")
+    own = [name for name in ALONG if name in found]
+    nearest = min(own, key=lambda name: found[name].value, default="")
+    out = {"half_width": tested}
+    for name, half in found.items():
+        if name == nearest or (name != "half_width" and half.value <= value):
+            out[name] = tested
+        elif name != "half_width":
+            # Of all edges the test found the nearest.
+            out[name] = replace(half, low=max(half.low, min(value, half.value)))
+    return out
+
+
+# What of an assumed base bears ----------------------------------------------------------------------------------------
+
+
+class Bearing(BaseModel):
+    """How much of the base that is assumed of an object may really bear (a row of tables/contacts.csv).
+
+    words   : in an object's name, title or medium, by which it is known
+    classes : else the classes of which it is assumed
+    """
+
+    contact: str
+    title: str
+    words: Entries
+    classes: Entries
+    share: Number = Field(gt=0.0, le=1.0)
+    low: Number = Field(gt=0.0)
+    high: Number = Field(le=1.0)
+    source: str = Field(min_length=1)
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if not self.low <= self.share <= self.high:
+            raise InputError(f"low <= share <= high does not hold ({self.low:g} {self.share:g} {self.high:g})")
+        return self
+
+
+@cache
+def bearings() -> tuple[Bearing, ...]:
+    """Return the rows of tables/contacts.csv.
+
+    Returns
+    -------
+    tuple of Bearing
+        In the order of the table.
+
+    Raises
+    ------
+    TableError
+        For a row that cannot be used.
+    """
+    return checked(Bearing, table("contacts"), "contacts.csv", named="contact")
+
+
+def bearing_of(item: Item, object_class: str) -> Bearing | None:
+    """Return how much of an assumed base bears.
+
+    Parameters
+    ----------
+    item : Item
+        Whose words are looked at first.
+    object_class : str
+        Row of tables/classes.csv.
+
+    Returns
+    -------
+    Bearing or None
+        None for a class of which no base is assumed.
+    """
+    text = f"{item.object_name} {item.title} {item.medium}"
+    named = next((row for pattern, row in _patterns() if pattern.search(text)), None)
+    return named or next((row for row in bearings() if object_class in row.classes), None)
+
+
+@cache
+def _patterns() -> tuple[tuple[re.Pattern[str], Bearing], ...]:
+    named = ((row, "|".join(map(re.escape, row.words))) for row in bearings() if row.words)
+    return tuple((re.compile(rf"\b(?:{words})\b", re.IGNORECASE), row) for row, words in named)
+
+
+def _borne(side: Estimate, item: Item, object_class: str) -> Estimate:
+    """Return as much of an assumed side as may bear; what was measured is left as it is."""
+    row = bearing_of(item, object_class)
+    if not object_class or side.origin is not Origin.ASSUMED or side.low == side.high or row is None:
+        return side
+    note = f"{row.share:g} ({row.low:g} to {row.high:g}) of its base bears, assumed: {row.title}; {side.note}"
+    return replace(side, value=row.share * side.value, low=row.low * side.low, high=row.high * side.high, note=note)
