@@ -16,6 +16,7 @@ from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.rules import RuleTable, rule_for
 from pipeline.errors import InputError
 from pipeline.models import MODELS, model_named
+from pipeline.models.rocking import FALLS_IN, HALF
 from pipeline.records import SECTION_SHAPES, Estimate, Item, Origin, Scene, Support
 from pipeline.tables import Range
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed, span, tables_of
@@ -150,6 +151,10 @@ class _Builder:
         self._keep("cg_height", cg)
         halves = half_widths(item, "" if _own_base(self.row) else self.row.name, width, depth, cg)
         self.found |= halves
+        if item.susceptible is None and not self.row.rocking_harms:
+            note = f"rocking itself is not taken to harm it, assumed for: {self.row.told}"
+            source = f"{self.row.table}, {self.row.name} ({self.row.source})"
+            self._keep(FALLS_IN, _assumed(HALF, HALF, HALF, "-", note, source))
         self._friction()
         self._mass()
         if not self._section(width, depth) and self.support is Support.FASTENED:

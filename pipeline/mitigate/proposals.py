@@ -107,6 +107,8 @@ class Candidate:
         Where it lies on a chart, by level: kind of chart, x, y.
     mark_of : str
         Model whose finding says where it lies on a chart; "" for none.
+    at_best : bool
+        Whether passing by the best estimates is enough: it is advised only where nothing else is sure.
     """
 
     numbers: Numbers
@@ -117,6 +119,7 @@ class Candidate:
     finish: Callable[[Sequence[Finding]], Numbers] = _nothing
     marks: Mapping[str, tuple[str, float, float]] = field(default_factory=dict)
     mark_of: str = ""
+    at_best: bool = False
 
     @property
     def every(self) -> tuple[Trial, ...]:

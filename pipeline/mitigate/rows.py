@@ -202,6 +202,14 @@ class Isolator(TableRow):
         Static friction [-]; 0 where its kind has none.
     stroke : float
         How far it can move [m]; infinite where it is as long as its place allows.
+    maker : str
+        Whose product it is; empty for a generic one.  A product has its maker's limits: stroke, width and load.
+    platform_width : float
+        Narrower side of its platform [m], which is not held down; 0 where it is to be as wide as the load asks for.
+    platform_mass : float
+        Mass of what moves of the isolator itself [kg]; 0 where it is not known, so that nothing is counted on.
+    load_least, load_most : float
+        Mass that it may carry [kg].
     source : str
         Who says so.
     """
@@ -212,6 +220,11 @@ class Isolator(TableRow):
     damping: float
     friction: float
     stroke: Annotated[Above0, _empty_is(inf)]
+    maker: str = ""
+    platform_width: Annotated[Above0, _empty_is(0.0)] = 0.0
+    platform_mass: Annotated[Above0, _empty_is(0.0)] = 0.0
+    load_least: Annotated[Above0, _empty_is(0.0)] = 0.0
+    load_most: Annotated[Above0, _empty_is(inf)] = inf
     source: Text
 
     @field_validator("kind")
@@ -249,6 +262,24 @@ class Isolator(TableRow):
         if info.data.get("kind") == "rotational_isolator" and isfinite(stroke):
             raise ValueError("must be empty: it turns, and has none")
         return stroke
+
+    @field_validator("platform_width", "load_most")
+    @classmethod
+    def _of_a_product(cls, limit: float, info: ValidationInfo) -> float:
+        # The cells before it were read already: a product without a stroke is told here too.
+        if info.data.get("kind") != "horizontal_isolator" or not info.data.get("maker"):
+            return limit
+        if limit in (0.0, inf) or info.data.get("stroke") == inf:
+            column = info.field_name if limit in (0.0, inf) else "stroke"
+            raise ValueError(f"a product of {info.data['maker']} has its maker's limits; fill in {column}")
+        return limit
+
+    @field_validator("load_most")
+    @classmethod
+    def _above_the_least(cls, high: float, info: ValidationInfo) -> float:
+        if high < info.data.get("load_least", 0.0):
+            raise ValueError(f"must be at least load_least, {info.data['load_least']:g} kg")
+        return high
 
 
 def _number_of(info: ValidationInfo) -> Quantity | None:

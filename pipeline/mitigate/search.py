@@ -11,13 +11,22 @@ from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures import Measure
 from pipeline.mitigate.measures.remove import LAST_RESORTS
 from pipeline.mitigate.proposals import Candidate, Case, Deficiency, Option, Proposal, case_of, company
-from pipeline.mitigate.trials import TransmittedMotions, Trial, TrialRunner, checks, passes, why_not
+from pipeline.mitigate.trials import TransmittedMotions, Trial, TrialRunner, checks, passes, passes_at_best, why_not
 from pipeline.models import settled_by_room
 from pipeline.records import Check, Finding, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 
+BY_BEST_ONLY = "it holds by the best estimates, and not at the worse ends of all that is assumed"
+"""Why a fastening gives way to one that is sure."""
+
 ONLY_HERE = "At another level of shaking it is not enough, and nothing that was tried is enough at all of them."
 """Follows the sentence of a measure that holds at one level only."""
+
+AT_BEST = (
+    "It holds by the best estimates, and not at the worse ends of all that is assumed: "
+    "have its mass, its base and its weakest section measured first."
+)
+"""Follows the sentence of a measure that passes by the best estimates only."""
 
 Unit = tuple[Deficiency, ...]
 """Objects that one measure is for: one, or all that share a support."""
@@ -39,8 +48,10 @@ def advise(
     by the best estimates and at every combination of the ends of its uncertain inputs.  So an object whose sliding
     fails while its rocking is open is not told to keep clear: what is advised also keeps it from rocking.  And what is
     advised for a weak level is built for the strong one too: one measure for all of them.  Only where there is none is
-    one sought for each level alone, and its sentence says so.  Where nothing fails and something else than room is
-    open, nothing is advised: a measurement may settle that (`pipeline.analysis.survey`).
+    one sought for each level alone, and its sentence says so.  A measure that fastens is also advised where it passes
+    by the best estimates only and no other fastening is sure: its sentence says so, and no isolator takes its place.
+    Where nothing fails and something else than room is open, nothing is advised: a measurement may settle that
+    (`pipeline.analysis.survey`).
 
     Parameters
     ----------
@@ -74,6 +85,8 @@ def advise(
         runner = TrialRunner(some, have.isolators, context, numerics, transmitted, have.values)
         search = _Search(runner, _deficiencies(scenes, findings, some, stands), unassessed)
         for done, measure in enumerate(have.measures, start=1):
+            if measure.isolator or measure.last_resort:
+                search.settles()
             search.tries(measure)
             context.progress.step("recommendations", at * len(have.measures) + done, len(rounds) * len(have.measures))
         alone = len(some) < len(levels)
@@ -123,12 +136,28 @@ def _unassessed(scenes: Sequence[Scene], findings: Sequence[Sequence[Finding]]) 
     return out
 
 
+@dataclass(frozen=True)
+class _AtBest:
+    """A fastening that passes by the best estimates only.
+
+    rejected : what was tried before it, and why not
+    """
+
+    unit: Unit
+    measure: Measure
+    candidate: Candidate
+    results: Mapping[int, Sequence[Finding]]
+    rejected: Sequence[str]
+
+
 @dataclass
 class _Search:
     """The objects that still need something under the levels of a runner, and what was tried for them.
 
     unassessed  : numbers of what no model could be run for, by the case that it stands in
     recommended : by the place of the scene and the name of the level
+    at_best     : the gentlest fastening that passes by the best estimates, by the place of the scene
+    fastened    : places of the scenes for which that stands: no isolator takes its place
     """
 
     runner: TrialRunner
@@ -137,6 +166,8 @@ class _Search:
     recommended: dict[tuple[int, str], Recommendation] = field(default_factory=dict)
     rejected: dict[int, list[str]] = field(default_factory=dict)
     helped: set[int] = field(default_factory=set)
+    at_best: dict[int, _AtBest] = field(default_factory=dict)
+    fastened: set[int] = field(default_factory=set)
 
     def tries(self, measure: Measure) -> None:
         """Try a measure on everything that still needs one: all first candidates together, then all second ones."""
@@ -153,6 +184,14 @@ class _Search:
         last: dict[Unit, str] = {}
         while open_:
             open_ = self._round(open_, measure, last)
+
+    def settles(self) -> None:
+        """Let what passes by the best estimates stand, where nothing that fastens is sure."""
+        for index, found in self.at_best.items():
+            if index not in self.helped:
+                self.rejected[index] = list(found.rejected)
+                self._recommend(found.unit, found.measure, found.candidate, (), found.results)
+        self.at_best.clear()
 
     def _units(self, pending: Sequence[Deficiency], measure: Measure) -> list[Unit]:
         if not measure.shared:
@@ -179,12 +218,21 @@ class _Search:
             options = [next((o for o in some if passes(results[id(o.trial)])), None) for _, some in candidate.options]
             failing = [trial for trial in candidate.trials if not passes(results[id(trial)])]
             held = all(check.passes for _, check in candidate.checks)
-            if not failing and held and all(option is not None for option in options):
+            if not candidate.at_best and not failing and held and all(option is not None for option in options):
                 self._recommend(unit, measure, candidate, [one for one in options if one is not None], results)
                 continue
+            if candidate.at_best and held and all(passes_at_best(results[id(t)]) for t in candidate.trials):
+                self._keep(unit, measure, candidate, results)
             last[unit] = _said(failing, candidate, results)
             still.append((unit, proposal, candidates))
         return still
+
+    def _keep(
+        self, unit: Unit, measure: Measure, candidate: Candidate, results: Mapping[int, Sequence[Finding]]
+    ) -> None:
+        for one in unit:
+            before = tuple(self.rejected.get(one.index, ()))
+            self.at_best.setdefault(one.index, _AtBest((one,), measure, candidate, results, before))
 
     def _reject(self, unit: Unit, measure: Measure, reason: str) -> None:
         for one in unit:
@@ -204,7 +252,7 @@ class _Search:
         What a support does for one object it does for all on it: it takes the place of a lesser measure on each.
         """
         for at, one in enumerate(unit):
-            if not one.wanted:
+            if not one.wanted or (measure.isolator and one.index in self.fastened):
                 continue
             ran = [f for trial in candidate.trials for f in results[id(trial)]]
             words = dict(candidate.words)
@@ -216,6 +264,8 @@ class _Search:
             numbers = {**candidate.numbers, **candidate.finish(ran)}
             name, title, sentence = measure.called(one.scene.item)
             self.helped.add(one.index)
+            if measure.fastens:
+                self.fastened.add(one.index)
             for level in one.levels:
                 here = [f for f in ran if f.level == level]
                 before = [f for f in one.findings if f.level == level]
@@ -225,10 +275,13 @@ class _Search:
                     level=level,
                     measure=name,
                     title=title,
-                    sentence=_filled(sentence, words),
+                    sentence=_filled(sentence, words).rstrip() + (f" {AT_BEST}" if candidate.at_best else ""),
                     parameters={key: value for key, (value, _) in numbers.items()},
                     units={key: unit_ for key, (_, unit_) in numbers.items()},
-                    checks=(*(check for of, check in candidate.checks if of in ("", level)), *checks(here, before)),
+                    checks=(
+                        *(check for of, check in candidate.checks if of in ("", level)),
+                        *checks(here, before, at_best=candidate.at_best),
+                    ),
                     rejected=tuple(self.rejected.get(one.index, ())),
                     mark=self._mark(candidate, here, measure.row.title, level),
                     source=measure.row.source,
@@ -247,7 +300,7 @@ def _said(failing: Sequence[Trial], candidate: Candidate, results: Mapping[int, 
     if failing:
         return why_not(failing[0].scene, results[id(failing[0])])
     short: list[Check] = [check for _, check in candidate.checks if not check.passes]
-    return f"{short[0].title.lower()} is not enough" if short else ""
+    return f"{short[0].title.lower()} is not enough" if short else BY_BEST_ONLY
 
 
 def _filled(sentence: str, words: Mapping[str, str]) -> str:

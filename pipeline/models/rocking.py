@@ -290,15 +290,21 @@ def _outcome(row: Mapping[str, float], _parameters: Mapping[str, float]) -> tupl
     return "", ""
 
 
+UNHARMED = "Rocking itself does not harm an object of its kind; it fails if it falls over."
+"""What is said where its class says so, and the museum nothing."""
+
+FALLS_IN = "overturned_share"
+"""Parameter of a scene whose class is not harmed by rocking: the share of the motions in which it may fall over."""
+
 HALF = 0.5 - 1e-9
 """Share of the motions from which on an object counts as overturned ("half the records" included)."""
 
 
 def _overturning(scene: Scene) -> tuple[str, float, str] | None:
     # An object that rocking itself does not harm fails when it falls over.
-    if scene.item.susceptible is not False:
-        return None
-    return "overturned", HALF, HARMLESS
+    if scene.item.susceptible is None and FALLS_IN in scene.parameters:
+        return "overturned", HALF, UNHARMED
+    return ("overturned", HALF, HARMLESS) if scene.item.susceptible is False else None
 
 
 def _applies(scene: Scene) -> str:
@@ -425,5 +431,5 @@ ROCKING = Model(
     listed="Table 1, Rigid: Rocking",
     supports=(Support.FREESTANDING,),
     pictures=(Figure("stability", _stability),),
-    says=(HARMLESS, OVERTURNS),
+    says=(HARMLESS, UNHARMED, OVERTURNS),
 )

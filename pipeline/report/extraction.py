@@ -8,11 +8,13 @@ from typing import IO
 
 from pipeline.analysis.classify import object_classes
 from pipeline.mitigate.catalogue import own_catalogue
+from pipeline.mitigate.fixing_rows import fixing_strengths
 from pipeline.mitigate.installed import ON_TOP
 from pipeline.mitigate.measures import MEASURES
+from pipeline.mitigate.measures.horizontal_isolator import GENERIC
 from pipeline.mitigate.proposals import IT
 from pipeline.mitigate.rows import STORED
-from pipeline.mitigate.search import ONLY_HERE
+from pipeline.mitigate.search import AT_BEST, ONLY_HERE
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
 from pipeline.records import Item
@@ -70,8 +72,10 @@ def _of_measures() -> Iterator[str]:
             surfaces = dict.fromkeys(pair.surface_material.lower() for pair in assumed().friction)
             yield from (sentence.replace("{surface}", surface) for surface in surfaces)
         if "{what}" in sentence:
-            yield sentence.replace("{what}", IT).replace(" {how}", "")
-    yield ONLY_HERE
+            yield sentence.replace("{what}", IT).replace("{product}", GENERIC).replace(" {how}", "")
+        if "{care}" in sentence:
+            yield sentence.replace(" {care}", "")
+    yield from (ONLY_HERE, AT_BEST, *(row.care for row in fixing_strengths().values()))
 
 
 def _names() -> Iterator[str]:

@@ -15,7 +15,7 @@ from pipeline.tables.rows import checked
 UNKNOWN = "unknown"
 """The material of an object whose record names none that the table knows."""
 
-CHOSEN = ("coarse sandpaper", "teflon")
+CHOSEN = ("coarse sandpaper", "teflon", "felt")
 """Surfaces that are chosen on purpose, never met by chance."""
 
 _Assumed = TypeVar("_Assumed", bound=AssumedRow)

@@ -90,6 +90,8 @@ class ObjectClass(AssumedRow):
         Which section is critical; "" for none.
     models : tuple of str
         Those that are tried on it, or `NO_MODEL` or `WHEN_HELD` alone.
+    rocking_harms : bool
+        Whether rocking itself harms it; else it fails if it falls over.
     why, source : str
         Why an object of this class is treated so, and who says so.
     """
@@ -117,6 +119,7 @@ class ObjectClass(AssumedRow):
     clearance_low: Annotated[Optional, Field(gt=0.0)]
     clearance_high: Annotated[Optional, Field(gt=0.0)]
     models: Entries
+    rocking_harms: Annotated[bool, BeforeValidator(_yes)] = True
     why: Text
     source: Text
 

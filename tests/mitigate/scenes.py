@@ -49,6 +49,9 @@ TOWER = replace(BLOCK, title="Tower", height_m=1.0, width_m=0.2, depth_m=0.2, ba
                 cg_height_m=0.5, clearance_m=0.3, section_width_m=0.1, section_depth_m=0.1)  # fmt: skip
 """A slender one that falls over."""
 
+HEAVY = replace(TOWER, title="Heavy tower", mass_kg=500.0, allowable_stress_pa=5e7)
+"""The same of half a tonne, which no fixing holds that is to be had, with a section that bears it."""
+
 STUMP = replace(TOWER, title="Stump", height_m=0.3, cg_height_m=0.15, friction=0.3)
 """Just too slender: b/h = 0.67 where 0.72 is pushed."""
 

@@ -15,13 +15,12 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import changed
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
-from pipeline.mitigate.measures.wax import strengths
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import G
 from pipeline.records import Motion, Numerics, Support, Verdict
 from pipeline.tables import table
 
-from .scenes import BLOCK, PICTURE, STUMP, TOWER, demo_motion, rejected, solve, solve_all
+from .scenes import BLOCK, HEAVY, PICTURE, STUMP, TOWER, demo_motion, rejected, solve, solve_all
 
 
 @pytest.fixture(scope="module")
@@ -48,9 +47,10 @@ def test_a_non_slip_pad_is_the_right_answer(motion: Motion) -> None:
 
 
 def test_fastening_is_the_right_answer(motion: Motion) -> None:
-    advice = solve(TOWER, motion)
+    """Too heavy for any fixing that is to be had, and strong enough."""
+    advice = solve(HEAVY, motion)
     assert advice.measure == "fasten"
-    assert "Non-slip pad" in rejected(advice)
+    assert {"Non-slip pad", "Padded clamps"} <= set(rejected(advice))
 
 
 def test_rubber_pads_are_the_right_answer(motion: Motion) -> None:
@@ -118,34 +118,6 @@ def test_another_surface_is_the_right_answer(motion: Motion) -> None:
     assert rejected(advice) == ["Keep clear", "Rubber pads behind it"]
 
 
-def test_wax_is_the_right_answer(motion: Motion) -> None:
-    """By hand: shear m A / tau, and uplift m max(|a| h - N b) / (2/3 b t), at the low ends of the strengths."""
-    weak = motion.scaled(0.6, "0.42 g")
-    light = replace(TOWER, mass_kg=2.0)
-    advice = solve(light, weak)
-    assert advice.measure == "wax"
-    x, y, z = weak.acceleration
-    push = np.hypot(x, y)
-    moment = 2.0 * float((push * 0.5 - (G + z) * 0.1).max())
-    needed = max(2.0 * push.max() / 10e3, moment / (2.0 / 3.0 * 0.1 * 20e3))
-    assert advice.parameters["area"] == pytest.approx(needed, abs=1e-5)
-    assert advice.parameters["area"] >= needed * (1.0 - 1e-12)
-    assert [check.title for check in advice.checks[:3]] == ["Wax, sideways", "Wax, uplift", "Shaking that wax holds"]
-    assert {check.model for check in advice.checks} == {"wax", "stress"}
-    heavy = solve(replace(light, mass_kg=200.0), weak)
-    assert any(text.startswith("Museum wax or putty: it would need") for text in heavy.rejected)
-
-
-def test_wax_is_asked_for_no_more_than_the_published_fragility(motion: Motion) -> None:
-    """FEMA P-58, E2022.011: median 1.0 g, dispersion 0.5; the low end is one dispersion below."""
-    row = strengths("museum wax")["acceleration"]
-    assert row.value == pytest.approx(G)
-    assert row.low == pytest.approx(G * np.exp(-0.5), rel=1e-3)
-    assert row.high == pytest.approx(G * np.exp(0.5), rel=1e-3)
-    advice = solve(replace(TOWER, mass_kg=0.1), motion)
-    assert any(text.startswith("Museum wax or putty: wax is known to hold up to 0.61 g") for text in advice.rejected)
-
-
 def test_ballast_is_the_right_answer(motion: Motion) -> None:
     """(m h + M H) / (m + M) <= b / lift: the least M by hand, with 1 % to spare."""
     advice = solve(replace(STUMP, object_name="Vase"), motion)
@@ -205,7 +177,7 @@ def test_every_row_of_the_table_has_its_object() -> None:
     """Each measure's test above names it as the answer."""
     from pathlib import Path
 
-    text = Path(__file__).read_text(encoding="utf-8")
+    text = "".join(file.read_text(encoding="utf-8") for file in Path(__file__).parent.glob("test_*.py"))
     for row in table("measures"):
         assert f'advice.measure == "{row["measure"]}"' in text, row["measure"]
 
@@ -235,17 +207,17 @@ def test_open_rocking_is_not_answered_by_room(motion: Motion) -> None:
 def test_a_measure_passes_under_every_motion_of_a_level(motion: Motion) -> None:
     """The weak motion alone would let it stand free; with the strong one in the level it is fastened."""
     weak, strong = motion.scaled(0.2, "weak"), motion.scaled(1.2, "strong")
-    (alone,) = solve_all([TOWER], [weak])
+    (alone,) = solve_all([HEAVY], [weak])
     assert [r.measure for r in alone] != ["fasten"]
-    ((both,),) = solve_all([TOWER], [weak, strong])
+    ((both,),) = solve_all([HEAVY], [weak, strong])
     assert both.measure == "fasten"
-    assert both.parameters["force"] == pytest.approx(20.0 * float(np.hypot(*strong.acceleration[:2]).max()))
+    assert both.parameters["force"] == pytest.approx(500.0 * float(np.hypot(*strong.acceleration[:2]).max()))
 
 
 def test_a_change_is_what_its_recommendation_says(motion: Motion) -> None:
     """The scene that a recommendation's own parameters give passes every model: what is installed is what was run."""
     level = LevelMotions("design", "max", (motion,))
-    for item in (BLOCK, TOWER, STUMP, replace(STUMP, object_name="Vase")):
+    for item in (BLOCK, TOWER, HEAVY, STUMP, replace(STUMP, object_name="Vase")):
         advice = solve(item, motion)
         scene = changed(classify(item), advice.measure, advice.parameters)
         _, (found,) = assess([scene], [level], Context(Threads(1)), Numerics("history"))
@@ -266,7 +238,7 @@ def test_up_to_is_the_far_end_of_the_range(motion: Motion) -> None:
 
 def test_a_mount_holds_a_flexible_object_at_the_low_end_of_its_damping(motion: Motion) -> None:
     """Its damping may be 1 %: the mount bears the mass times the pseudo-acceleration then, in its worst direction."""
-    bending = replace(TOWER, frequency_hz=4.0)
+    bending = replace(HEAVY, frequency_hz=4.0)
     damping = classify(bending).parameters["damping"]
     assert (damping.low, damping.value) == (0.01, 0.02)
     advice = solve(bending, motion)
@@ -274,4 +246,4 @@ def test_a_mount_holds_a_flexible_object_at_the_low_end_of_its_damping(motion: M
     at = respond("oscillator", motion, angle=None, frequency=4.0, damping=[damping.low, damping.value])
     least_damped, best = at["pseudo_acceleration"]
     assert least_damped > 1.02 * best
-    assert advice.parameters["force"] == pytest.approx(20.0 * least_damped)
+    assert advice.parameters["force"] == pytest.approx(500.0 * least_damped)

@@ -17,7 +17,7 @@ from pipeline.report.units import Units
 from .scenes import BLOCK, TOWER, demo_motion, solve_all
 
 A = replace(TOWER, object_number="A", case="X", allowable_stress_pa=2e5)
-B = replace(A, object_number="B", mass_kg=10.0)
+B = replace(A, object_number="B", mass_kg=10.0, allowable_stress_pa=1.1e5)
 C = replace(BLOCK, object_number="C", case="X", clearance_m=0.3)
 """It passes as it stands."""
 D = replace(BLOCK, object_number="D", case="X")
@@ -42,8 +42,8 @@ def test_all_of_a_case_share_one_isolator(motion: Motion) -> None:
     ((of_a,), (of_b,), (of_d,)) = a, b, d
     assert {of_a.measure, of_b.measure, of_d.measure} == {"horizontal_isolator"}
     assert of_a.parameters == of_b.parameters == of_d.parameters
-    assert said(of_a).startswith("Put case X, with B, C and D in it, on a horizontal isolator of ")
-    assert said(of_d).startswith("Put case X, with A, B and C in it, on a horizontal isolator of ")
+    assert said(of_a).startswith("Put case X, with B, C and D in it, on a horizontal isolator (a generic one")
+    assert said(of_d).startswith("Put case X, with A, B and C in it, on a horizontal isolator (a generic one")
 
 
 def test_the_shared_isolator_is_right_for_each(motion: Motion) -> None:
@@ -55,8 +55,8 @@ def test_the_shared_isolator_is_right_for_each(motion: Motion) -> None:
     assert float(respond("horizontal_isolator", motion, **given)["displacement"].iloc[0]) < at["stroke"]  # type: ignore[arg-type]
     x, y, z = carried.acceleration
     push, lift = float(np.hypot(x, y).max()), float((np.hypot(x, y) / (G + z)).max())
-    for advice, mass in ((a[0], 20.0), (b[0], 10.0)):
-        held = mass * push * 0.5 / (0.1**3 / 6.0) - mass * G / 0.01 <= 2e5
+    for advice, mass, allowed in ((a[0], 20.0, 2e5), (b[0], 10.0, 1.1e5)):
+        held = mass * push * 0.5 / (0.1**3 / 6.0) - mass * G / 0.01 <= allowed
         free = lift <= 0.2
         assert held if advice.sentence.endswith("fastened to it.") else free
     # The block never rocks; it has 2 cm to slide in.
@@ -90,7 +90,8 @@ def test_wax_stays_with_each_object(motion: Motion) -> None:
     light = replace(TOWER, object_number="L", case="X", mass_kg=2.0)
     first, second = solve_all([light, replace(light, object_number="M", mass_kg=1.0)], [weak])
     assert first[0].measure == second[0].measure == "wax"
-    assert first[0].parameters["area"] > second[0].parameters["area"]
+    areas = [one[0].parameters["pieces"] * one[0].parameters["size"] ** 2 for one in (first, second)]
+    assert areas[0] > areas[1]
 
 
 def test_hostile_names_of_cases_are_words(motion: Motion) -> None:

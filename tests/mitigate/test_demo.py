@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pipeline.mitigate.measures.wax import WAX, strengths
 
 from pipeline.analysis.response import respond
 from pipeline.analysis.transmission import transmit
 from pipeline.collection.database import open_database
-from pipeline.mitigate.measures.wax import WAX, strengths
 from pipeline.motions import read_motion
 from pipeline.quantities import G
 from pipeline.records import Assessment, Finding, Motion, Recommendation, RunRecord, Support, Verdict

@@ -58,13 +58,13 @@ def test_the_room_of_the_strong_level_is_kept_at_both(motion: Motion) -> None:
 
 
 def test_what_is_advised_for_one_level_passes_at_all(motion: Motion) -> None:
-    """Under the weak motion it slides and needs room; under the strong one it rocks: it is fastened for both."""
+    """Under the weak motion it slides and needs room; under the strong one it rocks: it is clamped for both."""
     levels = two(motion.scaled(0.25, "weak"), motion)
     tower = replace(TOWER, friction=0.05, clearance_m=0.001)
     alone = solve(tower, levels[:1])
     assert alone["weak"].measure == "clearance"
     advice = solve(tower, levels)
-    assert {one.measure for one in advice.values()} == {"fasten"}
+    assert {one.measure for one in advice.values()} == {"clamps"}
     assert advice["weak"].parameters == advice["strong"].parameters
     push = float(np.hypot(*motion.acceleration[:2]).max())
     assert advice["weak"].parameters["force"] == pytest.approx(20.0 * push)

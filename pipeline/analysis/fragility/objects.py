@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.analysis.context import Context
 from pipeline.analysis.fragility.curve import ENOUGH, NINETY, fit, from_span, stated
 from pipeline.analysis.fragility.hazard import Hazard, NoHazardError
-from pipeline.analysis.fragility.published import published
+from pipeline.analysis.fragility.published import in_si, published
 from pipeline.analysis.fragility.scaling import FACTORS, Questions, first_failures
 from pipeline.analysis.plan import Indices, Work
 from pipeline.analysis.verdicts import capacity_of
@@ -184,7 +184,7 @@ def _curves(
                     motions=len(motions),
                     returns=returns[spans.starts[at]],
                     published="" if beside is None else beside.what,
-                    published_median=None if beside is None else beside.median,
+                    published_median=None if beside is None else in_si(beside),
                 ),
             )
         )

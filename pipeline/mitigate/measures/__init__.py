@@ -7,6 +7,7 @@ from inspect import isabstract
 
 from pipeline.errors import InputError
 from pipeline.extensions import Registry
+from pipeline.mitigate.measures.adhesives import Putty, Wax
 from pipeline.mitigate.measures.ballast import Ballast
 from pipeline.mitigate.measures.base import Measure
 from pipeline.mitigate.measures.clearance import Clearance
@@ -15,11 +16,11 @@ from pipeline.mitigate.measures.friction_isolator import FrictionIsolator
 from pipeline.mitigate.measures.horizontal_isolator import HorizontalIsolator
 from pipeline.mitigate.measures.remove import Remove
 from pipeline.mitigate.measures.restrain import Restrain
+from pipeline.mitigate.measures.restraints import Brackets, Clamps, Clips, Pins, Ties
 from pipeline.mitigate.measures.rotational_isolator import RotationalIsolator
 from pipeline.mitigate.measures.rubber_pads import RubberPads
 from pipeline.mitigate.measures.strengthen import Strengthen
 from pipeline.mitigate.measures.surfaces import GripPad, Surface
-from pipeline.mitigate.measures.wax import Wax
 from pipeline.mitigate.measures.wide_base import WideBase
 from pipeline.mitigate.rows import read_measure_rows
 from pipeline.tables import table
@@ -62,9 +63,15 @@ MEASURES: Registry[type[Measure]] = Registry(
         RubberPads,
         Surface,
         GripPad,
+        Pins,
         Wax,
+        Putty,
+        Ties,
+        Clips,
         Ballast,
         WideBase,
+        Brackets,
+        Clamps,
         Fasten,
         Restrain,
         FrictionIsolator,

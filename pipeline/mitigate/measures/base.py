@@ -50,7 +50,8 @@ class Measure(ABC):
     5. Say in `parameters` what `change` must be told of one that is installed; `numbers` of a candidate have them all.
     6. Where it acts on what several objects stand on, set `shared` and implement `propose_shared`, which proposes for
        all objects of a case at once.  Where it stands between object and floor, name the model of it in `isolator`.
-    7. Where it is worth advising although only the assumed room leaves a verdict open, set `for_room`.
+    7. Where it is worth advising although only the assumed room leaves a verdict open, set `for_room`; where it
+       holds an object and may be advised by the best estimates, before any isolator, set `fastens`.
     8. Where running many objects at once is cheaper, do that in `prepare`.
     9. Name the class in `pipeline.mitigate.measures.MEASURES`, and give it a row in tables/measures.csv.  In another
        package, name the class in the entry points of the group ``kouros.measures`` and give it its `own_row`.
@@ -78,6 +79,8 @@ class Measure(ABC):
         Whether all objects of a case share it.
     for_room : bool
         Whether it is worth advising where only the assumed room leaves the verdict open.
+    fastens : bool
+        Whether it holds an object: where nothing else is sure, it is advised if it passes by the best estimates.
     isolator : str
         Model of what it puts under an object; "" for nothing.
     mounts : bool
@@ -97,6 +100,7 @@ class Measure(ABC):
     parameters: ClassVar[tuple[Quantity, ...]] = ()
     shared: ClassVar[bool] = False
     for_room: ClassVar[bool] = False
+    fastens: ClassVar[bool] = False
     isolator: ClassVar[str] = ""
     mounts: ClassVar[bool] = False
     last_resort: ClassVar[bool] = False

@@ -1,17 +1,17 @@
-"""A mount that clamps an object at its base."""
+"""A mount made for an object, which holds its base."""
 
 from collections.abc import Mapping
 from functools import partial
 
 from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, held, knows_section
 from pipeline.mitigate.measures.fixings import HOLDS, force_and_moment
-from pipeline.mitigate.proposals import Deficiency, Proposal
-from pipeline.mitigate.trials import TrialRunner
+from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal
+from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.records import Scene, Support
 
 
 class Fasten(Measure):
-    """Clamp it at its base: it neither rocks nor slides, and its critical section must bear the push.
+    """Hold its base by a mount made for it: it neither rocks nor slides, and its critical section must bear the push.
 
     References
     ----------
@@ -20,6 +20,7 @@ class Fasten(Measure):
 
     name = "fasten"
     gives = HOLDS
+    fastens = True
 
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
         """Return it held at its base."""
@@ -31,4 +32,6 @@ class Fasten(Measure):
             return NOT_FREE
         if not knows_section(one.scene):
             return UNKNOWN_SECTION
-        return self.one_trial(one, {}, finish=partial(force_and_moment, one.scene, runner))
+        finish = partial(force_and_moment, one.scene, runner)
+        trial = Trial(self.in_place(one, {}))
+        return Proposal(tuple(Candidate({}, (trial,), finish=finish, at_best=at_best) for at_best in (False, True)))

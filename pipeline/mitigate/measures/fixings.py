@@ -1,16 +1,36 @@
-"""Force and moment that a fixing at the base must hold, and the shares of both that several measures tell."""
+"""Fixings that hold an object by a number of pieces: what is asked of them, and the fewest that hold it."""
 
-from collections.abc import Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import product
+from math import inf, pi
+from typing import ClassVar
 
+import numpy as np
+
+from pipeline.analysis.classify import material_of
 from pipeline.analysis.response import respond
-from pipeline.mitigate.proposals import Numbers
-from pipeline.mitigate.trials import TrialRunner
-from pipeline.models.stress import FLEXIBLE_STRESS
-from pipeline.records import Finding, Motion, Scene
+from pipeline.mitigate.fixing_rows import FixingStrength, fixing_strengths
+from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, held, knows_section
+from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused
+from pipeline.mitigate.trials import Trial, TrialRunner
+from pipeline.models.stress import FLEXIBLE_STRESS, STRESS
+from pipeline.records import Check, Finding, Item, Motion, Scene, Support
+from pipeline.tables.assumed import AssumedValues
 
 HOLDS = ("force", "moment")
 """Numbers of a measure that holds an object at its base."""
+
+SIDEWAYS, TIPPING = "What the fixing holds sideways", "What the fixing holds against tipping"
+"""What a fixing is asked, in the words of a report."""
+
+
+ROUNDING = 1e-9
+"""Relative, by which what is just enough may come out short."""
+
+HARMLESS = "Nothing is known against it on such a material."
+"""What is said of a fixing on a material that it neither harms nor needs care on."""
 
 
 def force_and_moment(scene: Scene, runner: TrialRunner, findings: Sequence[Finding]) -> Numbers:
@@ -50,3 +70,221 @@ def _pseudo_acceleration(scene: Scene, runner: TrialRunner) -> float:
         return float(rows["pseudo_acceleration"].max())
 
     return runner.largest(largest)
+
+
+@dataclass(frozen=True)
+class HoldingDemand:
+    """Demand on what holds an object where it stands.
+
+    Attributes
+    ----------
+    force, worst_force : float
+        Sideways [N], without the help of friction: by the best estimates, and all that is uncertain at its worse end.
+    moment, worst_moment : float
+        That lifts the base off, the weight holding it down [N m].
+    """
+
+    force: float
+    worst_force: float
+    moment: float
+    worst_moment: float
+
+    @classmethod
+    def of(cls, scene: Scene, runner: TrialRunner) -> "HoldingDemand":
+        """Return what an object asks of its fixing.
+
+        Notes
+        -----
+        m |a_h|, and m (|a_h| h - N b) about the nearer edge, over time and in any direction.  The moment rises with h
+        and falls with b, and where it lifts at all it rises with m: the worst is at the high m and h and the low b
+        together.  What bends is pushed by its pseudo-acceleration, as many times as that exceeds A_max.
+        """
+        p = scene.parameters
+        mass, cg, half = p["mass"], p["cg_height"], p["half_width"]
+        bends = bool(STRESS.applies(held(scene))) and not FLEXIBLE_STRESS.applies(held(scene))
+        times = max(1.0, _pseudo_acceleration(scene, runner) / runner.push) if bends and runner.push > 0.0 else 1.0
+
+        def moment(m: float, h: float, b: float) -> float:
+            def largest(motion: Motion) -> float:
+                push, weight = runner.shaken[motion.hash]
+                return float(np.max(m * (times * push * h - weight * b)))
+
+            return max(0.0, runner.largest(largest))
+
+        return cls(
+            mass.value * times * runner.push,
+            mass.high * times * runner.push,
+            moment(mass.value, cg.value, half.value),
+            moment(mass.high, cg.high, half.low),
+        )
+
+
+@dataclass(frozen=True)
+class Reach:
+    """Reach of a fixing: what its strength is multiplied by.
+
+    Attributes
+    ----------
+    sideways : float
+        Of the strength in shear [m2 or -].
+    tipping : float
+        Of the strength in tension [m3 or m]; infinite where the fixing is not asked to.
+    """
+
+    sideways: float
+    tipping: float
+
+
+@dataclass(frozen=True)
+class Fixing(Measure, ABC):
+    """Hold it by as many pieces of a fixing as its weight and the shaking ask for.
+
+    First as many as hold at the low end of their strength with all that is uncertain of the object at its worse end;
+    where there are none, as many as hold the factor of the table times what is needed, all by the best estimates.  Held
+    so it neither slides nor rocks, and its section must bear the push.
+
+    References
+    ----------
+    Agbabian et al. (1991), sec. 2.3 (held at its base); strengths: tables/fixings.csv.
+    """
+
+    gives: ClassVar[tuple[str, ...]] = ("pieces", "size", "margin", *HOLDS, "care")
+    fastens: ClassVar[bool] = True
+    phrases: ClassVar[tuple[str, ...]] = (SIDEWAYS, TIPPING, HARMLESS)
+
+    def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
+        """Return it held at its base."""
+        return held(scene)
+
+    @property
+    def strength(self) -> FixingStrength:
+        """Its row of fixings.csv, or that of the measure that it is like."""
+        rows = fixing_strengths()
+        return rows.get(self.row.name) or rows[self.name]
+
+    @abstractmethod
+    def reach(self, scene: Scene, pieces: int, size: float, worst: bool) -> Reach:
+        """Return what the strength of a piece is multiplied by.
+
+        Parameters
+        ----------
+        scene : Scene
+            The object.
+        pieces : int
+            How many there are.
+        size : float
+            Diameter of each [m]; 0 where it has the one size.
+        worst : bool
+            Whether its base is at its worse end, and not as best known.
+        """
+
+    def room(self, scene: Scene, worst: bool) -> float:  # noqa: ARG002
+        """Return the area that all pieces together may have [m2]."""
+        return inf
+
+    def unsuited(self, scene: Scene, demand: HoldingDemand, worst: bool) -> str:  # noqa: ARG002
+        """Say why it cannot hold such an object, "" where it may."""
+        return ""
+
+    def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
+        """Propose the fewest and smallest pieces that hold it for sure, then those that do by the best estimates."""
+        scene = one.scene
+        if scene.support is not Support.FREESTANDING:
+            return NOT_FREE
+        if self.row.classes and scene.object_class not in self.row.classes:
+            return refused("objects of its kind cannot be held so")
+        if not knows_section(scene) or not {"half_width", "cg_height"} <= set(scene.parameters):
+            return UNKNOWN_SECTION
+        material = touched(scene.item, runner.values)
+        if material in self.strength.harms:
+            return refused(f"it harms {material}")
+        demand = HoldingDemand.of(scene, runner)
+        care = self.strength.care if material in self.strength.care_for else HARMLESS
+        found = (self._candidate(one, demand, care, worst) for worst in (True, False))
+        candidates = tuple(candidate for candidate in found if candidate is not None)
+        if candidates:
+            return Proposal(candidates)
+        return refused(self.unsuited(scene, demand, False) or self._short(scene, demand))
+
+    def _sets(self, scene: Scene, worst: bool) -> Iterator[tuple[int, float]]:
+        room = self.room(scene, worst)
+        for pieces, size in product(self.strength.pieces, self.strength.sizes or (0.0,)):
+            if pieces * dot(size) <= room * (1.0 + ROUNDING):
+                yield pieces, size
+
+    def _candidate(self, one: Deficiency, demand: HoldingDemand, care: str, worst: bool) -> Candidate | None:
+        if self.unsuited(one.scene, demand, worst):
+            return None
+        for pieces, size in self._sets(one.scene, worst):
+            least = 1.0 if worst else self.strength.factor
+            if self.holds(one.scene, demand, pieces, size, worst) >= least:
+                return self._of(one, demand, pieces, size, at_best=not worst, care=care)
+        return None
+
+    def holds(self, scene: Scene, demand: HoldingDemand, pieces: int, size: float, worst: bool) -> float:
+        """Return how many times what is needed so many pieces hold [-].
+
+        Parameters
+        ----------
+        scene, demand
+            The object, and what it asks.
+        pieces, size
+            As in `reach`.
+        worst : bool
+            Whether all that is uncertain of the object and the strength are at their worse ends, and not as best known.
+        """
+        reach, row = self.reach(scene, pieces, size, worst), self.strength
+        force, moment = (demand.worst_force, demand.worst_moment) if worst else (demand.force, demand.moment)
+        shear, tension = (row.shear_low, row.tension_low) if worst else (row.shear, row.tension)
+        return min(_times(reach.sideways * shear, force), _times(reach.tipping * tension, moment))
+
+    def _of(
+        self, one: Deficiency, demand: HoldingDemand, pieces: int, size: float, *, at_best: bool, care: str
+    ) -> Candidate:
+        row, reach = self.strength, self.reach(one.scene, pieces, size, False)
+        asked = (
+            (SIDEWAYS, demand.force, reach.sideways * row.shear, "N"),
+            (TIPPING, demand.moment, reach.tipping * row.tension, "N m"),
+        )
+        # A fixing that need not hold it against tipping is not asked to.
+        checks = tuple(
+            Check(self.name, title, needed, unit, has, needed / has, passes=True)
+            for title, needed, has, unit in asked
+            if has < inf
+        )
+        numbers: dict[str, tuple[float, str]] = {
+            "pieces": (float(pieces), "-"),
+            "margin": (min(_times(has, needed) for _, needed, has, _ in asked), "-"),
+            "force": (demand.force, "N"),
+            "moment": (demand.moment, "N m"),
+        }
+        if size:
+            numbers["size"] = (size, "m")
+        trial = Trial(self.in_place(one, numbers))
+        return Candidate(
+            numbers,
+            (trial,),
+            checks=tuple(("", check) for check in checks),
+            words={"care": care},
+            at_best=at_best,
+        )
+
+    def _short(self, scene: Scene, demand: HoldingDemand) -> str:
+        most = max((self.holds(scene, demand, *some, False) for some in self._sets(scene, False)), default=0.0)
+        if most <= 0.0:
+            return "there is no room for it under its base"
+        return f"at most it holds {most:.2g} times what is needed, and {self.strength.factor:g} times are asked"
+
+
+def dot(size: float) -> float:
+    """Return the area of a round piece [m2] of a diameter [m]."""
+    return 0.25 * pi * size**2
+
+
+def touched(item: Item, values: AssumedValues) -> str:
+    """Return the name of the material that a fixing touches: of its base where that is recorded."""
+    return (values.material_in(item.base_material) or material_of(item, values)).name
+
+
+def _times(capacity: float, demand: float) -> float:
+    return capacity / demand if demand > 0.0 else inf

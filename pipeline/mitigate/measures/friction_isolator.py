@@ -6,7 +6,6 @@ from dataclasses import replace
 from pipeline.mitigate.measures.base import (
     CLEARANCE,
     FRICTION,
-    MARGIN,
     Measure,
     cleared,
     held,
@@ -53,7 +52,7 @@ class FrictionIsolator(Measure):
         candidates = []
         for response in runner.isolated(self.isolator):
             pad = response.isolator
-            room = round_up(MARGIN * response.stroke)
+            room = round_up(response.stroke)
             if room > min(self.row.limit, pad.stroke):
                 continue
             numbers = {"friction": (pad.friction, "-"), "clearance": (room, "m"), "movement": (response.stroke, "m")}

@@ -1,12 +1,12 @@
 """A horizontal isolator under a plinth or a case, for all that stand on it."""
 
 from collections.abc import Mapping, Sequence
-from math import isfinite
+from dataclasses import dataclass
+from math import inf, isfinite
 
 from pipeline.mitigate.measures.base import (
     DAMPING,
     FREQUENCY,
-    MARGIN,
     Measure,
     exactly,
     held,
@@ -17,8 +17,18 @@ from pipeline.mitigate.measures.base import (
 )
 from pipeline.mitigate.proposals import IT, STANDING, Candidate, Deficiency, Option, Proposal, refused
 from pipeline.mitigate.trials import IsolatorResponse, Trial, TrialRunner
+from pipeline.models.common import lift_ratios
 from pipeline.quantities import Quantity
-from pipeline.records import Scene, Support
+from pipeline.records import Check, Estimate, Scene, Support
+
+GENERIC = "a horizontal isolator (a generic one: ask a maker for a product like it)"
+"""What stands for an isolator of which no maker is named."""
+
+PLATFORM, LOAD = "Lifting of the isolator's platform", "Load on the isolator"
+"""What an isolator is asked besides its own model, in the words of a report."""
+
+STEP = 0.05
+"""To which the width of a platform is rounded up [m]."""
 
 FREE, FASTENED = "It may stand free on it.", "It must be fastened to it."
 """How an object stands on an isolator."""
@@ -29,8 +39,10 @@ class HorizontalIsolator(Measure):
 
     A stiff isolator passes much on and needs little stroke, a soft one the other way round, and friction trades the
     one for the other as well: of the catalogue those are tried that keep to the stroke that the place has, by the
-    length of their stroke.  Each object on it stands as it does, or where that fails is fastened to it; all its
-    models are run on what the isolator passes on.
+    length of their stroke, which is that at the 84th percentile of the suite.  The platform must not lift off at the
+    end of the stroke, under the push and the vertical motion, and the load must be one that the maker allows.  Each
+    object on it stands as it does, or where that fails is fastened to it; all its models are run on what the isolator
+    passes on.
 
     References
     ----------
@@ -38,8 +50,8 @@ class HorizontalIsolator(Measure):
     """
 
     name = "horizontal_isolator"
-    gives = ("frequency", "damping", "friction", "stroke", "acceleration", "what", "how")
-    limits = 1
+    gives = ("frequency", "damping", "friction", "stroke", "platform", "load", "acceleration", "product", "what", "how")
+    limits = 2
     limit_unit = "m"
     parameters = (
         FREQUENCY,
@@ -49,7 +61,7 @@ class HorizontalIsolator(Measure):
     )
     shared = True
     isolator = "horizontal_isolator"
-    phrases = (FREE, FASTENED, IT)
+    phrases = (FREE, FASTENED, IT, GENERIC, PLATFORM, LOAD)
 
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:
         """Return the isolator: ``frequency`` [Hz], ``damping`` [-], ``friction`` [-] and ``stroke`` [m]."""
@@ -66,23 +78,35 @@ class HorizontalIsolator(Measure):
             refusal = _unsuited(one.scene)
             if refusal:
                 return refused(refusal if len(objects) == 1 else f"{one.number} shares its case: {refusal}")
-        candidates = []
+        load, candidates, why = Load.of([one.scene for one in objects]), [], ""
         for response in runner.isolated(self.isolator):
             isolator = response.isolator
-            stroke = round_up(MARGIN * response.stroke)
+            stroke = round_up(response.stroke)
             if stroke > min(self.row.limit, isolator.stroke):
+                continue
+            width = isolator.platform_width or self._width(load.width(response, stroke, isolator.platform_mass))
+            checks = load.checks(response, stroke, width)
+            short = [check for check in checks if not check.passes]
+            if short or width > self.row.limit_high:
+                why = f"{short[0].title.lower()} is more than it bears" if short else self._too_wide(width)
                 continue
             numbers = {
                 "frequency": (isolator.frequency, "Hz"),
                 "damping": (isolator.damping, "-"),
                 "friction": (isolator.friction, "-"),
                 "stroke": (stroke, "m"),
+                "platform": (width, "m"),
+                "load": (load.mass, "kg"),
                 "acceleration": (response.acceleration, "m/s2"),
             }
             moving = Trial(self.in_place(objects[0], numbers))
             options = tuple((one, _options(one.scene, response)) for one in objects)
             marks = {level: ("isolator", isolator.frequency, felt) for level, felt in response.accelerations.items()}
-            candidates.append(Candidate(numbers, (moving,), options, marks=marks))
+            words = {"product": f"{isolator.name} of {isolator.maker}" if isolator.maker else GENERIC}
+            told = tuple(("", check) for check in checks)
+            candidates.append(Candidate(numbers, (moving,), options, checks=told, words=words, marks=marks))
+        if not candidates and why:
+            return refused(why)
         if not candidates:
             longest = f" and none under {100 * self.row.limit:.0f} cm" if isfinite(self.row.limit) else ""
             return refused(f"the catalogue has no horizontal isolator that keeps to its stroke{longest}")
@@ -90,10 +114,87 @@ class HorizontalIsolator(Measure):
         reason = f"no isolator of the catalogue passes on little enough within its stroke{among}"
         return Proposal(tuple(candidates), reason)
 
+    @staticmethod
+    def _width(needed: float) -> float:
+        return round_up(max(needed, STEP), STEP)
+
+    def _too_wide(self, width: float) -> str:
+        return f"its platform would have to be {100 * width:.0f} cm wide; {100 * self.row.limit_high:.0f} cm is allowed"
+
+
+@dataclass(frozen=True)
+class Load:
+    """Load of what stands on an isolator.
+
+    Attributes
+    ----------
+    masses, heights : tuple of Estimate
+        Of each object: its mass [kg] and the height of its centre of gravity [m].
+    """
+
+    masses: tuple[Estimate, ...]
+    heights: tuple[Estimate, ...]
+
+    @classmethod
+    def of(cls, scenes: Sequence[Scene]) -> "Load":
+        """Return the load that objects are; each with its mass and its centre of gravity."""
+        masses, heights = ([scene.parameters[name] for scene in scenes] for name in ("mass", "cg_height"))
+        return cls(tuple(masses), tuple(heights))
+
+    @property
+    def mass(self) -> float:
+        """Of all together [kg], by the best estimates."""
+        return sum(mass.value for mass in self.masses)
+
+    def height(self, platform_mass: float) -> tuple[float, float]:
+        """Return the height of the centre of gravity of all with the platform, which lies at 0 [m]: best, and worst.
+
+        The worst is that of the tallest being heaviest and the others lightest, all as high as they may be.
+        """
+        pairs = sorted(zip(self.heights, self.masses, strict=True), key=lambda pair: pair[0].high, reverse=True)
+        best = sum(height.value * mass.value for height, mass in pairs) / (self.mass + platform_mass)
+        worst = 0.0
+        for tall in range(1, len(pairs) + 1):
+            weights = [mass.high if at < tall else mass.low for at, (_, mass) in enumerate(pairs)]
+            moment = sum(weight * height.high for weight, (height, _) in zip(weights, pairs, strict=True))
+            worst = max(worst, moment / (sum(weights) + platform_mass))
+        return best, worst
+
+    def width(self, response: IsolatorResponse, stroke: float, platform_mass: float) -> float:
+        """Return the width of the platform [m] from which on it does not lift off, all at its worse end.
+
+        Notes
+        -----
+        About an edge, with the load s off the middle at the end of its stroke, of what the isolator passes on:
+        m h |a_h| <= m (g + a_z) (W/2 - s).  The vertical motion passes an isolator unchanged.
+        """
+        return 2.0 * (self.height(platform_mass)[1] * lift_of(response) + stroke)
+
+    def checks(self, response: IsolatorResponse, stroke: float, width: float) -> tuple[Check, ...]:
+        """Return whether a platform of a width [m] stays down, and whether its maker allows the load."""
+        isolator = response.isolator
+        arm = max(0.5 * width - stroke, 0.0)
+        leans, worst = (height * lift_of(response) for height in self.height(isolator.platform_mass))
+        kind = isolator.kind
+        used = leans / arm if arm > 0.0 else inf
+        out = [Check(kind, PLATFORM, leans, "m", arm, used, worst <= arm * (1.0 + 1e-9))]
+        if isolator.maker:
+            least, most = (sum(getattr(mass, end) for mass in self.masses) for end in ("low", "high"))
+            allowed = isolator.load_least <= least and most <= isolator.load_most
+            out.append(Check(kind, LOAD, self.mass, "kg", isolator.load_most, self.mass / isolator.load_most, allowed))
+        return tuple(out)
+
+
+def lift_of(response: IsolatorResponse) -> float:
+    """Return the largest |a_h| / (g + a_z) of what an isolator passes on [-]; infinite where the load loses contact."""
+    return max(max(lift_ratios(m.excitation(None))) for level in response.shaking for m in level.motions)
+
 
 def _unsuited(scene: Scene) -> str:
     if scene.support not in STANDING:
         return "it does not stand"
+    if not {"mass", "cg_height"} <= set(scene.parameters):
+        return "its mass or its centre of gravity is not known, so its platform cannot be checked"
     if {"stroke", "rotation_limit"} & set(scene.parameters):
         # The frequency and the damping are the isolator's then, and its own are not at hand.
         return "it stands on an isolator already: have that one changed"

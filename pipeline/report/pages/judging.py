@@ -7,7 +7,7 @@ from statistics import median
 
 from markupsafe import Markup
 
-from pipeline.analysis.fragility.published import all_published
+from pipeline.analysis.fragility.published import Published, all_published, in_si
 from pipeline.quantities import G
 from pipeline.records import Assessment, Finding, Fragility, Spacing, Support, Verdict
 from pipeline.records.fragility import ABOVE, BELOW
@@ -142,6 +142,11 @@ def in_g(acceleration: float) -> str:
     return f"{significant(acceleration / G, 2)}\u202fg"
 
 
+def _published(one: Published) -> str:
+    median = in_g(in_si(one)) if one.unit == "g" else f"{significant(in_si(one), 2)}\u202fm/s"
+    return _("%(median)s, dispersion %(beta)s") % {"median": median, "beta": significant(one.dispersion, 2)}
+
+
 def years(rate: float) -> str:
     """Write 1 / rate with two digits; "∞" for never."""
     if not (rate > 0.0 and isfinite(rate)):
@@ -195,7 +200,10 @@ def shaking_view(members: Sequence[Assessment]) -> ShakingView | None:
             "Half of the %(count)s objects that stand free stand at %(at)s of peak acceleration at least.",
             len(free),
         )
-    rows = tuple((said(p.what), in_g(p.median), p.source) for p in all_published())
+    classes = {a.scene.object_class for a in members if a.scene.support is Support.FREESTANDING}
+    # Of furniture only where there is some.
+    told = [p for p in all_published() if not p.classes or classes & set(p.classes)]
+    rows = tuple((said(p.what), _published(p), p.source) for p in told)
     note = "" if any(f.annual_rate is not None for f in free) else free[0].note
     return ShakingView(phrase % {"count": count(len(free)), "at": in_g(middle)}, rows, said(clean(note)))
 

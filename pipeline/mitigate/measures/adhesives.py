@@ -1,0 +1,44 @@
+"""Dots of microcrystalline wax or museum putty under an object."""
+
+from math import pi
+
+from pipeline.mitigate.measures.fixings import Fixing, Reach, dot
+from pipeline.records import Scene
+
+LEVER = 2.0 / 3.0
+"""Moment about an edge of an elastic layer, per its area, its strength, and the distance of its middle from the edge.
+
+The tension grows evenly from the edge to the far side, where it is the strength: the integral of (t x / 2b) x over the
+width 2b, by the area, is 2/3 t b.  Three and more equal pieces evenly round a circle of radius r about the middle give
+t b (1 + (r/b)^2 / 2) / (1 + r/b), which is never less than 0.73 t b.
+"""
+
+
+class _Dots(Fixing):
+    """Dots under its base: they hold by their area, of which its footing has room for a share only."""
+
+    limits = 1
+    limit_unit = "-"
+
+    def reach(self, scene: Scene, pieces: int, size: float, worst: bool) -> Reach:
+        """Return the area of the dots, and their moment about an edge of the base."""
+        half = scene.parameters["half_width"]
+        area = pieces * dot(size)
+        return Reach(area, LEVER * area * (half.low if worst else half.value))
+
+    def room(self, scene: Scene, worst: bool) -> float:
+        """Return the share of its footing: a round one across the narrower side, the least that it may be."""
+        half = scene.parameters["half_width"]
+        return self.row.limit * pi * (half.low if worst else half.value) ** 2
+
+
+class Wax(_Dots):
+    """Hold it by dots of microcrystalline wax."""
+
+    name = "wax"
+
+
+class Putty(_Dots):
+    """Hold it by pads of museum putty."""
+
+    name = "putty"
