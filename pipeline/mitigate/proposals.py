@@ -108,7 +108,8 @@ class Candidate:
     mark_of : str
         Model whose finding says where it lies on a chart; "" for none.
     at_best : bool
-        Whether passing by the best estimates is enough: it is advised only where nothing else is sure.
+        Whether it is sized by the best estimates.  Where its trials pass by these only, it is advised where no other
+        fastening passes for sure.
     """
 
     numbers: Numbers

@@ -16,9 +16,6 @@ from pipeline.models import settled_by_room
 from pipeline.records import Check, Finding, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 
-BY_BEST_ONLY = "it holds by the best estimates, and not at the worse ends of all that is assumed"
-"""Why a fastening gives way to one that is sure."""
-
 ONLY_HERE = "At another level of shaking it is not enough, and nothing that was tried is enough at all of them."
 """Follows the sentence of a measure that holds at one level only."""
 
@@ -26,7 +23,10 @@ AT_BEST = (
     "It holds by the best estimates, and not at the worse ends of all that is assumed: "
     "have its mass, its base and its weakest section measured first."
 )
-"""Follows the sentence of a measure that passes by the best estimates only."""
+"""Follows the sentence of a measure whose models pass by the best estimates only."""
+
+SIZED = "It holds so by the best estimates of weight, base and strength: weigh it and measure its base first."
+"""Follows the sentence of a fixing that has its factor of safety by the best estimates, and whose models all pass."""
 
 Unit = tuple[Deficiency, ...]
 """Objects that one measure is for: one, or all that share a support."""
@@ -190,7 +190,7 @@ class _Search:
         for index, found in self.at_best.items():
             if index not in self.helped:
                 self.rejected[index] = list(found.rejected)
-                self._recommend(found.unit, found.measure, found.candidate, (), found.results)
+                self._recommend(found.unit, found.measure, found.candidate, (), found.results, at_best=True)
         self.at_best.clear()
 
     def _units(self, pending: Sequence[Deficiency], measure: Measure) -> list[Unit]:
@@ -218,7 +218,7 @@ class _Search:
             options = [next((o for o in some if passes(results[id(o.trial)])), None) for _, some in candidate.options]
             failing = [trial for trial in candidate.trials if not passes(results[id(trial)])]
             held = all(check.passes for _, check in candidate.checks)
-            if not candidate.at_best and not failing and held and all(option is not None for option in options):
+            if not failing and held and all(option is not None for option in options):
                 self._recommend(unit, measure, candidate, [one for one in options if one is not None], results)
                 continue
             if candidate.at_best and held and all(passes_at_best(results[id(t)]) for t in candidate.trials):
@@ -246,6 +246,8 @@ class _Search:
         candidate: Candidate,
         options: Sequence[Option],
         results: Mapping[int, Sequence[Finding]],
+        *,
+        at_best: bool = False,
     ) -> None:
         """Record the measure for every object of the unit that needs one.
 
@@ -263,6 +265,7 @@ class _Search:
                 words |= {"what": company(unit, one, unknown), "how": options[at].said}
             numbers = {**candidate.numbers, **candidate.finish(ran)}
             name, title, sentence = measure.called(one.scene.item)
+            more = f" {AT_BEST}" if at_best else f" {SIZED}" if candidate.at_best else ""
             self.helped.add(one.index)
             if measure.fastens:
                 self.fastened.add(one.index)
@@ -275,12 +278,12 @@ class _Search:
                     level=level,
                     measure=name,
                     title=title,
-                    sentence=_filled(sentence, words).rstrip() + (f" {AT_BEST}" if candidate.at_best else ""),
+                    sentence=_filled(sentence, words).rstrip() + more,
                     parameters={key: value for key, (value, _) in numbers.items()},
                     units={key: unit_ for key, (_, unit_) in numbers.items()},
                     checks=(
                         *(check for of, check in candidate.checks if of in ("", level)),
-                        *checks(here, before, at_best=candidate.at_best),
+                        *checks(here, before, at_best=at_best),
                     ),
                     rejected=tuple(self.rejected.get(one.index, ())),
                     mark=self._mark(candidate, here, measure.row.title, level),
@@ -300,7 +303,7 @@ def _said(failing: Sequence[Trial], candidate: Candidate, results: Mapping[int, 
     if failing:
         return why_not(failing[0].scene, results[id(failing[0])])
     short: list[Check] = [check for _, check in candidate.checks if not check.passes]
-    return f"{short[0].title.lower()} is not enough" if short else BY_BEST_ONLY
+    return f"{short[0].title.lower()} is not enough" if short else ""
 
 
 def _filled(sentence: str, words: Mapping[str, str]) -> str:

@@ -15,7 +15,7 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.fragility.curve import NINETY, fit, stated
 from pipeline.analysis.fragility.hazard import Hazard, NoHazardError
 from pipeline.analysis.fragility.objects import Stripe, fragilities, hazard_of
-from pipeline.analysis.fragility.published import all_published, published
+from pipeline.analysis.fragility.published import all_published, in_si, published
 from pipeline.analysis.fragility.scaling import FACTORS
 from pipeline.analysis.plan import plan
 from pipeline.analysis.response import respond
@@ -284,20 +284,35 @@ def test_two_levels_give_a_rate_and_one_says_why_not() -> None:
 # -- what others published -------------------------------------------------------------------------------------------
 
 
-def test_the_friction_says_which_shelf() -> None:
-    assert {p.what: p.median / G for p in all_published()} == pytest.approx(
+def test_the_material_says_which_shelf() -> None:
+    """FEMA P-58 calls glass or metal on wood slippery; a cabinet is no thing on a shelf."""
+    medians = {p.what: in_si(p) / G for p in all_published() if p.unit == "g"}
+    assert medians == pytest.approx(
         {
             "objects on shelves, restraint unknown": 0.4,
-            "objects on a slippery shelf": 0.25,
+            "objects on a slippery shelf, as glass or metal on wood": 0.25,
             "objects on shelves in cabinets with latches": 0.6,
             "objects held by museum putty in cabinets with latches": 1.0,
         }
     )
-    rough, smooth = (published(classify(replace(BLOCK, friction=mu))) for mu in (0.3, 0.1))
-    assert rough is not None
-    assert smooth is not None
-    assert (rough.what, smooth.what) == ("objects on shelves, restraint unknown", "objects on a slippery shelf")
+
+    def median_of(**told: str) -> float | None:
+        found = published(classify(replace(BLOCK, **told)))  # type: ignore[arg-type]
+        return None if found is None else found.median
+
+    assert median_of(medium="Marble") == 0.4
+    assert median_of(medium="Glass") == median_of(medium="Bronze", surface_material="Oak") == 0.25
+    assert (
+        median_of(medium="Glass", surface_material="Marble") == median_of(medium="Glass", base_material="Wood") == 0.4
+    )
+    assert median_of(medium="Bronze", object_name="Cabinet") is None
     assert published(classify(Item("2", "A", "Painting", support=Support.HUNG, height_m=1.0))) is None
+
+
+def test_scatter_of_objects_is_not_that_of_buildings() -> None:
+    """From record to record 0.45 to 0.9 in peak acceleration, 0.4 to 0.5 in velocity; FEMA P-695 has 0.2 to 0.4."""
+    assert (stated("record").low, stated("record").high) == (0.45, 0.90)
+    assert (stated("record_velocity").low, stated("record_velocity").high) == (0.40, 0.50)
 
 
 def test_small_objects_of_the_demonstration_fail_where_shelf_contents_were_seen_to(demo_folder: Path) -> None:

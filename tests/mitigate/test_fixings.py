@@ -12,7 +12,7 @@ from pipeline.mitigate.catalogue import MeasureCatalogue, measure_catalogue, own
 from pipeline.mitigate.fixing_rows import FixingStrength, fixing_strengths
 from pipeline.mitigate.measures.adhesives import LEVER
 from pipeline.mitigate.measures.restraints import BEARING
-from pipeline.mitigate.search import AT_BEST
+from pipeline.mitigate.search import AT_BEST, SIZED
 from pipeline.mitigate.trials import upper_stroke
 from pipeline.models.rocking import UNHARMED
 from pipeline.quantities import G
@@ -116,17 +116,16 @@ def test_the_material_of_the_base_is_what_counts(motion: Motion) -> None:
 
 
 def test_putty_is_the_right_answer(motion: Motion) -> None:
-    """13 kg ask for 107 cm2 of wax at 20 kPa, and its largest eight dots of 4 cm are 101 cm2.
+    """20 kg ask for 22 N m.  The largest eight dots of wax are 101 cm2 and bear 40 N m: not twice as much.
 
-    Putty bears 15 kPa, so that 143 cm2 are needed, and may cover half of the 314 cm2: eight pads of 5 cm are 157 cm2.
+    Putty may cover half of the 314 cm2: eight pads of 5 cm are 157 cm2 and bear 47 N m.
     """
     weak = motion.scaled(0.6, "0.42 g")
-    item = replace(TOWER, mass_kg=13.0)
+    item = replace(TOWER, mass_kg=20.0)
     advice = solve(item, weak)
     assert advice.measure == "putty"
     force, moment = asked(weak, item)
-    assert 8 * 0.25 * pi * 0.04**2 < moment / (2.0 / 3.0 * 20e3 * 0.1)
-    assert moment / (2.0 / 3.0 * 15e3 * 0.1) < 0.5 * pi * 0.1**2
+    assert 2.0 / 3.0 * 8 * 0.25 * pi * 0.04**2 * 60e3 * 0.1 < 2.0 * moment < 2.0 / 3.0 * 0.5 * pi * 0.1**2 * 45e3 * 0.1
     assert (advice.parameters["pieces"], advice.parameters["size"]) == (8.0, 0.05)
     area = 8 * 0.25 * pi * 0.05**2
     holds(advice, force, moment, area * 20e3, 2.0 / 3.0 * area * 45e3 * 0.1)
@@ -216,12 +215,16 @@ def test_no_isolator_is_advised_where_a_fastening_passes_by_the_best_estimates(m
     assert weaker.measure not in ("clamps", "fasten", "clips")
 
 
-def test_a_sure_fastening_goes_before_one_by_the_best_estimates(motion: Motion) -> None:
-    """Its weight is not known: dots of wax hold it by the best estimate only, clamps whatever it weighs."""
+def test_what_is_sized_by_the_best_estimates_says_so_and_has_its_factor(motion: Motion) -> None:
+    """A base half as wide at its low end has room for a quarter of the wax: by the best estimate it holds twice."""
     weak = motion.scaled(0.6, "0.42 g")
-    advice = solve(replace(TOWER, mass_kg=None, medium="Glass"), weak)
-    assert AT_BEST not in advice.sentence
+    unsure = replace(LIGHT, mass_kg=3.0, base_width_m=None, base_depth_m=None)
+    advice = solve(unsure, weak)
+    assert advice.measure == "wax"
+    assert advice.sentence.endswith(SIZED)
+    assert advice.parameters["margin"] >= fixing_strengths()["wax"].factor
     assert all(check.passes for check in advice.checks)
+    assert SIZED not in solve(LIGHT, weak).sentence
 
 
 @pytest.mark.parametrize("name", ["Chair", "Cabinet", "Table"])
