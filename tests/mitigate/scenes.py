@@ -52,8 +52,8 @@ TOWER = replace(BLOCK, title="Tower", height_m=1.0, width_m=0.2, depth_m=0.2, ba
 HEAVY = replace(TOWER, title="Heavy tower", mass_kg=500.0, allowable_stress_pa=5e7)
 """The same of half a tonne, which no fixing holds that is to be had, with a section that bears it."""
 
-STUMP = replace(TOWER, title="Stump", height_m=0.3, cg_height_m=0.15, friction=0.3)
-"""Just too slender: b/h = 0.67 where 0.72 is pushed."""
+STUMP = replace(TOWER, title="Stump", height_m=0.3, cg_height_m=0.15, friction=0.3, mass_kg=200.0)
+"""Just too slender: b/h = 0.67 where 0.72 is pushed; too heavy for wax, putty, ties and clips."""
 
 PICTURE = Item("2", "G", title="Picture", support=Support.HUNG, height_m=0.6, width_m=0.5, suspension_length_m=0.8,
                damping=0.02, clearance_m=0.05, mass_kg=8.0)  # fmt: skip
