@@ -108,7 +108,7 @@ def summary_lines(summary: "Summary") -> list[str]:
         lines.append(
             count(summary.faults, "of all these met a fault of Kouros: see the log, and please tell its makers")
         )
-    lines += ["", "  Recommended, each run again and passing:"]
+    lines += ["", "  Recommended, each run again and passing, by the best estimates at least:"]
     lines += [count(number, title) for title, number in summary.measures.items()]
     if summary.worth is not None:
         told = f"measurements would settle a verdict; finding them took {summary.survey_seconds:.1f} s"
