@@ -10,6 +10,7 @@ from pipeline.extensions import Registry
 from pipeline.mitigate.measures.ballast import Ballast
 from pipeline.mitigate.measures.base import Measure
 from pipeline.mitigate.measures.clearance import Clearance
+from pipeline.mitigate.measures.close_hooks import CloseHooks
 from pipeline.mitigate.measures.fasten import Fasten
 from pipeline.mitigate.measures.friction_isolator import FrictionIsolator
 from pipeline.mitigate.measures.horizontal_isolator import HorizontalIsolator
@@ -66,6 +67,7 @@ MEASURES: Registry[type[Measure]] = Registry(
         Ballast,
         WideBase,
         Fasten,
+        CloseHooks,
         Restrain,
         FrictionIsolator,
         HorizontalIsolator,
