@@ -6,16 +6,16 @@ open. Each way has its strength, the depth of its hooks and how far above the ce
 (tables/hangings.csv).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import sqrt
 
 from pipeline.records import Estimate, Hanging, Item, Origin
-from pipeline.tables import Row, TableError, number, spread, table
+from pipeline.tables.hanging_rows import UsualHanging, hanging_rows, usual_hangings
 
 ANY = "*"
-"""In the column class of usual_hangings.csv: of every class that no other row names."""
+"""In the column object_class of usual_hangings.csv: of every class that no other row names."""
 
 NOT_RECORDED = "how it hangs is not recorded"
 """What is said of a work that may hang in several ways."""
@@ -62,32 +62,17 @@ class HangingGuess:
         return self.ways[0] if len(self.ways) == 1 else None
 
 
-@cache
-def _rows() -> Mapping[Hanging, Row]:
-    rows = {row["hanging"]: row for row in table("hangings")}
-    missing = [way.value for way in Hanging if way.value not in rows]
-    if missing:
-        raise TableError(f"hangings.csv: there is no row for {', '.join(missing)}; give each way to hang one")
-    return {way: rows[way.value] for way in Hanging}
-
-
 def titled(ways: Sequence[Hanging]) -> str:
     """Return ways to hang in words: "two hooks or D-rings, or security hardware"."""
-    titles = [_rows()[way]["title"] for way in ways]
+    titles = [hanging_rows()[way].title for way in ways]
     return titles[0] if len(titles) == 1 else f"{', '.join(titles[:-1])}, or {titles[-1]}"
 
 
 @cache
-def _usual(object_class: str, size: float) -> tuple[tuple[Hanging, ...], str]:
-    rows = table("usual_hangings")
-    mine = [row for row in rows if row["class"] == object_class] or [row for row in rows if row["class"] == ANY]
-    fitting = [row for row in mine if size >= number(row, "larger_than", "usual_hangings.csv")]
-    row = max(fitting, key=lambda one: float(one["larger_than"]))
-    try:
-        ways = tuple(Hanging(word) for word in row["hangings"].split("|"))
-    except ValueError as problem:
-        raise TableError(f"usual_hangings.csv, {object_class}: {problem}; use {', '.join(Hanging)}") from problem
-    return ways, row["source"]
+def _usual(object_class: str, size: float) -> UsualHanging:
+    mine = [row for row in usual_hangings() if row.object_class == object_class]
+    others = [row for row in usual_hangings() if row.object_class == ANY]
+    return max((row for row in mine or others if size >= row.larger_than), key=lambda row: row.larger_than)
 
 
 def hanging_of(item: Item, object_class: str, told: Hanging | None = None, by: str = "") -> HangingGuess:
@@ -108,11 +93,6 @@ def hanging_of(item: Item, object_class: str, told: Hanging | None = None, by: s
     -------
     HangingGuess
         One way where it is recorded or its cord shows it, else those that are usual.
-
-    Raises
-    ------
-    TableError
-        For a table that names no such way.
     """
     told = told or item.hanging
     if told is not None:
@@ -121,30 +101,30 @@ def hanging_of(item: Item, object_class: str, told: Hanging | None = None, by: s
     if item.suspension_length_m is not None and item.suspension_length_m > 0.5 * (item.height_m or 0.0):
         note = "hanging: by a wire or cord, for it hangs from further above its centre than its upper edge is"
         return HangingGuess((Hanging.WIRE,), Origin.DERIVED, note)
-    ways, source = _usual(object_class, max(item.height_m or 0.0, item.width_m or 0.0))
-    note = f"hanging: {titled(ways)}; {NOT_RECORDED}"
-    return HangingGuess(ways, Origin.ASSUMED, note, f"usual_hangings.csv ({source})")
+    usual = _usual(object_class, max(item.height_m or 0.0, item.width_m or 0.0))
+    note = f"hanging: {titled(usual.hangings)}; {NOT_RECORDED}"
+    return HangingGuess(usual.hangings, Origin.ASSUMED, note, f"usual_hangings.csv ({usual.source})")
 
 
 def swings(guess: HangingGuess) -> bool:
     """Say whether a work may swing in the plane of its wall."""
-    return any(_rows()[way]["swings"] == "yes" for way in guess.ways)
+    return any(hanging_rows()[way].swings for way in guess.ways)
 
 
 def _flag(guess: HangingGuess, column: str) -> Estimate:
-    each = [float(_rows()[way][column] == "yes") for way in guess.ways]
+    each = [float(getattr(hanging_rows()[way], column)) for way in guess.ways]
     return Estimate(each[0], "-", guess.origin, min(each), max(each), guess.note, guess.source)
 
 
 def _of_table(ways: Sequence[Hanging], column: str, unit: str, times: float, what: str) -> Estimate:
-    spans = [spread(_rows()[way], column, f"{column}_low", f"{column}_high", f"hangings.csv, {way}") for way in ways]
+    spans = [hanging_rows()[way].range(column) for way in ways]
     low, best, high = (
         times * value for value in (min(s.low for s in spans), spans[0].value, max(s.high for s in spans))
     )
     note = (
         f"{what}: {best:.3g} ({low:.3g} to {high:.3g}){'' if unit == '-' else f' {unit}'}, assumed for {titled(ways)}"
     )
-    return Estimate(best, unit, Origin.ASSUMED, low, high, note, f"hangings.csv ({_rows()[ways[0]]['source']})")
+    return Estimate(best, unit, Origin.ASSUMED, low, high, note, f"hangings.csv ({spans[0].source})")
 
 
 def hanging_estimates(item: Item, guess: HangingGuess) -> dict[str, Estimate]:
@@ -166,7 +146,7 @@ def hanging_estimates(item: Item, guess: HangingGuess) -> dict[str, Estimate]:
     out: dict[str, Estimate] = {}
     if swings(guess):
         out["freedom"] = _flag(guess, "swings")
-    lifted = [way for way in guess.ways if _rows()[way]["lifts_off"] == "yes"]
+    lifted = [way for way in guess.ways if hanging_rows()[way].lifts_off]
     if lifted and item.height_m is not None:
         out["hooks_open"] = _flag(guess, "lifts_off")
         out["hook_depth"] = _of_table(lifted, "hook_depth", "m", 1.0, "depth of its hooks")

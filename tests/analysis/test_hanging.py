@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import date
 
 import numpy as np
 import pytest
@@ -12,13 +13,16 @@ from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
 from pipeline.analysis.hanging import hanging_of
+from pipeline.analysis.house.matching import HouseRules
+from pipeline.analysis.house.rule import HouseRule
 from pipeline.analysis.plan import plan
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.models.common import NO_VERTICAL
 from pipeline.quantities import G
 from pipeline.records import Finding, Hanging, Item, Origin, Support, Verdict
-from pipeline.tables import number, table
+from pipeline.tables.assumed import assumed
+from pipeline.tables.hanging_rows import hanging_rows, usual_hangings
 
 WORK = Item("1", "G", object_name="painting", height_m=0.8, width_m=1.0, damping=0.02, clearance_m=0.1)
 
@@ -80,6 +84,18 @@ def test_the_record_is_taken_before_a_cord_and_a_cord_before_the_class() -> None
     assert hanging_of(WORK, "vessel").origin is Origin.ASSUMED
 
 
+def test_a_house_rule_says_it_of_many_and_is_named() -> None:
+    """The rule closes the question where the record says nothing, with its origin; the record goes before it."""
+    rule = {"class": "framed", "hanging": "two_hooks", "said_by": "Ann", "said_on": date(2031, 5, 1)}
+    house = HouseRules((HouseRule.model_validate(rule),), list(assumed().classes))
+    scene = classify(WORK, house=house)
+    assert scene.hanging is Hanging.TWO_HOOKS
+    assert "freedom" not in scene.parameters
+    assert scene.parameters["hooks_open"].origin is Origin.STATED
+    assert "Ann" in scene.parameters["hooks_open"].note
+    assert classify(replace(WORK, hanging=Hanging.WIRE), house=house).hanging is Hanging.WIRE
+
+
 def test_a_motion_without_a_vertical_says_so() -> None:
     held = replace(WORK, hanging=Hanging.TWO_HOOKS)
     for up, said in ((0.0, True), (0.3, False)):
@@ -96,11 +112,9 @@ def test_what_hangs_swings_along_its_width_and_opens_across_it() -> None:
 
 
 def test_the_tables_know_every_way_and_class() -> None:
-    assert {row["hanging"] for row in table("hangings")} == set(Hanging)
-    classes = {row["class"] for row in table("classes") if Support(row["support"]) is Support.HUNG}
-    assert classes < {row["class"] for row in table("usual_hangings")}
-    for row in table("hangings"):
-        assert (row["lifts_off"] == "yes") == bool(row["hook_depth"])
-        assert "judgement" in row["source"]
-    (cleat,) = (row for row in table("hangings") if row["hanging"] == "cleat")
-    assert number(cleat, "hook_depth", "hangings.csv") == pytest.approx(3.0 / 8.0 * 0.0254, rel=5e-3)
+    classes = {name for name, row in assumed().classes.items() if row.support is Support.HUNG}
+    assert classes < {row.object_class for row in usual_hangings()}
+    rows = hanging_rows()
+    assert all("judgement" in row.source for row in rows.values())
+    # 3/8 inch, the lift of a Z-clip as its maker has it.
+    assert rows[Hanging.CLEAT].hook_depth == pytest.approx(3.0 / 8.0 * 0.0254, rel=5e-3)
