@@ -43,6 +43,8 @@ TABLE_WORDS = {
     "fragility": "Published medians and dispersions that stand beside the computed ones.",
     "friction": "Friction between object and surface (Table 3 of the paper, handbooks and judgement).",
     "generic_models": "The paper's Tables 1 and 2, and the model that answers each row.",
+    "hangings": "Ways to hang on a wall: whether a work swings or may be lifted off, its hooks and its hangers.",
+    "usual_hangings": "Ways in which works of a class usually hang, the likeliest first; * is any other class.",
     "isolators": "The isolators that advice may choose from; a museum's own catalogue takes the place of this table.",
     "materials": "Density and strength of materials, and the words that name them.",
     "measures": "The measures, in the order of their intrusiveness, with limits, words and sources.",

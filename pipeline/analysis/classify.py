@@ -11,12 +11,14 @@ from functools import cache, lru_cache
 from math import pi
 
 from pipeline.analysis.footing import base_extents, half_widths
+from pipeline.analysis.hanging import HangingGuess, hanging_estimates, hanging_of, swings
 from pipeline.analysis.house.effect import NO_EFFECT, HouseEffect
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.rules import RuleTable, rule_for
 from pipeline.errors import InputError
 from pipeline.models import MODELS, model_named
 from pipeline.models.rocking import FALLS_IN, HALF
+from pipeline.models.unhooking import LOCKED
 from pipeline.records import SECTION_SHAPES, Estimate, Item, Origin, Scene, Support
 from pipeline.tables import Range
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed, span, tables_of
@@ -99,6 +101,10 @@ class _Builder:
     ) -> None:
         self.item, self.row, self.support, self.values, self.house = item, row, support, values, house
         self.material = material_of(item, values)
+        self.hanging: HangingGuess | None = None
+        if support is Support.HUNG:
+            told = house.stated.get("hanging")
+            self.hanging = hanging_of(item, row.name, house.hanging(item), "" if told is None else told.origin)
         self.found: dict[str, Estimate] = {}
         self.missing: list[str] = []
         self.doubts: list[str] = []
@@ -121,6 +127,15 @@ class _Builder:
         return stated.estimate(what, unit) if recorded is None and stated is not None else recorded
 
     def _hanging(self) -> None:
+        if self.hanging is not None:
+            self.found |= hanging_estimates(self.item, self.hanging)
+        if self.hanging is None or swings(self.hanging):
+            self._pendulum()
+        elif self.item.height_m is None and "hook_depth" not in self.found and self.hanging.known not in LOCKED:
+            self.missing.append("height")
+        self._mass()
+
+    def _pendulum(self) -> None:
         item = self.item
         length = self._length("suspension_length_m", "suspension_ratio", "length from hook to centre of gravity")
         if length is None and item.height_m is None:
@@ -138,7 +153,6 @@ class _Builder:
             note = "damping: none, as the paper takes it for chandeliers"
             damping = _assumed(0.0, 0.0, 0.0, "-", note, "Agbabian et al. 1991, sec. 2.4")
         self._keep("damping", damping)
-        self._mass()
 
     def _standing(self) -> None:
         item = self.item
@@ -396,7 +410,8 @@ def classify(
     row = values.classes[object_class]
     said = NO_EFFECT if house is None else house.effect(item, object_class, item.support or row.support)
     scene = _scene(item, row, words, values, said)
-    return replace(scene, hanging=said.hanging(item), furniture=said.furniture(item), statements=said.statements)
+    hanging = said.hanging(item) or scene.hanging
+    return replace(scene, hanging=hanging, furniture=said.furniture(item), statements=said.statements)
 
 
 def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:
@@ -415,9 +430,11 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         scene = Scene(item, row.name, words, support, models, dict(known), (), missing)
         known |= {name: one for name, one in estimates(scene).items() if name not in known}
     assumptions = [e.note for e in known.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
+    hanging = None if builder.hanging is None else builder.hanging.known
     if stands.support is None:
         assumptions.insert(0, f"support: {support.value}, assumed for: {row.told}; not recorded")
-    return Scene(item, row.name, words, support, models, known, tuple(dict.fromkeys(assumptions)), missing)
+    told = tuple(dict.fromkeys(assumptions))
+    return Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
 
 
 def _tried(item: Item, row: ObjectClass) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from pipeline.analysis.model_runs import run_model
 from pipeline.analysis.plan import Indices, Work
 from pipeline.analysis.refinement import DemandCase, FidelitySearch, Known
 from pipeline.analysis.verdicts import LevelMotions, Mask, utilisation
-from pipeline.models.common import words
+from pipeline.models.common import NO_VERTICAL, words
 from pipeline.quantities import Array
 from pipeline.records import Columns, Estimate, Finding, Mark, Model, Numerics, Origin, Scene, Verdict
 from pipeline.records.result import BOUNDS, DEMANDS
@@ -197,10 +197,14 @@ class _Rows:
             outcome,
             sentence,
             model.say_screen(screened, parameters) if columns else "",
-            words(told["note"]),
+            "; ".join(filter(None, (words(told["note"]), self._unsaid(at)))),
             "bound" if certain else fidelity,
             0.0 if exactly else told[model.error_of(self._output)],
         )
+
+    def _unsaid(self, at: int) -> str:
+        vertical = self._search.level.motions[at].acceleration[2]
+        return NO_VERTICAL if self._search.work.model.vertical and not vertical.any() else ""
 
 
 def _screens(work: Work, level: LevelMotions, at: int, rows: Indices) -> tuple[Indices, Columns]:

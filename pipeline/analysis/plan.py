@@ -148,6 +148,7 @@ def _kind(scene: Scene) -> Hashable:
     return (
         scene.object_class,
         scene.support,
+        scene.hanging,
         scene.models,
         scene.missing,
         scene.rule,
@@ -245,12 +246,12 @@ def _questions(
 
 
 def own_angle(model: Model, scene: Scene, x_azimuth: float) -> float:
-    """Return the direction of an object's width, degrees from x towards y; NaN where it is not known or not needed."""
+    """Return the direction of an object's width, or across it, degrees from x towards y; NaN: not known or needed."""
     orientation = scene.item.orientation_deg
     if orientation is None or model.directions != 1:
         return np.nan
     # Azimuths go clockwise from north, angles from x towards y, which is counter-clockwise.
-    return x_azimuth - orientation
+    return x_azimuth - orientation + (90.0 if model.across else 0.0)
 
 
 def _estimates(

@@ -33,6 +33,18 @@ def case_of(scene: Scene) -> Case | None:
     return (item.gallery, item.case, item.on_display) if item.case.strip() and scene.support in STANDING else None
 
 
+def known_to_swing(scene: Scene) -> bool:
+    """Say whether what hangs swings for certain, and not only if it hangs in one of several ways.
+
+    Parameters
+    ----------
+    scene : Scene
+        An object as it stands.
+    """
+    freedom = scene.parameters.get("freedom")
+    return scene.support is not Support.HUNG or (freedom is not None and freedom.low > 0.0)
+
+
 @dataclass(frozen=True, eq=False)
 class Deficiency:
     """An object under the levels of shaking that a measure is sought for, with what was found of it.

@@ -10,7 +10,7 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures import Measure
 from pipeline.mitigate.measures.remove import LAST_RESORTS
-from pipeline.mitigate.proposals import Candidate, Case, Deficiency, Option, Proposal, case_of, company
+from pipeline.mitigate.proposals import Candidate, Case, Deficiency, Option, Proposal, case_of, company, known_to_swing
 from pipeline.mitigate.trials import TransmittedMotions, Trial, TrialRunner, checks, passes, passes_at_best, why_not
 from pipeline.models import settled_by_room
 from pipeline.records import Check, Finding, Mark, Numerics, Recommendation, Scene, Verdict
@@ -112,14 +112,20 @@ def _deficiencies(
     out = []
     for index, (scene, found) in enumerate(zip(scenes, findings, strict=True)):
         here = tuple(f for f in found if f.level in names)
-        wanted = [name for name in names if _wanted([f for f in here if f.level == name])] if _wanted(here) else []
+        wanted = (
+            [name for name in names if _wanted(scene, [f for f in here if f.level == name])]
+            if _wanted(scene, here)
+            else []
+        )
         if here:
             out.append(Deficiency(index, scene, here, tuple(name for name in wanted if (index, name) not in stands)))
     return out
 
 
-def _wanted(findings: Sequence[Finding]) -> bool:
-    return any(f.verdict is Verdict.FAIL for f in findings) or _for_room_alone(findings)
+def _wanted(scene: Scene, findings: Sequence[Finding]) -> bool:
+    # Where it is not known whether it swings at all, a look behind it settles more than room.
+    room = known_to_swing(scene) and _for_room_alone(findings)
+    return room or any(f.verdict is Verdict.FAIL for f in findings)
 
 
 def _for_room_alone(findings: Sequence[Finding]) -> bool:

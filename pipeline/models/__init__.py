@@ -5,6 +5,7 @@ from difflib import get_close_matches
 from pipeline.errors import InputError
 from pipeline.extensions import Registry
 from pipeline.models.friction_isolator import FRICTION_ISOLATOR
+from pipeline.models.hanger_load import HANGER_LOAD
 from pipeline.models.horizontal_isolator import HORIZONTAL_ISOLATOR
 from pipeline.models.oscillator import OSCILLATOR
 from pipeline.models.rocking import ROCKING
@@ -12,6 +13,7 @@ from pipeline.models.rotational_isolator import ROTATIONAL_ISOLATOR
 from pipeline.models.sliding import SLIDING
 from pipeline.models.stress import FLEXIBLE_STRESS, STRESS
 from pipeline.models.swing import SWING, SWING_3D
+from pipeline.models.unhooking import UNHOOKING
 from pipeline.records import Model
 
 
@@ -35,6 +37,8 @@ MODELS = Registry(
         FLEXIBLE_STRESS,
         SWING,
         SWING_3D,
+        UNHOOKING,
+        HANGER_LOAD,
         FRICTION_ISOLATOR,
         HORIZONTAL_ISOLATOR,
         ROTATIONAL_ISOLATOR,

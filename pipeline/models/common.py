@@ -11,6 +11,9 @@ from pipeline.kernels.quiet import block_maxima, demand_ratio
 from pipeline.quantities import Array, G
 from pipeline.records import Curve, Excitation, Scene, Support
 
+NO_VERTICAL = "the motion has no vertical component: what that would lift or load is not in this"
+"""Said of what the vertical shaking is the half of, under a motion without any."""
+
 SENSITIVE = flags.SENSITIVE
 NO_TILT = 16
 NO_HISTORY = 32

@@ -35,7 +35,7 @@ from pipeline.kernels.spherical import spherical_batch
 from pipeline.models.common import NO_HISTORY, ROUNDING, broadcast, grid, magnified, needs, shaken
 from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Axis, ChartAxis, ChartFigure, Columns, Excitation, Model, Scene, Support, Trials
+from pipeline.records import Axis, ChartAxis, ChartFigure, Columns, Excitation, Hanging, Model, Scene, Support, Trials
 
 CHANDELIER = 1.4
 """The paper's factor on the undamped two-dimensional result for an object that swings in all directions."""
@@ -46,6 +46,15 @@ most swings.  It falls with the fourth power of the step.  Of 1,920 swings under
 twice of what 1e-9 grants."""
 
 LENGTH = Quantity("length", "m", "from the point of suspension to the centre of gravity", 0.0, exclusive=True)
+FREEDOM = Quantity(
+    "freedom",
+    "-",
+    "1 where it is free to swing in the plane of its wall, 0 where two fixings keep it from that",
+    0.0,
+    1.0,
+    optional=True,
+    default=1.0,
+)
 # How often a short string winds itself up is chaos, of which its displacement, which is never more than its length,
 # shows nothing: to follow it took four times the analyses under strong shaking, and a tenth of the axis was left open.
 LENGTH_AXIS = ChartAxis("length", low=0.008, high=20.0, nodes=400, leads=True)
@@ -75,6 +84,17 @@ def _told(length: Array, note: Array, displacement: Array, error: Array) -> Colu
         "error": np.where(lost, length, error),
         "note": note,
     }
+
+
+def _run_plane(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
+    free = parameters["freedom"]
+    found = _run(motion, parameters, refine, estimate)
+    return {name: column if name == "note" else free * column for name, column in found.items()}
+
+
+def _certificate(motion: Excitation, parameters: Mapping[str, Array]) -> Array:  # noqa: ARG001
+    # What two fixings hold does not swing in the plane of its wall.
+    return np.where(parameters["freedom"] == 0.0, 0.0, np.inf)
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
@@ -157,6 +177,12 @@ def _trace_3d(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
     return {"u_x": parameters["length"] * history[:, 0], "u_y": parameters["length"] * history[:, 1]}
 
 
+def _swings(scene: Scene) -> str:
+    if scene.support is Support.HUNG and scene.hanging not in (None, Hanging.WIRE):
+        return "it does not hang on one hook or wire: it does not swing in the plane of its wall"
+    return _hangs(scene, Support.HUNG, "it does not hang on a wall")
+
+
 def _hangs(scene: Scene, support: Support, why: str) -> str:
     return why if scene.support is not support else needs(scene, "length", "damping")
 
@@ -169,13 +195,15 @@ SWING = Model(
     kind="flexible",
     source="Agbabian et al. 1991, sec. 2.4 and Figure 5",
     equation="theta'' + 2 C_v w theta' + ((g + a_z)/L) sin theta = -(a_h/L) cos theta, w = sqrt(g/L)",
-    needs=(LENGTH, DAMPING),
+    needs=(LENGTH, DAMPING, FREEDOM),
     gives=(
         Quantity("displacement", "m", "largest |L sin theta|"),
         Quantity("rotation", "rad", "largest |theta|"),
     ),
     directions=1,
-    run=_run,
+    run=_run_plane,
+    certificate=_certificate,
+    rests=0.0,
     # In the plane of its wall, that is along its width.
     axes=({},),
     trace=_trace,
@@ -183,7 +211,7 @@ SWING = Model(
     mark=lambda parameters, demand: ("swing", parameters["length"], demand),
     demand="displacement",
     capacity="clearance",
-    applies=lambda scene: _hangs(scene, Support.HUNG, "it does not hang on a wall"),
+    applies=_swings,
     sentence=_SENTENCE,
     fails="swings",
     trials=Trials(

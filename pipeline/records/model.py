@@ -166,7 +166,8 @@ class Model:
     4.  `demand` is the output that is held against `capacity`, a parameter of the scene or a constant; a larger one is
         worse.
     5.  `applies(scene)` returns "" or the reason why it is not run on an object.  It may look at the class, the
-        support, the isolator, which parameters the scene has, and the frequency: scenes alike in these are asked once.
+        support, how it hangs, the isolator, which parameters the scene has, and the frequency: scenes alike in these
+        are asked once.
     6.  An object is tried with it where its class names it (column models of tables/classes.csv), where the museum says
         that the object is held in one of the ways in `supports` and its class would say otherwise, or where
         `joins(item, class, models)` is true.  Parameters that scenes do not have come from `estimates(scene)`.  Neither
@@ -231,6 +232,11 @@ class Model:
     axes : tuple of mapping
         The object's own axes that it is shaken along where they are known, width first, then depth: for each, the
         parameters of the scene that take the places of its own.
+    across : bool
+        Of a model of one direction: whether it is shaken across the object's width where that is known, instead of
+        along it.
+    vertical : bool
+        Whether the vertical shaking is so much of it that its findings say where a motion has none.
     symmetric : callable
         parameters -> True when the response does not change with the sign of the motion.
     screen : callable, optional
@@ -299,6 +305,8 @@ class Model:
     at_most: str = ""
     errors: Mapping[str, str] = field(default_factory=dict)
     axes: tuple[Mapping[str, str], ...] = ({}, {})
+    across: bool = False
+    vertical: bool = False
     symmetric: Callable[[Mapping[str, Array]], bool] = lambda _: True
     screen: Callable[[Excitation, Mapping[str, Array]], Columns] | None = None
     say_screen: Callable[[Mapping[str, float], Mapping[str, float]], str] = lambda _row, _parameters: ""

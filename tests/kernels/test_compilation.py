@@ -29,6 +29,7 @@ cases = {
     "swing": {"length": 0.5, "damping": 0.02},
     "swing_3d": {"length": 0.5, "damping": 0.02},
     "oscillator": {"frequency": 2.0, "damping": 0.02},
+    "unhooking": {"hook_height": 0.2, "hook_offset": 0.02, "gyration": 0.3, "restitution": 0.3},
     "horizontal_isolator": {"frequency": 1.0, "damping": 0.3, "friction": 0.1, "directions": 1},
 }
 print(json.dumps({name: float(respond(name, motion, **p).iloc[0, 0]) for name, p in cases.items()}))

@@ -11,13 +11,14 @@ from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
 from pipeline.analysis.response import respond
+from pipeline.analysis.survey import measurement_requests
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import changed
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import G
-from pipeline.records import Motion, Numerics, Support, Verdict
+from pipeline.records import Hanging, Motion, Numerics, Support, Verdict
 from pipeline.tables import table
 
 from .scenes import BLOCK, HEAVY, PICTURE, STUMP, TOWER, demo_motion, rejected, solve, solve_all
@@ -247,3 +248,38 @@ def test_a_mount_holds_a_flexible_object_at_the_low_end_of_its_damping(motion: M
     least_damped, best = at["pseudo_acceleration"]
     assert least_damped > 1.02 * best
     assert advice.parameters["force"] == pytest.approx(500.0 * least_damped)
+
+
+HOOKED = replace(PICTURE, hanging=Hanging.TWO_HOOKS, suspension_length_m=None)
+"""The same picture flush with its wall."""
+
+
+def falls_away(times: float, seconds: float) -> Motion:
+    """Return a wall that falls away under what hangs on it, and stops."""
+    z = np.zeros(400)
+    z[100 : 100 + round(seconds / 0.005)] = -times * G
+    return Motion(0.005, np.vstack([np.zeros_like(z), np.zeros_like(z), z]))
+
+
+def test_closed_hooks_are_the_right_answer() -> None:
+    """1.6 g for 0.15 s lifts by A (A - g) t^2 / 2g = 11 cm, further than any hook is deep; closed, nothing rises."""
+    advice = solve(HOOKED, falls_away(1.6, 0.15))
+    assert advice.measure == "close_hooks"
+    (lift,) = [check for check in advice.checks if check.model == "unhooking"]
+    assert lift.before == pytest.approx(1.6 * 0.6 * G * 0.15**2 / 2.0, rel=0.08)  # two ramps of 5 ms
+    assert lift.demand == 0.0
+
+
+def test_what_may_hang_in_several_ways_is_asked_and_not_advised(motion: Motion) -> None:
+    """On one wire it needs more room, on two hooks none: a look behind it settles that, room does not."""
+    unknown = replace(PICTURE, suspension_length_m=None, height_m=1.6)
+    levels = [LevelMotions("design", "max", (motion,))]
+    scene = classify(unknown)
+    _, (found,) = assess([scene], levels, Context(Threads(1)))
+    assert {f.model: f.verdict for f in found}["swing"] is Verdict.UNDETERMINED
+    assert solve_all([unknown], [motion]) == [[]]
+    asked = measurement_requests([scene], [found], levels, Context(Threads(1)))
+    assert asked[0].field == "hanging"
+    assert solve_all([replace(unknown, hanging=Hanging.TWO_HOOKS)], [motion]) == [[]]
+    (on_a_wire,) = solve_all([replace(unknown, hanging=Hanging.WIRE)], [motion])
+    assert [one.measure for one in on_a_wire] == ["clearance"]

@@ -89,28 +89,30 @@ def unsettled(assessment: Assessment) -> list[Finding]:
 
 
 def test_clearances(record: RunRecord, motion: Motion) -> None:
-    """The room advised is more than the model moves at the worse end of what is not known.
-
-    All standing objects, and of the paintings, whose swings take longer, every thirtieth.
-    """
+    """The room advised is more than the model moves at the worse end of what is not known."""
 
     @cache
     def slides(friction: float) -> float:
         return float(respond("sliding", motion, friction_static=friction)["displacement"].iloc[0])
 
     advice = advised(record, "clearance")
-    assert len(advice) > 400
+    assert len(advice) > 100
     for assessment, recommended in advice:
-        room = recommended.parameters["clearance"]
-        p = assessment.scene.parameters
-        if assessment.scene.support is Support.FREESTANDING:
-            assert slides(p["friction_static"].low) < room
-    paintings = [(a, r) for a, r in advice if a.scene.support is Support.HUNG][::30]
-    lengths = [getattr(a.scene.parameters["length"], end) for a, _ in paintings for end in ("low", "value", "high")]
-    dampings = [a.scene.parameters["damping"].value for a, _ in paintings for _ in range(3)]
-    swings = respond("swing", motion, angle=None, length=lengths, damping=dampings)["displacement"].to_numpy()
-    for at, (_, recommended) in enumerate(paintings):
-        assert swings[3 * at : 3 * at + 3].max() < recommended.parameters["clearance"]
+        assert assessment.scene.support is Support.FREESTANDING
+        friction = assessment.scene.parameters["friction_static"].low
+        assert slides(friction) < recommended.parameters["clearance"]
+
+
+def test_what_nobody_recorded_how_it_hangs_is_open_and_is_not_told_to_keep_clear(record: RunRecord) -> None:
+    """All framed works: nobody assumes a wire, the swing is open, its hooks hold, and the survey asks how it hangs."""
+    framed = [a for a in record.assessments if a.scene.object_class == "framed" and a.findings]
+    assert len(framed) > 500
+    for assessment in framed:
+        verdicts = {f.model: f.verdict for f in assessment.findings}
+        assert assessment.scene.hanging is None
+        assert verdicts["swing"] is Verdict.UNDETERMINED
+        assert verdicts["unhooking"] is Verdict.PASS
+        assert not assessment.recommendations
 
 
 def test_fastened_objects_bear_the_push(record: RunRecord, motion: Motion) -> None:

@@ -111,4 +111,4 @@ def test_a_hung_picture_is_fixed_for_the_strongest_push(motion: Motion) -> None:
     assert {one.measure for one in advice.values()} == {"restrain"}
     for one in advice.values():
         assert one.parameters["force"] == pytest.approx(8.0 * push)
-        assert [check.model for check in one.checks] == ["swing"]
+        assert [check.model for check in one.checks] == ["hanger_load"]

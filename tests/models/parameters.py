@@ -21,4 +21,6 @@ VALID: dict[str, dict[str, float]] = {
     "horizontal_isolator": {"frequency": 0.5, "damping": 0.02, "friction": 0.1},
     "rotational_isolator": {"frequency": 3.0, "damping": 0.2, "cg_height": 0.5, "inertia_ratio": 1.3},
     "oscillator": {"frequency": 4.0, "damping": 0.02},
+    "unhooking": {"hook_height": 0.2, "hook_offset": 0.02, "gyration": 0.3, "restitution": 0.3},
+    "hanger_load": {"amplification": 1.0},
 }

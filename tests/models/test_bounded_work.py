@@ -42,6 +42,13 @@ ENDS: dict[str, dict[str, list[float]]] = {
 }
 ENDS["swing_3d"] = ENDS["swing"]
 ENDS["rotational_isolator"] = {**ENDS["oscillator"], "cg_height": [0.5], "inertia_ratio": [1.3]}
+ENDS["unhooking"] = {
+    "hook_height": [1e-6, 0.3, 100.0],
+    "hook_offset": [0.0, 0.02, 1.0],
+    "gyration": [1e-6, 0.3, 10.0],
+    "restitution": [0.0, 0.3, 0.95],
+}
+ENDS["hanger_load"] = {"amplification": [1.0]}
 ENDS["stress"] = {"mass": [5.0], "lever": [0.5], "area": [1e-3], "section_modulus": [1e-5]}
 ENDS["flexible_stress"] = {**ENDS["stress"], **ENDS["oscillator"]}
 

@@ -50,6 +50,16 @@ def drawn(name: str, rng: np.random.Generator, n: int) -> dict[str, Array | floa
         return {"friction_static": flat(0.02, 0.3)}
     if name.startswith("swing"):
         return {"length": log(0.05, 5.0), "damping": flat(0.0, 0.2)}
+    if name == "unhooking":
+        height = log(0.1, 2.0)
+        return {
+            "hook_height": height * flat(0.1, 0.5),
+            "hook_offset": flat(0.005, 0.05),
+            "gyration": 0.3 * height,
+            "restitution": flat(0.0, 0.6),
+        }
+    if name == "hanger_load":
+        return {"amplification": flat(0.9, 2.0)}
     section = {"mass": flat(1.0, 50.0), "lever": flat(0.05, 1.0), "area": 1e-3, "section_modulus": 1e-5}
     if name == "stress":
         return section
@@ -74,6 +84,8 @@ CASES = [
     "horizontal_isolator 2",
     "rotational_isolator",
     "oscillator",
+    "unhooking",
+    "hanger_load",
 ]
 
 

@@ -230,7 +230,7 @@ def test_each_measure_that_can_be_installed_changes_a_scene() -> None:
     assert set(known) == {row["measure"] for row in table("measures")} - {"remove"}
     for name, measure in known.items():
         parameters = {q.name: 2.0 if q.name == "enlargement" else 0.4 for q in measure.parameters}
-        scene = classify(hung if name in ("rubber_pads", "restrain") else standing)
+        scene = classify(hung if name in ("rubber_pads", "restrain", "close_hooks") else standing)
         stands = placed(scene, [InstalledMeasure(name, parameters, "decided by Ann on 2031-05-01: because")])
         assert stands.scene.parameters != scene.parameters or stands.scene.support is not scene.support, name
         assert not any("not computed" in text for text in stands.scene.assumptions), name

@@ -68,6 +68,14 @@ def test_equal_questions_are_one_and_the_most_useful_comes_first() -> None:
     ]
 
 
+def test_how_works_hang_is_asked_once_and_first_where_it_settles_most() -> None:
+    """A wish for it of each work takes the place of the question that is asked of all unrecorded works anyway."""
+    wishes = [replace(wish(p, "hanging", 0.0, 0.0, 1.0), low=None, best=None, high=None) for p in PAINTINGS]
+    wishes += [wish(p, "clearance_m", 0.15, 0.3, 0.6, 0.3) for p in PAINTINGS]
+    asked = rule_questions([classify(item) for item in PAINTINGS], wishes)
+    assert [(q.field, q.settles) for q in asked] == [("hanging", 7.0), ("clearance_m", pytest.approx(2.1))]
+
+
 def test_a_class_that_is_held_in_two_ways_is_asked_about_by_both() -> None:
     held = [replace(v, support=Support.FASTENED) if n == 0 else v for n, v in enumerate(VASES)]
     (only,) = rule_questions([classify(item) for item in held], [wish(v, "friction", 0.2, 0.3, 0.4) for v in held[1:]])[

@@ -23,6 +23,7 @@ _STATED = {
     "damping": "damping",
     "frequency_hz": "frequency_hz",
     "support": "held",
+    "hanging": "hanging",
 }
 """Field that a survey asks for -> what a rule would state in its place: lengths of many objects as shares."""
 
@@ -114,7 +115,9 @@ def rule_questions(scenes: Iterable[Scene], wishes: Iterable[MeasurementRequest]
         if len(some) >= MANY
     ]
     asked.sort(key=lambda one: (-one.settles - one.unlocks, -one.objects, one.object_class, one.field))
-    return [*asked, *_unsaid(known.values(), supports)]
+    said = {(one.object_class, one.support, one.field) for one in asked}
+    unsaid = _unsaid(known.values(), supports)
+    return [*asked, *(one for one in unsaid if (one.object_class, one.support, one.field) not in said)]
 
 
 def _question(

@@ -11,6 +11,7 @@ from pipeline.mitigate.measures.adhesives import Putty, Wax
 from pipeline.mitigate.measures.ballast import Ballast
 from pipeline.mitigate.measures.base import Measure
 from pipeline.mitigate.measures.clearance import Clearance
+from pipeline.mitigate.measures.close_hooks import CloseHooks
 from pipeline.mitigate.measures.fasten import Fasten
 from pipeline.mitigate.measures.friction_isolator import FrictionIsolator
 from pipeline.mitigate.measures.horizontal_isolator import HorizontalIsolator
@@ -73,6 +74,7 @@ MEASURES: Registry[type[Measure]] = Registry(
         Brackets,
         Clamps,
         Fasten,
+        CloseHooks,
         Restrain,
         FrictionIsolator,
         HorizontalIsolator,

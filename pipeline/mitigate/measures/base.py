@@ -7,12 +7,13 @@ from math import ceil, isfinite
 from typing import ClassVar
 
 from pipeline.analysis.classify import models_of
+from pipeline.analysis.hanging import OF_HANGING, hanging_estimates, hanging_of
 from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused
 from pipeline.mitigate.rows import MeasureRow
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models import settled_by_room
 from pipeline.quantities import Quantity
-from pipeline.records import Check, Estimate, Finding, Item, Origin, Scene, Support
+from pipeline.records import Check, Estimate, Finding, Hanging, Item, Origin, Scene, Support
 
 MARGIN = 1.1
 """Room asked for over the largest demand of the uncertain inputs: the error of the motion is not in it."""
@@ -212,6 +213,21 @@ def with_parameters(scene: Scene, **found: Estimate) -> Scene:
 def held(scene: Scene) -> Scene:
     """Return it held at its base: it neither rocks nor slides, and its critical section bears the push."""
     return replace(scene, support=Support.FASTENED, models=models_of(Support.FASTENED))
+
+
+def rehung(scene: Scene, way: Hanging) -> Scene:
+    """Return a work on a wall hung in another way: what was known or assumed of how it hung is forgotten."""
+    gone = {name: one for name, one in scene.parameters.items() if name in OF_HANGING}
+    kept = {name: one for name, one in scene.parameters.items() if name not in gone}
+    found = hanging_estimates(scene.item, hanging_of(replace(scene.item, hanging=way), scene.object_class))
+    notes = {one.note for one in gone.values()}
+    return replace(
+        scene,
+        hanging=way,
+        models=models_of(Support.HUNG),
+        parameters=kept | found,
+        assumptions=tuple(text for text in scene.assumptions if text not in notes),
+    )
 
 
 def cleared(scene: Scene, parameters: Mapping[str, float]) -> Scene:

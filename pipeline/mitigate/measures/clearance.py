@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from pipeline.analysis.verdicts import judge
 from pipeline.mitigate.measures.base import CLEARANCE, MARGIN, Measure, cleared, round_up
-from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
+from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, known_to_swing, refused
 from pipeline.mitigate.trials import TrialRunner
 from pipeline.models import settled_by_room
 from pipeline.records import Check, Scene, Support, Verdict
@@ -39,6 +39,8 @@ class Clearance(Measure):
         if others:
             may = "it fails" if any(f.verdict is Verdict.FAIL for f in others) else "it may fail"
             return refused(f"room does not help: {may} otherwise than by moving")
+        if not known_to_swing(one.scene):
+            return refused("room helps only what swings, and how it hangs is not recorded")
         most = one.moves
         if most is None:
             return refused("it does not move")

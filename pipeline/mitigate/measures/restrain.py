@@ -1,15 +1,16 @@
-"""A second fixing that keeps what hangs on a wall from swinging."""
+"""A second fixing at the lower corners of what hangs on a wall: nothing is left that swings, slaps or lifts off."""
 
 from collections.abc import Mapping
 
-from pipeline.mitigate.measures.base import Measure, held, knows_section
+from pipeline.mitigate.measures.base import SPARE, Measure, exactly, rehung, with_parameters
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
-from pipeline.records import Check, Scene, Support
+from pipeline.models.hanger_load import pull
+from pipeline.records import Hanging, Scene, Support
 
 
 class Restrain(Measure):
-    """Fix a hung object to the wall as well: nothing is left that swings; the fixings bear the push.
+    """Fix a hung object to the wall at its lower corners too: what is left is the load on its fixings.
 
     References
     ----------
@@ -21,8 +22,8 @@ class Restrain(Measure):
     for_room = True
 
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
-        """Return it held."""
-        return held(scene)
+        """Return it fixed to its wall above and below."""
+        return rehung(scene, Hanging.FIXED)
 
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
         """Propose fixings for the force of the push."""
@@ -32,10 +33,9 @@ class Restrain(Measure):
         mass = scene.parameters.get("mass")
         if mass is None:
             return refused("its mass is not known, so the force on the fixings cannot be given")
-        checks = tuple(
-            (f.level, Check("swing", f.title, 0.0, f.unit, f.capacity or 0.0, 0.0, True, f.demand))
-            for f in one.findings
-            if f.model == "swing"
-        )
-        trials = (Trial(held(scene)),) if knows_section(scene) else ()
-        return Proposal((Candidate({"force": (mass.high * runner.push, "N")}, trials, checks=checks),))
+        fixed = self.in_place(one, {})
+        # Its fixings are built for the force that they are told.
+        strength = SPARE * fixed.parameters["amplification"].high * runner.largest(pull)
+        built = exactly(strength, "-", "strength of fixings that are built for the force")
+        trial = Trial(with_parameters(fixed, hanger_strength=built))
+        return Proposal((Candidate({"force": (mass.high * runner.push, "N")}, (trial,)),))
