@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from pipeline.kernels import FIRST, inner, kernel
-from pipeline.kernels.flags import CUT, EVENT_CAP
+from pipeline.kernels.flags import CUT, EVENT_CAP, UNRESOLVED
 from pipeline.kernels.friction_line import glides
 from pipeline.kernels.line_phase import TERMS, Body, make_body
 from pipeline.kernels.quiet import next_above
@@ -39,6 +39,7 @@ from pipeline.kernels.standing_body import (
     MU_K,
     MU_S,
     PHI,
+    RESIDUAL,
     RESTED,
     RESTS,
     ROCKS,
@@ -57,6 +58,9 @@ from pipeline.kernels.standing_body import (
 )
 from pipeline.kernels.standing_phases import fly_on, rest_on, rock_on, slide_on, slide_rock_on
 from pipeline.quantities import Array, G
+
+MOST_PIECES = 50_000
+"""Steps of a sample interval, at the coarsest, from which on a body is not followed."""
 
 EVENTS = 200
 """Changes of mode within a stretch after which the body waits until the next one."""
@@ -145,6 +149,9 @@ def _follow(
     n = x.shape[0]
     stand_on(state, 1.0, body)
     fastest = math.sqrt(max(body[INVERSE], body[INVERSE + 1]) * (G + peak))
+    if not fastest * dt <= STEP * MOST_PIECES:
+        out[FLAGS] = float(UNRESOLVED)
+        return
     pieces = max(1, math.ceil(fastest * dt / STEP)) * refine
     step = dt / pieces
     parts = max(1, refine // 2)
@@ -193,7 +200,8 @@ def _follow(
 @inner
 def _record(state: Array, body: Array, out: Array, history: Array, i: int) -> None:
     history[i, 0] = state[PHI] if state[MODE] == FLIES else state[SIDE] * state[PHI]
-    history[i, 1] = track(state, body, out)
+    track(state, body, out)
+    history[i, 1] = out[RESIDUAL]
 
 
 @inner

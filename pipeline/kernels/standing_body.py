@@ -47,7 +47,8 @@ STATE = 16
 RESTS, SLIDES, ROCKS, SLIDE_ROCKS, FLIES = 0.0, 1.0, 2.0, 3.0, 4.0
 
 RATIO, FELL, FELL_AT, LIFTED_AT, IMPACTS, FLAGS, LAST_NEAR, RESTED, AWAY, RESIDUAL = range(10)
-"""What is found: as of a rocking body; the largest displacement of the middle of the base, and the last [m]."""
+"""What is found: as of a rocking body; the largest displacement of the middle of the base and, with its
+sign, the last [m]."""
 FOUND = 10
 
 FALLING = 1.2
@@ -264,7 +265,8 @@ def hit(state: Array, a: float, n: float, body: Array, out: Array) -> None:
         s = -1.0 if cx < 0.0 else 1.0
         i = 0 if s > 0.0 else 1
         stand_on(state, s, body)
-        rx, flat = s * body[HALF + i], min(abs(cx), -body[MU_S] * cy) <= -body[TANGENT + i] * EDGEWISE * cy
+        grip = abs(cx) if abs(cx) <= -body[MU_S] * cy else -body[MU_K] * cy
+        rx, flat = s * body[HALF + i], grip <= -body[TANGENT + i] * EDGEWISE * cy
     if flat:
         cx = stopped(cx, -cy, body)
     elif cy < 0.0:
@@ -340,6 +342,24 @@ def sway(state: Array, body: Array) -> float:
 
 
 @inner
+def drift(state: Array, body: Array) -> float:
+    """Return the velocity of the middle of the base against the centre of gravity of a body that flies.
+
+    Parameters
+    ----------
+    state, body : ndarray
+        As above.
+
+    Returns
+    -------
+    float
+        Along the surface, m/s.
+    """
+    middle, phi = 0.5 * (body[HALF] - body[HALF + 1]), state[PHI]
+    return -(middle * math.sin(phi) + body[HEIGHT] * math.cos(phi)) * state[RATE]
+
+
+@inner
 def lies(at: float, alpha: float, out: Array) -> None:
     """Note that a body fell.
 
@@ -378,12 +398,12 @@ def track(state: Array, body: Array, out: Array) -> float:
     else:
         s = state[SIDE]
         i = 0 if s > 0.0 else 1
-        cosine = body[COSINE + i] * state[CS] + body[SINE + i] * state[SN]
+        cosine = body[COSINE + i] * state[CS] + body[SINE + i] * state[SN] if state[PHI] != 0.0 else 1.0
         place = state[U] + s * 0.5 * (body[HALF] + body[HALF + 1]) * (1.0 - cosine)
         if state[PHI] > max(FALLING, body[ALPHA + i]) * EDGEWISE:
             return place
     out[AWAY] = max(out[AWAY], abs(place))
-    out[RESIDUAL] = abs(place)
+    out[RESIDUAL] = place
     return place
 
 

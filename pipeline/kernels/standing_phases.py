@@ -38,6 +38,7 @@ from pipeline.kernels.standing_body import (
     V,
     X,
     Y,
+    drift,
     fly,
     go_on_flat,
     go_on_tilted,
@@ -157,6 +158,16 @@ def _slips(at: Moving, load: Load, t: float, h: float, s: float, c: float, arm: 
     return tau
 
 
+@inner
+def _turning_point(x0: float, v0: float, x1: float, v1: float, h: float) -> float:
+    # Where the cubic through places and velocities of opposite sign at both ends of a step turns.
+    slope = (x1 - x0) / h
+    a, b = 3.0 * (v0 + v1 - 2.0 * slope), 2.0 * (3.0 * slope - 2.0 * v0 - v1)
+    root = math.sqrt(max(0.0, b * b - 4.0 * a * v0))
+    k = 2.0 * v0 / (-b + math.copysign(root, v0))
+    return x0 + h * k * (v0 + k * (0.5 * b + k * a / 3.0))
+
+
 @fused
 def rock_on(state: Array, load: Load, t: float, h: float, clock: float, rest: float, body: Array, out: Array) -> float:
     """Let a body rock about an edge that does not slip: one step, or until it slips, lands or lies.
@@ -204,11 +215,13 @@ def rock_on(state: Array, load: Load, t: float, h: float, clock: float, rest: fl
             h, landed = tau, -1.0
     if rate > 0.0 > r1 and (phi + h * rate) / alpha > out[RATIO]:
         tau = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, SPEED, 0.0)
-        state[PHI], _r, state[SN], state[CS] = rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, tau, s, c)
-        out[RATIO] = max(out[RATIO], state[PHI] / alpha)
-        track(state, body, out)
-    state[PHI], state[RATE], state[SN], state[CS], state[HOLD] = p1, r1, s1, c1, 0.0
-    track(state, body, out)
+        out[RATIO] = max(out[RATIO], rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, tau, s, c)[0] / alpha)
+    state[PHI], state[RATE], state[SN], state[CS], state[HOLD] = phi, rate, sn, cs, 0.0
+    place, leaves = track(state, body, out), sway(state, body)
+    state[PHI], state[RATE], state[SN], state[CS] = p1, r1, s1, c1
+    there, comes = track(state, body, out), sway(state, body)
+    if leaves * comes < 0.0 and p1 <= falls:
+        out[AWAY] = max(out[AWAY], abs(_turning_point(place, leaves, there, comes, h)))
     out[RATIO] = max(out[RATIO], p1 / alpha)
     t += h
     if slips:
@@ -250,19 +263,11 @@ def _first_end(
             tau, event = other, LANDS
     # Once past the angle from which on its base is not followed, it lies at a quarter turn.
     level = falls if at[0] < falls * BELOW else OVERTURNED
-    if event == NOTHING and p1 > level:
-        tau, event = slip_locate(at, load, t, 0.0, h, edge, TURN, level), FALLS
+    if event not in (NOTHING, LANDS):
+        p1 = slip_after(at, load, t, tau, edge)[0]
+    if event != LANDS and p1 > level:
+        tau, event = slip_locate(at, load, t, 0.0, tau, edge, TURN, level), FALLS
     return tau, event
-
-
-@inner
-def _turning_point(x0: float, v0: float, x1: float, v1: float, h: float) -> float:
-    # Where the cubic through places and velocities of opposite sign at both ends of a step turns.
-    slope = (x1 - x0) / h
-    a, b = 3.0 * (v0 + v1 - 2.0 * slope), 2.0 * (3.0 * slope - 2.0 * v0 - v1)
-    root = math.sqrt(max(0.0, b * b - 4.0 * a * v0))
-    k = 2.0 * v0 / (-b + math.copysign(root, v0))
-    return x0 + h * k * (v0 + k * (0.5 * b + k * a / 3.0))
 
 
 @fused
@@ -337,18 +342,18 @@ def _clear(state: Array, load: Load, t: float, h: float, side: float, body: Arra
 @inner
 def _touches(state: Array, load: Load, t: float, h: float, side: float, body: Array) -> float:
     # When within a step a corner of a flying body comes down; -1 if it does not.
-    low, high, last = 0.0, h, 0
-    at_high = _clear(state, load, t, high, side, body)
-    if at_high > 0.0:
-        return -1.0
+    low, high, last, faint = 0.0, h, 0, FAINT * body[HEIGHT]
     at_low = _clear(state, load, t, low, side, body)
-    if at_low <= FAINT * body[HEIGHT]:
+    at_high = _clear(state, load, t, high, side, body)
+    if at_high > (0.0 if at_low > faint else -faint):
+        return -1.0
+    if at_low <= faint:
         # It has just gone up: find a time at which it is up.
         low = h
         for _ in range(30):
             low *= 0.5
             at_low = _clear(state, load, t, low, side, body)
-            if at_low > FAINT * body[HEIGHT]:
+            if at_low > faint:
                 break
         else:
             return 0.0
@@ -384,20 +389,27 @@ def fly_on(state: Array, load: Load, t: float, h: float, clock: float, body: Arr
     at = _touches(state, load, t, h, -side, body)
     if 0.0 <= at < h:
         touched, h = -side, at
+    falls = max(FALLING, body[ALPHA] if state[RATE] > 0.0 else body[ALPHA + 1])
+    if abs(state[PHI]) < falls * BELOW and abs(state[PHI] + h * state[RATE]) > falls:
+        touched, h = 0.0, (falls - math.copysign(1.0, state[RATE]) * state[PHI]) / abs(state[RATE])
     a, n = a0 + a1 * t, n0 + n1 * t
+    place, leaves = track(state, body, out), state[VX] + drift(state, body)
     state[X] += h * (state[VX] - h * (0.5 * a + a1 * h / 6.0))
     state[Y] += h * (state[VY] - h * (0.5 * n + n1 * h / 6.0))
     state[VX] -= h * (a + 0.5 * a1 * h)
     state[VY] -= h * (n + 0.5 * n1 * h)
     state[PHI] += h * state[RATE]
-    track(state, body, out)
+    there, comes = track(state, body, out), state[VX] + drift(state, body)
+    if leaves * comes < 0.0 and abs(state[PHI]) <= falls:
+        out[AWAY] = max(out[AWAY], abs(_turning_point(place, leaves, there, comes, h)))
     t += h
     tilted = state[PHI]
     alpha = body[ALPHA] if tilted > 0.0 else body[ALPHA + 1]
-    out[RATIO] = max(out[RATIO], abs(tilted) / alpha)
     if abs(tilted) >= OVERTURNED:
-        lies(clock + t, alpha, out)
-    elif touched != 0.0:
+        lies(clock + t - (abs(tilted) - OVERTURNED) / abs(state[RATE]), alpha, out)
+        return t
+    out[RATIO] = max(out[RATIO], abs(tilted) / alpha)
+    if touched != 0.0:
         i, phi = (0 if touched > 0.0 else 1), touched * tilted
         state[SIDE], state[PHI], state[RATE] = touched, phi, touched * state[RATE]
         state[SN], state[CS] = math.sin(body[ALPHA + i] - phi), math.cos(body[ALPHA + i] - phi)

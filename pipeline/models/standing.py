@@ -44,6 +44,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.kernels import standing_body as kernel
+from pipeline.kernels.flags import UNRESOLVED
 from pipeline.kernels.rocking import OVERTURNED, REST
 from pipeline.kernels.standing import standing_batch
 from pipeline.models.common import ROUNDING, SENSITIVE, Quiet, lift_ratios, needs, unless_free
@@ -127,9 +128,12 @@ def tilt_ratios(motion: Excitation, body: Array) -> Array:
     -----
     Proof: flat on its base the body feels a force of at most min(|a_h|, mu_s N) along the base, at a height h below the
     centre of gravity; the moment of it is held by the weight at an arm of up to b.  In the air a body that did not turn
-    does not begin to, and where it lands as a whole the impulse is held in the same way.
+    does not begin to; where it lands as a whole the impulse along the base, whatever the push was, is at most mu_s
+    times the one that presses it down, so that the push counts as unlimited where a body is thrown up.
     """
     to_positive, to_negative = lift_ratios(motion)
+    if np.min(motion.z) < -G and max(to_positive, to_negative) > 0.0:
+        to_positive = to_negative = np.inf
     friction, tangent = body[:, kernel.MU_S], body[:, kernel.TANGENT : kernel.TANGENT + 2]
     return np.maximum(
         np.minimum(to_positive, friction) / tangent[:, 0], np.minimum(to_negative, friction) / tangent[:, 1]
@@ -186,21 +190,33 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
         away = 2.0 * np.abs(fine[:, kernel.AWAY] - coarse[:, kernel.AWAY]) + ROUNDING * fine[:, kernel.AWAY]
         sensitive |= (away > APART * fine[:, kernel.AWAY]) | _may_slip(motion, body)
     note = fine[:, FLAGS].astype(np.int64) | np.where(sensitive, SENSITIVE, 0)
+    lost = (note & UNRESOLVED) > 0
+    if lost.any():
+        # It may do anything up to falling over, and nobody knows where its base is then.
+        fine[lost, RATIO], fine[lost, FELL] = _most(body[lost]), 1.0
+        fine[lost, kernel.AWAY] = fine[lost, kernel.RESIDUAL] = np.nan
+        error, away = np.where(lost, fine[:, RATIO], error), np.where(lost, np.nan, away)
     # Only `_flips`, which goes on from a run without an estimate, wants to know how long a body was near.
     hidden = {} if estimate else {"near_until": fine[:, LAST_NEAR]}
     return hidden | {
         "rotation_ratio": fine[:, RATIO],
         "displacement": fine[:, kernel.AWAY],
-        "residual": fine[:, kernel.RESIDUAL],
+        "residual": np.abs(fine[:, kernel.RESIDUAL]),
         "overturned": fine[:, FELL],
         "overturning_time": np.where(fine[:, FELL_AT] < 0.0, np.nan, fine[:, FELL_AT]),
         "uplift_time": np.where(fine[:, LIFTED_AT] < 0.0, np.nan, fine[:, LIFTED_AT]),
         "impacts": fine[:, IMPACTS],
         "uplift_ratio": tilt,
-        "error": np.maximum(error, away),
+        "error": np.fmax(error, away),
         "displacement_error": away,
         "note": note.astype(np.float64),
     }
+
+
+def _most(body: Array) -> Array:
+    # The ratio of one that falls, after which it is not followed.
+    most: Array = OVERTURNED / np.min(body[:, kernel.ALPHA : kernel.ALPHA + 2], axis=1)
+    return most
 
 
 def _may_slip(motion: Excitation, body: Array) -> NDArray[np.bool_]:
@@ -239,7 +255,7 @@ def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
     tilt, friction = tilt_ratios(motion, body), body[:, kernel.MU_S]
     tilts, thrown = tilt > 1.0, bool(np.min(motion.z) < -G)
     # Once it lifts an edge it may do anything up to falling over, after which it is not followed.
-    most = np.where(tilts, OVERTURNED / np.min(body[:, kernel.ALPHA : kernel.ALPHA + 2], axis=1), 0.0)
+    most = np.where(tilts, _most(body), 0.0)
     slips = slip_bounds(motion, friction, body[:, kernel.MU_K], "displacement")
     low, high = slips.outputs["displacement"]
     nothing = np.zeros_like(low)
