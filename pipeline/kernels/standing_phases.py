@@ -161,10 +161,15 @@ def _slips(at: Moving, load: Load, t: float, h: float, s: float, c: float, arm: 
 @inner
 def _turning_point(x0: float, v0: float, x1: float, v1: float, h: float) -> float:
     # Where the cubic through places and velocities of opposite sign at both ends of a step turns.
+    if h <= 0.0:
+        return x1
     slope = (x1 - x0) / h
     a, b = 3.0 * (v0 + v1 - 2.0 * slope), 2.0 * (3.0 * slope - 2.0 * v0 - v1)
     root = math.sqrt(max(0.0, b * b - 4.0 * a * v0))
     k = 2.0 * v0 / (-b + math.copysign(root, v0))
+    # A step so short that its slope is rounding alone has no turn worth having.
+    if not 0.0 <= k <= 1.0:
+        return x1
     return x0 + h * k * (v0 + k * (0.5 * b + k * a / 3.0))
 
 

@@ -51,7 +51,7 @@ from pipeline.models.common import ROUNDING, SENSITIVE, Quiet, lift_ratios, need
 from pipeline.models.doubt import APART, apart, doubt
 from pipeline.models.flips import ALL, FELL, FELL_AT, FLAGS, IMPACTS, LAST_NEAR, LIFTED_AT, RATIO, Rows, Run, flips
 from pipeline.models.friction import kinetic, slip_bounds
-from pipeline.models.rocking import HARMLESS, OVERTURNS, ROCKS, bodies, overturning, sides
+from pipeline.models.rocking import HARMLESS, OVERTURNS, ROCKS, UNHARMED, bodies, overturning, sides
 from pipeline.models.sliding import FRICTION_KINETIC, FRICTION_STATIC
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Trials
@@ -386,5 +386,5 @@ STANDING = Model(
         sample={"half_width": 0.15, "cg_height": 0.5, "friction_static": 0.5},
         promised=1e-4,
     ),
-    says=(HARMLESS, OVERTURNS, SLIDES),
+    says=(HARMLESS, UNHARMED, OVERTURNS, SLIDES),
 )
