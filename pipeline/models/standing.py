@@ -58,7 +58,7 @@ from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Trials
 
 SLIDES = "slides"
 
-FINER = 8
+FINER = 4
 """How much finer those are integrated anew that two steps disagree about: a chaotic sequence of impacts, mostly."""
 
 ONSET = 0.01
