@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from pipeline.kernels.rocking import NEAR, REST, STEP
 from pipeline.models.common import ILL, NUDGE, ROUNDING
-from pipeline.models.flips import FELL, FELL_AT, LAST_NEAR, RATIO, RESTED, Run, flips
+from pipeline.models.flips import FELL, FELL_AT, LAST_NEAR, RATIO, RESTED, Integration, flips
 from pipeline.quantities import Array
 from pipeline.records import Excitation
 
@@ -45,7 +45,7 @@ def apart(coarse: Array, fine: Array, pace: Array) -> NDArray[np.bool_]:
     Parameters
     ----------
     coarse, fine : ndarray, shape (n, 8 or more)
-        What a `Run` found at the one step and at the other.
+        What a `Integration` found at the one step and at the other.
     pace : ndarray, shape (n,)
         p of each, rad/s.
 
@@ -61,7 +61,7 @@ def apart(coarse: Array, fine: Array, pace: Array) -> NDArray[np.bool_]:
 
 
 def doubt(
-    run: Run, motion: Excitation, refine: int, uplift: Array, pace: Array, coarse: Array, fine: Array
+    run: Integration, motion: Excitation, refine: int, uplift: Array, pace: Array, coarse: Array, fine: Array
 ) -> tuple[Array, NDArray[np.bool_]]:
     """Return the error of the largest ratio, and which bodies are sensitive.
 

@@ -19,7 +19,7 @@ from pipeline.quantities import Array
 from pipeline.records import Excitation
 
 RATIO, FELL, FELL_AT, LIFTED_AT, IMPACTS, FLAGS, LAST_NEAR, RESTED = range(8)
-"""Columns of `integrate`, and the first ones of what any `Run` returns."""
+"""Columns of `integrate`, and the first ones of what any `Integration` returns."""
 
 Rows = NDArray[np.bool_] | slice
 """Some of several bodies."""
@@ -27,7 +27,7 @@ Rows = NDArray[np.bool_] | slice
 ALL = slice(None)
 
 
-class Run(Protocol):
+class Integration(Protocol):
     """The integration of some of several bodies that rock."""
 
     def __call__(
@@ -111,7 +111,7 @@ def integrate(
 
 
 def flips(
-    run: Run,
+    run: Integration,
     motion: Excitation,
     uplift: Array,
     pace: Array,

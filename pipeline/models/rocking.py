@@ -56,8 +56,8 @@ from pipeline.models.flips import (
     LAST_NEAR,
     LIFTED_AT,
     RATIO,
+    Integration,
     Rows,
-    Run,
     flips,
     integrate,
 )
@@ -168,7 +168,7 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
     }
 
 
-def _runs(body: Array, initial: Array) -> Run:
+def _runs(body: Array, initial: Array) -> Integration:
     # Those bodies as `doubt` and `flips` ask for them.
     def run(motion: Excitation, rows: Rows, refine: int, until: Array | None = None, rest: float = REST) -> Array:
         return integrate(motion, body[rows], initial[rows], refine, until, rest=rest)

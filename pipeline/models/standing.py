@@ -51,7 +51,19 @@ from pipeline.kernels.rocking import OVERTURNED, REST
 from pipeline.kernels.standing import standing_batch
 from pipeline.models.common import ROUNDING, SENSITIVE, Quiet, lift_ratios, needs, unless_free
 from pipeline.models.doubt import APART, apart, doubt
-from pipeline.models.flips import ALL, FELL, FELL_AT, FLAGS, IMPACTS, LAST_NEAR, LIFTED_AT, RATIO, Rows, Run, flips
+from pipeline.models.flips import (
+    ALL,
+    FELL,
+    FELL_AT,
+    FLAGS,
+    IMPACTS,
+    LAST_NEAR,
+    LIFTED_AT,
+    RATIO,
+    Integration,
+    Rows,
+    flips,
+)
 from pipeline.models.friction import kinetic, slip_bounds
 from pipeline.models.rocking import HARMLESS, OVERTURNS, ROCKS, UNHARMED, bodies, overturning, sides
 from pipeline.models.sliding import FRICTION_KINETIC, FRICTION_STATIC
@@ -142,7 +154,7 @@ def tilt_ratios(motion: Excitation, body: Array) -> Array:
     )
 
 
-def _runs(body: Array) -> Run:
+def _runs(body: Array) -> Integration:
     # Those bodies as `doubt` and `flips` ask for them.
     def run(motion: Excitation, rows: Rows, refine: int, until: Array | None = None, rest: float = REST) -> Array:
         return _integrate(motion, body[rows], refine, until, rest, np.empty((0, 2)))
