@@ -17,14 +17,11 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import FIRST, fused, inlined, inner, kernel
+from pipeline.kernels import FIRST, fused, inner, kernel
 from pipeline.kernels.flags import CONTACT_LOST, CUT, EVENT_CAP
 from pipeline.kernels.quiet import next_above
-from pipeline.kernels.roots import narrowed, trial
+from pipeline.kernels.rock_phase import ANGLE, SPEED, landing, lift_off, locate, rock_step
 from pipeline.quantities import Array, G
-
-# What _locate looks for.
-ANGLE, SPEED = np.int64(0), np.int64(1)
 
 OVERTURNED = 0.5 * math.pi
 """Rotation [rad] from which no body comes back."""
@@ -51,106 +48,6 @@ NEAR = 0.05
 """Ratio below which a body that has calmed down counts as far from overturning."""
 
 
-@inlined
-def _step(
-    phi: float,
-    rate: float,
-    sn: float,
-    cs: float,
-    a0: float,
-    a1: float,
-    n0: float,
-    n1: float,
-    t: float,
-    h: float,
-    s: float,
-    c: float,
-) -> tuple[float, float, float, float]:
-    # One classical Runge-Kutta step from t to t + h.  sn, cs: sine and cosine of alpha - phi, integrated along with it,
-    # so that a step has no transcendental function in it.
-    half, sixth = 0.5 * h, h / 6.0
-    pa, pn = s * (a0 + a1 * t), n0 + n1 * t
-    ma, mn = s * (a0 + a1 * (t + half)), n0 + n1 * (t + half)
-    qa, qn = s * (a0 + a1 * (t + h)), n0 + n1 * (t + h)
-    k1 = -c * (pn * sn + pa * cs)
-    ds1, dc1 = -rate * cs, rate * sn
-    r2, s2, c2 = rate + half * k1, sn + half * ds1, cs + half * dc1
-    k2 = -c * (mn * s2 + ma * c2)
-    ds2, dc2 = -r2 * c2, r2 * s2
-    r3, s3, c3 = rate + half * k2, sn + half * ds2, cs + half * dc2
-    k3 = -c * (mn * s3 + ma * c3)
-    ds3, dc3 = -r3 * c3, r3 * s3
-    r4, s4, c4 = rate + h * k3, sn + h * ds3, cs + h * dc3
-    k4 = -c * (qn * s4 + qa * c4)
-    sa = sn + sixth * (ds1 + 2.0 * (ds2 + ds3) - r4 * c4)
-    ca = cs + sixth * (dc1 + 2.0 * (dc2 + dc3) + r4 * s4)
-    back = 1.5 - 0.5 * (sa * sa + ca * ca)
-    return (
-        phi + sixth * (rate + 2.0 * (r2 + r3) + r4),
-        rate + sixth * (k1 + 2.0 * (k2 + k3) + k4),
-        sa * back,
-        ca * back,
-    )
-
-
-@fused
-def _locate(
-    phi: float,
-    rate: float,
-    sn: float,
-    cs: float,
-    a0: float,
-    a1: float,
-    n0: float,
-    n1: float,
-    t: float,
-    low: float,
-    high: float,
-    s: float,
-    c: float,
-    what: int,
-    level: float,
-) -> float:
-    # The step length between low and high after which phi (what: ANGLE) or its rate (SPEED) reaches the level:
-    # Illinois, each trial being one step from the same beginning.
-    p, r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, low, s, c)
-    at_low = (p if what == ANGLE else r) - level
-    p, r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, high, s, c)
-    at_high = (p if what == ANGLE else r) - level
-    side, tau = 0, high
-    for _ in range(60):
-        if at_high == at_low:
-            break
-        before, tau = tau, trial(low, high, at_low, at_high)
-        p, r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, tau, s, c)
-        value = (p if what == ANGLE else r) - level
-        low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, tau, value)
-        if value == 0.0 or abs(tau - before) <= 1e-15 * tau:
-            break
-    return tau
-
-
-@inner
-def _lift_off(
-    a0: float, a1: float, n0: float, n1: float, now: float, span: float, tan1: float, tan2: float
-) -> tuple[float, float]:
-    # First time in [now, span] at which an edge lifts, and the edge it then turns about; (-1, 0) if none does.
-    time, edge = -1.0, 0.0
-    for s in (1.0, -1.0):
-        hold = tan1 if s > 0.0 else tan2
-        begin = -s * (a0 + a1 * now) - hold * (n0 + n1 * now)
-        end = -s * (a0 + a1 * span) - hold * (n0 + n1 * span)
-        if begin > 0.0:
-            t = now
-        elif end > 0.0:
-            t = now + (span - now) * min(1.0, -begin / (end - begin))
-        else:
-            continue
-        if time < 0.0 or t < time:
-            time, edge = t, s
-    return time, edge
-
-
 @fused
 def _stretch(
     state: Array,
@@ -174,7 +71,7 @@ def _stretch(
     landings = 0
     while landings <= IMPACTS_CAP:
         if s == 0.0:
-            lift, edge = _lift_off(a0, a1, n0, n1, t, span, math.tan(body[0]), math.tan(body[1]))
+            lift, edge = lift_off(a0, a1, n0, n1, t, span, math.tan(body[0]), math.tan(body[1]))
             if edge == 0.0:
                 break
             t, s = lift, edge
@@ -193,29 +90,13 @@ def _stretch(
         if h > 1.5 * longest:
             h = longest
         alpha, c = (body[0], body[2]) if s > 0.0 else (body[1], body[3])
-        p1, r1, s1, c1 = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c)
+        p1, r1, s1, c1 = rock_step(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c)
         landed = -1.0
-        if phi > 0.0:
-            if p1 < 0.0:
-                landed = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, ANGLE, 0.0)
-            elif rate < 0.0 < r1:
-                dip = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, SPEED, 0.0)
-                lowest, _r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, dip, s, c)
-                if lowest < 0.0:
-                    landed = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, dip, s, c, ANGLE, 0.0)
-        elif p1 <= 0.0:
-            # A hop that begins and ends within the step: find a time at which the body is up.
-            low = 0.5 * h
-            landed = 0.0
-            for _k in range(50):
-                p, _r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, low, s, c)
-                if p > 0.0:
-                    landed = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, low, h, s, c, ANGLE, 0.0)
-                    break
-                low *= 0.5
+        if p1 <= 0.0 or rate < 0.0 < r1:
+            landed = landing(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c, p1, r1)
         if landed < 0.0:
             if p1 >= OVERTURNED:
-                tau = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, ANGLE, OVERTURNED)
+                tau = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, ANGLE, OVERTURNED)
                 out[0] = max(out[0], OVERTURNED / alpha)
                 out[1], out[2] = 1.0, clock + t + tau
                 break
@@ -225,7 +106,7 @@ def _stretch(
             phi, rate, sn, cs = p1, r1, s1, c1
             t += h
             continue
-        _p, r1, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, landed, s, c)
+        _p, r1, _s, _c = rock_step(phi, rate, sn, cs, a0, a1, n0, n1, t, landed, s, c)
         if rate > 0.0 > r1:
             _peak(phi, rate, sn, cs, a0, a1, n0, n1, t, landed, s, alpha, c, out)
         t += landed
@@ -268,8 +149,8 @@ def _peak(
     out: Array,
 ) -> None:
     if (phi + h * rate) / alpha > out[0]:
-        tau = _locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, SPEED, 0.0)
-        top, _r, _s, _c = _step(phi, rate, sn, cs, a0, a1, n0, n1, t, tau, s, c)
+        tau = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, SPEED, 0.0)
+        top, _r, _s, _c = rock_step(phi, rate, sn, cs, a0, a1, n0, n1, t, tau, s, c)
         out[0] = max(out[0], top / alpha)
 
 

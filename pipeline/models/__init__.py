@@ -11,6 +11,7 @@ from pipeline.models.oscillator import OSCILLATOR
 from pipeline.models.rocking import ROCKING
 from pipeline.models.rotational_isolator import ROTATIONAL_ISOLATOR
 from pipeline.models.sliding import SLIDING
+from pipeline.models.standing import STANDING
 from pipeline.models.stress import FLEXIBLE_STRESS, STRESS
 from pipeline.models.swing import SWING, SWING_3D
 from pipeline.models.unhooking import UNHOOKING
@@ -33,6 +34,7 @@ MODELS = Registry(
     (
         ROCKING,
         SLIDING,
+        STANDING,
         STRESS,
         FLEXIBLE_STRESS,
         SWING,

@@ -46,11 +46,13 @@ def worst_direction(
     turn = 180.0 if model.symmetric(values) else 360.0
     scan = max(1, refine // 2)
     first, demand = model.gives[0].name, model.demand
+    next_one = next((q.name for q in model.gives[1:] if q.unit not in ("bool", "count") and not q.optional), first)
     outcome = next((q.name for q in model.gives if q.unit == "bool"), None)
     ways = np.arange(0.0, turn - 1e-9, azimuth_step)
     scans = [model.run(motion.excitation(float(way), tail), values, scan, False) for way in ways]
-    outputs, pushes = (
-        np.nan_to_num([columns[name] for columns in scans], nan=-np.inf, posinf=np.inf) for name in (first, demand)
+    outputs, pushes, others = (
+        np.nan_to_num([columns[name] for columns in scans], nan=-np.inf, posinf=np.inf)
+        for name in (first, demand, next_one)
     )
     where = np.full(size, np.nan)
     best: Columns = {first: np.full(size, -np.inf)}
@@ -59,8 +61,9 @@ def worst_direction(
     # others come close to, says nothing: each of those is looked at, unless an outcome is settled.
     while left.size:
         most = outputs[:, left].max(axis=0)
-        # Where the first output ties (nothing moved in either direction), the demand decides.
-        worst = np.where(outputs[:, left] == most, pushes[:, left], -np.inf).argmax(axis=0)
+        # Where the first output ties (nothing moved in either direction), the demand decides, and then the next output.
+        pushed = np.where(outputs[:, left] == most, pushes[:, left], -np.inf)
+        worst = np.where(pushed == pushed.max(axis=0), others[:, left], -np.inf).argmax(axis=0)
         for way in np.unique(worst):
             rows = left[worst == way]
             one = {name: v[rows] for name, v in values.items()}

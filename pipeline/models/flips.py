@@ -8,17 +8,34 @@ between the runs.
 
 from dataclasses import replace
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.kernels.rocking import NEAR, REST, rocking_batch
 from pipeline.models.common import Quiet
-from pipeline.quantities import Array, G
+from pipeline.quantities import Array
 from pipeline.records import Excitation
 
 RATIO, FELL, FELL_AT, LIFTED_AT, IMPACTS, FLAGS, LAST_NEAR, RESTED = range(8)
-"""Columns of `integrate`."""
+"""Columns of `integrate`, and the first ones of what any `Integration` returns."""
+
+Rows = NDArray[np.bool_] | slice
+"""Some of several bodies."""
+
+ALL = slice(None)
+
+
+class Integration(Protocol):
+    """The integration of some of several bodies that rock."""
+
+    def __call__(
+        self, motion: Excitation, rows: Rows, refine: int, until: Array | None = None, rest: float = REST
+    ) -> Array:
+        """Return what is found, (k, 8 or more): refine and rest as in the kernel, until for each of the rows."""
+        ...
+
 
 FAR, HALFWAY = 0.01, 0.005
 """Relative changes of amplitude, either way, that are tried; the second where the first are rough."""
@@ -93,19 +110,30 @@ def integrate(
     return results
 
 
-def flips(motion: Excitation, body: Array, initial: Array, uplift: Array, found: Array) -> NDArray[np.bool_]:
+def flips(
+    run: Integration,
+    motion: Excitation,
+    uplift: Array,
+    pace: Array,
+    found: Array,
+    among: NDArray[np.bool_] | None = None,
+) -> NDArray[np.bool_]:
     """Return which bodies may stand instead of fall, or fall instead of stand, within 1 % of the motion's amplitude.
 
     Parameters
     ----------
+    run : callable
+        Integrates some of the bodies.
     motion : Excitation
         Along one direction.
-    body, initial : ndarray
-        As in `integrate`.
     uplift : ndarray, shape (n,)
         Largest uplift ratio [-].
-    found : ndarray, shape (n, 8)
-        Their own response, as from `integrate`.
+    pace : ndarray, shape (n,)
+        p of each, rad/s.
+    found : ndarray, shape (n, 8 or more)
+        Their own response, as from `run`.
+    among : ndarray of bool, shape (n,), optional
+        Those that are asked about; None: all.
 
     Returns
     -------
@@ -119,8 +147,10 @@ def flips(motion: Excitation, body: Array, initial: Array, uplift: Array, found:
     those others, in random motions, 16 flip at one of 1,601: the rest fall at another time, or tip to another angle.
     """
     fallen = found[:, FELL] > 0.0
-    took = (found[:, FELL_AT] - np.maximum(0.0, found[:, LIFTED_AT])) * np.sqrt(G * body[:, 2])
+    took = (found[:, FELL_AT] - np.maximum(0.0, found[:, LIFTED_AT])) * pace
     asked = np.where(fallen, took > LINGERS, found[:, RATIO] > NEAR)
+    if among is not None:
+        asked &= among
     # What fell has to be followed to the end to see that it stands; what stood calms down when it did.
     until = np.where(fallen, np.inf, found[:, LAST_NEAR])
 
@@ -128,7 +158,7 @@ def flips(motion: Excitation, body: Array, initial: Array, uplift: Array, found:
         again = found.copy()
         if asked.any():
             scaled = replace(motion, x=(1.0 + change) * motion.x, z=(1.0 + change) * motion.z)
-            again[asked] = integrate(scaled, body[asked], initial[asked], 1, until[asked])
+            again[asked] = run(scaled, asked, 1, until[asked])
         return again
 
     less, more = at(-FAR), at(FAR)
@@ -140,8 +170,8 @@ def flips(motion: Excitation, body: Array, initial: Array, uplift: Array, found:
     runs = [less, at(-HALFWAY), found, at(HALFWAY), more]
     rough = np.maximum.reduce([_apart(one, other, uplift) for one, other in pairwise(runs)])
     flipped |= asked & (rough > np.where(fallen, JUMP[1], JUMP[0]))
-    for run in runs[1::2]:
-        flipped |= asked & (run[:, FELL] != found[:, FELL])
+    for other in runs[1::2]:
+        flipped |= asked & (other[:, FELL] != found[:, FELL])
     return flipped
 
 

@@ -33,12 +33,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.kernels import flags
-from pipeline.kernels.rocking import NEAR, OVERTURNED, REST, STEP
+from pipeline.kernels.rocking import OVERTURNED, REST
 from pipeline.models.common import (
-    ILL,
     NO_HISTORY,
-    NUDGE,
-    ROUNDING,
     SENSITIVE,
     broadcast,
     contact_lost,
@@ -49,7 +46,21 @@ from pipeline.models.common import (
     needs,
     unless_free,
 )
-from pipeline.models.flips import FELL, FELL_AT, FLAGS, IMPACTS, LAST_NEAR, LIFTED_AT, RATIO, RESTED, flips, integrate
+from pipeline.models.doubt import doubt
+from pipeline.models.flips import (
+    ALL,
+    FELL,
+    FELL_AT,
+    FLAGS,
+    IMPACTS,
+    LAST_NEAR,
+    LIFTED_AT,
+    RATIO,
+    Integration,
+    Rows,
+    flips,
+    integrate,
+)
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import (
     Axis,
@@ -69,32 +80,23 @@ from pipeline.records import (
 VELOCITY_SCREEN = 1.0
 """V_max > 10 B / sqrt(H') in cm and s is V_max > 1.0 B / sqrt(H') in m and s (Ishiyama 1982, in the paper's form)."""
 
-DOUBTFUL = 1e-6
-"""Relative difference of two steps from which the condition is measured: below 3e-6 none of 1,600 exceeded 1,000."""
 
-APART = 1e-3
-"""Relative difference of two steps from which a body is sensitive, whatever its condition was measured to be."""
+def sides(parameters: Mapping[str, Array]) -> tuple[Array, Array, Array]:
+    """Return the half widths towards both edges and the radius of gyration squared.
 
-WAVERING = 0.02
-"""Difference of two steps in the time of falling, times p, from which a body is sensitive: 0.05 or more was that of all
-bodies that fell at both and stood at a finer step, 6 of 24,000 under synthetic pulses and recorded motions."""
+    Parameters
+    ----------
+    parameters : mapping of str to ndarray, shape (n,)
+        As in `bodies`.
 
-ONSET = 5.0
-"""Condition of a body that barely lifts, times (uplift ratio - 1): its ratio grows with the fifth power of that."""
-
-RESTLESS = 1e-2
-"""Share of the usual rate at which a body rests that is tried where a rest may have told on the largest ratio."""
-
-LOCAL = 0.03
-"""Relative error of a hop within one step, as a share of (fastest rate x step)^4, at a condition of 1."""
-
-HOP = 0.2
-"""The same whatever the condition, as a share of (fastest rate x step)^2: a step leaves out the fifth derivative, p^2
-times the third, a twentieth of the cube that the hop is; four times over, as its top is a difference of such terms."""
-
-RISE = 2.0
-"""The most of it as a ratio, as a share of (fastest rate x step)^5: a sixtieth of a push that changes by 120 times what
-lifts an edge in a time of 1 / p."""
+    Returns
+    -------
+    b1, b2, rho2 : ndarray, shape (n,)
+        [m], [m], [m2]; what is not given is the first one, and a uniform rectangle's.
+    """
+    b1, h = parameters["half_width"], parameters["cg_height"]
+    other, given = parameters["half_width_other"], parameters["gyration_radius"]
+    return b1, np.where(np.isnan(other), b1, other), np.where(np.isnan(given), (b1**2 + h**2) / 3.0, given**2)
 
 
 def bodies(parameters: Mapping[str, Array]) -> Array:
@@ -111,11 +113,8 @@ def bodies(parameters: Mapping[str, Array]) -> Array:
         alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]: c = R / (rho^2 + R^2), so that p^2 = g c, and the restitution
         from the angular momentum about the new edge, never below 0.
     """
-    b1, h = parameters["half_width"], parameters["cg_height"]
-    other = parameters["half_width_other"]
-    b2 = np.where(np.isnan(other), b1, other)
-    given = parameters["gyration_radius"]
-    rho2 = np.where(np.isnan(given), (b1**2 + h**2) / 3.0, given**2)
+    h = parameters["cg_height"]
+    b1, b2, rho2 = sides(parameters)
     r1, r2 = np.hypot(b1, h), np.hypot(b2, h)
     moment = rho2 + h**2 - b1 * b2
     e = parameters["restitution"]
@@ -146,14 +145,14 @@ def uplift_ratios(motion: Excitation, body: Array) -> Array:
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
     body = bodies(parameters)
-    initial = broadcast(parameters, "initial_rotation")
+    run = _runs(body, broadcast(parameters, "initial_rotation"))
     uplift = uplift_ratios(motion, body)
-    fine = integrate(motion, body, initial, 2 * refine if estimate else refine)
+    fine = run(motion, ALL, 2 * refine if estimate else refine)
     note = fine[:, FLAGS].astype(np.int64) | np.where(np.isinf(uplift), flags.CONTACT_LOST, 0)
     error = np.full(uplift.size, np.nan)
     if estimate:
-        coarse = integrate(motion, body, initial, refine)
-        error, sensitive = _doubt(motion, body, initial, refine, uplift, coarse, fine)
+        coarse = run(motion, ALL, refine)
+        error, sensitive = doubt(run, motion, refine, uplift, _pace(body), coarse, fine)
         note |= np.where(sensitive, SENSITIVE, 0)
     # Only `_flips`, which goes on from a run without an estimate, wants to know how long a body was near.
     hidden = {} if estimate else {"near_until": fine[:, LAST_NEAR]}
@@ -169,6 +168,19 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
     }
 
 
+def _runs(body: Array, initial: Array) -> Integration:
+    # Those bodies as `doubt` and `flips` ask for them.
+    def run(motion: Excitation, rows: Rows, refine: int, until: Array | None = None, rest: float = REST) -> Array:
+        return integrate(motion, body[rows], initial[rows], refine, until, rest=rest)
+
+    return run
+
+
+def _pace(body: Array) -> Array:
+    # p [rad/s] (n,) about the first edge.
+    return np.sqrt(G * body[:, 2])
+
+
 def _flips(motion: Excitation, parameters: Mapping[str, Array], columns: Columns) -> NDArray[np.bool_]:
     body = bodies(parameters)
     found = np.zeros((body.shape[0], 8))
@@ -178,42 +190,8 @@ def _flips(motion: Excitation, parameters: Mapping[str, Array], columns: Columns
     found[:, FELL_AT], found[:, LIFTED_AT] = (
         np.nan_to_num(columns[name], nan=-1.0) for name in ("overturning_time", "uplift_time")
     )
-    return flips(motion, body, broadcast(parameters, "initial_rotation"), columns["uplift_ratio"], found)
-
-
-def _doubt(
-    motion: Excitation, body: Array, initial: Array, refine: int, uplift: Array, coarse: Array, fine: Array
-) -> tuple[Array, NDArray[np.bool_]]:
-    # The error of the ratio, and which bodies are sensitive: to the step, to a part in a thousand of the motion's
-    # amplitude (condition), or to 1 % of it (outcome).  Only those that could be are integrated again.
-    ratio, fallen = fine[:, RATIO], fine[:, FELL] > 0.0
-    error = np.abs(ratio - coarse[:, RATIO])
-    # Both steps put a body to rest at the same rate.  What lifts again before it would have rested, as under a push
-    # that hardly changes, owes some of its ratio to that rate, or would have tipped by more.
-    rested = fine[:, RESTED] > 0.0
-    if rested.any():
-        longer = integrate(motion, body[rested], initial[rested], refine, rest=RESTLESS * REST)
-        error[rested] += np.abs(longer[:, RATIO] - coarse[rested, RATIO])
-    late = np.abs(fine[:, FELL_AT] - coarse[:, FELL_AT]) * np.sqrt(G * body[:, 2])
-    sensitive = (coarse[:, FELL] != fine[:, FELL]) | (error > APART * ratio) | (late > WAVERING)
-    # A chaotic sequence of impacts magnifies the error of integration as it does a change of the motion.
-    doubtful = ~fallen & ~sensitive & (error > DOUBTFUL * ratio)
-    condition = np.divide(ONSET, uplift - 1.0, out=np.ones_like(uplift), where=(uplift > 1.0) & ~fallen)
-    if doubtful.any():
-        more = replace(motion, x=(1.0 + NUDGE) * motion.x, z=(1.0 + NUDGE) * motion.z)
-        # What has calmed down has been at its largest ratio, if that was above what counts as near.
-        until = np.where(ratio > NEAR, fine[:, LAST_NEAR], np.inf)[doubtful]
-        nudged = integrate(more, body[doubtful], initial[doubtful], refine, until)[:, RATIO]
-        measured = np.abs(nudged - coarse[doubtful, RATIO]) / (NUDGE * ratio[doubtful])
-        condition[doubtful] = np.maximum(condition[doubtful], measured)
-        sensitive[doubtful] |= measured > ILL
-    # The hop of a body that barely lifts can lie within one step, which both integrations then take alike.
-    step = STEP / (2 * refine)
-    local = np.minimum(1.0, LOCAL * step**4 * np.maximum(1.0, condition)) * ratio
-    error += np.where(fallen, ROUNDING * ratio, local + np.minimum(HOP * step**2 * ratio, RISE * step**5))
-    left = ~sensitive
-    sensitive[left] = flips(motion, body[left], initial[left], uplift[left], fine[left])
-    return error, sensitive
+    run = _runs(body, broadcast(parameters, "initial_rotation"))
+    return flips(run, motion, columns["uplift_ratio"], _pace(body), found)
 
 
 def _screen(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
@@ -300,8 +278,19 @@ HALF = 0.5 - 1e-9
 """Share of the motions from which on an object counts as overturned ("half the records" included)."""
 
 
-def _overturning(scene: Scene) -> tuple[str, float, str] | None:
-    # An object that rocking itself does not harm fails when it falls over.
+def overturning(scene: Scene) -> tuple[str, float, str] | None:
+    """Return what decides about an object that rocking itself does not harm: it fails when it falls over.
+
+    Parameters
+    ----------
+    scene : Scene
+        An object where it stands.
+
+    Returns
+    -------
+    tuple or None
+        For `Model.otherwise`.
+    """
     if scene.item.susceptible is None and FALLS_IN in scene.parameters:
         return "overturned", HALF, UNHARMED
     return ("overturned", HALF, HARMLESS) if scene.item.susceptible is False else None
@@ -410,7 +399,7 @@ ROCKING = Model(
     rests=1.0,
     flips=_flips,
     outcome=_outcome,
-    otherwise=_overturning,
+    otherwise=overturning,
     mark=lambda parameters, _: ("stability", 2.0 * parameters["cg_height"], 2.0 * parameters["half_width"]),
     demand="uplift_ratio",
     capacity=1.0,

@@ -40,6 +40,18 @@ def parameters() -> dict[str, tuple[float, dict[str, Array | float]]]:
         "sliding, one direction": (10.0, {"friction_static": friction, "directions": 1.0}),
         "sliding, two directions": (np.nan, {"friction_static": friction, "directions": 2.0}),
         "rocking": (3.0, {"half_width": 0.5 * slope * height, "cg_height": 0.5 * height}),
+        "standing": (
+            6.0,
+            {"half_width": 0.5 * slope * height, "cg_height": 0.5 * height, "friction_static": friction},
+        ),
+        "standing, all that tilt": (
+            np.nan,
+            {
+                "half_width": 0.5 * slope * height,
+                "cg_height": 0.5 * height,
+                "friction_static": slope + friction,
+            },
+        ),
         "swing": (8.0, {"length": length, "damping": 0.02}),
         "swing_3d": (80.0, {"length": length, "damping": 0.02}),
         "oscillator": (0.6, {"frequency": rng.uniform(0.5, 20.0, OBJECTS), "damping": 0.05}),

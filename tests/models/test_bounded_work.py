@@ -30,6 +30,7 @@ LIMIT = 60.0
 
 ENDS: dict[str, dict[str, list[float]]] = {
     "rocking": {"half_width": [1e-3, 0.1, 3.0], "cg_height": [1e-2, 0.4, 10.0]},
+    "standing": {"half_width": [1e-3, 0.1, 3.0], "cg_height": [1e-2, 0.4, 10.0], "friction_static": [0.05, 0.5, 5.0]},
     "sliding": {"friction_static": [0.0, 1e-6, 0.1, 5.0]},
     "friction_isolator": {"friction_static": [0.0, 1e-6, 0.1, 5.0]},
     "horizontal_isolator": {

@@ -35,6 +35,9 @@ def drawn(name: str, rng: np.random.Generator, n: int) -> dict[str, Any]:
         if rng.random() < 0.2:
             body["initial_rotation"] = rng.uniform(-0.3, 0.3, n)
         return body
+    if name == "standing":
+        h, mu = rng.uniform(0.05, 2.0, n), rng.uniform(0.0, 0.8, n)
+        return {"half_width": h * rng.uniform(0.02, 1.0, n), "cg_height": h, "friction_static": mu}
     section = {"mass": rng.uniform(1.0, 50.0, n), "lever": rng.uniform(0.05, 1.0, n)}
     section |= {"area": np.full(n, 1e-3), "section_modulus": np.full(n, 1e-5)}
     if name == "stress":
@@ -104,7 +107,7 @@ def test_the_reference_lies_between_the_bounds(name: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("level", [0.1, 0.3, 0.7])
-@pytest.mark.parametrize("name", ["sliding", "friction_isolator", "rocking"])
+@pytest.mark.parametrize("name", ["sliding", "friction_isolator", "rocking", "standing"])
 def test_the_reference_lies_between_the_bounds_under_a_real_record(name: str, level: float) -> None:
     """The demonstration's strongest 20 s, three components, at three levels of the peak resultant."""
     motion = at_level(level)

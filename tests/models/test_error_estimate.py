@@ -36,6 +36,9 @@ def drawn(name: str, rng: np.random.Generator, n: int) -> dict[str, Array | floa
     if name == "rocking":
         h = log(0.05, 2.0)
         return {"half_width": h * np.tan(flat(0.02, 0.7)), "cg_height": h}
+    if name == "standing":
+        h = log(0.05, 2.0)
+        return {"half_width": h * np.tan(flat(0.02, 0.7)), "cg_height": h, "friction_static": flat(0.05, 0.8)}
     if name.startswith("sliding"):
         mu = flat(0.02, 0.5)
         return {"friction_static": mu, "friction_kinetic": mu * flat(0.7, 1.0), "directions": float(name[-1])}
@@ -73,6 +76,7 @@ def drawn(name: str, rng: np.random.Generator, n: int) -> dict[str, Array | floa
 
 CASES = [
     "rocking",
+    "standing",
     "sliding 1",
     "sliding 2",
     "stress",
