@@ -1,7 +1,9 @@
 """The verb `kouros validate`: how often the models are right about bodies that really fell or stood."""
 
 import json
+from dataclasses import asdict
 from datetime import UTC, datetime
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,11 +25,20 @@ if TYPE_CHECKING:
 @click.option(
     "--out", type=click.Path(dir_okay=False, path_type=Path), help="The page; default: validation-<date>.html."
 )
-@dry_run("Say what would be found")
+@click.option("--published", is_flag=True, help="Against published medians of overturning instead (FEMA P-58).")
+@click.option("--friction", type=click.FloatRange(0.0, 2.0), help="Of the published bodies; default: none slides.")
+@dry_run("Say what is found")
 @as_json
 @click.pass_obj
 def validate(
-    options: Options, folder: Path | None, fit_on: Path | None, out: Path | None, dry_run: bool, as_json: bool
+    options: Options,
+    folder: Path | None,
+    fit_on: Path | None,
+    out: Path | None,
+    published: bool,
+    friction: float | None,
+    dry_run: bool,
+    as_json: bool,
 ) -> None:
     """Hold the models against an experiment: a folder with experiment.toml, its runs and their motions.
 
@@ -35,8 +46,18 @@ def validate(
     what "it always stands" and a threshold of the peak velocity achieve.  The page shows how reliable the stated
     probabilities are.
 
+    With --published: the overturning medians of nine bookcases and cabinets, from the motions of FEMA P695 (which
+    pip install 'kouros[published]' brings).  It writes nothing.
+
     Example: kouros validate shake-table-2021
     """
+    if published:
+        if folder is not None or fit_on is not None or out is not None:
+            raise click.UsageError("--published goes with no folder, no --fit-on and no --out")
+        _published(options, friction, as_json)
+        return
+    if friction is not None:
+        raise click.UsageError("--friction goes with --published")
     from pipeline.verification.validation import validate as job
     from pipeline.verification.validation_report import document, page
 
@@ -54,6 +75,26 @@ def validate(
     file = out or Path(f"validation-{datetime.now(UTC):%Y-%m-%d}.html")
     file.write_text(page(found), encoding="utf-8")
     click.echo(f"page: {file}", err=as_json)
+
+
+def _published(options: Options, friction: float | None, as_json: bool) -> None:
+    from pipeline.verification.published import FRICTION, far_field, overturning_medians
+
+    with options.console() as console:
+        found = overturning_medians(far_field(), console, friction=FRICTION if friction is None else friction)
+    if as_json:
+        # JSON has no infinity: a body that half of the motions do not overturn has no median.
+        told = [
+            {k: None if isinstance(v, float) and not isfinite(v) else v for k, v in asdict(m).items()} for m in found
+        ]
+        click.echo(json.dumps({"published": told}, indent=2, allow_nan=False))
+        return
+    rows = []
+    for one in found:
+        ratios = (median / one.published for median in (one.one_direction, one.both_directions, one.stronger))
+        rows.append([one.name, f"{one.published:.3f}", *(f"{r:.2f}" for r in ratios), f"{one.dispersion:.2f}"])
+    heads = ["", "median m/s", "one direction", "both", "both, by the stronger", "dispersion"]
+    click.echo("\n".join(["Found over published:", *aligned(heads, rows, words={0})]))
 
 
 def _lines(found: "Validation") -> list[str]:
