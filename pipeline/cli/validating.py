@@ -73,7 +73,12 @@ def validate(
         say_dry(as_json)
         return
     file = out or Path(f"validation-{datetime.now(UTC):%Y-%m-%d}.html")
-    file.write_text(page(found), encoding="utf-8")
+    try:
+        file.write_text(page(found), encoding="utf-8")
+    except OSError as problem:
+        raise click.UsageError(
+            f"{file}: cannot be written: {problem.strerror}; name another file by --out"
+        ) from problem
     click.echo(f"page: {file}", err=as_json)
 
 

@@ -18,7 +18,7 @@ from pipeline.motions.intensity import measures
 from pipeline.quantities import Array
 from pipeline.records import Progress
 from pipeline.verification.experiment import EXPERIMENT, Experiment, ExperimentError, read_experiment
-from pipeline.verification.odds import FitGrid, drawn_odds, fit_grid, shape_of
+from pipeline.verification.odds import FitGrid, Shape, drawn_odds, fit_grid, shape_of
 from pipeline.verification.scores import Score, score
 
 LAPSE = 0.03
@@ -127,13 +127,19 @@ def validate(folder: Path, progress: Progress, *, fit_on: Path | None = None) ->
         if fit_on is None
         else f"another experiment alone: {there.said.title}, {len(there.runs)} runs"
     )
-    found = tuple(_body(at, here, there, progress) for at in range(len(here.names)))
+    # All meshes are read before the first run: a fault of the last one is told at once.
+    shapes = [shape_of(here, body) for body in here.said.body]
+    others = {body.name: shape_of(there, body) for body in there.said.body if there is not here}
+    found = tuple(
+        _body(at, here, there, shape, others.get(here.names[at], shape), progress) for at, shape in enumerate(shapes)
+    )
     return Validation(here, trained, found)
 
 
-def _body(at: int, here: Experiment, there: Experiment, progress: Progress) -> BodyValidation:
+def _body(
+    at: int, here: Experiment, there: Experiment, shape: Shape, trained_shape: Shape, progress: Progress
+) -> BodyValidation:
     name, fell = here.names[at], here.fell[at]
-    shape = shape_of(here, here.said.body[at])
     unfitted = drawn_odds(here, shape, progress, name)
     grid = fit_grid(here, shape, progress, name)
     speed = peak_velocities(here)
@@ -141,7 +147,7 @@ def _body(at: int, here: Experiment, there: Experiment, progress: Progress) -> B
         trained, trained_fell, trained_speed = grid, fell, speed
     else:
         other = there.names.index(name)
-        trained = fit_grid(there, shape_of(there, there.said.body[other]), progress, f"{name} of the other")
+        trained = fit_grid(there, trained_shape, progress, f"{name} of the other")
         trained_fell, trained_speed = there.fell[other], peak_velocities(there)
     fitted, by_speed = np.empty(fell.size), np.empty(fell.size)
     for tested, used in folds(here, there):

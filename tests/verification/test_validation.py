@@ -187,6 +187,11 @@ FAULTS = {
     "no outcome": (str, lambda t: t.replace("3,sine 0,1", "3,sine 0,fell"), r"run '3': column 'block' holds 'fell'"),
     "no motion": (str, lambda t: t + "99,sine 0,1,1\n", r"motions\.npz: there is no motion 'run99' of run '99'"),
     "twice": (str, lambda t: t + "3,sine 0,1,1\n", r"line 14: column 'run' is empty, or says the run '3' again"),
+    "negative size": (
+        lambda t: t.replace("depth_m = 0.4", "depth_m = -0.4"),
+        str,
+        r"body\[0\]\.depth_m: .*greater than 0",
+    ),
     "short row": (str, lambda t: t + "13,sine 0\n", r"line 14: it has not as many cells"),
     "no probability": (str, lambda t: t.replace("0,sine 0,0,0", "0,sine 0,0,2"), r"column 'oracle' holds '2'"),
 }
@@ -285,6 +290,8 @@ def test_the_verb_prints_json_and_writes_the_page_unless_it_is_a_dry_run(folder:
         assert dry.exit_code == 0, dry.output
         assert not list(tmp_path.iterdir())
         done = CliRunner().invoke(kouros, ["-q", "validate", str(folder), "--json", "--out", "page.html"])
+        lost = CliRunner().invoke(kouros, ["-q", "validate", str(folder), "--out", "nowhere/page.html"])
     assert json.loads(done.stdout)["bodies"][0]["fitted"]["accuracy"] == 1.0
     assert "two numbers fitted" in dry.stdout
+    assert (lost.exit_code, "name another file by --out" in lost.output) == (2, True)
     assert (tmp_path / "page.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
