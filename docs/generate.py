@@ -48,9 +48,11 @@ TABLE_WORDS = {
     "isolators": "The isolators that advice may choose from; a museum's own catalogue takes the place of this table.",
     "materials": "Density and strength of materials, and the words that name them.",
     "measures": "The measures, in the order of their intrusiveness, with limits, words and sources.",
+    "overturning": "Published medians of overturning that `kouros validate --published` is held against.",
     "plausible": "What a number of a record may be.",
     "rules": "Which class a record names; the first rule that holds decides.",
     "survey": "The questions of the survey's sheet.",
+    "validation": "What `kouros validate` assumes of a body for which nothing is fitted.",
 }
 """What each table holds; a table that is not named here stops the build."""
 
@@ -99,8 +101,8 @@ def write(folder: Path) -> None:
 def pages() -> dict[str, str]:
     """Return the text of every generated page, by its name."""
     makers: tuple[Callable[[], str], ...] = (
-        cli, settings, manifest, mapping, records, exports, decisions, events, models, supports, tables, exit_codes,
-        contracts,
+        cli, settings, manifest, experiment, mapping, records, exports, decisions, events, models, supports, tables,
+        exit_codes, contracts,
     )  # fmt: skip
     return {maker.__name__.replace("_", "-"): maker().strip() + "\n" for maker in makers}
 
@@ -208,6 +210,19 @@ def manifest() -> str:
     ]
     said = "Whatever obspy reads, and these, which Kouros adds to obspy as plugins:"
     return "\n\n".join([*parts, f"## Formats of records\n\n{said}\n\n{_table(('Format', 'What it reads'), rows)}"])
+
+
+def experiment() -> str:
+    """Return every key of an experiment."""
+    schema = _schema("experiment")
+    places = {"BodyTable": "[[body]]", "PredictionTable": "[[prediction]]"}
+    _agree(set(places) == set(schema["$defs"]), "a table of the experiment has no place here")
+    keys = _keys(schema, schema, ("body", "prediction"))
+    parts = [f"# Experiments\n\n`experiment.toml` in the folder that `kouros validate` is given.\n\n{keys}"]
+    for name, place in places.items():
+        table = schema["$defs"][name]
+        parts.append(f"## `{place}`\n\n{_opening(table)}\n\n{_keys(table, schema)}")
+    return "\n\n".join(parts)
 
 
 def mapping() -> str:

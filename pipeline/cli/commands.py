@@ -16,6 +16,7 @@ from pipeline.cli.importing import import_
 from pipeline.cli.motions import motions
 from pipeline.cli.options import Options, as_json, dry_run, say_dry
 from pipeline.cli.scanning import scan
+from pipeline.cli.validating import validate
 from pipeline.quantities import counted
 
 if TYPE_CHECKING:
@@ -450,4 +451,21 @@ def tradeoff(
     click.echo("\n".join(tradeoff_lines(found, wanted)))
 
 
-ALL = (demo, init, import_, survey, scan, check, run, prune, report, decide, diff, motions, models, respond, tradeoff)
+ALL = (
+    demo,
+    init,
+    import_,
+    survey,
+    scan,
+    check,
+    run,
+    prune,
+    report,
+    decide,
+    diff,
+    motions,
+    models,
+    respond,
+    tradeoff,
+    validate,
+)

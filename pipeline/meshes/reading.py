@@ -135,6 +135,27 @@ def read_mesh(path: Path, *, unit: str = "m", up: str = "z", hull: bool = False,
     )
 
 
+def holds_triangles(path: Path) -> bool:
+    """Return whether a mesh file has a surface at all: a cloud of points has none that could be open.
+
+    Parameters
+    ----------
+    path : Path
+        As of `read_mesh`.
+
+    Returns
+    -------
+    bool
+        Closed or not.
+
+    Raises
+    ------
+    MeshError
+        For a file that is missing, too large or no mesh.
+    """
+    return len(_parsed(path)[1]) > 0
+
+
 def _parsed(path: Path) -> tuple[Array, Any]:
     """Return points and triangles of a file as they stand in it."""
     import trimesh

@@ -1,1 +1,1 @@
-"""Self-measurement: stability at the extremes, error against cost."""
+"""Self-measurement: stability at the extremes, error against cost, and validation against experiments."""

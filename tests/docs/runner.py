@@ -29,9 +29,11 @@ NOT_RUN = frozenset(
         "it needs a PostgreSQL server",
         "it needs a copy of the source",
         "it needs a museum's server",
+        "it needs a second experiment",
         "it needs a translation",
         "it takes minutes",
         "no record of the example is refused",
+        "pip fetches its motions first",
         "somebody fills it in first",
         "the reader's export comes first",
     }

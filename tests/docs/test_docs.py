@@ -159,9 +159,9 @@ def test_every_key_of_a_file_that_is_named_exists() -> None:
 
 
 def settings_keys() -> dict[str, set[str]]:
-    """The tables of kouros.toml, of a mapping and of a manifest, as the reference has them, with their keys."""
+    """The tables of kouros.toml, a mapping, a manifest and an experiment, as the reference has them, with keys."""
     found: dict[str, set[str]] = {}
-    for name in ("settings", "mapping", "manifest"):
+    for name in ("settings", "mapping", "manifest", "experiment"):
         for section in generate.pages()[name].split("\n## ")[1:]:
             for part in section.split("\n### "):
                 head = re.search(r"\[+([\w.]+)\]+", part.partition("\n")[0])
