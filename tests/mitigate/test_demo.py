@@ -104,7 +104,7 @@ def test_clearances(record: RunRecord, motion: Motion) -> None:
 
 
 def test_what_nobody_recorded_how_it_hangs_is_open_and_is_not_told_to_keep_clear(record: RunRecord) -> None:
-    """All framed works on display: nobody assumes a wire, the swing is open, its hooks hold, and the survey asks how it hangs."""
+    """All framed works on display: nobody assumes a wire, the swing is open, and no hook is jumped off."""
     framed = [a for a in record.assessments if a.scene.object_class == "framed" and a.findings]
     assert len(framed) > 300
     for assessment in framed:
