@@ -137,6 +137,7 @@ DRY: Sequence[tuple[Sequence[str], int, str]] = (
     (["motions", "process", "shaking", "--out", "new"], 0, "manifest.toml"),
     (["motions", "process", "shaking", "--out", "shaking"], 4, "nothing is overwritten"),
     (["motions", "process", "shaking", "--record", "absent", "--accept", "w"], 2, "there is no record 'absent'"),
+    (["validate", "absent"], 2, "absent/experiment.toml: there is no such file"),
 )
 
 
