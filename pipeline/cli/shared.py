@@ -27,6 +27,7 @@ _NO_DRY_RUN: Mapping[str, str] = {
     "show": "it writes one page, which --out names, and nothing else",
     "compare": "it only compares",
     "models": "it only lists",
+    "scan": "it only measures",
     "respond": "it writes nothing but charts for another time",
     "tradeoff": "it measures, and keeps the result for the next report",
 }
