@@ -65,7 +65,7 @@ def test_ranges_of_what_passes_are_demands_or_say_that_they_are_bounds(record: R
     assert seen[BOUNDS] > 100
 
 
-def bounded(**fields: float | None) -> Finding:
+def bounded(**fields: float | str | None) -> Finding:
     """A block on a rough floor with much room: its bound is enough."""
     item = Item("1", "G", title="Block", support=Support.FREESTANDING, height_m=0.3, base_width_m=0.3, base_depth_m=0.3,
                 width_m=0.3, depth_m=0.3, cg_height_m=0.15, clearance_m=5.0, **fields)  # type: ignore[arg-type] # fmt: skip
@@ -78,7 +78,7 @@ def bounded(**fields: float | None) -> Finding:
 def test_bounds_read_as_bounds() -> None:
     """Of a range between bounds the lower one is no demand, and is not shown; of what is measured there is no range."""
     units = Units()
-    found = bounded()
+    found = bounded(base_material="metal", surface_material="wood")
     assert (found.verdict, found.range_is) == (Verdict.PASS, BOUNDS)
     assert found.high is not None
     assert spanned(found, units) == f"at most {units.text(found.high, 'm')}"

@@ -128,7 +128,7 @@ def lines(text: str) -> Sequence[str]:
 
 def test_models_and_respond_for_programs(tmp_path: Path) -> None:
     rows = json.loads(kouros("models", "--json", folder=tmp_path).stdout)
-    assert {"rocking", "sliding", "stress", "flexible_stress", "swing", "swing_3d", "friction_isolator",
+    assert {"rocking", "standing", "sliding", "stress", "flexible_stress", "swing", "swing_3d", "friction_isolator",
             "horizontal_isolator", "rotational_isolator", "oscillator", "unhooking",
             "hanger_load"} == {row["name"] for row in rows}  # fmt: skip
     done = kouros("respond", "sliding", "friction_static=0.05,0.1", "--json", folder=tmp_path)

@@ -141,6 +141,13 @@ SPREAD: dict[str, dict[str, tuple[float, float]]] = {
     },
     "swing": {"length": (0.001, 20.0), "damping": (0.0, 2.0)},
     "swing_3d": {"length": (0.01, 20.0), "damping": (0.0, 2.0)},
+    "unhooking": {
+        "hook_height": (0.05, 0.5),
+        "hook_offset": (0.01, 0.05),
+        "gyration": (0.1, 0.6),
+        "restitution": (0.1, 0.6),
+    },
+    "hanger_load": {"amplification": (1.0, 2.0)},
     "friction_isolator": {"friction_static": (0.0, 0.3)},
     "horizontal_isolator": {"frequency": (0.2, 5.0), "damping": (0.0, 0.5), "friction": (0.0, 0.2)},
     "rotational_isolator": {
