@@ -82,7 +82,7 @@ def test_nothing_hangs_or_is_nan_in_silence(name: str, directions: int | None) -
 
 
 @pytest.mark.parametrize("case", numerics.CASES, ids=lambda case: f"{case.what}; {case.truth}")
-def test_the_self_test_of_the_numerics(case: numerics.Case) -> None:
+def test_the_self_test_of_the_numerics(case: numerics.SelfTestCase) -> None:
     """The very cases that `kouros check --numerics` runs: each names its truth and its limit."""
     assert case.measure() <= case.limit
 
@@ -107,7 +107,7 @@ def test_the_self_test_can_fail(broken: float | ValueError, monkeypatch: pytest.
             raise broken
         return broken
 
-    cases = (numerics.Case("broken", "one", 1.0, measure), numerics.Case("sound", "zero", 0.0, lambda: 0.0))
+    cases = (numerics.SelfTestCase("broken", "one", 1.0, measure), numerics.SelfTestCase("sound", "zero", 0.0, lambda: 0.0))
     monkeypatch.setattr(numerics, "CASES", cases)
     first, second = numerics.outcomes()
     assert not first.ok
