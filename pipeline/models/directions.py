@@ -60,10 +60,10 @@ def worst_direction(
     # A worst direction that the finer integration does not confirm (a block that fell, and then did not), or that
     # others come close to, says nothing: each of those is looked at, unless an outcome is settled.
     while left.size:
-        most = outputs[:, left].max(axis=0)
-        # Where the first output ties (nothing moved in either direction), the demand decides, and then the next output.
-        pushed = np.where(outputs[:, left] == most, pushes[:, left], -np.inf)
-        worst = np.where(pushed == pushed.max(axis=0), others[:, left], -np.inf).argmax(axis=0)
+        # Where the first output ties (nothing moved in either direction), the demand decides, then the next output, and
+        # of what is alike in all, the first direction: of what is turned round that is the last.
+        ranked = np.lexsort([one[::-1, left] for one in (others, pushes, outputs)], axis=0)
+        worst = ways.size - 1 - ranked[-1]
         for way in np.unique(worst):
             rows = left[worst == way]
             one = {name: v[rows] for name, v in values.items()}

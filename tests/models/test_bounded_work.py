@@ -248,3 +248,10 @@ def test_accelerations_are_real_numbers(bad: Any) -> None:
         Motion(0.01, bad)
     with pytest.raises(InputError, match="dt must be"):
         Motion(None, np.ones((3, 5)))  # type: ignore[arg-type]
+
+
+def test_the_worst_of_directions_without_a_second_output_is_found() -> None:
+    """What is not followed has no rotation in any direction: none is the larger, and the search still ends."""
+    motion = times(random_motion(3, n=12, dt=0.02), 1e6, 1e6)
+    row = respond("swing", motion, length=1e-3, damping=0.05, angle=None, azimuth_step=90.0).iloc[0]
+    assert (row["displacement"], np.isnan(row["rotation"])) == (1e-3, True)
