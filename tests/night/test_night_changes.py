@@ -72,13 +72,13 @@ def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.
     assert not night(tmp_path)
 
     # Input: a low vase stands; only its own verdicts move.
-    museum(tmp_path, ["1,A,Vase,0.1,0.2,0.2", *ROWS[1:]])
+    museum(tmp_path, ["1,A,Vase,0.03,0.2,0.2", *ROWS[1:]])
     changes = night(tmp_path)
     assert {v.object_number for v in changes.verdicts} == {"1"}
     assert kinds(changes) == {(CauseKind.INPUT,)}
     assert {cause.what for v in changes.verdicts for cause in v.causes} == {"height_m"}
     ((height, *_),) = (i.fields for i in changes.inputs)
-    assert (height.name, height.before, height.after) == ("height_m", 0.4, 0.1)
+    assert (height.name, height.before, height.after) == ("height_m", 0.4, 0.03)
     assert "rocking" in {v.model for v in changes.fixed}
 
     # Motion: 7 % of it moves nothing.
