@@ -108,7 +108,8 @@ def test_a_chart_that_may_not_grow_says_which_error_it_has() -> None:
     along = fresh("swing", 1000, 4)
     looked = made.look(along)
     model = model_named("swing")
-    true = run_model(model, motion, {"length": along, "damping": np.zeros(1000)}, Numerics("history"), 0.0)[0]
+    bodies = {"length": along, "damping": np.zeros(1000), "freedom": np.ones(1000)}
+    true = run_model(model, motion, bodies, Numerics("history"), 0.0)[0]
     # Cells this wide hide whole peaks between their held-out points: a claim for nine in ten is all that can be made.
     assert (np.abs(looked.columns["displacement"] - true["displacement"]) <= looked.bounds["displacement"]).mean() > 0.9
 
@@ -244,7 +245,8 @@ def test_the_nodes_are_where_the_model_was_run() -> None:
     assert (np.diff(made.nodes) > 0.0).all()
     assert (made.nodes[0], made.nodes[-1]) == (made.low, made.high)
     looked = made.look(made.nodes).columns["displacement"]
-    fixed = {"length": made.nodes, "damping": np.full_like(made.nodes, 0.05)}
+    ones = np.ones_like(made.nodes)
+    fixed = {"length": made.nodes, "damping": 0.05 * ones, "freedom": ones}
     true = run_model(model_named("swing"), motion, fixed, Numerics("history"), 0.0)[0]["displacement"]
     np.testing.assert_allclose(looked, true, rtol=1e-9)
 
