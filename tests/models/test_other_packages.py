@@ -243,7 +243,7 @@ def test_a_broken_one_stops_no_night(packages: Path, tmp_path: Path) -> None:
 
 
 def test_what_is_not_tried_on_an_object_says_so_and_no_more() -> None:
-    """Only of what would break a section can one say that an object moves instead."""
+    """Only of what would break a section can one say that it moves instead, of hooks that nobody asked of them."""
     from pipeline.analysis.classify import classify
     from pipeline.analysis.plan import plan
 
@@ -253,5 +253,5 @@ def test_what_is_not_tried_on_an_object_says_so_and_no_more() -> None:
     (why,) = plan([scene]).skipped
     assert why["Stress"].startswith("not required: ")
     assert why["Stress"].endswith("; it is free to move instead")
-    assert {model.name for model in MODELS if model.unasked} == {"stress", "flexible_stress"}
+    assert {model.name for model in MODELS if model.unasked} == {"stress", "flexible_stress", "unhooking"}
     assert model_named("rocking").unasked == ""
