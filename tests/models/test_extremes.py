@@ -107,7 +107,8 @@ def test_the_self_test_can_fail(broken: float | ValueError, monkeypatch: pytest.
             raise broken
         return broken
 
-    cases = (numerics.SelfTestCase("broken", "one", 1.0, measure), numerics.SelfTestCase("sound", "zero", 0.0, lambda: 0.0))
+    case = numerics.SelfTestCase
+    cases = (case("broken", "one", 1.0, measure), case("sound", "zero", 0.0, lambda: 0.0))
     monkeypatch.setattr(numerics, "CASES", cases)
     first, second = numerics.outcomes()
     assert not first.ok
