@@ -25,7 +25,7 @@ INSIDE = {
     "mitigate/rows.py",
     "motions/formats/blocks.py",
     "motions/site.py",
-    "night/scheduler.py",
+    "night/publication.py",
     "operations/report_status.py",
     "report/files/manifest.py",
     "supports/__init__.py",

@@ -25,6 +25,7 @@ from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.files import unreadable
 from pipeline.collection.sources.registry import is_address, recognised
 from pipeline.collection.sources.rows import Row
+from pipeline.errors import InputError
 from pipeline.tables import table
 from pipeline.tables.rows import Entries, checked
 
@@ -266,7 +267,7 @@ def _plain(name: str) -> str:
 
 def _mappable(field: str) -> str:
     if field not in (*MAPPABLE, "dimensions"):
-        raise ValueError(f"is {field!r}, which is no field that a column can be mapped to")
+        raise InputError(f"is {field!r}, which is no field that a column can be mapped to")
     return field
 
 

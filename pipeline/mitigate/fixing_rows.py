@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
+from pipeline.errors import InputError
 from pipeline.tables import table
 from pipeline.tables.assumed import assumed
 from pipeline.tables.rows import Entries, Number, TableRow, Text, checked, in_order, once
@@ -75,7 +76,7 @@ class FixingStrength(TableRow):
     @classmethod
     def _sized(cls, unit: str, info: ValidationInfo) -> str:
         if (unit == "Pa") is not bool(info.data.get("sizes")):
-            raise ValueError("is 'Pa' where sizes are given, and 'N' where none are: a strength needs an area")
+            raise InputError("is 'Pa' where sizes are given, and 'N' where none are: a strength needs an area")
         return unit
 
     @field_validator("harms", "care_for")
@@ -83,7 +84,7 @@ class FixingStrength(TableRow):
     def _known(cls, materials: tuple[str, ...]) -> tuple[str, ...]:
         strange = next((name for name in materials if name not in assumed().materials), None)
         if strange is not None:
-            raise ValueError(f"names {strange!r}, which is no material; see materials.csv")
+            raise InputError(f"names {strange!r}, which is no material; see materials.csv")
         return materials
 
 

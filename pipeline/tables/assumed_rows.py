@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, ValidationInfo, field_validator
 
+from pipeline.errors import InputError
 from pipeline.records import Support
 from pipeline.tables import Range
 from pipeline.tables.rows import Entries, Number, Optional, RangeRow, TableRow, Text, in_order
@@ -18,7 +19,7 @@ Above0 = Annotated[Number, Field(gt=0.0)]
 
 def _share(value: float | None) -> float | None:
     if value is not None and not 0.0 < value <= 1.0:
-        raise ValueError(f"is a share: it must be above 0 and at most 1, not {value:g}")
+        raise InputError(f"is a share: it must be above 0 and at most 1, not {value:g}")
     return value
 
 
@@ -28,7 +29,7 @@ Share = Annotated[Optional, AfterValidator(_share)]
 
 def _held(support: Support) -> Support:
     if support is Support.ISOLATED:
-        raise ValueError("is 'isolated', which measures make of an object; say how it stands or hangs without them")
+        raise InputError("is 'isolated', which measures make of an object; say how it stands or hangs without them")
     return support
 
 
@@ -130,9 +131,9 @@ class ObjectClass(AssumedRow):
         value = f"{kind}_ratio" if f"{kind}_ratio" in cls.model_fields else kind
         three = (info.data.get(f"{kind}_low"), info.data.get(value), high)
         if any(cell is not None for cell in three) and None in three:
-            raise ValueError(f"{value}, {kind}_low and {kind}_high go together: fill all three, or none")
+            raise InputError(f"{value}, {kind}_low and {kind}_high go together: fill all three, or none")
         if kind == "section" and bool(info.data.get("section")) is not (high is not None):
-            raise ValueError("a critical section and its size go together: fill section and the three sizes, or none")
+            raise InputError("a critical section and its size go together: fill section and the three sizes, or none")
         return in_order(high, info, f"{kind}_low", value)
 
     @field_validator("models")
@@ -140,12 +141,12 @@ class ObjectClass(AssumedRow):
     def _known(cls, models: tuple[str, ...], info: ValidationInfo) -> tuple[str, ...]:
         known: Collection[str] | None = (info.context or {}).get("models")
         if not models:
-            raise ValueError(f"is empty; name models parted by |, or write {NO_MODEL} or {WHEN_HELD}")
+            raise InputError(f"is empty; name models parted by |, or write {NO_MODEL} or {WHEN_HELD}")
         if set(models) & {NO_MODEL, WHEN_HELD} and len(models) > 1:
-            raise ValueError(f"{NO_MODEL} and {WHEN_HELD} stand alone; remove them or the models")
+            raise InputError(f"{NO_MODEL} and {WHEN_HELD} stand alone; remove them or the models")
         strange = [name for name in models if known is not None and name not in {*known, NO_MODEL, WHEN_HELD}]
         if strange:
-            raise ValueError(f"there is no model {strange[0]!r}; use some of {', '.join(sorted(known or ()))}")
+            raise InputError(f"there is no model {strange[0]!r}; use some of {', '.join(sorted(known or ()))}")
         return models
 
     @cached_property
@@ -249,7 +250,7 @@ class PairRow(AssumedRow, RangeRow):
     @classmethod
     def _not_negative(cls, low: float) -> float:
         if low < 0.0:
-            raise ValueError(f"must be 0 or more, not {low:g}")
+            raise InputError(f"must be 0 or more, not {low:g}")
         return low
 
     @property
@@ -304,5 +305,5 @@ class WallDamping(PairRow):
     @classmethod
     def _below_critical(cls, high: float) -> float:
         if high >= 1.0:
-            raise ValueError(f"is a ratio of critical damping: it must be below 1 (0.02 is 2 %), not {high:g}")
+            raise InputError(f"is a ratio of critical damping: it must be below 1 (0.02 is 2 %), not {high:g}")
         return high

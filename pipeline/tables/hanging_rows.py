@@ -5,6 +5,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo, field_validator
 
+from pipeline.errors import InputError
 from pipeline.records import Hanging
 from pipeline.tables import Range, TableError, table
 from pipeline.tables.rows import Entries, Number, Optional, TableRow, Text, checked, in_order, once
@@ -55,7 +56,7 @@ class HangingRow(TableRow):
     def _in_order(cls, high: float | None, info: ValidationInfo) -> float | None:
         stem = str(info.field_name).removesuffix("_high")
         if high is None and info.data.get("lifts_off"):
-            raise ValueError("is empty; of what may be lifted off the hooks have a depth")
+            raise InputError("is empty; of what may be lifted off the hooks have a depth")
         return in_order(high, info, f"{stem}_low", stem)
 
     def range(self, column: str) -> Range:

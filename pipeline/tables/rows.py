@@ -15,6 +15,7 @@ from pydantic import (
     field_validator,
 )
 
+from pipeline.errors import InputError
 from pipeline.tables import Range, Row, TableError
 
 Model = TypeVar("Model")
@@ -29,7 +30,7 @@ def _entries(cell: object) -> object:
 
 def _filled(cell: str) -> str:
     if not cell.strip():
-        raise ValueError("is empty; every row needs it")
+        raise InputError("is empty; every row needs it")
     return cell
 
 
@@ -97,7 +98,7 @@ def in_order(high: float | None, info: ValidationInfo, low: str, value: str) -> 
     # What was refused already is not there, and has its own message.
     if None not in three and not three[0] <= three[1] <= high:  # type: ignore[operator]
         shown = " ".join(f"{one:g}" for one in three if one is not None)
-        raise ValueError(f"{low} <= {value} <= {info.field_name} does not hold ({shown}); put them in order")
+        raise InputError(f"{low} <= {value} <= {info.field_name} does not hold ({shown}); put them in order")
     return high
 
 

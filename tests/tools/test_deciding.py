@@ -387,7 +387,10 @@ def test_a_museums_own_isolator_has_its_own_stroke(museum: Path) -> None:
     [
         (["horizontal_isolator", "isolator=generic 0.5 Hz friction 0.05"], "did you mean 'generic 0.5 Hz, friction 0."),
         (["horizontal_isolator", f"isolator={HOSTILE}"], "it has 'generic 0.35 Hz, friction 0.05', "),
-        (["horizontal_isolator", "isolator=low-friction pad"], "is a friction_isolator, not a horizontal_isolator"),
+        (
+            ["horizontal_isolator", "isolator=generic low-friction pad"],
+            "is a friction_isolator, not a horizontal_isolator",
+        ),
         (["horizontal_isolator", f"isolator={SPRINGS}"], "horizontal_isolator needs stroke_m"),
         (["clearance", f"isolator={SPRINGS}"], "no parameter of clearance 'isolator'; use one of clearance_m, product"),
         (["clearance", "clearance_m=0.1", "clearance_m=0.2"], "clearance_m is said twice; say it once"),
