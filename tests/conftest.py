@@ -14,6 +14,11 @@ from typing import Any
 
 import pytest
 from filelock import FileLock
+from hypothesis import settings as examples
+
+# Machines that others share are slow at times: no example fails for that.
+examples.register_profile("kouros", deadline=None)
+examples.load_profile("kouros")
 
 SHARED = "KOUROS_TESTS_SHARED"
 """Names the folder of what all processes of a session have in common: it is the same whoever made it."""
