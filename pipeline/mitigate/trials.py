@@ -4,7 +4,7 @@ from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import isinf
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -31,6 +31,9 @@ What stands on it slides at most 0.5 % off then, and is lifted 0.3 % off; 1e-3 w
 
 SAMPLING_FACTOR = 1.005
 """Factor on what an isolator passes on, for what its sampling may hide."""
+
+
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,10 +119,12 @@ class SharedLevel:
         return self.level.combined([max(lift_ratios(m.excitation(None))) for m in self.level.motions])
 
     @cached_property
-    def shaken(self) -> Mapping[str, tuple[Array, Array]]:
-        """|a_h| and N = max(0, g + a_z) at each sample [m/s2], (n,) each, by the hash of the motion."""
-        motions = {motion.hash: motion.acceleration for motion in self.level.motions}
-        return {name: (np.hypot(*a[:2]), np.maximum(0.0, G + a[2])) for name, a in motions.items()}
+    def hardest(self) -> Sequence[tuple[Array, Array]]:
+        """|a_h| and N [m/s2] at the samples that may lift an edge, (k,) each, of what the level is combined from."""
+        each = [(np.hypot(*m.acceleration[:2]), np.maximum(0.0, G + m.acceleration[2])) for m in self.level.motions]
+        if self.level.combine == "mean":
+            return [_hardest(*one) for one in each]
+        return [_hardest(*(np.concatenate(part) for part in zip(*each, strict=True)))]
 
 
 class TransmittedMotions:
@@ -172,6 +177,7 @@ class TrialRunner:
         self._shared = [transmitted.of(level) for level in self.levels]
         self._isolated: dict[Isolator, IsolatorResponse] = {}
         self._on_pads: dict[tuple[Isolator, Bodies], tuple[float, float]] = {}
+        self._made: dict[Hashable, Any] = {}
 
     def catalogue(self, kind: str) -> list[Isolator]:
         """Return the isolators of a kind that there are, in the order of their table."""
@@ -191,10 +197,39 @@ class TrialRunner:
         """The largest |a_h| / N: what an object's slope b/h is held against."""
         return max(shared.lift for shared in self._shared)
 
-    @cached_property
-    def shaken(self) -> Mapping[str, tuple[Array, Array]]:
-        """|a_h| and N = max(0, g + a_z) at each sample [m/s2], (n,) each, by the hash of the motion."""
-        return {name: both for shared in self._shared for name, both in shared.shaken.items()}
+    def tipping(self, arm: float, base: float) -> float:
+        """Return the largest of |a_h| times an arm less N times a base, N = max(0, g + a_z), but not below 0.
+
+        Parameters
+        ----------
+        arm, base : float
+            Both above 0 [m].
+
+        Returns
+        -------
+        float
+            In any direction [m2/s2]: times the mass the moment that lifts the base off.
+        """
+        each = (
+            shared.level.combined([float(np.max(arm * push - base * weight)) for push, weight in shared.hardest])
+            for shared in self._shared
+        )
+        return max(0.0, *each)
+
+    def once(self, key: Hashable, make: Callable[[], _T]) -> _T:
+        """Return what is made under a key, the first time that it is asked for.
+
+        Parameters
+        ----------
+        key : hashable
+            All that it depends on but the shaking.
+        make : callable
+            Makes it.
+        """
+        if key not in self._made:
+            self._made[key] = make()
+        made: _T = self._made[key]
+        return made
 
     def run(self, trials: Sequence[Trial]) -> list[list[Finding]]:
         """Run every model of each trial's scene, equal work once, at every corner of the uncertain inputs.
@@ -298,6 +333,30 @@ class TrialRunner:
             turns[at] = level.over(rotations)
         for one, turn, share in zip(fresh, turns.max(axis=0).tolist(), shares.tolist(), strict=True):
             self._on_pads[pad, one] = (turn, share)
+
+
+def _hardest(push: Array, weight: Array) -> tuple[Array, Array]:
+    """Return those samples at which some a |a_h| - b N, with a and b above 0, is largest.
+
+    They are the corners of the upper left of the convex hull in the plane of N and |a_h|: some ten of 20,000, so that
+    what holds an object costs microseconds.
+    """
+    order = np.lexsort((-push, weight))
+    # To be larger at a greater weight it must push harder than all that weighs less.
+    harder = np.concatenate([[-1.0], np.maximum.accumulate(push[order])[:-1]])
+    corners: list[tuple[float, float]] = []
+    for at in order[push[order] > harder]:
+        x, y = float(weight[at]), float(push[at])
+        while len(corners) > 1 and _below(corners[-2], corners[-1], (x, y)):
+            corners.pop()
+        corners.append((x, y))
+    found = np.array(corners)
+    return np.ascontiguousarray(found[:, 1]), np.ascontiguousarray(found[:, 0])
+
+
+def _below(first: tuple[float, float], middle: tuple[float, float], last: tuple[float, float]) -> bool:
+    # Whether the middle one of three points, from left to right, is not above the line through the others.
+    return (middle[0] - first[0]) * (last[1] - first[1]) >= (last[0] - first[0]) * (middle[1] - first[1])
 
 
 def _run_isolator(task: tuple[SharedLevel, Isolator]) -> LevelResponse:

@@ -5,17 +5,19 @@ of the record, so that a night reads the records of those alone that are new to 
 """
 
 from collections.abc import Sequence
-from hashlib import blake2b
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.analysis.classify import house_effect
 from pipeline.analysis.faults import apart
+from pipeline.analysis.house.effect import HouseEffect
 from pipeline.analysis.house.matching import HouseRules
+from pipeline.analysis.rules import RuleTable
 from pipeline.cache import HOUSE, Cache, CacheEntry, key_of
 from pipeline.collection.listing import Listed, Listing
 from pipeline.collection.object_index import ObjectIndex
+from pipeline.collection.sealing import seal
 from pipeline.night.assessment import decided_class
 from pipeline.night.context import RunContext
 from pipeline.night.source_state import house_digest, rules_digest, tables_digest
@@ -64,7 +66,8 @@ def house_effects(
     for start in range(0, len(new), BATCH):
         some = new[start : start + BATCH]
         items = list(index.items([one.object_number for one in some]).values())
-        found |= zip(map(_place, some), _effects(house, items, context, decisions), strict=True)
+        effects = each_effect(house, items, context.rules, decisions)
+        found |= zip(map(_place, some), map(_digest, effects), strict=True)
     if cache is not None and new and len(objects) == len(index.objects):
         # A run of a part of the collection would forget the others.
         cache.put(HOUSE, key, _entry({_place(one): found[_place(one)] for one in near}))
@@ -72,20 +75,38 @@ def house_effects(
     return {number: effect for number, effect in every if effect}
 
 
-def _effects(house: HouseRules, items: Sequence[Item], context: RunContext, decisions: Decisions) -> list[str]:
-    def some(these: Sequence[Item]) -> list[str]:
+def each_effect(
+    house: HouseRules, items: Sequence[Item], rules: RuleTable | None, decisions: Decisions
+) -> list[HouseEffect | Exception]:
+    """Return what the house rules come to for some objects, each by itself.
+
+    Parameters
+    ----------
+    house
+        The rules.
+    items
+        Records of the objects.
+    rules
+        The table that decides the class; None for Kouros's own.
+    decisions
+        Those in force.
+
+    Returns
+    -------
+    list of HouseEffect or Exception
+        An error where an object cannot even be classed: it is told where that is done.
+    """
+
+    def some(these: Sequence[Item]) -> list[HouseEffect]:
         return [
-            house_effect(item, house, context.rules, decided_class(decisions.get(item.object_number, ()))).key
-            for item in these
+            house_effect(item, house, rules, decided_class(decisions.get(item.object_number, ()))) for item in these
         ]
 
-    # One that cannot even be classed is told where it is assessed.
-    came = apart(some, items, lambda item: item.support)
-    return ["" if isinstance(one, Exception) else _digest(one) for one in came]
+    return apart(some, items, lambda item: item.support)
 
 
-def _digest(effect: str) -> str:
-    return blake2b(effect.encode("utf-8", "surrogatepass"), digest_size=16).hexdigest() if effect else ""
+def _digest(effect: HouseEffect | Exception) -> str:
+    return "" if isinstance(effect, Exception) or not effect.key else seal(effect.key)
 
 
 def _place(one: Listed) -> int:

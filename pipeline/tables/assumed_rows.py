@@ -4,12 +4,12 @@ from collections.abc import Collection
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, ValidationInfo, field_validator
+from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, field_validator
 
 from pipeline.errors import InputError
 from pipeline.records import Support
 from pipeline.tables import Range
-from pipeline.tables.rows import Entries, Number, Optional, RangeRow, TableRow, Text, in_order
+from pipeline.tables.rows import Entries, Number, Optional, RangeRow, TableRow, Text, YesNo, in_order
 
 NO_MODEL, WHEN_HELD = "none", "held"
 """In the column models of classes.csv: no generic model applies; none does until it is recorded how it is held."""
@@ -31,10 +31,6 @@ def _held(support: Support) -> Support:
     if support is Support.ISOLATED:
         raise InputError("is 'isolated', which measures make of an object; say how it stands or hangs without them")
     return support
-
-
-def _yes(cell: object) -> object:
-    return {"yes": True, "no": False}.get(cell, cell) if isinstance(cell, str) else cell
 
 
 class AssumedRow(TableRow):
@@ -102,7 +98,7 @@ class ObjectClass(AssumedRow):
     name: Text = Field(alias="class")
     title: Text
     support: Annotated[Support, AfterValidator(_held)]
-    round: Annotated[bool, BeforeValidator(_yes)]
+    round: YesNo
     cg_ratio: Share
     cg_low: Share
     cg_high: Share
@@ -120,7 +116,7 @@ class ObjectClass(AssumedRow):
     clearance_low: Annotated[Optional, Field(gt=0.0)]
     clearance_high: Annotated[Optional, Field(gt=0.0)]
     models: Entries
-    rocking_harms: Annotated[bool, BeforeValidator(_yes)] = True
+    rocking_harms: YesNo = True
     why: Text
     source: Text
 

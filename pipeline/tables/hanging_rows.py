@@ -3,15 +3,12 @@
 from functools import cache
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, ValidationInfo, field_validator
+from pydantic import ValidationInfo, field_validator
 
 from pipeline.errors import InputError
 from pipeline.records import Hanging
 from pipeline.tables import Range, TableError, table
-from pipeline.tables.rows import Entries, Number, Optional, TableRow, Text, checked, in_order, once
-
-YesNo = Annotated[bool, BeforeValidator(lambda cell: {"yes": True, "no": False}.get(cell, cell))]
-"""A cell that says yes or no."""
+from pipeline.tables.rows import Entries, Number, Optional, TableRow, Text, YesNo, checked, in_order, once
 
 Ways = Annotated[tuple[Hanging, ...], Entries.__metadata__[0]]
 """A cell with ways to hang, parted by `|`."""

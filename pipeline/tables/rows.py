@@ -28,6 +28,10 @@ def _entries(cell: object) -> object:
     return tuple(filter(None, map(str.strip, cell.split("|")))) if isinstance(cell, str) else cell
 
 
+def _yes(cell: object) -> object:
+    return {"yes": True, "no": False}.get(cell, cell) if isinstance(cell, str) else cell
+
+
 def _filled(cell: str) -> str:
     if not cell.strip():
         raise InputError("is empty; every row needs it")
@@ -45,6 +49,9 @@ Entries = Annotated[tuple[str, ...], BeforeValidator(_entries)]
 
 Text = Annotated[str, AfterValidator(_filled)]
 """A cell that holds words."""
+
+YesNo = Annotated[bool, BeforeValidator(_yes)]
+"""A cell that says yes or no."""
 
 
 class TableRow(BaseModel):

@@ -3,11 +3,9 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from pipeline.analysis.classify import house_effect
-from pipeline.analysis.faults import apart
 from pipeline.analysis.house.effect import HouseEffect
 from pipeline.analysis.house.matching import HouseRules
-from pipeline.night.assessment import decided_class
+from pipeline.night.house_effects import each_effect
 from pipeline.operations.workspace import Workspace, near
 from pipeline.quantities import counted
 from pipeline.records import Item
@@ -62,13 +60,7 @@ def look_at_house_rules(workspace: Workspace, inventory: Sequence[Item]) -> tupl
 
 
 def _effects(workspace: Workspace, house: HouseRules, inventory: Sequence[Item]) -> list[tuple[Item, HouseEffect]]:
-    decisions, rules = decisions_in_force(workspace.engine), workspace.rules
-
-    def asked(some: Sequence[Item]) -> list[HouseEffect]:
-        return [house_effect(item, house, rules, decided_class(decisions.get(item.object_number, ()))) for item in some]
-
-    # What cannot be classed is told by another look.
-    came = apart(asked, inventory, lambda item: item.support)
+    came = each_effect(house, inventory, workspace.rules, decisions_in_force(workspace.engine))
     return [(item, one) for item, one in zip(inventory, came, strict=True) if isinstance(one, HouseEffect)]
 
 

@@ -245,36 +245,3 @@ def take_sheet(workspace: Workspace, config: Path, path: Path, *, dry_run: bool 
     if reading is not None and (not rules or any(filled_in(item) for item in reading.items)):
         changes, unknown = add_sheet(workspace.engine, reading, dry_run=dry_run)
     return SheetTaken(reading, changes, unknown, add_rules(config, rules, dry_run=dry_run))
-
-
-def add_measurements(
-    workspace: Workspace, path: Path, *, dry_run: bool = False
-) -> tuple[Reading, Difference, list[str]]:
-    """Lay a filled-in sheet over the inventory.
-
-    Parameters
-    ----------
-    workspace : Workspace
-        Whose inventory gets the measurements.
-    path : Path
-        The sheet.
-    dry_run : bool
-        Only say what that would change.
-
-    Returns
-    -------
-    Reading
-        What was read.
-    Difference
-        What changed.
-    list of str
-        The objects of the sheet that the inventory does not have.
-
-    Raises
-    ------
-    CollectionError
-        As `read_sheet`.
-    """
-    reading = read_sheet(path)
-    changes, unknown = add_sheet(workspace.engine, reading, dry_run=dry_run)
-    return reading, changes, unknown

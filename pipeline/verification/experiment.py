@@ -9,6 +9,7 @@ import json
 import re
 import tomllib
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal
 from zipfile import BadZipFile
@@ -19,6 +20,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from pipeline.errors import InputError
 from pipeline.motions.filtering import highpass
+from pipeline.motions.intensity import measures
 from pipeline.motions.reading import UNITS
 from pipeline.motions.record import FileName, Table, Text, Unit
 from pipeline.quantities import Array, G
@@ -153,6 +155,11 @@ class Experiment:
     motions: tuple[Motion, ...]
     fell: NDArray[np.bool_]
     predicted: dict[str, Array]
+
+    @cached_property
+    def peak_velocities(self) -> Array:
+        """The peak velocity of each run, the larger of the two directions, m/s, shape (runs,)."""
+        return np.array([measures(motion)["pgv"] for motion in self.motions])
 
     @property
     def names(self) -> list[str]:

@@ -26,7 +26,7 @@ from pipeline.models import model_named
 from pipeline.models.rocking import bodies
 from pipeline.quantities import Array
 from pipeline.records import ContactPolygon, Motion, Progress
-from pipeline.tables import FOLDER, read_table
+from pipeline.tables import table
 from pipeline.tables.rows import Number, checked
 from pipeline.verification.experiment import EXPERIMENT, BodyTable, Experiment, ExperimentError
 
@@ -54,7 +54,7 @@ TAIL = 10.0
 TOLD_EVERY = 20
 """Runs after which it is told how far the work is."""
 
-TABLE = "validation.csv"
+TABLE = "validation"
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +98,7 @@ class Prior:
 @cache
 def priors() -> dict[str, Prior]:
     """Return the table of priors, by quantity."""
-    rows = checked(Prior, read_table(FOLDER / TABLE), TABLE, named="quantity")
+    rows = checked(Prior, table(TABLE), f"{TABLE}.csv", named="quantity")
     return {row.quantity: row for row in rows}
 
 

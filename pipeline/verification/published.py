@@ -174,14 +174,15 @@ def overturning_medians(
     one = np.concatenate([first[:, at] * shares[:, at, None] for at in (0, 1)])
     worst = first.min(axis=1)
     mean = np.sqrt(shares.prod(axis=1))
+    both = [_median(worst[:, at] * mean, mean) for at in range(len(rows))]
     return [
         OverturningMedian(
             name=row.name,
             published=row.median,
             one_direction=_median(one[:, at], shares.T.ravel())[0],
-            both_directions=_median(worst[:, at] * mean, mean)[0],
+            both_directions=both[at][0],
             stronger=_median(worst[:, at], np.ones(len(motions)))[0],
-            dispersion=_median(worst[:, at] * mean, mean)[1],
+            dispersion=both[at][1],
         )
         for at, row in enumerate(rows)
     ]

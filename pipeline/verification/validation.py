@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.motions.intensity import measures
 from pipeline.quantities import Array
 from pipeline.records import Progress
 from pipeline.verification.experiment import EXPERIMENT, Experiment, ExperimentError, read_experiment
@@ -142,13 +141,13 @@ def _body(
     name, fell = here.names[at], here.fell[at]
     unfitted = drawn_odds(here, shape, progress, name)
     grid = fit_grid(here, shape, progress, name)
-    speed = peak_velocities(here)
+    speed = here.peak_velocities
     if there is here:
         trained, trained_fell, trained_speed = grid, fell, speed
     else:
         other = there.names.index(name)
         trained = fit_grid(there, trained_shape, progress, f"{name} of the other")
-        trained_fell, trained_speed = there.fell[other], peak_velocities(there)
+        trained_fell, trained_speed = there.fell[other], there.peak_velocities
     fitted, by_speed = np.empty(fell.size), np.empty(fell.size)
     for tested, used in folds(here, there):
         weights = fit(trained.odds[used], trained_fell[used])
@@ -217,11 +216,6 @@ def _parameters(grid: FitGrid, weights: Array) -> Fitted:
         half_width=float(np.exp((weights.sum(axis=1) * np.log(grid.half_width)).sum())),
         restitution=float((weights.sum(axis=0) * grid.restitution).sum()),
     )
-
-
-def peak_velocities(experiment: Experiment) -> Array:
-    """Return the peak velocity of each run, the larger of the two directions, m/s, shape (runs,)."""
-    return np.array([measures(motion)["pgv"] for motion in experiment.motions])
 
 
 def threshold(speed: Array, fell: NDArray[np.bool_]) -> float:

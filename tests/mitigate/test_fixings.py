@@ -8,15 +8,19 @@ from math import cos, exp, inf, pi, radians
 import numpy as np
 import pytest
 
+from pipeline.analysis.context import Context
+from pipeline.analysis.verdicts import LevelMotions
+from pipeline.execute import Threads
 from pipeline.mitigate.catalogue import MeasureCatalogue, measure_catalogue, own_catalogue
 from pipeline.mitigate.fixing_rows import FixingStrength, fixing_strengths
 from pipeline.mitigate.measures.adhesives import LEVER
 from pipeline.mitigate.measures.restraints import BEARING
 from pipeline.mitigate.search import AT_BEST, SIZED
-from pipeline.mitigate.trials import upper_stroke
+from pipeline.mitigate.trials import TrialRunner, upper_stroke
 from pipeline.models.rocking import UNHARMED
 from pipeline.quantities import G
 from pipeline.records import Item, Motion, Recommendation
+from pipeline.records.numerics import VERDICTS
 from pipeline.tables import TableError
 from pipeline.tables.rows import checked
 
@@ -355,3 +359,17 @@ def test_a_fixing_that_cannot_be_used_is_named(changed: dict[str, str], message:
     (wax,) = (row for row in table("fixings") if row["fixing"] == "wax")
     with pytest.raises(TableError, match=message):
         checked(FixingStrength, [{**wax, **changed}], "fixings.csv", named="fixing")
+
+
+@pytest.mark.parametrize("combine", ["max", "mean"])
+def test_the_moment_is_that_over_all_samples(combine: str) -> None:
+    """Only the corners of the hull of |a_h| and N are looked at: 200 pairs of arm and base, N reaching 0."""
+    rng = np.random.default_rng(5)
+    acceleration = np.round(rng.normal(0.0, 6.0, (2, 3, 4000)), 1)
+    motions = tuple(Motion(0.01, one) for one in acceleration)
+    runner = TrialRunner([LevelMotions("one", combine, motions)], (), Context(Threads(1)), VERDICTS)
+    push, weight = np.hypot(acceleration[:, 0], acceleration[:, 1]), np.maximum(0.0, G + acceleration[:, 2])
+    for arm, base in np.exp(rng.uniform(-4.0, 2.0, (200, 2))):
+        each = (arm * push - base * weight).max(axis=1)
+        expected = max(0.0, each.mean() if combine == "mean" else each.max())
+        assert runner.tipping(arm, base) == pytest.approx(expected, rel=1e-12)

@@ -27,7 +27,7 @@ from pipeline.settings import Settings, load_settings, template
 from pipeline.store.decisions import decisions_in_force
 from pipeline.store.tables import DECISION
 from pipeline.tools.decisions import Wish, decide
-from pipeline.tools.survey import add_measurements
+from pipeline.tools.survey import take_sheet
 from tests.museum import SILENT, in_common
 
 COLUMNS = (
@@ -190,7 +190,7 @@ class Changing:
         mine, new = open_workspace(self.settings), open_workspace(settings)
         import_collection(new, folder / "collection.csv", "kouros", shrink_limit=1.0)
         for at, _ in enumerate(self.sheets):
-            add_measurements(new, folder / f"sheet-{at}.csv")
+            take_sheet(new, folder / "kouros.toml", folder / f"sheet-{at}.csv")
         with mine.engine.connect() as source, new.engine.begin() as target:
             rows = [dict(row) for row in source.execute(select(DECISION)).mappings()]
             if rows:
@@ -252,7 +252,8 @@ class Changing:
         self.night()
         self.sheets.append(f"object_number,gallery,{name}\n{row['object_number']},,{value}\n")
         self.write()
-        add_measurements(open_workspace(self.settings), self.home / f"sheet-{len(self.sheets) - 1}.csv")
+        sheet = self.home / f"sheet-{len(self.sheets) - 1}.csv"
+        take_sheet(open_workspace(self.settings), self.home / "kouros.toml", sheet)
 
     def other_v_max(self) -> None:
         self.v_max = self.random.choice((None, 20.0, 60.0))

@@ -7,8 +7,6 @@ from itertools import product
 from math import inf, pi
 from typing import ClassVar
 
-import numpy as np
-
 from pipeline.analysis.classify import material_of
 from pipeline.analysis.response import respond
 from pipeline.mitigate.fixing_rows import FixingStrength, fixing_strengths
@@ -16,7 +14,7 @@ from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, 
 from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models.stress import FLEXIBLE_STRESS, STRESS
-from pipeline.records import Check, Finding, Item, Motion, Scene, Support
+from pipeline.records import Check, Estimate, Finding, Item, Motion, Scene, Support
 from pipeline.tables.assumed import AssumedValues
 
 HOLDS = ("force", "moment")
@@ -62,6 +60,11 @@ def force_and_moment(scene: Scene, runner: TrialRunner, findings: Sequence[Findi
 def _pseudo_acceleration(scene: Scene, runner: TrialRunner) -> float:
     """Return the largest that its oscillator feels [m/s2], in any direction, at all ends of what is uncertain."""
     f, zeta = scene.parameters["frequency"], scene.parameters["damping"]
+    # Each of several fixings asks for it, and the fixing itself once more.
+    return runner.once(("pseudo_acceleration", f, zeta), lambda: _of_oscillator(f, zeta, runner))
+
+
+def _of_oscillator(f: Estimate, zeta: Estimate, runner: TrialRunner) -> float:
     ends = [(f.value, zeta.value), *product((f.low, f.high), (zeta.low, zeta.high))]
     frequencies, dampings = [one for one, _ in ends], [other for _, other in ends]
 
@@ -103,19 +106,11 @@ class HoldingDemand:
         mass, cg, half = p["mass"], p["cg_height"], p["half_width"]
         bends = bool(STRESS.applies(held(scene))) and not FLEXIBLE_STRESS.applies(held(scene))
         times = max(1.0, _pseudo_acceleration(scene, runner) / runner.push) if bends and runner.push > 0.0 else 1.0
-
-        def moment(m: float, h: float, b: float) -> float:
-            def largest(motion: Motion) -> float:
-                push, weight = runner.shaken[motion.hash]
-                return float(np.max(m * (times * push * h - weight * b)))
-
-            return max(0.0, runner.largest(largest))
-
         return cls(
             mass.value * times * runner.push,
             mass.high * times * runner.push,
-            moment(mass.value, cg.value, half.value),
-            moment(mass.high, cg.high, half.low),
+            mass.value * runner.tipping(times * cg.value, half.value),
+            mass.high * runner.tipping(times * cg.high, half.low),
         )
 
 
