@@ -17,7 +17,7 @@ from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.rules import RuleTable, rule_for
 from pipeline.errors import InputError
 from pipeline.models import MODELS, model_named
-from pipeline.models.rocking import FALLS_IN, HALF
+from pipeline.models.rigid_body import FALLS_IN, HALF
 from pipeline.models.unhooking import LOCKED
 from pipeline.records import SECTION_SHAPES, Estimate, Item, Origin, Scene, Support
 from pipeline.tables import Range

@@ -190,16 +190,14 @@ def _gather(model: Model, scenes: Sequence[Scene], chosen: Sequence[int], x_azim
     defaults = {q.name: np.nan if q.default is None else q.default for q in model.needs}
     # After the model's own parameters come those that take their places along an object's own axes.
     own = [(at, name, other) for at, axis in enumerate(axes) for name, other in axis.items()]
-    columns = [_estimates(scenes, chosen, name, name, defaults[name]) for name in names]
-    columns += [_estimates(scenes, chosen, other, name, defaults[name]) for _, name, other in own]
+    pairs = [(name, name) for name in names] + [(other, name) for _, name, other in own]
+    columns = [_estimates(model, [scenes[index] for index in chosen], pair, defaults[pair[1]]) for pair in pairs]
     base, low, high = (np.column_stack([column[i] for column in columns]) for i in range(3))
     uncertain = low < high
     for _, name, _ in own:
         uncertain[turned, names.index(name)] = False
     uncertain[~turned, len(names) :] = False
-    ratios, of = _proportions(
-        scenes, chosen, [(name, name) for name in names] + [(other, n) for _, n, other in own], names
-    )
+    ratios, of = _proportions(scenes, chosen, pairs, names)
     uncertain &= np.isnan(ratios)
     sets, analysis = corners(base, low, high, uncertain)
     tied = ~np.isnan(ratios[analysis])
@@ -255,21 +253,24 @@ def own_angle(model: Model, scene: Scene, x_azimuth: float) -> float:
 
 
 def _estimates(
-    scenes: Sequence[Scene], chosen: Sequence[int], name: str, instead: str, default: float
+    model: Model, scenes: Sequence[Scene], pair: tuple[str, str], default: float
 ) -> tuple[list[float], list[float], list[float]]:
-    """Return value, low and high of a parameter of each scene, of another one where it is not known, or a default."""
+    """Return value, low and high of a parameter of each scene, of the second of a pair where the first is not known.
+
+    Where neither is, the default; of a range as much as the model counts on.
+    """
     value, low, high = [], [], []
-    for index in chosen:
-        known = scenes[index].parameters
-        estimate = known.get(name) or known.get(instead)
+    for scene in scenes:
+        estimate = scene.parameters.get(pair[0]) or scene.parameters.get(pair[1])
         if estimate is None:
             value.append(default)
             low.append(default)
             high.append(default)
         else:
-            value.append(estimate.value)
-            low.append(estimate.low)
-            high.append(estimate.high)
+            counted = model.counted(pair[1], estimate)
+            value.append(counted.value)
+            low.append(counted.low)
+            high.append(counted.high)
     return value, low, high
 
 

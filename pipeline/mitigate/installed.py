@@ -12,7 +12,9 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.transmission import transmit
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures.base import held
-from pipeline.models import model_named
+from pipeline.models import model_named, tips
+from pipeline.models.rocking import ROCKING
+from pipeline.models.sliding import SLIDING
 from pipeline.records import Finding, Numerics, Scene
 
 ON_TOP = "Under the motion that its isolator passes on"
@@ -163,9 +165,10 @@ def _shaken(
 ) -> list[tuple[Scene, Sequence[LevelMotions]]]:
     if kind != "friction_isolator":
         return [(above, passed)]
-    # On a low-friction pad it slides with the pad, and a low friction never excuses rocking (paper, 2.6).
-    rocks = tuple(name for name in above.models if name == "rocking")
-    rest = tuple(name for name in above.models if name not in ("rocking", "sliding"))
+    # On a low-friction pad it slides with the pad, and a low friction never excuses rocking (paper, 2.6): it is asked
+    # for by the model that lets nothing slide.
+    rocks = (ROCKING.name,) if any(tips(name) for name in above.models) else ()
+    rest = tuple(name for name in above.models if not tips(name) and name != SLIDING.name)
     both = [(replace(above, models=rocks), ground), (replace(above, models=rest), passed)]
     return [(scene, under) for scene, under in both if scene.models]
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from pipeline.mitigate.trials import Trial
-from pipeline.models import settled_by_room
+from pipeline.models import settled_by_room, tips
 from pipeline.records import Check, Finding, Scene, Support, Verdict
 
 Numbers = Mapping[str, tuple[float, str]]
@@ -78,8 +78,8 @@ class Deficiency:
 
     @property
     def rocks(self) -> bool:
-        """Whether it fails by rocking, or may."""
-        return any(f.model == "rocking" and f.verdict is not Verdict.PASS for f in self.findings)
+        """Whether it fails by tipping, or may."""
+        return any(tips(f.model) and f.verdict is not Verdict.PASS for f in self.findings)
 
     @property
     def moves(self) -> float | None:

@@ -197,6 +197,17 @@ class TrialRunner:
         """The largest |a_h| / N: what an object's slope b/h is held against."""
         return max(shared.lift for shared in self._shared)
 
+    def tilt(self, scene: Scene) -> float:
+        """Return the slope b/h above which an object does not tip: what pushes it, or the friction that passes it on.
+
+        Parameters
+        ----------
+        scene : Scene
+            A free-standing object, its friction at the higher end.
+        """
+        friction = scene.parameters.get("friction_static")
+        return self.lift if friction is None else min(self.lift, friction.high)
+
     def tipping(self, arm: float, base: float) -> float:
         """Return the largest of |a_h| times an arm less N times a base, N = max(0, g + a_z), but not below 0.
 

@@ -32,9 +32,9 @@ def _model(value: object) -> Model:
 MODELS = Registry(
     "kouros.models",
     (
+        STANDING,
         ROCKING,
         SLIDING,
-        STANDING,
         STRESS,
         FLEXIBLE_STRESS,
         SWING,
@@ -80,3 +80,8 @@ def model_named(name: str) -> Model:
 def settled_by_room(name: str) -> bool:
     """Say whether the failure that a model tells of is a collision, so that room settles it."""
     return model_named(name).room_settles
+
+
+def tips(name: str) -> bool:
+    """Say whether the failure that a model tells of is that an object tips."""
+    return model_named(name).tips

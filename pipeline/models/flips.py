@@ -71,7 +71,7 @@ def integrate(
     motion : Excitation
         Along one direction.
     body : ndarray, shape (n, 6)
-        As from `models.rocking.bodies`.
+        As from `models.rigid_body.bodies`.
     initial : ndarray, shape (n,)
         Angle that each is released at [rad].
     refine : int

@@ -35,7 +35,6 @@ from numpy.typing import NDArray
 from pipeline.kernels import flags
 from pipeline.kernels.rocking import OVERTURNED, REST
 from pipeline.models.common import (
-    NO_HISTORY,
     SENSITIVE,
     broadcast,
     contact_lost,
@@ -49,17 +48,34 @@ from pipeline.models.common import (
 from pipeline.models.doubt import doubt
 from pipeline.models.flips import (
     ALL,
-    FELL,
-    FELL_AT,
     FLAGS,
-    IMPACTS,
-    LAST_NEAR,
-    LIFTED_AT,
-    RATIO,
     Integration,
     Rows,
     flips,
     integrate,
+)
+from pipeline.models.rigid_body import (
+    AXES,
+    CG_HEIGHT,
+    GYRATION_RADIUS,
+    HALF_WIDTH,
+    HALF_WIDTH_OTHER,
+    HARMLESS,
+    OVERTURNS,
+    RESTITUTION,
+    ROCKS,
+    TIPS,
+    UNHARMED,
+    VELOCITY_SCREEN,
+    bodies,
+    comes_back,
+    falls_over,
+    found_again,
+    one_width,
+    overturning,
+    say_screen,
+    screen,
+    tipped,
 )
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import (
@@ -72,56 +88,9 @@ from pipeline.records import (
     Model,
     Motion,
     Scene,
-    Support,
     Trials,
     Zone,
 )
-
-VELOCITY_SCREEN = 1.0
-"""V_max > 10 B / sqrt(H') in cm and s is V_max > 1.0 B / sqrt(H') in m and s (Ishiyama 1982, in the paper's form)."""
-
-
-def sides(parameters: Mapping[str, Array]) -> tuple[Array, Array, Array]:
-    """Return the half widths towards both edges and the radius of gyration squared.
-
-    Parameters
-    ----------
-    parameters : mapping of str to ndarray, shape (n,)
-        As in `bodies`.
-
-    Returns
-    -------
-    b1, b2, rho2 : ndarray, shape (n,)
-        [m], [m], [m2]; what is not given is the first one, and a uniform rectangle's.
-    """
-    b1, h = parameters["half_width"], parameters["cg_height"]
-    other, given = parameters["half_width_other"], parameters["gyration_radius"]
-    return b1, np.where(np.isnan(other), b1, other), np.where(np.isnan(given), (b1**2 + h**2) / 3.0, given**2)
-
-
-def bodies(parameters: Mapping[str, Array]) -> Array:
-    """Return what the kernel needs of each body.
-
-    Parameters
-    ----------
-    parameters : mapping of str to ndarray, shape (n,)
-        Those of the model, in SI; NaN for what is not given.
-
-    Returns
-    -------
-    ndarray, shape (n, 6)
-        alpha1, alpha2 [rad], c1, c2 [1/m], e12, e21 [-]: c = R / (rho^2 + R^2), so that p^2 = g c, and the restitution
-        from the angular momentum about the new edge, never below 0.
-    """
-    h = parameters["cg_height"]
-    b1, b2, rho2 = sides(parameters)
-    r1, r2 = np.hypot(b1, h), np.hypot(b2, h)
-    moment = rho2 + h**2 - b1 * b2
-    e = parameters["restitution"]
-    e12 = np.where(np.isnan(e), np.maximum(0.0, moment / (rho2 + r2**2)), e)
-    e21 = np.where(np.isnan(e), np.maximum(0.0, moment / (rho2 + r1**2)), e)
-    columns = (np.arctan2(b1, h), np.arctan2(b2, h), r1 / (rho2 + r1**2), r2 / (rho2 + r2**2), e12, e21)
-    return np.ascontiguousarray(np.column_stack(columns))
 
 
 def uplift_ratios(motion: Excitation, body: Array) -> Array:
@@ -154,18 +123,7 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
         coarse = run(motion, ALL, refine)
         error, sensitive = doubt(run, motion, refine, uplift, _pace(body), coarse, fine)
         note |= np.where(sensitive, SENSITIVE, 0)
-    # Only `_flips`, which goes on from a run without an estimate, wants to know how long a body was near.
-    hidden = {} if estimate else {"near_until": fine[:, LAST_NEAR]}
-    return hidden | {
-        "rotation_ratio": fine[:, RATIO],
-        "overturned": fine[:, FELL],
-        "overturning_time": np.where(fine[:, FELL_AT] < 0.0, np.nan, fine[:, FELL_AT]),
-        "uplift_time": np.where(fine[:, LIFTED_AT] < 0.0, np.nan, fine[:, LIFTED_AT]),
-        "impacts": fine[:, IMPACTS],
-        "uplift_ratio": uplift,
-        "error": error,
-        "note": note.astype(np.float64),
-    }
+    return tipped(fine, estimate=estimate) | {"uplift_ratio": uplift, "error": error, "note": note.astype(np.float64)}
 
 
 def _runs(body: Array, initial: Array) -> Integration:
@@ -183,45 +141,8 @@ def _pace(body: Array) -> Array:
 
 def _flips(motion: Excitation, parameters: Mapping[str, Array], columns: Columns) -> NDArray[np.bool_]:
     body = bodies(parameters)
-    found = np.zeros((body.shape[0], 8))
-    found[:, RATIO], found[:, FELL], found[:, LAST_NEAR] = (
-        columns[name] for name in ("rotation_ratio", "overturned", "near_until")
-    )
-    found[:, FELL_AT], found[:, LIFTED_AT] = (
-        np.nan_to_num(columns[name], nan=-1.0) for name in ("overturning_time", "uplift_time")
-    )
     run = _runs(body, broadcast(parameters, "initial_rotation"))
-    return flips(run, motion, columns["uplift_ratio"], _pace(body), found)
-
-
-def _screen(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
-    b = np.fmin(parameters["half_width"], parameters["half_width_other"])
-    width, height = 2.0 * b, 2.0 * parameters["cg_height"]
-    uplift = largest_push(motion) / G / (width / height)
-    velocity = largest_speed(motion) / (VELOCITY_SCREEN * width / np.sqrt(height))
-    nothing = np.full_like(width, np.nan)
-    return {
-        "rotation_ratio": nothing,
-        # Of 400 blocks, 174 failed the velocity criterion and never lifted an edge: it means nothing before uplift.
-        "overturned": ((velocity > 1.0) & (uplift > 1.0)).astype(np.float64),
-        "overturning_time": nothing,
-        "uplift_time": nothing,
-        "impacts": np.zeros_like(width),
-        "uplift_ratio": uplift,
-        "velocity_ratio": velocity,
-        "error": nothing,
-        "note": np.full_like(width, float(NO_HISTORY)),
-    }
-
-
-def _say(row: Mapping[str, float], parameters: Mapping[str, float]) -> str:
-    slope = float(np.fmin(parameters["half_width"], parameters["half_width_other"])) / parameters["cg_height"]
-    rocks = "rocks" if row["uplift_ratio"] > 1.0 else "does not rock"
-    falls = "overturns" if row["overturned"] else "does not overturn"
-    return (
-        f"A_max/g = {row['uplift_ratio'] * slope:.2f} against B/H' = {slope:.2f}: {rocks}. "
-        f"V_max is {row['velocity_ratio']:.2g} times 10 B/sqrt(H'): {falls}."
-    )
+    return flips(run, motion, columns["uplift_ratio"], _pace(body), found_again(columns, 8))
 
 
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
@@ -253,47 +174,10 @@ def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
     return Bounds(bounds, contact_lost(motion, uplift.size))
 
 
-HARMLESS = "Rocking itself does not harm it, as the museum says; it fails if it falls over."
-OVERTURNS, ROCKS = "overturns", "rocks"
-
-
 def _outcome(row: Mapping[str, float], _parameters: Mapping[str, float]) -> tuple[str, str]:
     if row["overturned"]:
-        return OVERTURNS, f"In this motion it falls over after {row['overturning_time']:.1f} s."
-    if row["rotation_ratio"] > 0.0:
-        return ROCKS, (
-            f"It comes back: it tips by at most {100.0 * row['rotation_ratio']:.0f} % of its critical angle and lands "
-            f"{row['impacts']:.0f} times."
-        )
-    return "", ""
-
-
-UNHARMED = "Rocking itself does not harm an object of its kind; it fails if it falls over."
-"""What is said where its class says so, and the museum nothing."""
-
-FALLS_IN = "overturned_share"
-"""Parameter of a scene whose class is not harmed by rocking: the share of the motions in which it may fall over."""
-
-HALF = 0.5 - 1e-9
-"""Share of the motions from which on an object counts as overturned ("half the records" included)."""
-
-
-def overturning(scene: Scene) -> tuple[str, float, str] | None:
-    """Return what decides about an object that rocking itself does not harm: it fails when it falls over.
-
-    Parameters
-    ----------
-    scene : Scene
-        An object where it stands.
-
-    Returns
-    -------
-    tuple or None
-        For `Model.otherwise`.
-    """
-    if scene.item.susceptible is None and FALLS_IN in scene.parameters:
-        return "overturned", HALF, UNHARMED
-    return ("overturned", HALF, HARMLESS) if scene.item.susceptible is False else None
+        return falls_over(row)
+    return (ROCKS, f"{comes_back(row)}.") if row["rotation_ratio"] > 0.0 else ("", "")
 
 
 def _applies(scene: Scene) -> str:
@@ -328,7 +212,8 @@ def _stability(key: str, motion: Motion) -> Chart:
         f"Peak resultant acceleration {slope:.2f} g, velocity {100.0 * speed * VELOCITY_SCREEN:.0f} cm/s. "
         "H' is twice the height of the centre of gravity. "
         f"Below H' = {100.0 * crossing:.0f} cm there is no band in which an object rocks without overturning. "
-        "The lines are the paper's closed-form criteria; the verdict comes from the time history."
+        "The lines are the paper's closed-form criteria, which let nothing slide; the verdict comes from friction, "
+        "the vertical shaking and the time history."
     )
     return Chart(
         key,
@@ -355,9 +240,7 @@ _EXTREMES = {
 
 
 def _symmetric(parameters: Mapping[str, Array]) -> bool:
-    other = parameters["half_width_other"]
-    same = np.isnan(other) | (other == parameters["half_width"])
-    return bool(np.all(same) and np.all(parameters["initial_rotation"] == 0.0))
+    return one_width(parameters) and bool(np.all(parameters["initial_rotation"] == 0.0))
 
 
 ROCKING = Model(
@@ -367,31 +250,23 @@ ROCKING = Model(
     source="Agbabian et al. 1991, sec. 2.1; Housner 1963; Ishiyama 1982",
     equation="theta'' = -p^2 [(1 + a_z/g) sin(alpha sgn theta - theta) + (a_h/g) cos(alpha sgn theta - theta)]",
     needs=(
-        Quantity("half_width", "m", "from the centre of gravity to the edge towards +axis", 0.0, exclusive=True),
-        Quantity("cg_height", "m", "height of the centre of gravity above the base", 0.0, exclusive=True),
-        Quantity("half_width_other", "m", "to the other edge, where it differs", 0.0, exclusive=True, optional=True),
-        Quantity("gyration_radius", "m", "about the centre of gravity; else a uniform rectangle's", 0.0, optional=True),
-        Quantity(
-            "restitution", "-", "rate after over before an impact; else from the geometry", 0.0, 1.0, optional=True
-        ),
+        HALF_WIDTH,
+        CG_HEIGHT,
+        HALF_WIDTH_OTHER,
+        GYRATION_RADIUS,
+        RESTITUTION,
         Quantity("initial_rotation", "rad", "released from rest", -1.6, 1.6, optional=True, default=0.0),
     ),
     gives=(
         Quantity("rotation_ratio", "-", "largest |theta| / alpha"),
-        Quantity("overturned", "bool", "reached a quarter turn"),
-        Quantity("overturning_time", "s", "when it did; empty if it did not", optional=True),
-        Quantity("uplift_time", "s", "when an edge first lifted; empty if none did", optional=True),
-        Quantity("impacts", "count", "landings at 1e-3 p alpha or faster"),
+        *TIPS,
         Quantity("uplift_ratio", "-", "largest |a_h| / (max(0, g + a_z) b/h)"),
     ),
     directions=1,
-    axes=(
-        {"half_width": "half_base_width", "half_width_other": "half_base_width_other"},
-        {"half_width": "half_base_depth", "half_width_other": "half_base_depth_other"},
-    ),
+    axes=AXES,
     run=_run,
-    screen=_screen,
-    say_screen=_say,
+    screen=screen,
+    say_screen=say_screen,
     trace=_trace,
     bound=_bound,
     certificate=_certificate,
@@ -418,7 +293,7 @@ ROCKING = Model(
         promised=1e-4,
     ),
     listed="Table 1, Rigid: Rocking",
-    supports=(Support.FREESTANDING,),
+    tips=True,
     pictures=(Figure("stability", _stability),),
     says=(HARMLESS, UNHARMED, OVERTURNS),
 )

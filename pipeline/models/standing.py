@@ -54,21 +54,39 @@ from pipeline.models.doubt import APART, apart, doubt
 from pipeline.models.flips import (
     ALL,
     FELL,
-    FELL_AT,
     FLAGS,
-    IMPACTS,
-    LAST_NEAR,
-    LIFTED_AT,
     RATIO,
     Integration,
     Rows,
     flips,
 )
 from pipeline.models.friction import kinetic, slip_bounds
-from pipeline.models.rocking import HARMLESS, OVERTURNS, ROCKS, UNHARMED, bodies, overturning, sides
+from pipeline.models.rigid_body import (
+    AXES,
+    CG_HEIGHT,
+    GYRATION_RADIUS,
+    HALF_WIDTH,
+    HALF_WIDTH_OTHER,
+    HARMLESS,
+    OVERTURNS,
+    RESTITUTION,
+    ROCKS,
+    TIPS,
+    UNHARMED,
+    bodies,
+    comes_back,
+    falls_over,
+    found_again,
+    one_width,
+    overturning,
+    say_screen,
+    screen,
+    sides,
+    tipped,
+)
 from pipeline.models.sliding import FRICTION_KINETIC, FRICTION_STATIC
 from pipeline.quantities import Array, G, Quantity
-from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Trials
+from pipeline.records import Bounds, Columns, Estimate, Excitation, Model, Origin, Scene, Support, Trials
 
 SLIDES = "slides"
 
@@ -210,16 +228,9 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
         fine[lost, RATIO], fine[lost, FELL] = _most(body[lost]), 1.0
         fine[lost, kernel.AWAY] = fine[lost, kernel.RESIDUAL] = np.nan
         error, away = np.where(lost, fine[:, RATIO], error), np.where(lost, np.nan, away)
-    # Only `_flips`, which goes on from a run without an estimate, wants to know how long a body was near.
-    hidden = {} if estimate else {"near_until": fine[:, LAST_NEAR]}
-    return hidden | {
-        "rotation_ratio": fine[:, RATIO],
+    return tipped(fine, estimate=estimate) | {
         "displacement": fine[:, kernel.AWAY],
         "residual": np.abs(fine[:, kernel.RESIDUAL]),
-        "overturned": fine[:, FELL],
-        "overturning_time": np.where(fine[:, FELL_AT] < 0.0, np.nan, fine[:, FELL_AT]),
-        "uplift_time": np.where(fine[:, LIFTED_AT] < 0.0, np.nan, fine[:, LIFTED_AT]),
-        "impacts": fine[:, IMPACTS],
         "uplift_ratio": tilt,
         "error": np.fmax(error, away),
         "displacement_error": away,
@@ -243,14 +254,7 @@ def _may_slip(motion: Excitation, body: Array) -> NDArray[np.bool_]:
 
 def _flips(motion: Excitation, parameters: Mapping[str, Array], columns: Columns) -> NDArray[np.bool_]:
     body = standing_bodies(parameters)
-    found = np.zeros((body.shape[0], kernel.FOUND))
-    found[:, RATIO], found[:, FELL], found[:, LAST_NEAR] = (
-        columns[name] for name in ("rotation_ratio", "overturned", "near_until")
-    )
-    found[:, FELL_AT], found[:, LIFTED_AT] = (
-        np.nan_to_num(columns[name], nan=-1.0) for name in ("overturning_time", "uplift_time")
-    )
-    return flips(_runs(body), motion, columns["uplift_ratio"], _pace(body), found)
+    return flips(_runs(body), motion, columns["uplift_ratio"], _pace(body), found_again(columns, kernel.FOUND))
 
 
 def _trace(motion: Excitation, parameters: Mapping[str, float]) -> Columns:
@@ -287,6 +291,34 @@ def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
     return Bounds(bounds, nothing)
 
 
+def _screen(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
+    # The paper's, which lets nothing slide.
+    nothing = np.full_like(parameters["cg_height"], np.nan)
+    return screen(motion, parameters) | {"displacement": nothing, "residual": nothing}
+
+
+def _say(row: Mapping[str, float], parameters: Mapping[str, float]) -> str:
+    slope = float(np.fmin(parameters["half_width"], parameters["half_width_other"])) / parameters["cg_height"]
+    friction = parameters["friction_static"]
+    slides = friction < min(slope, row["uplift_ratio"] * slope)
+    held = f" But its friction of {friction:.2f} lets it slide before it tips." if slides else ""
+    return say_screen(row, parameters) + held
+
+
+def _mark(parameters: Mapping[str, float], demand: float) -> tuple[str, float, float] | None:
+    # The picture lets nothing slide: what friction alone keeps from tipping would lie in a wrong field of it.
+    slope = parameters["half_width"] / parameters["cg_height"]
+    if demand <= 1.0 and demand * slope >= parameters["friction_static"]:
+        return None
+    return "stability", 2.0 * parameters["cg_height"], 2.0 * parameters["half_width"]
+
+
+def _counted(name: str, estimate: Estimate) -> Estimate:
+    # A low friction that nobody measured excuses nothing (paper, 2.6): less than the best estimate is not counted on.
+    assumed = name == FRICTION_STATIC.name and estimate.origin is Origin.ASSUMED
+    return replace(estimate, low=estimate.value) if assumed else estimate
+
+
 def required(motion: Excitation, parameters: Mapping[str, Array]) -> NDArray[np.str_]:
     """Say which model tells all about a standing object under a motion.
 
@@ -317,19 +349,11 @@ def _applies(scene: Scene) -> str:
     return unless_free(scene, "rock or slide") or needs(scene, "half_width", "cg_height", "friction_static")
 
 
-def _symmetric(parameters: Mapping[str, Array]) -> bool:
-    other = parameters["half_width_other"]
-    return bool(np.all(np.isnan(other) | (other == parameters["half_width"])))
-
-
 def _outcome(row: Mapping[str, float], _parameters: Mapping[str, float]) -> tuple[str, str]:
     if row["overturned"]:
-        return OVERTURNS, f"In this motion it falls over after {row['overturning_time']:.1f} s."
+        return falls_over(row)
     if row["rotation_ratio"] > 0.0:
-        return ROCKS, (
-            f"It comes back: it tips by at most {100.0 * row['rotation_ratio']:.0f} % of its critical angle and lands "
-            f"{row['impacts']:.0f} times; its base ends {100.0 * row['residual']:.1f} cm from where it stood."
-        )
+        return ROCKS, f"{comes_back(row)}; its base ends {100.0 * row['residual']:.1f} cm from where it stood."
     if row["displacement"] > 0.0:
         return SLIDES, f"It does not tilt; it slides up to {100.0 * row['displacement']:.1f} cm."
     return "", ""
@@ -345,20 +369,18 @@ _EXTREMES = {
 
 STANDING = Model(
     name="standing",
-    title="Standing",
+    title="Tipping",
     kind="rigid",
     source="Shenton 1996; Shenton and Jones 1991; Housner 1963; Ishiyama 1982",
     equation="x'' = F - a_h, y'' = N - (g + a_z), rho^2 theta'' = r_y F - r_x N, |F| <= mu N, N >= 0",
     needs=(
-        Quantity("half_width", "m", "from the centre of gravity to the edge towards +axis", 0.0, exclusive=True),
-        Quantity("cg_height", "m", "height of the centre of gravity above the base", 0.0, exclusive=True),
+        HALF_WIDTH,
+        CG_HEIGHT,
         FRICTION_STATIC,
         FRICTION_KINETIC,
-        Quantity("half_width_other", "m", "to the other edge, where it differs", 0.0, exclusive=True, optional=True),
-        Quantity("gyration_radius", "m", "about the centre of gravity; else a uniform rectangle's", 0.0, optional=True),
-        Quantity(
-            "restitution", "-", "rate after over before an impact; else from the geometry", 0.0, 1.0, optional=True
-        ),
+        HALF_WIDTH_OTHER,
+        GYRATION_RADIUS,
+        RESTITUTION,
         Quantity(
             "restitution_factor", "-", "what that is multiplied by, up to 1", 0.0, 2.0, optional=True, default=1.0
         ),
@@ -367,27 +389,29 @@ STANDING = Model(
         Quantity("rotation_ratio", "-", "largest |theta| / alpha"),
         Quantity("displacement", "m", "largest distance of the middle of the base from where it stood"),
         Quantity("residual", "m", "the same when it rests, or falls"),
-        Quantity("overturned", "bool", "reached a quarter turn"),
-        Quantity("overturning_time", "s", "when it did; empty if it did not", optional=True),
-        Quantity("uplift_time", "s", "when an edge first lifted; empty if none did", optional=True),
-        Quantity("impacts", "count", "landings at 1e-3 p alpha or faster"),
+        *TIPS,
         Quantity("uplift_ratio", "-", "largest min(|a_h| / max(0, g + a_z), mu_s) / (b/h)"),
     ),
     directions=1,
-    axes=({"half_width": "half_base_width"}, {"half_width": "half_base_depth"}),
+    axes=AXES,
     errors={"displacement": "displacement_error", "residual": "displacement_error"},
     run=_run,
+    screen=_screen,
+    say_screen=_say,
     trace=_trace,
     bound=_bound,
     certificate=_certificate,
     exact=True,
+    rests=1.0,
     flips=_flips,
     outcome=_outcome,
     otherwise=overturning,
+    mark=_mark,
     demand="uplift_ratio",
     capacity=1.0,
     applies=_applies,
-    symmetric=_symmetric,
+    counted=_counted,
+    symmetric=one_width,
     uncharted="its outcomes flip back and forth, so that it is never tabulated",
     sentence=(
         "The largest push that friction passes on is {demand} ({low} to {high}) times what lifts an edge of this "
@@ -400,5 +424,8 @@ STANDING = Model(
         sample={"half_width": 0.15, "cg_height": 0.5, "friction_static": 0.5},
         promised=1e-4,
     ),
+    listed="Table 1, Rigid: Rocking, with sec. 2.2",
+    supports=(Support.FREESTANDING,),
+    tips=True,
     says=(HARMLESS, UNHARMED, OVERTURNS, SLIDES),
 )

@@ -215,12 +215,16 @@ class Model:
     estimates : callable, optional
         scene -> parameters of its own by name, each with range, origin and note; none takes the place of one that the
         scene has.
+    counted : callable
+        (parameter, what a scene knows of it) -> as much of its range as is counted on.
     needs_size : bool
         Whether it cannot be run without the object's dimensions.
     unasked : str
         What is said besides of an object that it applies to and that is not tried with it.
     room_settles : bool
         Whether its failure is a collision, so that room settles it.
+    tips : bool
+        Whether its failure is that an object tips, so that a wider or a heavier base helps.
     turns : bool
         Whether its plane of motion turns by itself, so that its last part does not tell all directions.
     pictures : tuple of Figure or ChartFigure
@@ -255,7 +259,8 @@ class Model:
     exact : bool
         The certificate is the demand itself, not only a bound.
     rests : float, optional
-        Certificate up to which nothing moves, so that there is nothing to integrate; None: always integrate.
+        Certificate up to which the outputs that count are nothing, so that there is nothing to integrate; None: always
+        integrate.
     flips : callable, optional
         (excitation, parameters, columns of `run` without estimate) -> (n,) where 1 % of the excitation changes the yes
         or no among its outputs; None: it has none.
@@ -297,9 +302,11 @@ class Model:
     supports: tuple[Support, ...] = ()
     joins: Callable[[Item, str, Sequence[str]], bool] | None = None
     estimates: Callable[[Scene], Mapping[str, Estimate]] | None = None
+    counted: Callable[[str, Estimate], Estimate] = lambda _name, estimate: estimate
     needs_size: bool = True
     unasked: str = ""
     room_settles: bool = False
+    tips: bool = False
     turns: bool = False
     pictures: tuple[Figure | ChartFigure, ...] = ()
     at_most: str = ""

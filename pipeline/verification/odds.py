@@ -23,7 +23,7 @@ from pipeline.execute import Threads
 from pipeline.meshes import scan_object
 from pipeline.meshes.reading import holds_triangles
 from pipeline.models import model_named
-from pipeline.models.rocking import bodies
+from pipeline.models.rigid_body import bodies
 from pipeline.quantities import Array
 from pipeline.records import ContactPolygon, Motion, Progress
 from pipeline.tables import table

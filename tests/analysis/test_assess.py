@@ -137,8 +137,8 @@ def test_findings_follow_the_models(motion: Motion) -> None:
     parameters = scenes[0].parameters
     slope = parameters["half_width"].value / parameters["cg_height"].value
     x, y, z = motion.acceleration
-    assert by_model["rocking"].demand == pytest.approx(float(np.max(np.hypot(x, y) / (G + z))) / slope, rel=1e-12)
-    assert by_model["rocking"].decided_by == "certificate"
+    assert by_model["standing"].demand == pytest.approx(float(np.max(np.hypot(x, y) / (G + z))) / slope, rel=1e-12)
+    assert by_model["standing"].decided_by == "certificate"
     mu = parameters["friction_static"]
     ends = respond("sliding", motion, friction_static=[mu.value, mu.low, mu.high])["displacement"].to_numpy()
     sliding = by_model["sliding"]
@@ -168,7 +168,7 @@ def test_rocking_itself_is_the_failure_unless_the_museum_says_otherwise(motion: 
     )  # fmt: skip
     sturdy = replace(pillar, object_number="2", susceptible=False)
     slender = replace(sturdy, object_number="3", height_m=0.4, cg_height_m=0.2, base_width_m=0.03, base_depth_m=0.03)
-    rocks, stands, falls = (next(f for f in found if f.model == "rocking") for found in run(
+    rocks, stands, falls = (next(f for f in found if f.model == "standing") for found in run(
         [classify(item) for item in (pillar, sturdy, slender)], motion))  # fmt: skip
     assert (rocks.verdict, rocks.outcome) == (Verdict.FAIL, "rocks")
     assert stands.verdict is Verdict.PASS
@@ -190,12 +190,12 @@ def test_an_object_of_known_orientation_is_shaken_along_its_own_axes(motion: Mot
         for angle, half in ((width, 0.15), (width + 90.0, 0.05))
     )
     demand = max(one["uplift_ratio"], other["uplift_ratio"])
-    assert found[0]["rocking"].demand == pytest.approx(demand, rel=1e-12)
+    assert found[0]["standing"].demand == pytest.approx(demand, rel=1e-12)
     assert other["uplift_ratio"] == demand
-    assert found[0]["rocking"].outcome == ("overturns" if other["overturned"] else "rocks")
+    assert found[0]["standing"].outcome == ("overturns" if other["overturned"] else "rocks")
     # Half a turn is the same object; without an orientation every direction counts, with the narrow side.
-    assert found[1]["rocking"].demand == pytest.approx(demand, rel=1e-12)
-    assert found[2]["rocking"].demand > demand
+    assert found[1]["standing"].demand == pytest.approx(demand, rel=1e-12)
+    assert found[2]["standing"].demand > demand
     # Sliding is in two directions, whichever way it is turned.
     assert found[0]["sliding"].demand == found[2]["sliding"].demand
 

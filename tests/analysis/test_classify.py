@@ -71,7 +71,7 @@ def test_a_tall_marble_figure_is_checked_for_stress() -> None:
     )
     scene = classify(figure)
     assert scene.object_class == "standing_figure"
-    assert scene.models == ("rocking", "sliding", "stress")
+    assert scene.models == ("standing", "sliding", "stress")
 
 
 HELD = {"mass_kg": 2.0, "section_width_m": 0.02, "base_width_m": 0.1, "base_depth_m": 0.1}

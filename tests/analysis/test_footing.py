@@ -39,7 +39,7 @@ ZERO = np.zeros_like(PUSH)
 
 def uplift(item: Item, level: LevelMotions) -> Finding:
     _, (findings,) = assess([classify(item)], [level], Context(Threads(1)))
-    (found,) = [one for one in findings if one.model == "rocking"]
+    (found,) = [one for one in findings if one.model == "standing"]
     return found
 
 
@@ -127,7 +127,7 @@ def test_a_tilt_test_settles_the_slope_whatever_is_assumed_of_the_height(angle: 
     assert (found.low, found.demand, found.high) == pytest.approx((exact, exact, exact), rel=1e-3)
     parameters = classify(item).parameters
     assert parameters["half_width"].low < parameters["half_width"].high
-    (work,) = [one for one in plan([classify(item)]).work if one.model.name == "rocking"]
+    (work,) = [one for one in plan([classify(item)]).work if one.model.name == "standing"]
     slopes = np.degrees(np.arctan2(work.values["half_width"], work.values["cg_height"]))
     assert slopes == pytest.approx(np.full(slopes.size, angle))
     assert slopes.size > 1

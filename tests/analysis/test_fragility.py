@@ -165,9 +165,9 @@ def test_rocking_begins_where_the_push_over_the_weight_is_the_slope(height: floa
     (found,) = curves(
         replace(BLOCK, height_m=height, cg_height_m=0.5 * height), stripes=[stripe(half_sine_pulse(2.0, 0.5))]
     )
-    assert found["rocking"].median == pytest.approx(G * 0.1 / height, rel=1e-12)
-    assert found["rocking"].inputs == 0.0
-    assert found["rocking"].dispersion == pytest.approx(
+    assert found["standing"].median == pytest.approx(G * 0.1 / height, rel=1e-12)
+    assert found["standing"].inputs == 0.0
+    assert found["standing"].dispersion == pytest.approx(
         sqrt(stated("record").value ** 2 + stated("modelling").value ** 2)
     )
 
@@ -192,11 +192,11 @@ def test_sliding_begins_where_newmark_says(friction: float, clearance: float) ->
 def test_what_never_fails_and_what_always_does_are_bounds() -> None:
     weak, strong = half_sine_pulse(0.01 * G, 0.5), half_sine_pulse(50.0 * G, 0.5)
     (never,), (always,) = (curves(BLOCK, stripes=[stripe(m)]) for m in (weak, strong))
-    assert (never["rocking"].bound, always["rocking"].bound) == ("above", "below")
-    assert never["rocking"].median == pytest.approx(FACTORS[-1] * 0.01 * G, rel=1e-3)
-    assert always["rocking"].median == pytest.approx(FACTORS[0] * 50.0 * G, rel=1e-3)
-    assert never["rocking"].low == never["rocking"].high == never["rocking"].median
-    assert never["rocking"].annual_rate is None
+    assert (never["standing"].bound, always["standing"].bound) == ("above", "below")
+    assert never["standing"].median == pytest.approx(FACTORS[-1] * 0.01 * G, rel=1e-3)
+    assert always["standing"].median == pytest.approx(FACTORS[0] * 50.0 * G, rel=1e-3)
+    assert never["standing"].low == never["standing"].high == never["standing"].median
+    assert never["standing"].annual_rate is None
 
 
 def test_a_motion_that_does_not_shake_cannot_be_scaled() -> None:
@@ -222,9 +222,9 @@ def test_overturning_counts_from_the_weakest_that_overturns_although_a_stronger_
         asked = [respond("rocking", motion.scaled(f, "test"), half_width=0.5 * side, cg_height=cg) for f in FACTORS]
         falls = [bool(table["overturned"].iloc[0]) for table in asked]
         first = falls.index(True)
-        assert found["rocking"].returns is not all(falls[first:])
-        assert FACTORS[first - 1] * pga < found["rocking"].median < FACTORS[first] * pga
-        seen.append(found["rocking"].returns)
+        assert found["standing"].returns is not all(falls[first:])
+        assert FACTORS[first - 1] * pga < found["standing"].median < FACTORS[first] * pga
+        seen.append(found["standing"].returns)
     assert any(seen)
     assert not all(seen)
 
@@ -238,7 +238,7 @@ def test_uncertain_inputs_add_their_squares() -> None:
         known[name] = replace(known[name], low=low, high=high)
     scene = replace(scene, parameters=known)
     ((found, *_),) = fragilities(
-        [scene], [w for w in plan([scene]).work if w.model.name == "rocking"], [stripe(half_sine_pulse(2.0, 0.5))],
+        [scene], [w for w in plan([scene]).work if w.model.name == "standing"], [stripe(half_sine_pulse(2.0, 0.5))],
         Context(Threads(1)),
     )  # fmt: skip
     truth = sqrt(sum((log(high / low) / (2.0 * NINETY)) ** 2 for low, high in wide.values()))
@@ -258,27 +258,27 @@ def test_record_to_record_is_measured_from_seven_motions_on() -> None:
     assert not found["sliding"].stated
     assert found["sliding"].record == pytest.approx(truth.std(ddof=1), abs=0.04)
     assert log(found["sliding"].median) == pytest.approx(truth.mean(), abs=0.07)
-    assert found["rocking"].record == pytest.approx(0.0, abs=1e-9)
+    assert found["standing"].record == pytest.approx(0.0, abs=1e-9)
     (few,) = curves(BLOCK, stripes=[stripe(*pulses[2:5])])
-    assert few["rocking"].stated
-    assert few["rocking"].record == stated("record").value
+    assert few["standing"].stated
+    assert few["standing"].record == stated("record").value
 
 
 def test_two_levels_give_a_rate_and_one_says_why_not() -> None:
     pulse = half_sine_pulse(0.2 * G, 0.5)
     stripes = [stripe(pulse, years=475.0), stripe(pulse.scaled(2.0, "test"), years=2475.0)]
     (found,) = curves(BLOCK, stripes=stripes)
-    curve = found["rocking"]
+    curve = found["standing"]
     assert curve.motions == 2
     assert curve.annual_rate == pytest.approx(hazard_of(stripes).failures(0.25 * G, curve.dispersion), rel=1e-6)
     assert curve.rate_low is not None
     assert curve.rate_high is not None
     assert curve.rate_low < curve.annual_rate < curve.rate_high
     (alone,) = curves(BLOCK, stripes=stripes[:1])
-    assert alone["rocking"].annual_rate is None
-    assert "two levels or more" in alone["rocking"].note
+    assert alone["standing"].annual_rate is None
+    assert "two levels or more" in alone["standing"].note
     (far,) = curves(replace(BLOCK, base_width_m=0.6, base_depth_m=0.6), stripes=stripes)
-    assert far["rocking"].annual_rate is None
+    assert far["standing"].annual_rate is None
 
 
 # -- what others published -------------------------------------------------------------------------------------------

@@ -159,7 +159,7 @@ def test_ranges_of_everything_at_random(motions: tuple[Motion, ...], charts: Cha
     same(history, auto)
     same(history, run(scenes, level, "chart", charts)[0])
     assert {f.model for found in auto for f in found} >= {
-        "rocking", "sliding", "stress", "flexible_stress", "friction_isolator", "swing",
+        "standing", "sliding", "stress", "flexible_stress", "friction_isolator", "swing",
     }  # fmt: skip
     assert len({f.verdict for found in auto for f in found}) == 3
 
@@ -193,8 +193,8 @@ def test_nothing_is_integrated_that_no_verdict_needs(motions: tuple[Motion, ...]
     pillar = replace(BLOCK, height_m=4.0, cg_height_m=2.0, base_width_m=0.5, base_depth_m=0.5, friction=0.9)
     efforts = run([classify(pillar)], level, "auto", charts)[1]
     assert _counts(efforts["sliding"]) == (1, [1, 0, 0], 0, 0)
-    assert _counts(efforts["rocking"]) == (1, [1, 0, 0], 0, 1)
-    assert efforts["rocking"].needing == 1
+    assert _counts(efforts["standing"]) == (1, [1, 0, 0], 0, 1)
+    assert efforts["standing"].needing == 1
 
 
 def _counts(effort: Effort) -> tuple[int, list[int], int, int]:

@@ -14,7 +14,7 @@ from pipeline.analysis.model_runs import prepare
 from pipeline.kernels.pendulum import substeps
 from pipeline.models import model_named
 from pipeline.models.common import Quiet, shaken
-from pipeline.models.rocking import bodies
+from pipeline.models.rigid_body import bodies
 from pipeline.quantities import Array
 from pipeline.records import Excitation
 from tests.benchmarks.common import OBJECTS, SEED, fastest, level, shaking, strongest

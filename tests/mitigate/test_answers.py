@@ -44,7 +44,7 @@ def test_a_non_slip_pad_is_the_right_answer(motion: Motion) -> None:
     advice = solve(replace(BLOCK, friction=0.001, base_width_m=2.0, base_depth_m=2.0), strong)
     assert advice.measure == "grip_pad"
     assert rejected(advice)[0] == "Keep clear"
-    assert [check.model for check in advice.checks] == ["rocking", "sliding"]
+    assert [check.model for check in advice.checks] == ["standing", "sliding"]
 
 
 def test_fastening_is_the_right_answer(motion: Motion) -> None:
@@ -91,8 +91,7 @@ def test_a_low_friction_pad_is_the_right_answer_for_what_is_clamped_too_hard(mot
 
 def test_a_low_friction_pad_never_excuses_a_tall_object(motion: Motion) -> None:
     """Paper, 2.6: reduction of the friction will not increase the rocking stability of an object."""
-    advice = solve(replace(TOWER, friction=0.05), motion)
-    assert "Low-friction pad" not in {advice.title}
+    assert solve(replace(TOWER, friction=0.25), motion).title != "Low-friction pad"
     tall = replace(TOWER, support=Support.FASTENED, allowable_stress_pa=2e5)
     assert any(text.startswith("Low-friction pad: it may rock") for text in solve(tall, motion).rejected)
 
@@ -130,7 +129,7 @@ def test_ballast_is_the_right_answer(motion: Motion) -> None:
     assert advice.parameters["mass"] == pytest.approx(1.01 * least)
     assert advice.parameters["mass"] <= 0.5 * 200.0
     assert advice.parameters["height"] == pytest.approx(height)
-    rocking = next(check for check in advice.checks if check.model == "rocking")
+    rocking = next(check for check in advice.checks if check.model == "standing")
     assert rocking.before is not None
     assert rocking.demand <= 1.0 < rocking.before
 
@@ -142,7 +141,7 @@ def test_a_wider_base_is_the_right_answer(motion: Motion) -> None:
     x, y, z = motion.acceleration
     lift = float((np.hypot(x, y) / (G + z)).max())
     assert advice.parameters["width"] == pytest.approx(np.ceil(100.0 * 1.01 * 0.3 * lift) / 100.0)
-    assert {"rocking", "sliding", "stress"} == {check.model for check in advice.checks}
+    assert {"standing", "sliding", "stress"} == {check.model for check in advice.checks}
     assert "Ballast in its base" in rejected(advice)
 
 
@@ -194,15 +193,17 @@ def test_removal_is_the_last_answer(motion: Motion) -> None:
 
 def test_open_rocking_is_not_answered_by_room(motion: Motion) -> None:
     """Sliding fails and rocking is open: what is advised passes for both.  Nothing fails: nothing is advised."""
-    open_ = replace(BLOCK, base_width_m=None, base_depth_m=None, width_m=0.2, depth_m=0.2)
+    open_ = replace(
+        BLOCK, base_width_m=None, base_depth_m=None, width_m=0.2, depth_m=0.2, height_m=1.4, cg_height_m=0.7
+    )
     _, (found,) = assess([classify(open_)], [LevelMotions("design", "max", (motion,))], Context(Threads(1)))
     verdicts = {f.model: f.verdict for f in found}
-    assert verdicts == {"rocking": Verdict.UNDETERMINED, "sliding": Verdict.FAIL}
+    assert verdicts == {"standing": Verdict.UNDETERMINED, "sliding": Verdict.FAIL}
     advice = solve(open_, motion)
     assert advice.measure != "clearance"
     assert advice.rejected[0] == "Keep clear: room does not help: it may fail otherwise than by moving"
     assert all(check.passes for check in advice.checks)
-    assert solve_all([replace(open_, clearance_m=None, friction=None)], [motion]) == [[]]
+    assert solve_all([replace(open_, height_m=0.2, cg_height_m=0.1, clearance_m=None, friction=None)], [motion]) == [[]]
 
 
 def test_a_measure_passes_under_every_motion_of_a_level(motion: Motion) -> None:

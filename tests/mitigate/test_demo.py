@@ -68,7 +68,7 @@ def test_each_failing_object_has_one_advice_and_each_advice_a_reason(record: Run
 
 def test_more_than_one_kind_of_measure_is_needed(record: RunRecord) -> None:
     kinds = Counter(r.measure for a in record.assessments for r in a.recommendations)
-    assert {"clearance", "wax", "ties", "clamps", "fasten", "remove"} <= set(kinds), kinds
+    assert {"clearance", "ties", "clamps", "fasten", "remove"} <= set(kinds), kinds
     rerun = {"clearance", "wide_base", "fasten", "restrain", "horizontal_isolator", "remove", *FIXINGS}
     assert set(kinds) <= rerun, "a measure that no test here runs again"
     # Wax was never advised, and an isolator for every tenth object.

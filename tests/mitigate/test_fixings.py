@@ -17,7 +17,7 @@ from pipeline.mitigate.measures.adhesives import LEVER
 from pipeline.mitigate.measures.restraints import BEARING
 from pipeline.mitigate.search import AT_BEST, SIZED
 from pipeline.mitigate.trials import TrialRunner, upper_stroke
-from pipeline.models.rocking import UNHARMED
+from pipeline.models.rigid_body import UNHARMED
 from pipeline.quantities import G
 from pipeline.records import Item, Motion, Recommendation
 from pipeline.records.numerics import VERDICTS
@@ -196,7 +196,7 @@ def test_pins_are_the_right_answer(motion: Motion) -> None:
     assert force < 30.0
     (pins,) = (one for one in told(advice) if one[0] == "What the fixing holds sideways")
     assert pins[1:] == (pytest.approx(force), pytest.approx(60.0))
-    assert {check.model for check in advice.checks} == {"pins", "rocking", "sliding", "stress"}
+    assert {check.model for check in advice.checks} == {"pins", "standing", "sliding", "stress"}
     assert any(text.startswith("Padded pins: it may rock") for text in solve(TOWER, motion).rejected)
 
 
@@ -248,7 +248,7 @@ def test_what_rocking_does_not_harm_is_judged_by_falling_over(motion: Motion, na
     levels = [LevelMotions("design", "max", (motion,))]
     for one, verdict in ((item, "pass"), (replace(item, susceptible=True), "fail")):
         _, (found,) = assess([classify(one)], levels, Context(Threads(1)))
-        (rocking,) = (f for f in found if f.model == "rocking")
+        (rocking,) = (f for f in found if f.model == "standing")
         assert rocking.verdict.value == verdict
         assert (UNHARMED in rocking.sentence) is (verdict == "pass")
 

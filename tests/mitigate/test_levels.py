@@ -58,18 +58,16 @@ def test_the_room_of_the_strong_level_is_kept_at_both(motion: Motion) -> None:
 
 
 def test_what_is_advised_for_one_level_passes_at_all(motion: Motion) -> None:
-    """Under the weak motion it slides and needs room; under the strong one it rocks: it is clamped for both."""
-    levels = two(motion.scaled(0.25, "weak"), motion)
-    tower = replace(TOWER, friction=0.05, clearance_m=0.001)
-    alone = solve(tower, levels[:1])
+    """Under the weak motion room is enough; under the strong one it slides further than any display has room for."""
+    levels = two(motion.scaled(0.5, "weak"), motion.scaled(1.6, "strong"))
+    slippery = replace(BLOCK, friction=0.001, base_width_m=2.0, base_depth_m=2.0)
+    alone = solve(slippery, levels[:1])
     assert alone["weak"].measure == "clearance"
-    advice = solve(tower, levels)
-    assert {one.measure for one in advice.values()} == {"clamps"}
+    advice = solve(slippery, levels)
+    assert {one.measure for one in advice.values()} == {"grip_pad"}
     assert advice["weak"].parameters == advice["strong"].parameters
-    push = float(np.hypot(*motion.acceleration[:2]).max())
-    assert advice["weak"].parameters["force"] == pytest.approx(20.0 * push)
     for one in advice.values():
-        _, (found,) = assess([changed(classify(tower), one.measure, one.parameters)], levels, Context(Threads(1)))
+        _, (found,) = assess([changed(classify(slippery), one.measure, one.parameters)], levels, Context(Threads(1)))
         assert {f.level for f in found} == {"weak", "strong"}
         assert all(f.verdict is Verdict.PASS for f in found)
 

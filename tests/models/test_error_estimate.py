@@ -15,7 +15,7 @@ from pipeline import Motion, respond
 from pipeline.analysis.model_runs import prepare
 from pipeline.models import MODELS, model_named
 from pipeline.models.flips import RATIO, integrate
-from pipeline.models.rocking import bodies
+from pipeline.models.rigid_body import bodies
 from pipeline.motions import read_motion
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import Array, G

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from shaking import along_x
 
 from pipeline import Motion, respond, trace
-from pipeline.models.rocking import bodies
+from pipeline.models.rigid_body import bodies
 from pipeline.quantities import Array, G
 
 SLENDER = 1e-3

@@ -66,7 +66,7 @@ def test_a_night_by_charts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     true = findings(at(settings, "history"))
     assert looked.keys() == true.keys()
     deciders = {(f.model, f.decided_by, f.fidelity) for f in looked.values()}
-    assert ("rocking", "certificate", "bound") in deciders
+    assert ("standing", "certificate", "bound") in deciders
     assert ("sliding", "chart", "chart") in deciders
     assert {model for model, by, _ in deciders if by == "chart"} <= {"sliding", "swing"}
     for key, one in looked.items():

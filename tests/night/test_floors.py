@@ -44,7 +44,7 @@ def record_of(settings: Settings) -> RunRecord:
     return load_run(open_database(settings.database))
 
 
-def demand(record: RunRecord, number: str, model: str = "rocking") -> float:
+def demand(record: RunRecord, number: str, model: str = "standing") -> float:
     (found,) = [f for a in record.assessments for f in a.findings if (f.object_number, f.model) == (number, model)]
     assert found.demand is not None
     return found.demand
@@ -114,7 +114,7 @@ def test_the_mean_of_a_level_decides(tmp_path: Path) -> None:
     mean = record_of(museum(tmp_path, pulses(tmp_path / "mean", *peaks, combine="mean")))
     assert demand(mean, "1") == pytest.approx(0.25 / slope(mean), rel=1e-4)
     assert any("the mean of 7 motions" in note for note in mean.level_notes)
-    (finding,) = [f for f in mean.assessments[0].findings if f.model == "rocking"]
+    (finding,) = [f for f in mean.assessments[0].findings if f.model == "standing"]
     assert finding.motion == "pulse 6"  # the one that governs is named all the same
 
 
@@ -127,14 +127,14 @@ def test_an_object_overturns_when_half_of_the_motions_overturn_it(tmp_path: Path
     rows = ["object_number,gallery,title,height_m,width_m,depth_m,susceptible", "1,A,Block,0.4,0.08,0.08,no"]
     (tmp_path / "export.csv").write_text("\n".join(rows) + "\n")
     few = record_of(settings)
-    (found,) = [f for f in few.assessments[0].findings if f.model == "rocking"]
+    (found,) = [f for f in few.assessments[0].findings if f.model == "standing"]
     assert (found.demand_name, found.demand, found.verdict) == ("overturned", 3 / 8, "pass")
     half = record_of(
         load_settings(tmp_path / "kouros.toml").model_copy(
             update={"site": settings.site.model_copy(update={"folder": str(_half(tmp_path))})}
         )
     )
-    (found,) = [f for f in half.assessments[0].findings if f.model == "rocking"]
+    (found,) = [f for f in half.assessments[0].findings if f.model == "standing"]
     assert found.demand == 4 / 8
     assert found.verdict == "fail"
 

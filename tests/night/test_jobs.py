@@ -176,8 +176,8 @@ def test_a_swapped_motion_moves_verdicts_and_is_named(tmp_path: Path) -> None:
     changes = run(settings, SILENT).changes
     assert changes is not None
     assert len(changes.motions) == 1
-    assert {(v.object_number, v.model, v.before, v.after) for v in changes.verdicts if v.model == "rocking"} == {
-        ("1", "rocking", "fail", "pass")
+    assert {(v.object_number, v.model, v.before, v.after) for v in changes.verdicts if v.model == "standing"} == {
+        ("1", "standing", "fail", "pass")
     }
 
 

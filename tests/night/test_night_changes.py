@@ -79,7 +79,7 @@ def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.
     assert {cause.what for v in changes.verdicts for cause in v.causes} == {"height_m"}
     ((height, *_),) = (i.fields for i in changes.inputs)
     assert (height.name, height.before, height.after) == ("height_m", 0.4, 0.03)
-    assert "rocking" in {v.model for v in changes.fixed}
+    assert "standing" in {v.model for v in changes.fixed}
 
     # Motion: 7 % of it moves nothing.
     edit(manifest, "scale = 1.0", "scale = 0.07")
@@ -178,4 +178,4 @@ def test_the_order_is_stable_and_json_has_all(tmp_path: Path) -> None:
     keys = [(v.gallery, v.object_number, v.level, v.model) for v in once.verdicts]
     assert keys == sorted(keys)
     said = kouros("diff", folder=tmp_path).stdout
-    assert "  fixed: 2 (B) rocking, test: fail -> pass, because of motion" in said
+    assert "  fixed: 2 (B) standing, test: fail -> pass, because of motion" in said

@@ -101,9 +101,9 @@ def finding(record: RunRecord, number: str, model: str) -> Finding:
         (Wish("1", KIND.CLASS, ["bust"], why="x", until="2099-01-01"), r"--until is for accepted risks"),
         (Wish("1", KIND.CLASS, ["ship"], why="x"), r"no class 'ship'; use one of .*bust"),
         (Wish("1", KIND.CLASS, why="x"), r"say one class"),
-        (Wish("1", KIND.CLASS, ["bust"], why="x", model="rocking"), r"--model and --level are for accept and verdict"),
+        (Wish("1", KIND.CLASS, ["bust"], why="x", model="standing"), r"--model and --level are for accept and verdict"),
         (Wish("1", KIND.VERDICT, ["pass"], why="x"), r"say by --model which verdict"),
-        (Wish("1", KIND.VERDICT, ["maybe"], why="x", model="rocking"), r"no verdict 'maybe'; use one of pass, fail"),
+        (Wish("1", KIND.VERDICT, ["maybe"], why="x", model="standing"), r"no verdict 'maybe'; use one of pass, fail"),
         (Wish("1", KIND.INSTALLED, why="x"), r"say what is installed: one of clearance"),
         (Wish("1", KIND.INSTALLED, ["glue"], why="x"), r"no measure that can be installed 'glue'; use one of clear"),
         (Wish("1", KIND.INSTALLED, ["remove"], why="x"), r"no measure that can be installed 'remove'"),
@@ -134,7 +134,7 @@ def test_the_log_is_only_added_to(museum: Path) -> None:
     """A withdrawal is a row; a later decision on the same matter takes the place of the earlier; imports touch none."""
     first = say(museum, "1", KIND.ACCEPT)
     second = say(museum, "1", KIND.ACCEPT, why="again")
-    other = say(museum, "1", KIND.ACCEPT, model="rocking")
+    other = say(museum, "1", KIND.ACCEPT, model="standing")
     say(museum, "1", KIND.WITHDRAW, str(other.id))
     with pytest.raises(UsageError, match="no decision '3' to withdraw; those in force are 2"):
         say(museum, "1", KIND.WITHDRAW, str(other.id))
@@ -158,11 +158,11 @@ def test_the_log_is_only_added_to(museum: Path) -> None:
 
 def test_an_accepted_risk_stands_beside_the_verdict(museum: Path) -> None:
     before = load_run(open_database(museum / "kouros.sqlite"))
-    assert finding(before, "1", "rocking").verdict is Verdict.FAIL
+    assert finding(before, "1", "standing").verdict is Verdict.FAIL
     made = say(museum, "1", KIND.ACCEPT, until="9998-12-31")
-    overruled = say(museum, "2", KIND.VERDICT, "pass", model="rocking")
+    overruled = say(museum, "2", KIND.VERDICT, "pass", model="standing")
     assert {b.model for b in made.basis} == {f.model for f in found(before, "1").findings}
-    assert [b.model for b in overruled.basis] == ["rocking"]
+    assert [b.model for b in overruled.basis] == ["standing"]
     summary, record = night(museum)
     assert [a.findings for a in record.assessments] == [a.findings for a in before.assessments]
     assert [s.doubts for s in record.decisions] == [(), ()]
@@ -209,12 +209,12 @@ def test_what_stands_on_an_isolator_is_run_on_what_that_passes_on(museum: Path) 
     stroke = respond("horizontal_isolator", motion, **given)["displacement"].iloc[0]
     assert own.demand == pytest.approx(stroke, rel=1e-6)
     assert own.capacity == 0.9
-    rocking = finding(record, "1", "rocking")
+    rocking = finding(record, "1", "standing")
     scene = classify(found(record, "1").scene.item)
     passed = transmit("horizontal_isolator", motion, **given)
     sizes = {name: scene.parameters[name].value for name in ("half_width", "cg_height")}
     # The same polygon in the worst direction; the night asks every ten degrees.
-    expected = respond("rocking", passed, angle=None, **sizes)["uplift_ratio"].iloc[0]
+    expected = respond("standing", passed, angle=None, **sizes)["uplift_ratio"].iloc[0]
     assert rocking.demand == pytest.approx(expected, rel=1e-2)
     assert rocking.motion_hash == record.motions[0].hash
     assert rocking.mark is None
@@ -307,7 +307,7 @@ def test_in_force_is_what_was_said_last_and_not_withdrawn() -> None:
     def row(number: int, kind: DecisionKind = KIND.ACCEPT, **more: object) -> Decision:
         return replace(Decision(number, "1", kind, "A", "2031-05-01", "x", ""), **more)  # type: ignore[arg-type]
 
-    log = [row(1), row(2, model="rocking"), row(3), row(4, KIND.CLASS), row(5, KIND.CLASS)]
+    log = [row(1), row(2, model="standing"), row(3), row(4, KIND.CLASS), row(5, KIND.CLASS)]
     assert [d.id for d in in_force(log)] == [2, 3, 5]
     # What was replaced is not brought back.
     assert [d.id for d in in_force([*log, row(6, KIND.WITHDRAW, withdraws=3)])] == [2, 5]
@@ -332,7 +332,7 @@ def test_the_command_writes_lists_and_withdraws(museum: Path) -> None:
     assert command(museum, "1", "withdraw", "1", "--why", "error", "--who", "A").exit_code == 0
     assert command(museum, "--list", "1").output == "no decision\n"
     assert len(command(museum, "--list", "1", "--log").output.splitlines()) == 2
-    noted = command(museum, "3", "accept", "--model", "rocking", "--why", "x", "--who", "A")
+    noted = command(museum, "3", "accept", "--model", "standing", "--why", "x", "--who", "A")
     assert "found nothing to accept there" in noted.output
     for words in ((), ("1",), ("1", "accept", "--list"), ("1", "adore", "--why", "x")):
         assert command(museum, *words).exit_code == 2, words

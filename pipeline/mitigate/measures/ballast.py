@@ -14,7 +14,7 @@ class Ballast(Measure):
 
     References
     ----------
-    Agbabian et al. (1991), sec. 2.1 (A_max/g > B/H').
+    Agbabian et al. (1991), sec. 2.1 (A_max/g > B/H'); where it slides first, friction in place of A_max/g.
     """
 
     name = "ballast"
@@ -56,7 +56,7 @@ class Ballast(Measure):
         mass, cg, half = (scene.parameters[name] for name in ("mass", "cg_height", "half_width"))
         at = self.row.limit_high * cg.value
         # At the worst of what is uncertain: the heaviest and highest body, and the least height that may be left.
-        left = half.low / runner.lift
+        left = half.low / runner.tilt(scene)
         if left <= at:
             return refused("no ballast brings its centre of gravity low enough")
         needed = SPARE * mass.high * (cg.high - left) / (left - at)
@@ -66,4 +66,4 @@ class Ballast(Measure):
         numbers = {"mass": (max(needed, 0.0), "kg"), "height": (at, "m")}
         lowered = self.in_place(one, numbers)
         numbers["cg_height"] = (lowered.parameters["cg_height"].value, "m")
-        return Proposal((Candidate(numbers, (Trial(lowered),), mark_of="rocking"),))
+        return Proposal((Candidate(numbers, (Trial(lowered),), mark_of="standing"),))

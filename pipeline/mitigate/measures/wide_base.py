@@ -33,7 +33,7 @@ class WideBase(Measure):
 
     References
     ----------
-    Agbabian et al. (1991), sec. 2.1 (A_max/g > B/H').
+    Agbabian et al. (1991), sec. 2.1 (A_max/g > B/H'); where it slides first, friction in place of A_max/g.
     """
 
     name = "wide_base"
@@ -66,7 +66,7 @@ class WideBase(Measure):
         if not knows_section(scene):
             return UNKNOWN_SECTION
         half = scene.parameters["half_width"]
-        width = round_up(SPARE * 2.0 * runner.lift * scene.parameters["cg_height"].high)
+        width = round_up(SPARE * 2.0 * runner.tilt(scene) * scene.parameters["cg_height"].high)
         allowed = 2.0 * self.row.limit * half.value
         if width > allowed:
             return refused(f"it would need a plate {100 * width:.0f} cm wide; {100 * allowed:.0f} cm is allowed")
@@ -75,4 +75,4 @@ class WideBase(Measure):
             least = f"the {100 * self.row.limit_high:.0f} cm allowed"
             return refused(f"it would need {100 * room:.0f} cm of room around its plate, more than {least}")
         numbers = {"width": (width, "m"), "clearance": (room, "m")}
-        return self.one_trial(one, numbers, finish=partial(force_and_moment, scene, runner), mark_of="rocking")
+        return self.one_trial(one, numbers, finish=partial(force_and_moment, scene, runner), mark_of="standing")
