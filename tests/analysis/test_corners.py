@@ -41,13 +41,13 @@ def judged(motion: Motion) -> list[tuple[Scene, Finding]]:
                     support=support, height_m=height, width_m=across, depth_m=across)  # fmt: skip
         scenes.append(classify(item))
     found = assess(scenes, [LevelMotions("design", "max", (motion,))], Context(Threads(1)))[1]
-    return [(s, f) for s, each in zip(scenes, found, strict=True) for f in each if f.model in ("rocking", "stress")]
+    return [(s, f) for s, each in zip(scenes, found, strict=True) for f in each if f.model in ("standing", "stress")]
 
 
 def demand(scene: Scene, model: str, push: float, lift: float, of: dict[str, float]) -> float:
-    """The closed forms themselves: a / N over b / h (paper, 2.1), and m A l / S - m g / A (2.3)."""
-    if model == "rocking":
-        return lift * of["cg_height"] / of["half_width"]
+    """The closed forms themselves: a / N, or friction, over b / h (paper, 2.1), and m A l / S - m g / A (2.3)."""
+    if model == "standing":
+        return min(lift, of["friction_static"]) * of["cg_height"] / of["half_width"]
     bending = of["mass"] * push * of["lever"] / of["section_modulus"]
     return bending - of["mass"] * G / scene.parameters["area"].value
 
@@ -59,12 +59,18 @@ def test_decided_verdicts_hold_at_all_corners_and_between_them(
     x, y, z = motion.acceleration
     push, lift = float(np.hypot(x, y).max()), float((np.hypot(x, y) / (G + z)).max())
     rng = np.random.default_rng(17)
-    inputs = {"rocking": ("half_width", "cg_height"), "stress": ("mass", "lever", "section_modulus")}
-    decided = {"rocking": 0, "stress": 0}
+    inputs = {
+        "standing": ("half_width", "cg_height", "friction_static"),
+        "stress": ("mass", "lever", "section_modulus"),
+    }
+    decided = {"standing": 0, "stress": 0}
     broken = 0
     for scene, found in judged:
         names = inputs[found.model]
-        ends = [(scene.parameters[n].low, scene.parameters[n].high) for n in names]
+        # Of an assumed friction less than its best estimate is not counted on.
+        ends = [
+            (p.value if n == "friction_static" else p.low, p.high) for n, p in ((n, scene.parameters[n]) for n in names)
+        ]
         allowed = scene.parameters["allowable_stress"] if found.model == "stress" else None
         within = [rng.uniform(*np.transpose(ends)) for _ in range(200)]
         each = [
@@ -110,7 +116,7 @@ def test_no_object_has_more_than_five_uncertain_inputs_in_a_model() -> None:
     work = plan([classify(one) for one in (flexible, free, hung)]).work
     assert (
         {one.model.name for one in work}
-        >= {"flexible_stress", "rocking", "sliding", "swing"}
+        >= {"flexible_stress", "standing", "sliding", "swing"}
         < {model.name for model in MODELS}
     )
     assert max(int(one.spans.lengths.max()) for one in work) <= 1 + 2**5
@@ -120,7 +126,7 @@ def test_falling_is_looked_for_at_every_corner(motion: Motion) -> None:
     """Narrow and top-heavy together falls where neither does on its own: nobody may say of it that it passes."""
     items = [
         Item(str(at), "G", title="Vase", object_name="Vase", susceptible=False, support=Support.FREESTANDING,
-             height_m=height, width_m=float(slope * height), depth_m=float(slope * height))
+             height_m=height, width_m=float(slope * height), depth_m=float(slope * height), friction=2.0)
         for at, (slope, height) in enumerate(product(np.linspace(0.6, 2.2, 9), (0.1, 0.3, 0.8)))
     ]  # fmt: skip
     scenes = [classify(item) for item in items]

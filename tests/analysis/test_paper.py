@@ -58,15 +58,12 @@ def test_the_stability_chart_has_no_rocking_band_below_20_cm() -> None:
 
 
 def test_a_teflon_pad_does_not_excuse_a_tall_object(motion: Motion) -> None:
-    """Section 2.6: the rocking check is made without friction, and still fails."""
+    """Section 2.6: on a pad the rocking check is made without friction; what nobody measured excuses nothing either."""
     level = LevelMotions("design", "max", (motion,))
-    uplift = []
-    for friction in (0.02, 0.10, 0.5):
-        _, (found,) = assess([classify(replace(TOWER, friction=friction))], [level], Context(Threads(1)))
-        rocking = next(f for f in found if f.model == "standing")
-        assert rocking.verdict is Verdict.FAIL
-        uplift.append(rocking.demand)
-    assert len(set(uplift)) == 1
+    for surface, verdict in (("Aluminum", Verdict.FAIL), ("", Verdict.FAIL)):
+        tower = replace(TOWER, friction=None, medium="aluminium", surface_material=surface)
+        _, (found,) = assess([classify(tower)], [level], Context(Threads(1)))
+        assert next(f for f in found if f.model == "standing").verdict is verdict
     advice = solve(replace(TOWER, support=Support.FASTENED, allowable_stress_pa=2e5), motion)
     assert advice.measure != "friction_isolator"
     assert "Low-friction pad: it may rock: a low friction never excuses that" in advice.rejected

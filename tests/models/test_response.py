@@ -59,7 +59,7 @@ def test_a_motion_of_nothing_moves_nothing(name: str) -> None:
     ("name", "parameters", "message"),
     [
         ("slidding", {}, "there is no model 'slidding'; did you mean 'sliding'"),
-        ("xyzzy", {}, "there is no model 'xyzzy'.*The models are: rocking, sliding"),
+        ("xyzzy", {}, "there is no model 'xyzzy'.*The models are: standing, rocking, sliding"),
         ("", {}, "there is no model ''"),
         ("rocking", {**BLOCK, "half_widht": 0.1}, "rocking has no parameter 'half_widht'; did you mean 'half_width'"),
         ("rocking", {**BLOCK, "qqq": 0.1}, "rocking has no parameter 'qqq'.*It takes: half_width, cg_height"),

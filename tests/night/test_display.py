@@ -23,7 +23,7 @@ from tests.museum import MAPPING, SILENT, workspace
 
 pytestmark = pytest.mark.slow_file
 
-SHOWN = "1,Hall,Vase,0.4,0.2,0.2,yes"
+SHOWN = "1,Hall,Vase,1.2,0.2,0.2,yes"
 ROWS = [SHOWN, "2,Cellar,Vase,0.5,0.2,0.2,no", "3,Cellar,Bowl,,0.2,0.2,no", "4,,Vase,0.6,0.2,0.2,"]
 """A vase that overturns; one of those in the cellar, a bowl without a height there, and one without a place."""
 
@@ -128,7 +128,7 @@ def test_a_decision_about_a_stored_object_is_not_about_a_lost_one(tmp_path: Path
     settings = museum(tmp_path, [SHOWN])
     run(settings, SILENT)
     decide(open_workspace(settings), Wish("1", DecisionKind.ACCEPT, (), "low shelf", "Ann"))
-    settings = museum(tmp_path, [SHOWN.replace("yes", "no"), "5,Hall,Vase,0.4,0.2,0.2,yes"])
+    settings = museum(tmp_path, [SHOWN.replace("yes", "no"), "5,Hall,Vase,1.2,0.2,0.2,yes"])
     (doubted,) = run(settings, SILENT).doubted
     assert "the object is not on display, and was not assessed" in doubted
     assert "no longer in the inventory" not in doubted
@@ -153,7 +153,7 @@ def test_no_stored_object_is_told_to_be_taken_off_display() -> None:
 
 
 def test_where_no_column_says_what_is_on_display_that_is_said(tmp_path: Path) -> None:
-    rows = ["1,Hall,Vase,0.4,0.2,0.2", "2,Hall,Plate,0.03,0.3,0.3"]
+    rows = ["1,Hall,Vase,1.2,0.2,0.2", "2,Hall,Plate,0.03,0.3,0.3"]
     summary = run(workspace(tmp_path, rows), SILENT)
     said = "o column says what is on display: all 2 objects are taken to be"
     assert said in words(summary)

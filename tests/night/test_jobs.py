@@ -62,7 +62,7 @@ def test_the_exports_say_what_the_store_says(demo_folder: Path) -> None:
 
 def test_a_night_with_bad_input_ends_and_names_it(tmp_path: Path) -> None:
     """Negative, absurd (9,600 inches) and missing dimensions, a hostile title: findings, never a crash."""
-    absurd = ["4,B,Vase,-0.4,0.2,0.2", "5,B,Vase,243.84,0.2,0.2", "6,B,Vase,much,0.2,0.2", "7,,Vase,0.4,0.2,0.2"]
+    absurd = ["4,B,Vase,-1.2,0.2,0.2", "5,B,Vase,243.84,0.2,0.2", "6,B,Vase,much,0.2,0.2", "7,,Vase,1.2,0.2,0.2"]
     summary = run(workspace(tmp_path, ROWS + absurd), SILENT)
     assert (summary.objects, summary.cannot) == (7, 4)
     assert summary.missing["height"] == 4
@@ -96,7 +96,7 @@ def test_an_unchanged_night_changes_nothing_and_keeps_the_old_report(tmp_path: P
 def test_a_changed_object_is_named(tmp_path: Path) -> None:
     settings = workspace(tmp_path)
     run(settings, SILENT)
-    workspace(tmp_path, [ROWS[0], "2,B,Plate,0.03,0.1,0.1", ROWS[2], "9,B,Vase,0.4,0.2,0.2"])
+    workspace(tmp_path, [ROWS[0], "2,B,Plate,0.03,0.1,0.1", ROWS[2], "9,B,Vase,1.2,0.2,0.2"])
     changes = run(settings, SILENT).changes
     assert changes is not None
     assert [p.object_number for p in changes.added] == ["9"]
@@ -142,7 +142,7 @@ def test_a_part_of_the_collection_does_not_become_the_latest_report(tmp_path: Pa
 
 
 def test_an_unknown_gallery_is_an_error_that_helps(tmp_path: Path) -> None:
-    settings = workspace(tmp_path, ["1,Hall of Sculpture,Vase,0.4,0.2,0.2"])
+    settings = workspace(tmp_path, ["1,Hall of Sculpture,Vase,1.2,0.2,0.2"])
     with pytest.raises(UsageError, match=r"no gallery 'Hall of Skulpture' .* did you mean 'Hall of Sculpture'"):
         run(settings, SILENT, Selection(galleries=("Hall of Skulpture",)))
 

@@ -22,7 +22,7 @@ from tests.night.changing import vessels
 
 pytestmark = pytest.mark.slow_file
 
-ROWS = ["1,A,Vase,0.4,0.2,0.2", "2,B,Vase,0.4,0.2,0.2", "3,B,Plate,0.03,0.3,0.3"]
+ROWS = ["1,A,Vase,1.2,0.2,0.2", "2,B,Vase,1.2,0.2,0.2", "3,B,Plate,0.03,0.3,0.3"]
 OWN = "rule,class,aat,classification,words,medium,shape,why\nours,bust,,,vase,,,our vases are busts\n"
 FLOOR = '\n[[floor]]\nname = "2"\nheight_ratio = 0.5\nperiod_s = 0.4\n'
 
@@ -166,7 +166,7 @@ def test_the_order_is_stable_and_json_has_all(tmp_path: Path) -> None:
     short_site(tmp_path)
     settings = museum(tmp_path)
     run(settings, SILENT)
-    museum(tmp_path, [*reversed(ROWS[1:]), "\U0001f3fa<b>,A,Vase,0.4,0.2,0.2", "4,A,Vase,0.4,0.2,0.2"])
+    museum(tmp_path, [*reversed(ROWS[1:]), "\U0001f3fa<b>,A,Vase,1.2,0.2,0.2", "4,A,Vase,1.2,0.2,0.2"])
     edit(tmp_path / "kouros.toml", "shrink_limit = 0.2", "shrink_limit = 0.9")
     edit(tmp_path / "site" / "manifest.toml", "scale = 1.0", "scale = 0.07")
     run(load_settings(tmp_path / "kouros.toml"), SILENT)

@@ -37,7 +37,7 @@ from tests.report import builder
 
 pytestmark = pytest.mark.slow_file
 
-GOOD = ["1,A,Vase,0.4,0.2,0.2", "2,B,Plate,0.03,0.3,0.3"]
+GOOD = ["1,A,Vase,1.2,0.2,0.2", "2,B,Plate,0.03,0.3,0.3"]
 BAD = [
     *GOOD,
     ",B,Cup,0.1,0.1,0.1",  # no number

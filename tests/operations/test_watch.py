@@ -21,8 +21,8 @@ from tests.museum import ROWS
 from .conftest import Kouros, command, environment, validate, within
 from .servers import Web, web
 
-LOW = ROWS[0].replace("0.4,0.2,0.2", "0.1,0.3,0.3")
-TIPPING = ROWS[0].replace("0.4,0.2,0.2", "0.8,0.1,0.1")
+LOW = ROWS[0].replace("1.2,0.2,0.2", "0.1,0.3,0.3")
+TIPPING = ROWS[0].replace("1.2,0.2,0.2", "0.8,0.1,0.1")
 """The first object, so slender that the shaking lifts its edge: b/h below 1/8 against 0.12 g."""
 
 TOKEN = "t0ken-that-nobody-may-read"

@@ -45,7 +45,7 @@ from pipeline.tools.rerender import render_again
 from tests.museum import SILENT, edit, short_site, workspace
 
 HOSTILE = "<script>alert(1)</script>\"'&{{7*7}}\u202e"
-ROWS = ["1,A,Vase,0.4,0.2,0.2", "2,A,Vase,0.4,0.2,0.2", "3,B,Plate,0.03,0.3,0.3", f"{HOSTILE[:25]},B,Vase,0.5,0.2,0.2"]
+ROWS = ["1,A,Vase,1.2,0.2,0.2", "2,A,Vase,1.2,0.2,0.2", "3,B,Plate,0.03,0.3,0.3", f"{HOSTILE[:25]},B,Vase,0.5,0.2,0.2"]
 KIND = DecisionKind
 
 
@@ -93,7 +93,10 @@ def finding(record: RunRecord, number: str, model: str) -> Finding:
         (Wish("1", KIND.ACCEPT, why="x", who="n" * 201), r"--who has 201 characters"),
         (Wish("1", KIND.ACCEPT, why="x", model="floating"), r"no model 'floating'; use one of .*rocking"),
         (Wish("1", KIND.ACCEPT, why="x", level="rare"), r"no level 'rare'; use one of test"),
-        (Wish("1", KIND.ACCEPT, why="x", model="swing"), r"no such finding of object '1'; it has rocking \(test\)"),
+        (
+            Wish("1", KIND.ACCEPT, why="x", model="swing"),
+            r"no such finding of object '1'; it has sliding \(test\), standing \(test\)",
+        ),
         (Wish("1", KIND.ACCEPT, ["pass"], why="x"), r"takes no more words"),
         (Wish("1", KIND.ACCEPT, why="x", on="soon"), r"--on 'soon' is no date; write it as"),
         (Wish("1", KIND.ACCEPT, why="x", on="9999-01-01"), r"--on 9999-01-01 is in the future"),
@@ -145,7 +148,7 @@ def test_the_log_is_only_added_to(museum: Path) -> None:
     log = read_decisions(engine)
     assert [d.kind for d in log] == [KIND.ACCEPT] * 3 + [KIND.WITHDRAW]
     assert log[0] == first
-    workspace(museum, ["2,A,Vase,0.4,0.2,0.2", *ROWS[2:]], site="site")
+    workspace(museum, ["2,A,Vase,1.2,0.2,0.2", *ROWS[2:]], site="site")
     edit(museum / "kouros.toml", "shrink_limit = 0.2", "shrink_limit = 0.9")
     summary, record = night(museum)
     assert read_decisions(engine) == log
@@ -212,13 +215,13 @@ def test_what_stands_on_an_isolator_is_run_on_what_that_passes_on(museum: Path) 
     rocking = finding(record, "1", "standing")
     scene = classify(found(record, "1").scene.item)
     passed = transmit("horizontal_isolator", motion, **given)
-    sizes = {name: scene.parameters[name].value for name in ("half_width", "cg_height")}
+    sizes = {name: scene.parameters[name].value for name in ("half_width", "cg_height", "friction_static")}
     # The same polygon in the worst direction; the night asks every ten degrees.
     expected = respond("standing", passed, angle=None, **sizes)["uplift_ratio"].iloc[0]
     assert rocking.demand == pytest.approx(expected, rel=1e-2)
     assert rocking.motion_hash == record.motions[0].hash
     assert rocking.mark is None
-    assert "Rocking" not in found(record, "1").scene.skipped
+    assert "Tipping" not in found(record, "1").scene.skipped
     assert "isolator passes on" in rocking.note
 
 

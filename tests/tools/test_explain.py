@@ -19,7 +19,7 @@ from pipeline.tools.decisions import Wish, decide
 from tests.museum import workspace
 
 ROWS = [
-    "1,A,Vase \x1b[31mred,0.4,0.2,0.2",
+    "1,A,Vase \x1b[31mred,1.2,0.2,0.2",
     "2,B,Plate,0.03,0.3,0.3",
     "3,B,Vase,,0.2,0.2",
 ]

@@ -109,7 +109,7 @@ def test_the_cheapest_keeps_what_is_wanted(found: tradeoff.Tradeoff) -> None:
 
 def test_the_collections_own_objects_are_drawn(motion: Motion) -> None:
     items = [Item(str(n), "G", height_m=0.3 + 0.01 * n, width_m=0.1, depth_m=0.1) for n in range(5)]
-    one = tradeoff.measure([motion], items, SILENT, models=["rocking"], objects=16)
+    one = tradeoff.measure([motion], items, SILENT, models=["standing"], objects=16)
     assert one.samples[0].source == "the collection"
     assert one.samples[0].objects == 5
 
