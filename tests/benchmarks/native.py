@@ -11,10 +11,12 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from pipeline.analysis.model_runs import prepare
+from pipeline.kernels import standing_body
 from pipeline.kernels.pendulum import substeps
 from pipeline.models import model_named
 from pipeline.models.common import Quiet, shaken
 from pipeline.models.rigid_body import bodies
+from pipeline.models.standing import standing_bodies
 from pipeline.quantities import Array
 from pipeline.records import Excitation
 from tests.benchmarks.common import OBJECTS, SEED, fastest, level, shaking, strongest
@@ -107,6 +109,35 @@ def rocking(program: ctypes.CDLL, motion: Excitation, half_width: Array, cg_heig
     def ours() -> Array:
         found = model.run(motion, values, 2, False)
         return np.stack([found["rotation_ratio"], found["overturned"]])
+
+    return theirs, ours
+
+
+def standing(program: ctypes.CDLL, motion: Excitation, half_width: Array, cg_height: Array, mu: Array) -> Pair:
+    """Return C's and our run of standing rectangles.
+
+    Both give whether overturned, the landings, the ratio, and the displacement of the base and the last one [m], (5, n).
+    """
+    quiet = Quiet(motion)
+    arrays = (quiet.x, quiet.z, quiet.ratio, quiet.maxima)
+    model = model_named("standing")
+    values = prepare(model, {"half_width": half_width, "cg_height": cg_height, "friction_static": mu})
+    body, out = standing_bodies(values), np.empty((mu.size, standing_body.FOUND))
+    samples, count, refine = (ctypes.c_long(number) for number in (quiet.x.size, mu.size, 2))
+    step, peak = ctypes.c_double(quiet.dt), ctypes.c_double(quiet.peak)
+    columns = [
+        getattr(standing_body, name) for name in ("FELL", "IMPACTS", "RATIO", "AWAY", "RESIDUAL")
+    ]
+
+    def theirs() -> Array:
+        program.standing(*map(pointer, arrays), samples, step, peak, pointer(body), count, refine, pointer(out))
+        return np.abs(out[:, columns].T)
+
+    def ours() -> Array:
+        found = model.run(motion, values, 2, False)
+        return np.stack(
+            [found[name] for name in ("overturned", "impacts", "rotation_ratio", "displacement", "residual")]
+        )
 
     return theirs, ours
 
