@@ -198,7 +198,7 @@ def rock_on(state: Array, load: Load, t: float, h: float, clock: float, rest: fl
     i = 0 if s > 0.0 else 1
     alpha, c, arm, mu = body[ALPHA + i], body[INVERSE + i], body[ARM + i], body[MU_S]
     p1, r1, s1, c1 = rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c)
-    falls, landed = max(FALLING, alpha), -1.0
+    falls, landed, whole = max(FALLING, alpha), -1.0, h
     if p1 > falls and phi < falls * BELOW:
         h = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, ANGLE, falls)
     elif p1 <= 0.0 or rate < 0.0 < r1:
@@ -208,7 +208,8 @@ def rock_on(state: Array, load: Load, t: float, h: float, clock: float, rest: fl
         h = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, ANGLE, OVERTURNED)
         lies(clock + t + h, alpha, out)
         return t + h
-    p1, r1, s1, c1 = rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c)
+    if h != whole:
+        p1, r1, s1, c1 = rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c)
     spare, way = spare_friction(r1, s1, c1, a0 + a1 * (t + h), n0 + n1 * (t + h), s, c, arm, mu)
     slips = False
     if spare < 0.0 and state[HOLD] == 0.0:

@@ -70,7 +70,7 @@ static double rock_on(State *q, const Load *load, double t, double h, double clo
 {
     Rock y = q->turn;
     int i = q->i, slips = 0;
-    double alpha = b->alpha[i], falls = larger(FALLING, alpha), landed = -1.0, way;
+    double alpha = b->alpha[i], falls = larger(FALLING, alpha), landed = -1.0, whole = h, way;
     Load load_of_edge = *load, *f = &load_of_edge;
     f->s = q->s, f->c = b->inverse[i];
     Rock end = rock_step(y, f, t, h);
@@ -83,7 +83,7 @@ static double rock_on(State *q, const Load *load, double t, double h, double clo
         lies(clock + t + h, alpha, out);
         return t + h;
     }
-    end = rock_step(y, f, t, h);
+    if (h != whole) end = rock_step(y, f, t, h);
     if (spare_friction(end, f, t + h, b, i, f->s, &way) < 0.0 && !q->hold) {
         double tau = slips_after(y, f, t, h, b, i);
         q->turn = rock_step(y, f, t, tau);
