@@ -200,12 +200,13 @@ def rock_on(state: Array, load: Load, t: float, h: float, clock: float, rest: fl
     p1, r1, s1, c1 = rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c)
     falls, landed, whole = max(FALLING, alpha), -1.0, h
     if p1 > falls and phi < falls * BELOW:
-        h = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, ANGLE, falls)
+        h = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, phi - falls, p1 - falls, s, c, ANGLE, falls)
     elif p1 <= 0.0 or rate < 0.0 < r1:
         landed = landing(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c, p1, r1)
         h = landed if landed >= 0.0 else h
     elif p1 >= OVERTURNED:
-        h = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, ANGLE, OVERTURNED)
+        low, high = phi - OVERTURNED, p1 - OVERTURNED
+        h = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, low, high, s, c, ANGLE, OVERTURNED)
         lies(clock + t + h, alpha, out)
         return t + h
     if h != whole:
@@ -220,7 +221,7 @@ def rock_on(state: Array, load: Load, t: float, h: float, clock: float, rest: fl
             p1, r1, s1, c1 = state[PHI], state[RATE], state[SN], state[CS]
             h, landed = tau, -1.0
     if rate > 0.0 > r1 and (phi + h * rate) / alpha > out[RATIO]:
-        tau = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, SPEED, 0.0)
+        tau = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, rate, r1, s, c, SPEED, 0.0)
         out[RATIO] = max(out[RATIO], rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, tau, s, c)[0] / alpha)
     state[PHI], state[RATE], state[SN], state[CS], state[HOLD] = phi, rate, sn, cs, 0.0
     place, leaves = track(state, body, out), sway(state, body)

@@ -34,16 +34,15 @@ static inline Rock rock_step(Rock y, const Load *f, double t, double h)
     return end;
 }
 
-static double locate(Rock y, const Load *f, double t, double low, double high, int what, double level)
+/* The length of the step after which phi or its rate reaches a level, from which it is at_low and at_high at both ends. */
+static double locate(Rock y, const Load *f, double t, double low, double high, double at_low, double at_high, int what,
+                     double level)
 {
-    Rock at = rock_step(y, f, t, low);
-    double at_low = (what == ANGLE ? at.phi : at.rate) - level, tau = high;
-    at = rock_step(y, f, t, high);
-    double at_high = (what == ANGLE ? at.phi : at.rate) - level;
+    double tau = high;
     for (int k = 0, side = 0; k < 60 && at_high != at_low; k++) {
         double before = tau;
         tau = trial(low, high, at_low, at_high);
-        at = rock_step(y, f, t, tau);
+        Rock at = rock_step(y, f, t, tau);
         double value = (what == ANGLE ? at.phi : at.rate) - level;
         narrow(&low, &high, &at_low, &at_high, &side, tau, value);
         if (value == 0.0 || fabs(tau - before) <= 1e-15 * tau) break;
@@ -55,15 +54,17 @@ static double locate(Rock y, const Load *f, double t, double low, double high, i
 static inline double landing(Rock y, const Load *f, double t, double h, Rock end)
 {
     if (y.phi > 0.0) {
-        if (end.phi < 0.0) return locate(y, f, t, 0.0, h, ANGLE, 0.0);
+        if (end.phi < 0.0) return locate(y, f, t, 0.0, h, y.phi, end.phi, ANGLE, 0.0);
         if (y.rate < 0.0 && end.rate > 0.0) {
-            double dip = locate(y, f, t, 0.0, h, SPEED, 0.0);
-            if (rock_step(y, f, t, dip).phi < 0.0) return locate(y, f, t, 0.0, dip, ANGLE, 0.0);
+            double dip = locate(y, f, t, 0.0, h, y.rate, end.rate, SPEED, 0.0), lowest = rock_step(y, f, t, dip).phi;
+            if (lowest < 0.0) return locate(y, f, t, 0.0, dip, y.phi, lowest, ANGLE, 0.0);
         }
     } else if (end.phi <= 0.0) {
         double low = 0.5 * h;
-        for (int k = 0; k < 50; k++, low *= 0.5)
-            if (rock_step(y, f, t, low).phi > 0.0) return locate(y, f, t, low, h, ANGLE, 0.0);
+        for (int k = 0; k < 50; k++, low *= 0.5) {
+            double phi = rock_step(y, f, t, low).phi;
+            if (phi > 0.0) return locate(y, f, t, low, h, phi, end.phi, ANGLE, 0.0);
+        }
         return 0.0;
     }
     return -1.0;

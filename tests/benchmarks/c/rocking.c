@@ -7,10 +7,10 @@
 #define IMPACTS_CAP 200
 #define STEP 0.2
 
-static void peak(Rock y, const Load *f, double t, double h, double alpha, double *out)
+static void peak(Rock y, const Load *f, double t, double h, double rate, double alpha, double *out)
 {
     if ((y.phi + h * y.rate) / alpha <= out[0]) return;
-    double tau = locate(y, f, t, 0.0, h, SPEED, 0.0);
+    double tau = locate(y, f, t, 0.0, h, y.rate, rate, SPEED, 0.0);
     out[0] = larger(out[0], rock_step(y, f, t, tau).phi / alpha);
 }
 
@@ -43,13 +43,13 @@ static double stretch(double s, Rock *y, Load f, double span, const double *body
                 out[0] = larger(out[0], OVERTURNED / alpha), out[1] = 1.0;
                 break;
             }
-            if (y->rate > 0.0 && end.rate < 0.0) peak(*y, &f, t, h, alpha, out);
+            if (y->rate > 0.0 && end.rate < 0.0) peak(*y, &f, t, h, end.rate, alpha, out);
             out[0] = larger(out[0], end.phi / alpha);
             *y = end;
             break;
         }
         double rate = rock_step(*y, &f, t, landed).rate;
-        if (y->rate > 0.0 && rate < 0.0) peak(*y, &f, t, landed, alpha, out);
+        if (y->rate > 0.0 && rate < 0.0) peak(*y, &f, t, landed, rate, alpha, out);
         t += landed;
         double slow = smaller(sqrt(body[2] * G) * body[0], sqrt(body[3] * G) * body[1]);
         if (fabs(rate) >= COUNTED * slow) out[2] += 1.0;

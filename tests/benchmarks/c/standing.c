@@ -74,12 +74,12 @@ static double rock_on(State *q, const Load *load, double t, double h, double clo
     Load load_of_edge = *load, *f = &load_of_edge;
     f->s = q->s, f->c = b->inverse[i];
     Rock end = rock_step(y, f, t, h);
-    if (end.phi > falls && y.phi < falls * BELOW) h = locate(y, f, t, 0.0, h, ANGLE, falls);
+    if (end.phi > falls && y.phi < falls * BELOW) h = locate(y, f, t, 0.0, h, y.phi - falls, end.phi - falls, ANGLE, falls);
     else if (end.phi <= 0.0 || (y.rate < 0.0 && end.rate > 0.0)) {
         landed = landing(y, f, t, h, end);
         if (landed >= 0.0) h = landed;
     } else if (end.phi >= QUARTER) {
-        h = locate(y, f, t, 0.0, h, ANGLE, QUARTER);
+        h = locate(y, f, t, 0.0, h, y.phi - QUARTER, end.phi - QUARTER, ANGLE, QUARTER);
         lies(clock + t + h, alpha, out);
         return t + h;
     }
@@ -91,7 +91,7 @@ static double rock_on(State *q, const Load *load, double t, double h, double clo
         if (slips) end = q->turn, h = tau, landed = -1.0;
     }
     if (y.rate > 0.0 && end.rate < 0.0 && (y.phi + h * y.rate) / alpha > out->ratio) {
-        double tau = locate(y, f, t, 0.0, h, SPEED, 0.0);
+        double tau = locate(y, f, t, 0.0, h, y.rate, end.rate, SPEED, 0.0);
         out->ratio = larger(out->ratio, rock_step(y, f, t, tau).phi / alpha);
     }
     q->turn = y, q->hold = 0;
