@@ -190,14 +190,14 @@ def landing(
             return locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, phi, p1, s, c, ANGLE, 0.0)
         if rate < 0.0 < r1:
             dip = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, rate, r1, s, c, SPEED, 0.0)
-            lowest, _r, _s, _c = rock_step(phi, rate, sn, cs, a0, a1, n0, n1, t, dip, s, c)
+            lowest, _r, _s, _c = rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, dip, s, c)
             if lowest < 0.0:
                 return locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, dip, phi, lowest, s, c, ANGLE, 0.0)
     elif p1 <= 0.0:
         # A hop that begins and ends within the step: find a time at which the body is up.
         low = 0.5 * h
         for _k in range(50):
-            p, _r, _s, _c = rock_step(phi, rate, sn, cs, a0, a1, n0, n1, t, low, s, c)
+            p, _r, _s, _c = rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, low, s, c)
             if p > 0.0:
                 return locate(phi, rate, sn, cs, a0, a1, n0, n1, t, low, h, p, p1, s, c, ANGLE, 0.0)
             low *= 0.5

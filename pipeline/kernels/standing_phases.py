@@ -3,7 +3,7 @@
 import math
 
 from pipeline.kernels import fused, inner
-from pipeline.kernels.line_phase import SIZE, Body, after, expand, first_stop
+from pipeline.kernels.line_phase import SIZE, U0, U1, Body, after, expand, first_stop
 from pipeline.kernels.rock_phase import ANGLE, SPEED, landing, lift_off, locate, rock_after
 from pipeline.kernels.rocking import OVERTURNED
 from pipeline.kernels.roots import narrowed, trial
@@ -25,6 +25,7 @@ from pipeline.kernels.standing_body import (
     PHI,
     RATE,
     RATIO,
+    RESIDUAL,
     RHO2,
     ROCKS,
     SIDE,
@@ -51,7 +52,7 @@ from pipeline.kernels.standing_body import (
     sway,
     track,
 )
-from pipeline.quantities import Array
+from pipeline.quantities import Array, G
 
 BELOW = 1.0 - 1e-9
 """Share of an angle from which on a body counts as having reached it."""
@@ -129,6 +130,42 @@ def slide_on(
         fly(state, body)
         return t + left
     return span
+
+
+@inner
+def glide_on(state: Array, x: Array, z: Array, dt: float, begin: int, body: Array, line: Body, out: Array) -> int:
+    """Let a body slide on its base through the sample intervals in which it does nothing else.
+
+    Parameters
+    ----------
+    state, body, line, out
+        As in `slide_on`.
+    x, z, dt
+        As in `pipeline.kernels.standing.standing_batch`.
+    begin : int
+        The sample that it is at.
+
+    Returns
+    -------
+    int
+        The sample up to which it does; begin where it does not at all.
+    """
+    u, v, s, top, drag = state[U], state[V], state[WAY], 0.0, state[WAY] * body[MU_K]
+    i, last = begin, x.shape[0] - 1
+    while i < last and G + z[i] >= 0.0 and G + z[i + 1] >= 0.0:
+        f0 = -x[i] - drag * (G + z[i])
+        f1 = -((x[i + 1] - x[i]) / dt) - drag * ((z[i + 1] - z[i]) / dt)
+        un = u + v * dt + f0 * line[U0] + f1 * line[U1]
+        vn = v + f0 * dt + f1 * line[U0]
+        if not (s * v > 0.0 and s * vn > 0.0) or s * f0 < 0.0 < s * (f0 + f1 * dt):
+            break
+        u, v = un, vn
+        top = max(top, abs(u))
+        i += 1
+    state[U], state[V] = u, v
+    if i > begin:
+        out[AWAY], out[RESIDUAL] = max(out[AWAY], top), u
+    return i
 
 
 @fused

@@ -34,7 +34,7 @@ static inline Rock rock_step(Rock y, const Load *f, double t, double h)
     return end;
 }
 
-/* The length of the step after which phi or its rate reaches a level, from which it is at_low and at_high at both ends. */
+/* The length of the step after which phi or its rate reaches a level; at_low, at_high: less the level at both ends. */
 static double locate(Rock y, const Load *f, double t, double low, double high, double at_low, double at_high, int what,
                      double level)
 {

@@ -1,8 +1,7 @@
 /* A body that rests, slides, rocks, slide-rocks and flies: kernels/standing.py, standing_phases.py, slip_phase.py.
 
    Steps, events and impacts are those of the kernels, in their order.  Left out is what follows after the record, what
-   is recorded, and bodies too fast to be followed.  What slides on its base has no spring here, so that a sample is a
-   cubic (glides); a step of length 0 is not taken (slips_after). */
+   is recorded, and bodies too fast to be followed; a step of length 0 is not taken (slips_after). */
 #include "line_phase.h"
 #include "standing.h"
 
@@ -74,7 +73,8 @@ static double rock_on(State *q, const Load *load, double t, double h, double clo
     Load load_of_edge = *load, *f = &load_of_edge;
     f->s = q->s, f->c = b->inverse[i];
     Rock end = rock_step(y, f, t, h);
-    if (end.phi > falls && y.phi < falls * BELOW) h = locate(y, f, t, 0.0, h, y.phi - falls, end.phi - falls, ANGLE, falls);
+    if (end.phi > falls && y.phi < falls * BELOW)
+        h = locate(y, f, t, 0.0, h, y.phi - falls, end.phi - falls, ANGLE, falls);
     else if (end.phi <= 0.0 || (y.rate < 0.0 && end.rate > 0.0)) {
         landed = landing(y, f, t, h, end);
         if (landed >= 0.0) h = landed;
@@ -354,6 +354,7 @@ static void stretch(State *q, const Load *f, double span, double clock, long par
 static long glides(const double *x, const double *z, double dt, State *q, double mu, long i, long end, Found *out)
 {
     double u = q->u, v = q->v, s = q->way, top = out->away, half = 0.5 * dt * dt, sixth = dt * dt * dt / 6.0;
+    long begin = i;
     for (; i < end && G + z[i] >= 0.0 && G + z[i + 1] >= 0.0; i++) {
         double f0 = -x[i] - s * mu * (G + z[i]), f1 = -(x[i + 1] - x[i]) / dt - s * mu * ((z[i + 1] - z[i]) / dt);
         double un = u + v * dt + f0 * half + f1 * sixth, vn = v + f0 * dt + f1 * half;
@@ -362,6 +363,7 @@ static long glides(const double *x, const double *z, double dt, State *q, double
         top = larger(top, fabs(u));
     }
     q->u = u, q->v = v, out->away = top;
+    if (i > begin) out->residual = u;
     return i;
 }
 
