@@ -8,8 +8,8 @@ forces of the surface per mass on the corner that touches, at r = (r_x, r_y) [m]
     x'' = F - a, \qquad y'' = N - (g + a_z), \qquad \rho^2 \theta'' = r_y F - r_x N, \qquad |F| \le \mu N, \; N \ge 0
 
 with a and a_z [m/s2] the horizontal and the vertical acceleration of the base and rho [m] the radius of gyration.  Each
-mode has its own equations (`pipeline.kernels.standing_body`, `rock_phase`, `slip_phase`; closed
-forms for what slides on its base or flies); a corner that comes down stays down (`corner_impact`).
+mode has its own equations (`pipeline.kernels.standing_body`, `rock_phase`, `slip_phase`; what slides on its base or
+flies does so in closed form); a corner that comes down stays down (`corner_impact`).
 """
 
 import math
