@@ -217,7 +217,7 @@ def _stays(x: Array, z: Array, spring: float, mu_s: float, begin: int, end: int,
 
 
 @inner
-def glides(
+def _glides(
     x: Array,
     z: Array,
     dt: float,
@@ -230,29 +230,8 @@ def glides(
     end: int,
     out: Array,
 ) -> tuple[int, float, float]:
-    """Return the sample up to which a body that slips does nothing else, and its displacement and velocity there.
-
-    Parameters
-    ----------
-    x, z, dt
-        As in `friction_line_batch`.
-    pieces : int
-        Phases of a sample interval, each short against the body's period.
-    u, v, s : float
-        Displacement [m], velocity [m/s] and direction of the slip at the beginning.
-    body : tuple of float
-        From `pipeline.kernels.line_phase.make_body`, for a phase.
-    begin, end : int
-        The samples between which it is followed.
-    out : ndarray, shape (3,)
-        Receives the largest ``|u|`` [m], the path [m] and the largest acceleration passed on [m/s2] where they are
-        larger than what it holds.
-
-    Returns
-    -------
-    tuple of int and float
-        The sample, u [m] and v [m/s].
-    """
+    # The sample up to which a body that slips at begin does nothing else, at most end, and u and v there.
+    # out: [max |u|, path, max transmitted].
     b, c, mu_k, step = body[B], body[C], body[MU_K], body[STEP]
     top, path, felt = out[0], out[1], out[2]
     i = begin
@@ -340,7 +319,7 @@ def _follow(
                 i = still
                 continue
         elif s != 0.0:
-            still, u, v = glides(x, z, dt, pieces, u, v, s, body, i, i + 1 if recording else n - 1, out)
+            still, u, v = _glides(x, z, dt, pieces, u, v, s, body, i, i + 1 if recording else n - 1, out)
             if still > i:
                 i = still
                 continue

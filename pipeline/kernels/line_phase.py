@@ -63,6 +63,24 @@ def make_body(w: float, zeta: float, mu_s: float, mu_k: float, step: float) -> B
     return w, zeta, mu_s, mu_k, step, b, c, uu, uv, u0, u1, ease, float(size)
 
 
+@inner
+def free_body(mu_s: float, mu_k: float, step: float) -> Body:
+    """Return a body without a spring and a dashpot, of which a whole step is a cubic.
+
+    Parameters
+    ----------
+    mu_s, mu_k, step
+        As in `make_body`.
+
+    Returns
+    -------
+    tuple of float
+        As from `make_body`, which would take longer to compile.
+    """
+    half = 0.5 * step * step
+    return 0.0, 0.0, mu_s, mu_k, step, 0.0, 0.0, 1.0, step, half, step * step * step / 6.0, 1.0, 3.0
+
+
 @inlined
 def expand(u: float, v: float, f0: float, f1: float, body: Body, series: Array) -> None:
     r"""Fill in the Taylor series of the velocity and the displacement of a phase.

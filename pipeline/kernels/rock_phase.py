@@ -112,6 +112,8 @@ def locate(
     t: float,
     low: float,
     high: float,
+    at_low: float,
+    at_high: float,
     s: float,
     c: float,
     what: int,
@@ -127,6 +129,8 @@ def locate(
         As in `rock_step`.
     low, high : float
         Lengths between which it is, s.
+    at_low, at_high : float
+        What is looked for after these, less the level: whoever brackets an instant knows both, at 0 without a step.
     what : int
         ANGLE or SPEED.
     level : float
@@ -137,10 +141,6 @@ def locate(
     float
         In s.
     """
-    p, r, _s, _c = rock_step(phi, rate, sn, cs, a0, a1, n0, n1, t, low, s, c)
-    at_low = (p if what == ANGLE else r) - level
-    p, r, _s, _c = rock_step(phi, rate, sn, cs, a0, a1, n0, n1, t, high, s, c)
-    at_high = (p if what == ANGLE else r) - level
     side, tau = 0, high
     for _ in range(60):
         if at_high == at_low:
@@ -187,19 +187,19 @@ def landing(
     """
     if phi > 0.0:
         if p1 < 0.0:
-            return locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, ANGLE, 0.0)
+            return locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, phi, p1, s, c, ANGLE, 0.0)
         if rate < 0.0 < r1:
-            dip = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, SPEED, 0.0)
-            lowest, _r, _s, _c = rock_step(phi, rate, sn, cs, a0, a1, n0, n1, t, dip, s, c)
+            dip = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, rate, r1, s, c, SPEED, 0.0)
+            lowest, _r, _s, _c = rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, dip, s, c)
             if lowest < 0.0:
-                return locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, dip, s, c, ANGLE, 0.0)
+                return locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, dip, phi, lowest, s, c, ANGLE, 0.0)
     elif p1 <= 0.0:
         # A hop that begins and ends within the step: find a time at which the body is up.
         low = 0.5 * h
         for _k in range(50):
-            p, _r, _s, _c = rock_step(phi, rate, sn, cs, a0, a1, n0, n1, t, low, s, c)
+            p, _r, _s, _c = rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, low, s, c)
             if p > 0.0:
-                return locate(phi, rate, sn, cs, a0, a1, n0, n1, t, low, h, s, c, ANGLE, 0.0)
+                return locate(phi, rate, sn, cs, a0, a1, n0, n1, t, low, h, p, p1, s, c, ANGLE, 0.0)
             low *= 0.5
         return 0.0
     return -1.0

@@ -96,19 +96,20 @@ def _stretch(
             landed = landing(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c, p1, r1)
         if landed < 0.0:
             if p1 >= OVERTURNED:
-                tau = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, ANGLE, OVERTURNED)
+                low, high = phi - OVERTURNED, p1 - OVERTURNED
+                tau = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, low, high, s, c, ANGLE, OVERTURNED)
                 out[0] = max(out[0], OVERTURNED / alpha)
                 out[1], out[2] = 1.0, clock + t + tau
                 break
             if rate > 0.0 > r1:
-                _peak(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, alpha, c, out)
+                _peak(phi, rate, sn, cs, a0, a1, n0, n1, t, h, r1, s, alpha, c, out)
             out[0] = max(out[0], p1 / alpha)
             phi, rate, sn, cs = p1, r1, s1, c1
             t += h
             continue
         _p, r1, _s, _c = rock_step(phi, rate, sn, cs, a0, a1, n0, n1, t, landed, s, c)
         if rate > 0.0 > r1:
-            _peak(phi, rate, sn, cs, a0, a1, n0, n1, t, landed, s, alpha, c, out)
+            _peak(phi, rate, sn, cs, a0, a1, n0, n1, t, landed, r1, s, alpha, c, out)
         t += landed
         # The smaller p alpha of the two edges: a mirrored body must count the same impacts.
         slow = min(math.sqrt(body[2] * G) * body[0], math.sqrt(body[3] * G) * body[1])
@@ -143,13 +144,14 @@ def _peak(
     n1: float,
     t: float,
     h: float,
+    r1: float,
     s: float,
     alpha: float,
     c: float,
     out: Array,
 ) -> None:
     if (phi + h * rate) / alpha > out[0]:
-        tau = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, SPEED, 0.0)
+        tau = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, rate, r1, s, c, SPEED, 0.0)
         top, _r, _s, _c = rock_step(phi, rate, sn, cs, a0, a1, n0, n1, t, tau, s, c)
         out[0] = max(out[0], top / alpha)
 

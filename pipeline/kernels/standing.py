@@ -8,24 +8,22 @@ forces of the surface per mass on the corner that touches, at r = (r_x, r_y) [m]
     x'' = F - a, \qquad y'' = N - (g + a_z), \qquad \rho^2 \theta'' = r_y F - r_x N, \qquad |F| \le \mu N, \; N \ge 0
 
 with a and a_z [m/s2] the horizontal and the vertical acceleration of the base and rho [m] the radius of gyration.  Each
-mode has its own equations (`pipeline.kernels.standing_body`, `rock_phase`, `slip_phase`; `friction_line` for what
-slides on its base, in closed form); a corner that comes down stays down (`corner_impact`).
+mode has its own equations (`pipeline.kernels.standing_body`, `rock_phase`, `slip_phase`; what slides on its base or
+flies does so in closed form); a corner that comes down stays down (`corner_impact`).
 """
 
 import math
 
 import numpy as np
 
-from pipeline.kernels import FIRST, inner, kernel
+from pipeline.kernels import FIRST, inlined, inner, kernel
 from pipeline.kernels.flags import CUT, EVENT_CAP, UNRESOLVED
-from pipeline.kernels.friction_line import glides
-from pipeline.kernels.line_phase import TERMS, Body, make_body
+from pipeline.kernels.line_phase import TERMS, Body, free_body
 from pipeline.kernels.quiet import next_above
 from pipeline.kernels.rocking import CAP, NEAR, STEP
 from pipeline.kernels.slip_phase import Load
 from pipeline.kernels.standing_body import (
     ALPHA,
-    AWAY,
     FELL,
     FELL_AT,
     FLAGS,
@@ -49,14 +47,12 @@ from pipeline.kernels.standing_body import (
     STATE,
     TANGENT,
     UNTIL,
-    WAY,
-    U,
     V,
     calm,
     stand_on,
     track,
 )
-from pipeline.kernels.standing_phases import fly_on, rest_on, rock_on, slide_on, slide_rock_on
+from pipeline.kernels.standing_phases import fly_on, glide_on, rest_on, rock_on, slide_on, slide_rock_on
 from pipeline.quantities import Array, G
 
 MOST_PIECES = 50_000
@@ -126,7 +122,7 @@ def _far(state: Array, body: Array) -> bool:
     return state[MODE] >= ROCKS and abs(state[PHI]) > NEAR * min(body[ALPHA], body[ALPHA + 1])
 
 
-@inner
+@inlined
 def _follow(
     x: Array,
     z: Array,
@@ -141,7 +137,6 @@ def _follow(
     rest: float,
     state: Array,
     series: Array,
-    glide: Array,
     out: Array,
     history: Array,
 ) -> None:
@@ -155,7 +150,7 @@ def _follow(
     pieces = max(1, math.ceil(fastest * dt / STEP)) * refine
     step = dt / pieces
     parts = max(1, refine // 2)
-    line = make_body(0.0, 0.0, body[MU_S], body[MU_K], dt)
+    line = free_body(body[MU_S], body[MU_K], dt)
     weakest = min(body[MU_S], body[TANGENT], body[TANGENT + 1])
     recording = history.shape[0] > 0
     i = FIRST
@@ -170,9 +165,8 @@ def _follow(
         if i < history.shape[0]:
             _record(state, body, out, history, i)
         if state[MODE] == SLIDES and not recording:
-            ahead, state[U], state[V] = glides(x, z, dt, 1, state[U], state[V], state[WAY], line, i, n - 1, glide)
+            ahead = glide_on(state, x, z, dt, i, body, line, out)
             if ahead > i:
-                out[AWAY] = max(out[AWAY], glide[0], abs(state[U]))
                 i = ahead
                 continue
         a1, n1 = (x[i + 1] - x[i]) / dt, (z[i + 1] - z[i]) / dt
@@ -204,7 +198,7 @@ def _record(state: Array, body: Array, out: Array, history: Array, i: int) -> No
     history[i, 1] = out[RESIDUAL]
 
 
-@inner
+@inlined
 def _run_out(
     body: Array,
     tail: float,
@@ -295,17 +289,13 @@ def standing_batch(
     Mechanics 117, 2286-2306.  Housner, G. W. (1963).  The behavior of inverted pendulum structures during earthquakes.
     Bulletin of the Seismological Society of America 53.
     """
-    state, series, out, glide = np.empty(STATE), np.empty((2, TERMS)), np.empty(FOUND), np.empty(3)
+    state, series, out = np.empty(STATE), np.empty((2, TERMS)), np.empty(FOUND)
     for k in range(bodies.shape[0]):
         for j in range(STATE):
             state[j] = 0.0
         for j in range(FOUND):
             out[j] = 0.0
-        for j in range(3):
-            glide[j] = 0.0
         out[FELL_AT], out[LIFTED_AT] = -1.0, -1.0
-        _follow(
-            x, z, ratio, maxima, dt, peak, bodies[k], tail, until[k], refine, rest, state, series, glide, out, history
-        )
+        _follow(x, z, ratio, maxima, dt, peak, bodies[k], tail, until[k], refine, rest, state, series, out, history)
         for j in range(FOUND):
             results[k, j] = out[j]

@@ -3,7 +3,7 @@
 import math
 
 from pipeline.kernels import fused, inner
-from pipeline.kernels.line_phase import SIZE, Body, after, expand, first_stop
+from pipeline.kernels.line_phase import SIZE, U0, U1, Body, after, expand, first_stop
 from pipeline.kernels.rock_phase import ANGLE, SPEED, landing, lift_off, locate, rock_after
 from pipeline.kernels.rocking import OVERTURNED
 from pipeline.kernels.roots import narrowed, trial
@@ -25,6 +25,7 @@ from pipeline.kernels.standing_body import (
     PHI,
     RATE,
     RATIO,
+    RESIDUAL,
     RHO2,
     ROCKS,
     SIDE,
@@ -51,7 +52,7 @@ from pipeline.kernels.standing_body import (
     sway,
     track,
 )
-from pipeline.quantities import Array
+from pipeline.quantities import Array, G
 
 BELOW = 1.0 - 1e-9
 """Share of an angle from which on a body counts as having reached it."""
@@ -131,6 +132,42 @@ def slide_on(
     return span
 
 
+@inner
+def glide_on(state: Array, x: Array, z: Array, dt: float, begin: int, body: Array, line: Body, out: Array) -> int:
+    """Let a body slide on its base through the sample intervals in which it does nothing else.
+
+    Parameters
+    ----------
+    state, body, line, out
+        As in `slide_on`.
+    x, z, dt
+        As in `pipeline.kernels.standing.standing_batch`.
+    begin : int
+        The sample that it is at.
+
+    Returns
+    -------
+    int
+        The sample up to which it does; begin where it does not at all.
+    """
+    u, v, s, top, drag = state[U], state[V], state[WAY], 0.0, state[WAY] * body[MU_K]
+    i, last = begin, x.shape[0] - 1
+    while i < last and G + z[i] >= 0.0 and G + z[i + 1] >= 0.0:
+        f0 = -x[i] - drag * (G + z[i])
+        f1 = -((x[i + 1] - x[i]) / dt) - drag * ((z[i + 1] - z[i]) / dt)
+        un = u + v * dt + f0 * line[U0] + f1 * line[U1]
+        vn = v + f0 * dt + f1 * line[U0]
+        if not (s * v > 0.0 and s * vn > 0.0) or s * f0 < 0.0 < s * (f0 + f1 * dt):
+            break
+        u, v = un, vn
+        top = max(top, abs(u))
+        i += 1
+    state[U], state[V] = u, v
+    if i > begin:
+        out[AWAY], out[RESIDUAL] = max(out[AWAY], top), u
+    return i
+
+
 @fused
 def _spared(
     at: Moving, load: Load, t: float, h: float, s: float, c: float, arm: float, mu: float
@@ -198,17 +235,19 @@ def rock_on(state: Array, load: Load, t: float, h: float, clock: float, rest: fl
     i = 0 if s > 0.0 else 1
     alpha, c, arm, mu = body[ALPHA + i], body[INVERSE + i], body[ARM + i], body[MU_S]
     p1, r1, s1, c1 = rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c)
-    falls, landed = max(FALLING, alpha), -1.0
+    falls, landed, whole = max(FALLING, alpha), -1.0, h
     if p1 > falls and phi < falls * BELOW:
-        h = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, ANGLE, falls)
+        h = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, phi - falls, p1 - falls, s, c, ANGLE, falls)
     elif p1 <= 0.0 or rate < 0.0 < r1:
         landed = landing(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c, p1, r1)
         h = landed if landed >= 0.0 else h
     elif p1 >= OVERTURNED:
-        h = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, ANGLE, OVERTURNED)
+        low, high = phi - OVERTURNED, p1 - OVERTURNED
+        h = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, low, high, s, c, ANGLE, OVERTURNED)
         lies(clock + t + h, alpha, out)
         return t + h
-    p1, r1, s1, c1 = rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c)
+    if h != whole:
+        p1, r1, s1, c1 = rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, h, s, c)
     spare, way = spare_friction(r1, s1, c1, a0 + a1 * (t + h), n0 + n1 * (t + h), s, c, arm, mu)
     slips = False
     if spare < 0.0 and state[HOLD] == 0.0:
@@ -219,7 +258,7 @@ def rock_on(state: Array, load: Load, t: float, h: float, clock: float, rest: fl
             p1, r1, s1, c1 = state[PHI], state[RATE], state[SN], state[CS]
             h, landed = tau, -1.0
     if rate > 0.0 > r1 and (phi + h * rate) / alpha > out[RATIO]:
-        tau = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, s, c, SPEED, 0.0)
+        tau = locate(phi, rate, sn, cs, a0, a1, n0, n1, t, 0.0, h, rate, r1, s, c, SPEED, 0.0)
         out[RATIO] = max(out[RATIO], rock_after(phi, rate, sn, cs, a0, a1, n0, n1, t, tau, s, c)[0] / alpha)
     state[PHI], state[RATE], state[SN], state[CS], state[HOLD] = phi, rate, sn, cs, 0.0
     place, leaves = track(state, body, out), sway(state, body)

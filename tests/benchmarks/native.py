@@ -3,7 +3,7 @@
 import ctypes
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -11,13 +11,16 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from pipeline.analysis.model_runs import prepare
+from pipeline.kernels import standing_body
 from pipeline.kernels.pendulum import substeps
 from pipeline.models import model_named
 from pipeline.models.common import Quiet, shaken
 from pipeline.models.rigid_body import bodies
+from pipeline.models.standing import standing_bodies
 from pipeline.quantities import Array
 from pipeline.records import Excitation
 from tests.benchmarks.common import OBJECTS, SEED, fastest, level, shaking, strongest
+from tests.benchmarks.models import parameters
 
 SLOWER = 1.6
 """How much slower than C a kernel may be."""
@@ -27,6 +30,7 @@ FUSED = "gcc fuses products and sums, which this kernel does not (C without fusi
 REASONS = {
     "isolator 1-D": FUSED.format("1.27") + "; gcc melts all phases into one loop",
     "oscillator": FUSED.format("1.13"),
+    "standing": "gcc melts the steps about an edge into what takes them, which are calls here",
 }
 """Why a kernel is above 1.2 times C."""
 
@@ -53,6 +57,15 @@ def pointer(values: Array) -> ctypes.c_void_p:
         raise ValueError("the C program reads contiguous float64")
     return ctypes.c_void_p(values.ctypes.data)
 
+
+IN_C = {
+    "overturned": standing_body.FELL,
+    "impacts": standing_body.IMPACTS,
+    "rotation_ratio": standing_body.RATIO,
+    "displacement": standing_body.AWAY,
+    "residual": standing_body.RESIDUAL,
+}
+"""Outputs of `standing` -> columns of C's results, which are those of the kernel."""
 
 Pair = tuple[Callable[[], Array], Callable[[], Array]]
 
@@ -107,6 +120,38 @@ def rocking(program: ctypes.CDLL, motion: Excitation, half_width: Array, cg_heig
     def ours() -> Array:
         found = model.run(motion, values, 2, False)
         return np.stack([found["rotation_ratio"], found["overturned"]])
+
+    return theirs, ours
+
+
+def standing(
+    program: ctypes.CDLL,
+    motion: Excitation,
+    given: Mapping[str, Array],
+    outputs: Sequence[str] = ("overturned", "rotation_ratio", "displacement"),
+) -> Pair:
+    """Return C's and our run of standing bodies within the record; both give the outputs named, (k, n).
+
+    given   : parameters of the model
+    outputs : of `IN_C`; how often what hardly moves lands, and where it ends, hang on rounding
+    """
+    quiet = Quiet(motion)
+    arrays = (quiet.x, quiet.z, quiet.ratio, quiet.maxima)
+    model = model_named("standing")
+    values = prepare(model, given)
+    body = standing_bodies(values)
+    out = np.empty((body.shape[0], standing_body.FOUND))
+    samples, count, refine = (ctypes.c_long(number) for number in (quiet.x.size, body.shape[0], 2))
+    step, peak = ctypes.c_double(quiet.dt), ctypes.c_double(quiet.peak)
+    columns = [IN_C[name] for name in outputs]
+
+    def theirs() -> Array:
+        program.standing(*map(pointer, arrays), samples, step, peak, pointer(body), count, refine, pointer(out))
+        return np.abs(out[:, columns].T)
+
+    def ours() -> Array:
+        found = model.run(motion, values, 2, False)
+        return np.stack([found[name] for name in outputs])
 
     return theirs, ours
 
@@ -170,6 +215,7 @@ def pairs(program: ctypes.CDLL) -> dict[str, Pair]:
         "sliding 1-D": friction(program, motion, rng.uniform(0.1, 0.6, OBJECTS)),
         "isolator 1-D": friction(program, motion, friction_low, frequency),
         "rocking": rocking(program, motion, 0.5 * slope * height, 0.5 * height),
+        "standing": standing(program, motion, parameters()["standing"][1]),
         "swing": swing(program, motion, rng.uniform(1.0, 3.0, OBJECTS)),
         "oscillator": oscillator(program, level(), rng.uniform(0.5, 20.0, OBJECTS)),
     }

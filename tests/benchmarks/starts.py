@@ -23,6 +23,7 @@ ROUNDS = 3
 
 WORDS = {
     "rocking": ("rocking", "half_width=0.1", "cg_height=0.4"),
+    "standing": ("standing", "half_width=0.1", "cg_height=0.4", "friction_static=0.4"),
     "sliding, one direction": ("sliding", "friction_static=0.1", "directions=1"),
     "sliding, two directions": ("sliding", "friction_static=0.1"),
     "swing": ("swing", "length=0.5", "damping=0.02"),

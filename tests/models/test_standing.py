@@ -117,6 +117,12 @@ def test_sliding_is_the_limit_of_squatness() -> None:
             np.testing.assert_allclose(stands[name], slides[name], rtol=1e-10, atol=1e-14)
         assert (stands["rotation_ratio"] == 0.0).all()
         assert not stands["overturned"].any()
+    # Cut where the shaking is strongest, most are on their way: the residual is where they then are.
+    cut = Motion(motion.dt, motion.acceleration[:, : round(4.2 / motion.dt)])
+    stands = respond("standing", cut, half_width=0.1, cg_height=0.1, friction_static=friction, tail=0.0)
+    slides = respond("sliding", cut, friction_static=friction, directions=1, tail=0.0)
+    assert (slides["residual"] < slides["displacement"]).any()
+    np.testing.assert_allclose(stands["residual"], slides["residual"], rtol=1e-10, atol=1e-14)
     weak = {"friction_static": 0.3, "friction_kinetic": 0.2}
     one = respond("standing", motion, half_width=0.1, cg_height=0.1, **weak)["displacement"][0]
     assert one == pytest.approx(respond("sliding", motion, directions=1, **weak)["displacement"][0], rel=1e-10)

@@ -1,104 +1,17 @@
 /* Dry friction in one direction, with or without a spring: kernels/friction_line.py and line_phase.py. */
-#include "native.h"
+#include "line_phase.h"
 
-#define TERMS 24
-#define PHASE 0.5
-
-static double factorials[TERMS + 1];
-
-typedef struct {
-    double w, zeta, mu, step, b, c, r[4], ease, series[2][TERMS];
-    int size;
-} Body;
-
-static void make_body(Body *body, double w, double zeta, double mu, double step)
-{
-    double share = step * w * (zeta + sqrt(zeta * zeta + 1.0)), last = share / 6.0;
-    body->w = w, body->zeta = zeta, body->mu = mu, body->step = step, body->b = w * w, body->c = 2.0 * zeta * w;
-    transition(w, zeta, step, body->r);
-    body->ease = 1.0 / (1.0 - 0.5 * body->c * step - 0.125 * body->b * step * step);
-    for (body->size = 3; body->size < TERMS && last > 1e-17;) last *= share / ++body->size;
-}
-
-static void expand(Body *body, double u, double v, double f0, double f1)
-{
-    double b = body->b, c = body->c, before = v, now = f0 - c * v - b * u, next = f1 - c * now - b * before;
-    body->series[0][0] = body->series[1][0] = v;
-    body->series[0][1] = now, body->series[1][1] = 0.5 * now;
-    before = now, now = next;
-    for (int k = 2; k < body->size; k++) {
-        body->series[0][k] = now * factorials[k], body->series[1][k] = now * factorials[k + 1];
-        next = -c * now - b * before;
-        before = now, now = next;
-    }
-}
-
-static double after(const Body *body, double t, double *way)
-{
-    double v = 0.0, moved = 0.0;
-    for (int k = body->size - 1; k >= 0; k--) v = v * t + body->series[0][k], moved = moved * t + body->series[1][k];
-    *way = moved * t;
-    return v;
-}
-
-static double zero(const Body *body, double u, double f0, double f1, int order, double low, double high,
-                   double at_high, double guess, double *what)
-{
-    double near = 1e-5 * high, t = low < guess && guess < high ? guess : 0.5 * (low + high), b = body->b, c = body->c;
-    for (int k = 0; k < 100; k++) {
-        double moved, v = after(body, t, &moved), a = f0 + f1 * t - c * v - b * (u + moved), jerk = f1 - c * a - b * v;
-        double value = order == 1 ? v : a, rate = order == 1 ? a : jerk, bend = order == 1 ? jerk : -c * jerk - b * a;
-        *what = order == 1 ? u + moved : v;
-        if (value == 0.0) break;
-        if ((value > 0.0) == (at_high > 0.0)) high = t;
-        else low = t;
-        double below = 2.0 * rate * rate - value * bend, move = below != 0.0 ? -2.0 * value * rate / below : high - low;
-        int inside = low < t + move && t + move < high;
-        if (inside && fabs(move) <= near) {
-            *what += move * (value + 0.5 * move * rate);
-            return t + move;
-        }
-        if (high - low <= 4e-16 * high) break;
-        t = inside ? t + move : 0.5 * (low + high);
-    }
-    return t;
-}
-
-static double first_stop(const Body *body, double u, double v, double s, double f0, double f1, double span, double un,
-                         double vn, double *there)
-{
-    double first = s * body->series[0][1], half = s * body->series[0][2], low = 0.0, high = span, way;
-    int moving = s * v > 0.0;
-    int dips = first < 0.0 && s * (f0 + f1 * span - body->c * vn - body->b * un) > 0.0;
-    if (s * vn > 0.0 && !(moving && dips)) return -1.0;
-    if (!moving) {
-        int k = 0;
-        for (low = 0.5 * span; k < 60 && s * after(body, low, &way) <= 0.0; k++) low *= 0.5;
-        if (k == 60) {
-            *there = u;
-            return 0.0;
-        }
-    } else if (s * vn > 0.0) {
-        double speed;
-        high = zero(body, u, f0, f1, 2, 0.0, span, s, -0.5 * first / half, &speed);
-        if (s * speed > 0.0) return -1.0;
-    }
-    double inner = sqrt(larger(0.0, first * first - 4.0 * s * v * half));
-    double guess = first < 0.0 ? 2.0 * s * v / (inner - first) : -0.5 * (first + inner) / half;
-    return zero(body, u, f0, f1, 1, low, high, -s, guess, there);
-}
-
-static inline double passed_on(const Body *body, double u, double v, double un, double vn, double f0, double f1,
+static inline double passed_on(const Line *line, double u, double v, double un, double vn, double f0, double f1,
                                double lift0, double lift1, double t, double most)
 {
-    double b = body->b, c = body->c;
+    double b = line->b, c = line->c;
     double near = larger(fabs(c * v + b * u + lift0), fabs(c * vn + b * un + lift0 + lift1 * t));
     most = larger(most, near);
     double push = larger(fabs(f0), fabs(f0 + f1 * t)), speed = larger(fabs(v), fabs(vn));
-    double second = (push + c * speed + b * larger(fabs(u), fabs(un))) * body->ease;
+    double second = (push + c * speed + b * larger(fabs(u), fabs(un))) * line->ease;
     double bend = c * (fabs(f1) + c * second + b * (speed + 0.5 * t * second)) + b * second;
     if (b > 0.0 && near + 0.125 * t * t * bend > most)
-        return larger(most, peak_inside(u, v, f0, f1, body->w, body->zeta, t, lift0, lift1, b, c));
+        return larger(most, peak_inside(u, v, f0, f1, line->w, line->zeta, t, lift0, lift1, b, c));
     return most;
 }
 
@@ -117,9 +30,9 @@ static double first_beyond(double q0, double q1, double l0, double l1, double sp
 }
 
 /* state: u, v, s; out: max |u|, path, largest acceleration passed on */
-static void piece(Body *body, double *state, double a0, double a1, double n0, double n1, double span, double *out)
+static void piece(Line *line, double *state, double a0, double a1, double n0, double n1, double span, double *out)
 {
-    double u = state[0], v = state[1], s = state[2], now = 0.0, b = body->b, mu = body->mu;
+    double u = state[0], v = state[1], s = state[2], now = 0.0, b = line->b, mu = line->mu;
     for (int events = 0; events < 1000 && now < span; events++) {
         double left = span - now, a = a0 + a1 * now, n = n0 + n1 * now, q = a + b * u;
         if (s == 0.0) {
@@ -141,13 +54,13 @@ static void piece(Body *body, double *state, double a0, double a1, double n0, do
             if (left <= 0.0) break;
         }
         double f0 = -a - s * mu * n, f1 = -a1 - s * mu * n1, moved, there = 0.0;
-        expand(body, u, v, f0, f1);
-        double vn = after(body, left, &moved), un = u + moved;
-        double stop = first_stop(body, u, v, s, f0, f1, left, un, vn, &there), t = left;
+        expand(line, u, v, f0, f1);
+        double vn = after(line, left, &moved), un = u + moved;
+        double stop = first_stop(line, u, v, s, f0, f1, left, un, vn, &there), t = left;
         if (stop >= 0.0) t = stop, un = there, vn = 0.0;
         out[1] += fabs(un - u);
         out[0] = larger(out[0], fabs(un));
-        if (t > 0.0) out[2] = passed_on(body, u, v, un, vn, f0, f1, s * mu * n, s * mu * n1, t, out[2]);
+        if (t > 0.0) out[2] = passed_on(line, u, v, un, vn, f0, f1, s * mu * n, s * mu * n1, t, out[2]);
         u = un, v = vn;
         now += t;
         if (stop < 0.0) break;
@@ -166,12 +79,12 @@ static long stays(const double *x, const double *z, double spring, double mu, lo
     return i - 1;
 }
 
-static long glides(const Body *body, const double *x, const double *z, double dt, double *state, long begin, long end,
+static long glides(const Line *line, const double *x, const double *z, double dt, double *state, long begin, long end,
                    double *out)
 {
-    double u = state[0], v = state[1], s = state[2], b = body->b, c = body->c, mu = body->mu, step = body->step;
+    double u = state[0], v = state[1], s = state[2], b = line->b, c = line->c, mu = line->mu, step = line->step;
     double top = out[0], path = out[1], felt = out[2];
-    const double *r = body->r;
+    const double *r = line->r;
     long i = begin;
     for (; i < end; i++) {
         double a1 = (x[i + 1] - x[i]) / dt, lift0 = s * mu * (G + z[i]), lift1 = s * mu * ((z[i + 1] - z[i]) / dt);
@@ -180,7 +93,7 @@ static long glides(const Body *body, const double *x, const double *z, double dt
         double vn = -u * b * r[1] + v * (r[0] - c * r[1]) + f0 * r[1] + f1 * r[2];
         int dips = s * (f0 - c * v - b * u) < 0.0 && s * (f0 + f1 * step - c * vn - b * un) > 0.0;
         if (s * v <= 0.0 || s * vn <= 0.0 || dips) break;
-        felt = passed_on(body, u, v, un, vn, f0, f1, lift0, lift1, step, felt);
+        felt = passed_on(line, u, v, un, vn, f0, f1, lift0, lift1, step, felt);
         path += fabs(un - u);
         top = larger(top, fabs(un));
         u = un, v = vn;
@@ -190,16 +103,14 @@ static long glides(const Body *body, const double *x, const double *z, double dt
     return i;
 }
 
-/* results (m, 3): max |u|, path, largest acceleration; within the record; w (1 + zeta) dt <= PHASE, zeta < 1, z > -G */
+/* results (m, 3): max |u|, path, largest acceleration; within the record; w (1 + zeta) dt <= 0.5, zeta < 1, z > -G */
 void friction(const double *x, const double *z, const double *ratio, const double *maxima, const double *pushes, long n,
               double dt, const double *w, const double *zeta, const double *mu, long m, double *results)
 {
-    factorials[0] = 1.0;
-    for (int k = 1; k <= TERMS; k++) factorials[k] = factorials[k - 1] / k;
     for (long k = 0; k < m; k++) {
-        Body body;
+        Line line;
         double state[3] = {0.0, 0.0, 0.0}, *out = results + 3 * k;
-        make_body(&body, w[k], zeta[k], mu[k], dt);
+        make_line(&line, w[k], zeta[k], mu[k], dt);
         memset(out, 0, 3 * sizeof *out);
         for (long i = 0; i < n - 1;) {
             if (state[2] == 0.0 && w[k] == 0.0) {
@@ -213,14 +124,14 @@ void friction(const double *x, const double *z, const double *ratio, const doubl
                     i = ahead - 1;
                 }
             } else {
-                long still = state[2] == 0.0 ? stays(x, z, body.b * state[0], mu[k], i, n - 1, out)
-                                             : glides(&body, x, z, dt, state, i, n - 1, out);
+                long still = state[2] == 0.0 ? stays(x, z, line.b * state[0], mu[k], i, n - 1, out)
+                                             : glides(&line, x, z, dt, state, i, n - 1, out);
                 if (still > i) {
                     i = still;
                     continue;
                 }
             }
-            piece(&body, state, x[i], (x[i + 1] - x[i]) / dt, G + z[i], (z[i + 1] - z[i]) / dt, dt, out);
+            piece(&line, state, x[i], (x[i + 1] - x[i]) / dt, G + z[i], (z[i + 1] - z[i]) / dt, dt, out);
             i++;
         }
     }

@@ -1,4 +1,5 @@
 /* What the C programs share: the algorithms of pipeline/kernels, as the limit for what numba makes of them. */
+#pragma once
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
