@@ -68,7 +68,7 @@ def test_a_night_with_bad_input_ends_and_names_it(tmp_path: Path) -> None:
     assert summary.missing["height"] == 4
     record = load_run(open_database(tmp_path / "kouros.sqlite"))
     problems = {a.scene.item.object_number: a.scene.item.problems for a in record.assessments}
-    assert "-0.4" in problems["4"][0].message
+    assert "-1.2" in problems["4"][0].message
     assert "243.84" in problems["5"][0].message
     assert "much" in problems["6"][0].message
     assert summary.latest is not None
@@ -172,7 +172,7 @@ def test_a_swapped_motion_moves_verdicts_and_is_named(tmp_path: Path) -> None:
     settings = workspace(tmp_path, site="site")
     run(settings, SILENT)
     manifest = site / "manifest.toml"
-    manifest.write_text(manifest.read_text(encoding="utf-8").replace("scale_to_pga_g = 0.7", "scale_to_pga_g = 0.05"))
+    manifest.write_text(manifest.read_text(encoding="utf-8").replace("scale_to_pga_g = 0.7", "scale_to_pga_g = 0.02"))
     changes = run(settings, SILENT).changes
     assert changes is not None
     assert len(changes.motions) == 1

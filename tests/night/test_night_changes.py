@@ -78,11 +78,11 @@ def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.
     assert kinds(changes) == {(CauseKind.INPUT,)}
     assert {cause.what for v in changes.verdicts for cause in v.causes} == {"height_m"}
     ((height, *_),) = (i.fields for i in changes.inputs)
-    assert (height.name, height.before, height.after) == ("height_m", 0.4, 0.03)
+    assert (height.name, height.before, height.after) == ("height_m", 1.2, 0.03)
     assert "standing" in {v.model for v in changes.fixed}
 
-    # Motion: 7 % of it moves nothing.
-    edit(manifest, "scale = 1.0", "scale = 0.07")
+    # Motion: 3 % of it moves nothing.
+    edit(manifest, "scale = 1.0", "scale = 0.03")
     changes = night(tmp_path)
     (motion,) = changes.motions
     assert kinds(changes) == {(CauseKind.MOTION,)}
@@ -90,7 +90,7 @@ def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.
     assert not changes.worsened
 
     # Back again, and a higher vase besides: both are named for that vase, the motion for the others.
-    edit(manifest, "scale = 0.07", "scale = 1.0")
+    edit(manifest, "scale = 0.03", "scale = 1.0")
     museum(tmp_path, ["1,A,Vase,0.5,0.2,0.2", *ROWS[1:]])
     changes = night(tmp_path)
     assert kinds(changes, "1") == {(CauseKind.INPUT, CauseKind.MOTION)}
@@ -168,7 +168,7 @@ def test_the_order_is_stable_and_json_has_all(tmp_path: Path) -> None:
     run(settings, SILENT)
     museum(tmp_path, [*reversed(ROWS[1:]), "\U0001f3fa<b>,A,Vase,1.2,0.2,0.2", "4,A,Vase,1.2,0.2,0.2"])
     edit(tmp_path / "kouros.toml", "shrink_limit = 0.2", "shrink_limit = 0.9")
-    edit(tmp_path / "site" / "manifest.toml", "scale = 1.0", "scale = 0.07")
+    edit(tmp_path / "site" / "manifest.toml", "scale = 1.0", "scale = 0.03")
     run(load_settings(tmp_path / "kouros.toml"), SILENT)
     once, again = compare(settings, None, None), compare(settings, None, None)
     assert once == again

@@ -256,11 +256,11 @@ def test_a_decision_whose_reason_has_changed_is_doubted(museum: Path) -> None:
     say(museum, "1", KIND.ACCEPT)
     say(museum, "2", KIND.ACCEPT, on=yesterday, until=yesterday)
     say(museum, "3", KIND.ACCEPT, model="sliding")
-    workspace(museum, ["1,A,Vase,0.8,0.2,0.2", *ROWS[1:]], site="site")
+    workspace(museum, ["1,A,Vase,1.6,0.2,0.2", *ROWS[1:]], site="site")
     summary, record = night(museum)
     one, two, three = (s.doubts for s in record.decisions)
     assert one[0] == "its record has changed: height_m"
-    assert any(text.startswith("Rocking, level test: utilisation ") for text in one)
+    assert any(text.startswith("Tipping, level test: utilisation ") for text in one)
     assert two == (f"the risk was accepted until {yesterday} only",)
     assert three == ()
     assert len(summary.doubted) == 2
