@@ -7,6 +7,7 @@ from math import ceil, isfinite
 from typing import ClassVar
 
 from pipeline.analysis.classify import models_of
+from pipeline.analysis.flexibility import HELD_CONCENTRATION, told
 from pipeline.analysis.hanging import OF_HANGING, hanging_estimates, hanging_of
 from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused
 from pipeline.mitigate.rows import MeasureRow
@@ -211,8 +212,15 @@ def with_parameters(scene: Scene, **found: Estimate) -> Scene:
 
 
 def held(scene: Scene) -> Scene:
-    """Return it held at its base: it neither rocks nor slides, and its critical section bears the push."""
-    return replace(scene, support=Support.FASTENED, models=models_of(Support.FASTENED))
+    """Return it held at its base: it neither rocks nor slides, and its critical section bears the push.
+
+    What concentrates the stress there counts from now on.
+    """
+    known = dict(scene.parameters)
+    concentrated = known.pop(HELD_CONCENTRATION, None)
+    if concentrated is not None:
+        known["concentration"] = told(concentrated)
+    return replace(scene, support=Support.FASTENED, models=models_of(Support.FASTENED), parameters=known)
 
 
 def rehung(scene: Scene, way: Hanging) -> Scene:
