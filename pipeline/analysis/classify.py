@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import cache, lru_cache
 from math import pi
 
-from pipeline.analysis.flexibility import HELD_CONCENTRATION, Body, concentration, estimated_frequency, told
+from pipeline.analysis.flexibility import Body, concentration, estimated_frequency
 from pipeline.analysis.footing import base_extents, half_widths
 from pipeline.analysis.hanging import HangingGuess, hanging_estimates, hanging_of, swings
 from pipeline.analysis.house.effect import NO_EFFECT, HouseEffect
@@ -292,11 +292,8 @@ class _Builder:
     def _bending(self, section: Section, mass: Estimate, cg: Estimate) -> None:
         """Keep what its bending hangs on besides: how its base is held, and its frequency where that is estimated."""
         item = self.item
-        held = concentration(item, self.material)
-        if held is not None and self.support is Support.FASTENED:
-            self._keep("concentration", told(held))
-        else:
-            self._keep(HELD_CONCENTRATION, held)
+        if self.support is Support.FASTENED:
+            self._keep("concentration", concentration(item, self.material))
         if self._known("frequency_hz", "lowest natural frequency", "Hz") is None:
             body = Body(section, mass, cg, item.height_m, item.section_height_m or 0.0, item.width_m or item.depth_m)
             self._keep("frequency", estimated_frequency(body, self.row, self.material))

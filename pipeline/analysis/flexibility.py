@@ -24,7 +24,7 @@ Clough, R. W. and Penzien, J. (2003). Dynamics of Structures, 3rd ed. Sec. 10-3:
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import exp, hypot, log, pi, sqrt
 
 from pipeline.analysis.section import Section
@@ -34,9 +34,6 @@ from pipeline.tables import Range
 from pipeline.tables.assumed import assumed
 from pipeline.tables.assumed_rows import Material, ObjectClass
 from pipeline.tables.bending_rows import bending, slender_shares
-
-HELD_CONCENTRATION = "held_concentration"
-"""Parameter of a scene that is free: what its stress would be multiplied by, were its base held."""
 
 
 def cantilever_frequency(
@@ -210,8 +207,6 @@ def spread(
 def concentration(item: Item, material: Material) -> Estimate | None:
     """Return what the bending stress in the critical section is multiplied by once its base is held [-].
 
-    It has no note: nothing need be said of it as long as the base is free (see `told`).
-
     Parameters
     ----------
     item : Item
@@ -230,13 +225,9 @@ def concentration(item: Item, material: Material) -> Estimate | None:
     if ductile or item.section_height_m:
         return None
     found = bending("concentration")
-    return Estimate(found.value, "-", Origin.ASSUMED, found.low, found.high, source=found.source)
-
-
-def told(found: Estimate) -> Estimate:
-    """Return a concentration of stress that counts, and says so."""
     span = f"{found.value:g} ({found.low:g} to {found.high:g})"
-    return replace(found, note=f"stress where its held base ends: {span} times the nominal, assumed")
+    note = f"stress where its held base ends: {span} times the nominal, assumed for what does not yield"
+    return Estimate(found.value, "-", Origin.ASSUMED, found.low, found.high, note, found.source)
 
 
 def _elastic(material: Material) -> Range | None:

@@ -314,7 +314,7 @@ def corners(
 ) -> tuple[Array, Indices]:
     """Return the best estimates (m, n), each followed by every combination of the ends of its uncertain inputs.
 
-    Of k uncertain inputs there are 2^k corners; objects have at most five in any model.  All of them, because an input
+    Of k uncertain inputs there are 2^k corners; objects have at most six in any model.  All of them, because an input
     that is harmless on its own may not be so where another is at its worst: with one input at a time at an end, 151 of
     819 decided verdicts changed where two were.  A demand that rises or falls with each input, whatever the others are,
     is largest and least at a corner, so that of uplift, tension and compression the whole range is covered.  Of others,

@@ -69,15 +69,15 @@ class Section:
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """A section, None where it is not known; what must be recorded to know it, and what is doubtful, in words."""
+class KnownSection:
+    """A section, None where there is none; what must be recorded to know it, and what is doubtful, in words."""
 
     section: Section | None = None
     missing: Sequence[str] = ()
     doubts: Sequence[str] = ()
 
 
-def section_of(item: Item, row: ObjectClass, width: Estimate | None, depth: Estimate | None) -> Found:
+def section_of(item: Item, row: ObjectClass, width: Estimate | None, depth: Estimate | None) -> KnownSection:
     """Return the weakest section of an object: as recorded, or as its class assumes it.
 
     Parameters
@@ -91,7 +91,7 @@ def section_of(item: Item, row: ObjectClass, width: Estimate | None, depth: Esti
 
     Returns
     -------
-    Found
+    KnownSection
     """
     missing: list[str] = []
     doubts: list[str] = []
@@ -103,11 +103,11 @@ def section_of(item: Item, row: ObjectClass, width: Estimate | None, depth: Esti
             missing.append("wall of its weakest section")
         elif shape:
             note = f"section: {item.section_shape or shape}, as recorded"
-            return Found(Section(shape, size, deep, item.section_count or 1, item.section_wall_m or 0.0, note))
+            return KnownSection(Section(shape, size, deep, item.section_count or 1, item.section_wall_m or 0.0, note))
         else:
             doubts.append(f"section: the recorded shape {item.section_shape!r} is not known, and not used")
     if row.critical is None or width is None or depth is None:
-        return Found(None, missing, doubts)
+        return KnownSection(None, missing, doubts)
     narrow = min(width, depth, key=lambda e: e.value)
     kind = row.section
     across = min(item.width_m or item.depth_m or narrow.value, item.depth_m or item.width_m or narrow.value)
@@ -117,9 +117,9 @@ def section_of(item: Item, row: ObjectClass, width: Estimate | None, depth: Esti
     size = share_of(row, row.critical, narrow.value if of_base else across, "m", what, of)
     if kind == "ring":
         # The size is the wall; the ring's outside is the base.
-        return Found(Section("ring", size, narrow, 1, narrow.value, size.note), missing, doubts)
+        return KnownSection(Section("ring", size, narrow, 1, narrow.value, size.note), missing, doubts)
     shape, count = _OF_CLASS[kind]
-    return Found(Section(shape, size, size, count, 0.0, size.note), missing, doubts)
+    return KnownSection(Section(shape, size, size, count, 0.0, size.note), missing, doubts)
 
 
 def share_of(row: ObjectClass, share: Range, base: float, unit: str, what: str, of: str) -> Estimate:

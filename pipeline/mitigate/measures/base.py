@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from math import ceil, isfinite
 from typing import ClassVar
 
-from pipeline.analysis.classify import models_of
-from pipeline.analysis.flexibility import HELD_CONCENTRATION, told
+from pipeline.analysis.classify import material_of, models_of
+from pipeline.analysis.flexibility import concentration
 from pipeline.analysis.hanging import OF_HANGING, hanging_estimates, hanging_of
 from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused
 from pipeline.mitigate.rows import MeasureRow
@@ -216,11 +216,10 @@ def held(scene: Scene) -> Scene:
 
     What concentrates the stress there counts from now on.
     """
-    known = dict(scene.parameters)
-    concentrated = known.pop(HELD_CONCENTRATION, None)
-    if concentrated is not None:
-        known["concentration"] = told(concentrated)
-    return replace(scene, support=Support.FASTENED, models=models_of(Support.FASTENED), parameters=known)
+    concentrated = concentration(scene.item, material_of(scene.item)) if knows_section(scene) else None
+    if concentrated is not None and scene.support is not Support.FASTENED:
+        scene = with_parameters(scene, concentration=concentrated)
+    return replace(scene, support=Support.FASTENED, models=models_of(Support.FASTENED))
 
 
 def rehung(scene: Scene, way: Hanging) -> Scene:
