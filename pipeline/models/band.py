@@ -17,10 +17,10 @@ from pipeline.models.oscillator import oscillate
 from pipeline.quantities import Array
 from pipeline.records import Excitation
 
-PER_WIDTH = 8.0
-"""Points of the grid in a half-power width: the one nearest to the peak of a resonance is 0.8 % below it at most."""
+PER_WIDTH = 5.0
+"""Points of the grid in a half-power width: the one nearest to the peak of a resonance is 2 % below it at most."""
 
-WIDEST = 5e-3
+WIDEST = 8e-3
 """Largest step of the grid, relative: a spectrum of large damping has kinks all the same."""
 
 LEAST_DAMPING = 0.0025
@@ -29,7 +29,7 @@ LEAST_DAMPING = 0.0025
 HALVINGS = 2
 """How often the steps beside an extremum are halved, each of which leaves a quarter of what was missed."""
 
-MISSED = 5e-3
+MISSED = 1e-2
 """Share by which the largest value found may be below the true one: of 2,400 bands of a record none was by more."""
 
 LOWEST, HIGHEST = -2, 3

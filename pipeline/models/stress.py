@@ -140,19 +140,29 @@ def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
 
 
 def _bound_flexible(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
-    off = np.where(np.isnan(parameters["frequency_high"]), PROMISED, MISSED)
+    banded = ~np.isnan(parameters["frequency_high"])
+    off = np.where(banded, MISSED, PROMISED)
     least, most = _pushes(motion, parameters)
+    along_x = (1.0 - off) * most
     if motion.y is None:
-        pushes, leasts = ((1.0 - off) * most, (1.0 + off) * most), ((1.0 - off) * least, (1.0 + off) * least)
+        pushes, leasts = (along_x, (1.0 + off) * most), ((1.0 - off) * least, (1.0 + off) * least)
     else:
-        # The oscillator is linear: no direction exceeds the resultant of its peaks along both, nor do those of a band.
-        along_y = _pushes(Excitation(motion.dt, motion.y, None, motion.z, motion.tail), parameters)[1]
-        pushes = leasts = np.zeros_like(most), (1.0 + off) * np.hypot(most, along_y)
+        # The oscillator is linear: no direction exceeds the resultant of its peaks along both, nor do those of a band;
+        # and the least over a band is no more than at its ends.
+        across = Excitation(motion.dt, motion.y, None, motion.z, motion.tail)
+        pushes = np.zeros_like(most), (1.0 + off) * np.hypot(most, _pushes(across, parameters)[1])
+        edges = [pushes[1]]
+        for end in ("frequency", "frequency_high"):
+            at = {**parameters, "frequency": np.where(banded, parameters[end], parameters["frequency"])}
+            at["frequency_high"] = np.where(banded, at["frequency"], np.nan)
+            edges.append((1.0 + off) * np.hypot(_pushes(motion, at)[1], _pushes(across, at)[1]))
+        leasts = np.zeros_like(most), np.min(edges, axis=0)
     low, high = (section_stresses(push, parameters) for push in pushes)
     bounds = {q.name: (low[q.name], high[q.name]) for q in _STRESSES}
     lowest, highest = (section_stresses(push, parameters)["tension"] for push in leasts)
     bounds["tension_least"] = (lowest, highest)
-    return Bounds({**bounds, "pseudo_acceleration": pushes}, high["note"])
+    worst = {} if motion.y is None else {"tension": section_stresses(along_x, parameters)["tension"]}
+    return Bounds({**bounds, "pseudo_acceleration": pushes}, high["note"], worst)
 
 
 def _say(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:

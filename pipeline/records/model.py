@@ -31,10 +31,14 @@ class Bounds:
         by 0 and 1.
     note : ndarray, shape (n,)
         Bit flags, see models.common.NOTES.
+    worst : mapping of str to ndarray
+        Of a model of one direction that is given two: output -> what it is at least, (n,), along the worst of all
+        directions, of which x is one.
     """
 
     outputs: Mapping[str, tuple[Array, Array]]
     note: Array
+    worst: Mapping[str, Array] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
