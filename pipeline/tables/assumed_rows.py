@@ -4,7 +4,7 @@ from collections.abc import Collection
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, field_validator
+from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, ValidationInfo, field_validator
 
 from pipeline.errors import InputError
 from pipeline.records import Support
@@ -218,7 +218,7 @@ class Material(AssumedRow):
     modulus: Annotated[Optional, Field(gt=0.0)] = None
     modulus_low: Annotated[Optional, Field(gt=0.0)] = None
     modulus_high: Annotated[Optional, Field(gt=0.0)] = None
-    ductile: Annotated[bool | None, BeforeValidator(lambda cell: _yes(cell) if cell else None)] = None
+    ductile: Annotated[YesNo | None, BeforeValidator(lambda cell: None if cell == "" else cell)] = None
     source: Text
 
     @field_validator("density_high", "tensile_high", "modulus_high")

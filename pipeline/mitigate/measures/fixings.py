@@ -7,8 +7,10 @@ from itertools import product
 from math import inf, nan, pi
 from typing import ClassVar
 
+import numpy as np
+
 from pipeline.analysis.classify import material_of
-from pipeline.analysis.response import answer
+from pipeline.analysis.model_runs import run_model
 from pipeline.mitigate.fixing_rows import FixingStrength, fixing_strengths
 from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, held, knows_section
 from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused
@@ -70,15 +72,12 @@ def _pseudo_accelerations(scenes: Sequence[Scene], runner: TrialRunner) -> list[
     fresh = [key for key in dict.fromkeys(keys) if key not in known]
     if fresh:
         sets = [one for f, zeta in fresh for one in _oscillators(f, zeta)]
-        low, high, damping = (list(column) for column in zip(*sets, strict=True))
-        unit = dict.fromkeys(("mass", "lever", "area", "section_modulus"), 1.0)
-        given = {"frequency": low, "frequency_high": high, "damping": damping, **unit}
+        values = {q.name: np.ones(len(sets)) for q in FLEXIBLE_STRESS.needs}
+        values |= zip(("frequency", "frequency_high", "damping"), np.transpose(sets), strict=True)
         best, most = np.zeros(len(fresh)), np.zeros(len(fresh))
         for level in runner.levels:
-            felt = [
-                np.asarray(answer(FLEXIBLE_STRESS.name, motion, given, HISTORIES, angle=None)["pseudo_acceleration"])
-                for motion in level.motions
-            ]
+            ran = (run_model(FLEXIBLE_STRESS, motion, values, HISTORIES, None)[0] for motion in level.motions)
+            felt = [columns["pseudo_acceleration"] for columns in ran]
             best = np.maximum(best, level.over([one[::3] for one in felt]))
             most = np.maximum(most, level.over([one.reshape(-1, 3).max(axis=1) for one in felt]))
         known.update(zip(fresh, zip(best.tolist(), most.tolist(), strict=True), strict=True))
