@@ -97,15 +97,17 @@ class Body:
     foot: float
     width: float | None
 
-    def frequency(self, modulus: float, size: str, slender: float, restraint: float, mass: float, cg: float) -> float:
+    def frequency(
+        self, modulus: float, inertia: float, slender: float, restraint: float, mass: float, cg: float
+    ) -> float:
         """Return its lowest natural frequency [Hz] for one set of numbers.
 
         Parameters
         ----------
         modulus : float
             Young's [Pa].
-        size : str
-            End of the section's size: "low", "value" or "high".
+        inertia : float
+            Second moment of the section [m4].
         slender : float
             Share of what is above the section that is as slender as it [-].
         restraint : float
@@ -126,8 +128,7 @@ class Body:
         beam = mass * min(max((above + length - 2.0 * lever) / above, 0.0), 1.0)
         rest = above - length
         reach, gyration = max(0.5 * rest, lever - length), hypot(rest, self.width or 0.0) / sqrt(12.0)
-        stiffness = restraint * modulus * self.section.inertia(size)
-        return cantilever_frequency(stiffness, length, beam, mass - beam, reach, gyration)
+        return cantilever_frequency(restraint * modulus * inertia, length, beam, mass - beam, reach, gyration)
 
 
 def estimated_frequency(body: Body, row: ObjectClass, material: Material) -> Estimate | None:
@@ -154,12 +155,13 @@ def estimated_frequency(body: Body, row: ObjectClass, material: Material) -> Est
     if share is None or modulus is None:
         return None
     clamp = bending("restraint")
-    best: Mapping[str, object] = {
-        "modulus": modulus.value, "size": "value", "slender": share.value, "restraint": clamp.value,
+    low, value, high = (body.section.inertia(end) for end in ("low", "value", "high"))
+    best: Mapping[str, float] = {
+        "modulus": modulus.value, "inertia": value, "slender": share.value, "restraint": clamp.value,
         "mass": body.mass.value, "cg": body.cg.value,
     }  # fmt: skip
-    ends: Mapping[str, tuple[object, object]] = {
-        "modulus": (modulus.low, modulus.high), "size": ("low", "high"), "slender": (share.low, share.high),
+    ends: Mapping[str, tuple[float, float]] = {
+        "modulus": (modulus.low, modulus.high), "inertia": (low, high), "slender": (share.low, share.high),
         "restraint": (clamp.low, clamp.high), "mass": (body.mass.low, body.mass.high),
         "cg": (body.cg.low, body.cg.high),
     }  # fmt: skip
@@ -178,7 +180,7 @@ def estimated_frequency(body: Body, row: ObjectClass, material: Material) -> Est
 
 
 def spread(
-    of: Callable[..., float], best: Mapping[str, object], ends: Mapping[str, tuple[object, object]]
+    of: Callable[..., float], best: Mapping[str, float], ends: Mapping[str, tuple[float, float]]
 ) -> tuple[float, float, float]:
     """Return the best value of a positive function, and the ends of its range over inputs that are independent.
 
@@ -186,9 +188,9 @@ def spread(
     ----------
     of : callable
         Of the inputs by name.
-    best : mapping of str to object
+    best : mapping of str to float
         The best of each.
-    ends : mapping of str to (object, object)
+    ends : mapping of str to (float, float)
         What each may be.
 
     Returns

@@ -298,11 +298,14 @@ def _proportions(
 def _bands(
     model: Model, names: Sequence[str], base: Array, low: Array, high: Array, uncertain: NDArray[np.bool_]
 ) -> tuple[int, ...]:
-    """Make one corner of both ends of what a model searches by itself; return the columns that have only that one."""
+    """Make one corner of both ends of what a model searches by itself; return the columns that have only that one.
+
+    The best estimate of what is known as a range is a band without width, for which the search is made already.
+    """
     columns = [(names.index(lower), names.index(upper)) for lower, upper in model.searched.items()]
     for lower, upper in columns:
         known = uncertain[:, lower]
-        base[known, upper] = np.nan
+        base[known, upper] = base[known, lower]
         high[known, upper] = high[known, lower]
         high[known, lower] = low[known, lower]
         uncertain[known, upper] = True

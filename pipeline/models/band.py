@@ -78,20 +78,25 @@ def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array)
         return np.zeros_like(low), np.zeros_like(low)
     shaking = _shaking(motion, peak)
     # Parameter sets differ in more than these: each band is searched once.
-    bands, place = np.unique(np.column_stack([low, high, zeta]), axis=0, return_inverse=True)
+    order = np.lexsort((zeta, high, low))
+    rows = np.column_stack([low, high, zeta])[order]
+    first = np.concatenate([[True], (rows[1:] != rows[:-1]).any(axis=1)])
+    place = np.empty(low.size, dtype=np.intp)
+    place[order] = np.cumsum(first) - 1
+    bands = rows[first]
     least, most = np.full(bands.shape[0], np.inf), np.zeros(bands.shape[0])
     begin, end = (np.clip(side, 10.0**LOWEST, 10.0**HIGHEST) for side in bands.T[:2])
     for damping in np.unique(bands[:, 2]):
         for decade in range(LOWEST, HIGHEST):
             bottom, top = 10.0**decade, 10.0 ** (decade + 1)
-            rows = np.flatnonzero((bands[:, 2] == damping) & (begin <= top) & (end >= bottom))
-            if rows.size == 0:
+            chosen = np.flatnonzero((bands[:, 2] == damping) & (begin <= top) & (end >= bottom))
+            if chosen.size == 0:
                 continue
             logs, values = _decade(shaking, float(damping), decade)
-            ends = np.log([np.maximum(begin[rows], bottom), np.minimum(end[rows], top)])
+            ends = np.log([np.maximum(begin[chosen], bottom), np.minimum(end[chosen], top)])
             for fold, best in ((np.minimum, least), (np.maximum, most)):
-                best[rows] = fold(best[rows], _between(fold, logs, values, ends))
-    return peak * least[place.reshape(-1)], peak * most[place.reshape(-1)]
+                best[chosen] = fold(best[chosen], _between(fold, logs, values, ends))
+    return peak * least[place], peak * most[place]
 
 
 def _between(fold: np.ufunc, logs: Array, values: Array, ends: Array) -> Array:

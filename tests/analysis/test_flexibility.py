@@ -21,6 +21,7 @@ from pipeline.analysis.rules import with_own
 from pipeline.analysis.section import Section
 from pipeline.execute import Threads
 from pipeline.mitigate.measures.base import held
+from pipeline.models.band import MISSED
 from pipeline.models.stress import FLEXIBLE_STRESS, RIGID_PERIOD, STRESS
 from pipeline.motions import read_motion
 from pipeline.quantities import Array, G
@@ -110,7 +111,7 @@ def test_stepped_cantilever(slender: float, cg: float, upper: float, tolerance: 
     height, mass, modulus, size = 0.3, 0.4, 7.0e10, 0.012
     section = Section("round", *[Estimate.measured(size, "m")] * 2, 1, 0.0, "")
     body = Body(section, Estimate.measured(mass, "kg"), Estimate.measured(cg * height, "m"), height, 0.0, None)
-    found = body.frequency(modulus, "value", slender, 1.0, mass, cg * height)
+    found = body.frequency(modulus, section.inertia("value"), slender, 1.0, mass, cg * height)
     lower = np.arange(20) < round(20 * slender)
     stem = mass * (1.0 + slender - 2.0 * cg)
     each = np.where(lower, stem / max(lower.sum(), 1), (mass - stem) / max((~lower).sum(), 1))
@@ -166,13 +167,13 @@ def test_what_is_recorded_is_taken_as_it_is() -> None:
     assert np.isnan(work.values["frequency_high"]).all()
 
 
-def test_a_range_is_one_corner_and_the_best_is_exact() -> None:
+def test_a_range_is_one_corner_and_the_best_has_no_width() -> None:
     scene = classify(FIGURE)
     (work,) = [one for one in plan([scene]).work if one.model is FLEXIBLE_STRESS]
     f = scene.parameters["frequency"]
     best = work.spans.rows[0, 0]
     assert work.values["frequency"][best] == f.value
-    assert np.isnan(work.values["frequency_high"][best])
+    assert work.values["frequency_high"][best] == f.value
     others = work.spans.rows[1:, 0]
     assert set(work.values["frequency"][others]) == {f.low}
     assert set(work.values["frequency_high"][others]) == {f.high}
@@ -231,10 +232,10 @@ def test_passes_only_if_the_largest_does_and_fails_only_if_the_least_does(motion
     assert [f.verdict for f in findings] == list(wanted.values())
     best = respond("flexible_stress", motion, angle=None, frequency=5.0, damping=0.02, **section)["tension"].iloc[0]
     told = findings[1]
-    assert told.demand == pytest.approx(best, rel=1e-9)
-    assert told.high == pytest.approx(felt.max(), rel=5e-3)
+    assert told.demand == pytest.approx(best, rel=MISSED)
+    assert told.high == pytest.approx(felt.max(), rel=MISSED)
     assert told.low is not None
-    assert told.low <= felt.min() * (1.0 + 1e-2)
+    assert told.low <= felt.min() * (1.0 + 2.0 * MISSED)
     assert "taken as held while it bends" in told.sentence
 
 
