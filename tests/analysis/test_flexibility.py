@@ -299,7 +299,9 @@ def test_a_museums_material_without_stiffness_has_kouros(tmp_path: Path) -> None
     kept = {name: cell for name, cell in row.items() if not name.startswith("modulus") and name != "ductile"}
     file = tmp_path / "ours.csv"
     file.write_text(",".join(kept) + "\n" + ",".join(f'"{cell}"' for cell in kept.values()) + "\n", encoding="utf-8")
-    ours = classify(FIGURE, with_own(None, assumed_with({"materials": file}, ["standing", "sliding", "stress", "rocking"])))
+    ours = classify(
+        FIGURE, with_own(None, assumed_with({"materials": file}, ["standing", "sliding", "stress", "rocking"]))
+    )
     theirs = classify(FIGURE)
     for end in ("low", "value", "high"):
         assert getattr(ours.parameters["frequency"], end) == getattr(theirs.parameters["frequency"], end)
