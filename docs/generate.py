@@ -32,6 +32,7 @@ ROOT = Path(__file__).resolve().parents[1]
 Schema = Mapping[str, Any]
 
 TABLE_WORDS = {
+    "bending": "What holds of whatever bends: how firmly it is held, its damping, stress concentration at a held base.",
     "classes": "What a class of objects assumes where the museum's record is silent.",
     "contacts": "How much of a base that is only assumed may really bear.",
     "column_names": "Names of columns by which `kouros import --guess` knows a field.",
@@ -46,11 +47,12 @@ TABLE_WORDS = {
     "hangings": "Ways to hang on a wall: whether a work swings or may be lifted off, its hooks and its hangers.",
     "usual_hangings": "Ways in which works of a class usually hang, the likeliest first; * is any other class.",
     "isolators": "The isolators that advice may choose from; a museum's own catalogue takes the place of this table.",
-    "materials": "Density and strength of materials, and the words that name them.",
+    "materials": "Density, strength and stiffness of materials, and the words that name them.",
     "measures": "The measures, in the order of their intrusiveness, with limits, words and sources.",
     "overturning": "Published medians of overturning that `kouros validate --published` is held against.",
     "plausible": "What a number of a record may be.",
     "rules": "Which class a record names; the first rule that holds decides.",
+    "slender": "How much of an object of a class is about as slender as its critical section, by share of its height.",
     "survey": "The questions of the survey's sheet.",
     "validation": "What `kouros validate` assumes of a body for which nothing is fitted.",
 }

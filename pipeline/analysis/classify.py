@@ -10,19 +10,20 @@ from dataclasses import replace
 from functools import cache, lru_cache
 from math import pi
 
+from pipeline.analysis.flexibility import Body, concentration, estimated_frequency
 from pipeline.analysis.footing import base_extents, half_widths
 from pipeline.analysis.hanging import HangingGuess, hanging_estimates, hanging_of, swings
 from pipeline.analysis.house.effect import NO_EFFECT, HouseEffect
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.rules import RuleTable, rule_for
-from pipeline.errors import InputError
+from pipeline.analysis.section import Section, section_of, share_of
 from pipeline.models import MODELS, model_named
 from pipeline.models.rigid_body import FALLS_IN, HALF
 from pipeline.models.unhooking import LOCKED
-from pipeline.records import SECTION_SHAPES, Estimate, Item, Origin, Scene, Support
-from pipeline.tables import Range
+from pipeline.records import Estimate, Item, Origin, Scene, Support
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed, span, tables_of
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
+from pipeline.tables.bending_rows import bending
 
 SLENDEREST = 9.0
 """Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
@@ -43,12 +44,6 @@ def _assumed(value: float, low: float, high: float, unit: str, note: str, source
 
 def _measured(value: float | None, unit: str) -> Estimate | None:
     return None if value is None else Estimate.measured(value, unit)
-
-
-def _times(row: ObjectClass, share: Range, base: float, unit: str, what: str, of: str) -> Estimate:
-    """Return a share of a recorded dimension, as the row of the class assumes it."""
-    note = f"{what}: {share.value:g} ({share.low:g} to {share.high:g}) of its {of}, assumed for: {row.told}"
-    return _assumed(share.value * base, share.low * base, share.high * base, unit, note, share.source)
 
 
 # What depends on a table and a few words only is worked out once, not for every object of a collection.
@@ -84,6 +79,14 @@ def _wall_damping_of(values: AssumedValues, wall: str, back: str) -> Estimate:
         note = f"damping against the wall: {pair}, the least of {tables_of(rows)}; wall and back surfaces not recorded"
     # With nothing known of its back the lowest damping counts.
     return _assumed(found.value if back else found.low, found.low, found.high, "-", note, found.source)
+
+
+@cache
+def _own_damping() -> Estimate:
+    found = bending("damping")
+    low, value, high = (100.0 * v for v in (found.low, found.value, found.high))
+    note = f"damping of the object itself: {value:g} % ({low:g} to {high:g} %), assumed"
+    return _assumed(found.value, found.low, found.high, "-", note, found.source)
 
 
 def _own_base(row: ObjectClass) -> bool:
@@ -159,7 +162,7 @@ class _Builder:
         width, depth, lost = self._plan()
         cg = self._length("cg_height_m", "cg_ratio", "height of the centre of gravity")
         if cg is None and item.height_m is not None and self.row.cg is not None:
-            cg = _times(self.row, self.row.cg, item.height_m, "m", "height of the centre of gravity", "height")
+            cg = share_of(self.row, self.row.cg, item.height_m, "m", "height of the centre of gravity", "height")
         if cg is None:
             self.missing.append("height" if self.row.cg is not None else "height of the centre of gravity")
         self._keep("cg_height", cg)
@@ -178,12 +181,9 @@ class _Builder:
                 self.missing.append("mass")
         elif self.support is not Support.FASTENED and not halves:
             self.missing.extend(lost)
-        frequency = self._known("frequency_hz", "lowest natural frequency", "Hz")
-        if frequency is not None:
-            self._keep("frequency", frequency)
-            note = "damping of the object itself: 2 % (1 to 5 %), assumed"
-            damping = self._known("damping", "damping of the object itself", "-")
-            self._keep("damping", damping or _assumed(0.02, 0.01, 0.05, "-", note, "judgement"))
+        self._keep("frequency", self._known("frequency_hz", "lowest natural frequency", "Hz"))
+        if "frequency" in self.found:
+            self._keep("damping", self._known("damping", "damping of the object itself", "-") or _own_damping())
 
     def _length(self, name: str, share: str, what: str) -> Estimate | None:
         """Return a length that is recorded, or stated as such or as a share of the height."""
@@ -207,7 +207,7 @@ class _Builder:
             if side is None and largest is not None and share is not None:
                 side = share.estimate(f"base {name}", "m", largest)
             elif side is None and largest is not None and row.base is not None:
-                side = _times(row, row.base, largest, "m", f"base {name}", name)
+                side = share_of(row, row.base, largest, "m", f"base {name}", name)
             sides.append(side)
         width, depth = sides
         if width is None and depth is None:
@@ -274,100 +274,29 @@ class _Builder:
             allowable = _assumed(
                 bears.value * condition, bears.low * condition, bears.high * condition, "Pa", note, bears.source
             )
+        found = section_of(item, self.row, width, depth)
+        self.missing.extend(found.missing)
+        self.doubts.extend(found.doubts)
         mass, cg = self.found.get("mass"), self.found.get("cg_height")
-        section = self._section_size(width, depth)
-        if mass is None or cg is None or section is None:
+        if mass is None or cg is None or found.section is None:
             return False
-        shape, size, deep, count, wall, base = section
         self._keep("allowable_stress", allowable)
         height = item.section_height_m or 0.0
-        lever = max(cg.value - height, 0.0)
-        note = (
-            "lever: from the base to the centre of gravity"
-            if not height
-            else "lever: from the section to the centre of gravity"
-        )
-        self._keep(
-            "lever", Estimate(lever, "m", Origin.DERIVED, max(cg.low - height, 0.0), max(cg.high - height, 0.0), note)
-        )
-        area, modulus = section_properties(shape, size.value, deep.value, count, wall)
-        # Area and modulus vary together: the range of the section is carried by the modulus, which bending feels.
-        _, modulus_low = section_properties(shape, size.low, deep.low, count, wall)
-        _, modulus_high = section_properties(shape, size.high, deep.high, count, wall)
-        self._keep("area", Estimate(area, "m2", size.origin, area, area, base, size.source))
-        self._keep(
-            "section_modulus", Estimate(modulus, "m3", size.origin, modulus_low, modulus_high, base, size.source)
-        )
-        if item.orientation_deg is not None and shape == "rectangle" and size.value != deep.value:
-            # Both sides of the section were measured: it bends the less, the longer the side along the push.
-            sides = (("section_modulus_width", size, deep), ("section_modulus_depth", deep, size))
-            for name, along, across in sides:
-                value = count * rectangle_modulus(along.value, across.value, wall)
-                self._keep(name, Estimate(value, "m3", size.origin, value, value, base, size.source))
+        note = f"lever: from the {'section' if height else 'base'} to the centre of gravity"
+        low, lever, high = (max(one - height, 0.0) for one in (cg.low, cg.value, cg.high))
+        self._keep("lever", Estimate(lever, "m", Origin.DERIVED, low, high, note))
+        self.found |= found.section.estimates(item.orientation_deg is not None)
+        self._bending(found.section, mass, cg)
         return True
 
-    def _section_size(
-        self, width: Estimate | None, depth: Estimate | None
-    ) -> tuple[str, Estimate, Estimate, int, float, str] | None:
-        item, row = self.item, self.row
-        if item.section_width_m is not None:
-            size = Estimate.measured(item.section_width_m, "m")
-            deep = Estimate.measured(item.section_depth_m or item.section_width_m, "m")
-            shape = SECTION_SHAPES.get(item.section_shape.strip().casefold() or "rectangle", "")
-            if shape == "hollow round" and item.section_wall_m is None:
-                self.missing.append("wall of its weakest section")
-            elif shape:
-                recorded = item.section_shape or shape
-                wall = item.section_wall_m or 0.0
-                return shape, size, deep, item.section_count or 1, wall, f"section: {recorded}, as recorded"
-            else:
-                self.doubts.append(f"section: the recorded shape {item.section_shape!r} is not known, and not used")
-        if row.critical is None or width is None or depth is None:
-            return None
-        narrow = min(width, depth, key=lambda e: e.value)
-        kind = row.section
-        across = min(item.width_m or item.depth_m or narrow.value, item.depth_m or item.width_m or narrow.value)
-        base = narrow.value if kind in ("foot", "legs", "ring") else across
-        of = "narrower base side" if kind in ("foot", "legs", "ring") else "narrower side"
-        what = "wall of its foot" if kind == "ring" else f"critical section ({kind})"
-        size = _times(row, row.critical, base, "m", what, of)
-        shapes = {"stem": ("round", 1), "ankles": ("round", 2), "foot": ("rectangle", 1), "legs": ("rectangle", 4)}
-        if kind == "ring":
-            # The size is the wall; the ring's outside is the base.
-            return "ring", size, narrow, 1, narrow.value, size.note
-        shape, count = shapes[kind]
-        return shape, size, size, count, 0.0, size.note
-
-
-def section_properties(shape: str, width: float, depth: float, count: int, wall: float) -> tuple[float, float]:
-    """Return area [m2] and weaker section modulus [m3] of ``count`` equal sections side by side.
-
-    round: solid of diameter width, or hollow where wall > 0; rectangle: width x depth, hollow where wall > 0;
-    ring: width is the wall and wall the outer diameter (a vessel's foot)
-    raises : ValueError for another shape
-    """
-    if shape == "ring":
-        width, wall = wall, min(width, 0.5 * wall)
-        shape = "round"
-    if shape in ("round", "hollow round"):
-        inner = max(width - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
-        area = 0.25 * pi * (width**2 - inner**2)
-        modulus = pi * (width**4 - inner**4) / (32.0 * width)
-    elif shape == "rectangle":
-        narrow, wide = min(width, depth), max(width, depth)
-        inner = max(narrow - 2.0 * wall, 0.0) * max(wide - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
-        area = narrow * wide - inner
-        modulus = rectangle_modulus(narrow, wide, wall)
-    else:
-        raise InputError(f"section_shape {shape!r} is not known; use round, hollow round, rectangle or ring")
-    return count * area, count * modulus
-
-
-def rectangle_modulus(along: float, across: float, wall: float) -> float:
-    """Return the section modulus [m3] of a rectangle, hollow where wall > 0, for a push along one side [m]."""
-    inner_along = max(along - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
-    inner_across = max(across - 2.0 * wall, 0.0) if wall > 0.0 else 0.0
-    return (across * along**3 - inner_across * inner_along**3) / (6.0 * along)
+    def _bending(self, section: Section, mass: Estimate, cg: Estimate) -> None:
+        """Keep what its bending hangs on besides: how its base is held, and its frequency where that is estimated."""
+        item = self.item
+        if self.support is Support.FASTENED:
+            self._keep("concentration", concentration(item, self.material))
+        if self._known("frequency_hz", "lowest natural frequency", "Hz") is None:
+            body = Body(section, mass, cg, item.height_m, item.section_height_m or 0.0, item.width_m or item.depth_m)
+            self._keep("frequency", estimated_frequency(body, self.row, self.material))
 
 
 def object_classes() -> Mapping[str, str]:

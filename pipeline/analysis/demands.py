@@ -182,7 +182,11 @@ def _bound(task: _BoundTask) -> _Bounded:
     if model.bound is None or not whole:
         return certificate, {}, np.zeros(next(iter(values.values())).size)
     bounds = model.bound(excitation, values)
-    return certificate, bounds.outputs, bounds.note
+    outputs = bounds.outputs
+    if angle is None and bounds.worst:
+        # What is shaken from all sides answers with the worst.
+        outputs = {name: (np.maximum(low, bounds.worst.get(name, low)), high) for name, (low, high) in outputs.items()}
+    return certificate, outputs, bounds.note
 
 
 def bounded(work: Work, motion: Motion, outputs: Sequence[str], executor: Executor, *, whole: bool = True) -> Demands:

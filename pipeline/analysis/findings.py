@@ -50,7 +50,8 @@ def _numbers(search: FidelitySearch, case: DemandCase) -> _Numbers:
     if level.combine == "max":
         # Under the other motions it may be less by more.
         slack = np.array([_gap(low[row], high[row]) for low, high in points])[motion, np.arange(row.size)]
-    lows = [level.over([spans.lowest(side) for side in sides]) for sides in zip(*points, strict=True)]
+    leasts = [found.points(search.work.model.least_of(case.output)) for found in search.found]
+    lows = [level.over([spans.lowest(side) for side in sides]) for sides in zip(*leasts, strict=True)]
     highs = [level.over([spans.highest(side) for side in sides]) for sides in zip(*points, strict=True)]
     return _Numbers(
         demand,

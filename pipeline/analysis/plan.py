@@ -199,7 +199,8 @@ def _gather(model: Model, scenes: Sequence[Scene], chosen: Sequence[int], x_azim
     uncertain[~turned, len(names) :] = False
     ratios, of = _proportions(scenes, chosen, pairs, names)
     uncertain &= np.isnan(ratios)
-    sets, analysis = corners(base, low, high, uncertain)
+    one_ended = _bands(model, names, base, low, high, uncertain)
+    sets, analysis = corners(base, low, high, uncertain, one_ended)
     tied = ~np.isnan(ratios[analysis])
     sets[tied] = (ratios[analysis] * np.take_along_axis(sets, of[analysis], axis=1))[tied]
     along = []
@@ -294,14 +295,35 @@ def _proportions(
     return ratios, of
 
 
-def corners(base: Array, low: Array, high: Array, uncertain: NDArray[np.bool_]) -> tuple[Array, Indices]:
+def _bands(
+    model: Model, names: Sequence[str], base: Array, low: Array, high: Array, uncertain: NDArray[np.bool_]
+) -> tuple[int, ...]:
+    """Make one corner of both ends of what a model searches by itself; return the columns that have only that one.
+
+    The best estimate of what is known as a range is a band without width, for which the search is made already.
+    """
+    columns = [(names.index(lower), names.index(upper)) for lower, upper in model.searched.items()]
+    for lower, upper in columns:
+        known = uncertain[:, lower]
+        base[known, upper] = base[known, lower]
+        high[known, upper] = high[known, lower]
+        high[known, lower] = low[known, lower]
+        uncertain[known, upper] = True
+    return tuple(column for pair in columns for column in pair)
+
+
+def corners(
+    base: Array, low: Array, high: Array, uncertain: NDArray[np.bool_], one_ended: Sequence[int] = ()
+) -> tuple[Array, Indices]:
     """Return the best estimates (m, n), each followed by every combination of the ends of its uncertain inputs.
 
-    Of k uncertain inputs there are 2^k corners; objects have at most five in any model.  All of them, because an input
+    Of k uncertain inputs there are 2^k corners; objects have at most six in any model.  All of them, because an input
     that is harmless on its own may not be so where another is at its worst: with one input at a time at an end, 151 of
     819 decided verdicts changed where two were.  A demand that rises or falls with each input, whatever the others are,
     is largest and least at a corner, so that of uplift, tension and compression the whole range is covered.  Of others,
-    such as how far a pendulum swings, only the ends are, and not what lies between them.
+    such as how far a pendulum swings, only the ends are, and not what lies between them.  What a model searches by
+    itself (see Model.searched) has one corner, the band.
+    one_ended : columns of which only high is an end
     returns : (v, n) parameter sets, and of which analysis (v,) each is
     """
     sets, analyses = [base], [np.arange(base.shape[0])]
@@ -311,7 +333,7 @@ def corners(base: Array, low: Array, high: Array, uncertain: NDArray[np.bool_]) 
         if which.size == 0:
             continue
         members = np.flatnonzero(pattern.reshape(-1) == at)
-        ends = np.array(list(product((False, True), repeat=which.size)))
+        ends = np.array(list(product(*((True,) if at in one_ended else (False, True) for at in which))))
         own = np.repeat(members, ends.shape[0])
         one = base[own].copy()
         one[:, which] = np.where(np.tile(ends, (members.size, 1)), high[own][:, which], low[own][:, which])

@@ -178,6 +178,8 @@ class FidelitySearch:
             At its first step; no verdict is looked for yet.
         """
         auto = numerics.fidelity == AUTO
+        # The least over what a model searches is an output of its own.
+        outputs = tuple(dict.fromkeys([*outputs, *map(work.model.least_of, outputs)]))
         found = [bounded(work, motion, outputs, context.executor, whole=auto) for motion in level.motions]
         effort = Effort(analyses=work.scenes.size, sets=work.size * len(found))
         decided = np.zeros(work.scenes.size, dtype=np.int8)
@@ -293,14 +295,13 @@ class FidelitySearch:
 
     def _known(self, case: DemandCase) -> Known:
         low, _, high = case.capacity
-        least = [found.low[case.output] for found in self.found]
-        most = [found.high[case.output] for found in self.found]
-        spans, over = case.spans, self.level.over
+        output, lowest = case.output, self.work.model.least_of(case.output)
+        spans, over, found = case.spans, self.level.over, self.found
         return Known(
-            passes=~exceeds(over([spans.highest(column) for column in most]), low),
-            may_pass=~exceeds(over([spans.highest(column) for column in least]), low),
-            fails=exceeds(over([spans.lowest(column) for column in least]), high),
-            may_fail=exceeds(over([spans.lowest(column) for column in most]), high),
+            passes=~exceeds(over([spans.highest(one.high[output]) for one in found]), low),
+            may_pass=~exceeds(over([spans.highest(one.low[output]) for one in found]), low),
+            fails=exceeds(over([spans.lowest(one.low[lowest]) for one in found]), high),
+            may_fail=exceeds(over([spans.lowest(one.high[lowest]) for one in found]), high),
         )
 
     def _look_up(self, case: DemandCase) -> None:
@@ -328,13 +329,15 @@ class FidelitySearch:
     def _hanging(self, part: DemandCase, known: Known, chosen: Indices, found: Demands) -> Indices:
         """Return the rows of open analyses that their verdicts hang on under a motion."""
         rows, spread = part.spans.rows, part.spans.spread
-        low, high = found.low[part.output], found.high[part.output]
+        lowest = self.work.model.least_of(part.output)
         if self.level.combine == "mean":
-            needed = low[rows] < high[rows]
+            needed = found.low[part.output][rows] < found.high[part.output][rows]
         else:
             # Of a maximum only this counts: on which side of the capacity's ends each demand lies.
             needed = np.zeros(rows.shape, dtype=bool)
-            for asked, capacity in ((known.may_pass, part.capacity[0]), (known.may_fail, part.capacity[2])):
+            ends = ((part.output, known.may_pass, part.capacity[0]), (lowest, known.may_fail, part.capacity[2]))
+            for output, asked, capacity in ends:
+                low, high = found.low[output], found.high[output]
                 limit = spread(capacity)[:, None]
                 straddles = (low[rows] <= limit) & (high[rows] > limit)
                 needed |= straddles & np.repeat(asked[chosen], part.spans.lengths)[:, None]
@@ -347,9 +350,9 @@ class FidelitySearch:
     def _numbers(self, part: DemandCase) -> list[Indices]:
         """Return the rows that may have a say in the range of the demand, and are no better known than by a bound."""
         output, spans = part.output, part.spans
-        mean = self.level.combine == "mean"
+        least, mean = self.work.model.least_of(output), self.level.combine == "mean"
         # Of a maximum, what lies below the lowest that it can be under any one motion is never heard of.
-        lowest = np.max([spans.lowest(found.low[output]) for found in self.found], axis=0)
+        lowest = np.max([spans.lowest(found.low[least]) for found in self.found], axis=0)
         out = []
         for found in self.found:
             low, high = found.low[output], found.high[output]

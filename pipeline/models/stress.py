@@ -4,24 +4,26 @@ With the mass m above a section of area A_s and modulus S, and the lever l from 
 
 .. math::
 
-    \sigma = \frac{m A\, l}{S} \mp \frac{m g}{A_s}, \qquad \tau = \frac{m A}{A_s}
+    \sigma = K \frac{m A\, l}{S} \mp \frac{m g}{A_s}, \qquad \tau = \frac{m A}{A_s}
 
 where A is the peak acceleration of a rigid object, and of a flexible one the pseudo-acceleration of its oscillator,
-PSA(f, zeta).  The static tilt with the same effect is arcsin(A / g).
+PSA(f, zeta); of a frequency that is known as a range the largest over that.  A factor K multiplies the bending where a
+held base concentrates it.  The static tilt with the same effect is arcsin(A / g).
 
 References
 ----------
 Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
-methods for museum objects. Studies in Conservation 36. Sec. 2.3 and 2.5.
+methods for museum objects. Studies in Conservation 36. Sec. 2.3, 2.5 and 2.6.
 """
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from pipeline.models.band import MISSED, band_accelerations
 from pipeline.models.common import NO_TILT, ROUNDING, largest_push, needs, smallest_push
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
-from pipeline.models.oscillator import OSCILLATES, oscillate, oscillate_bounds
+from pipeline.models.oscillator import OSCILLATES, PROMISED, oscillate
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Bounds, Columns, Excitation, Item, Model, Scene, Support, Trials
 
@@ -36,7 +38,14 @@ _SECTION = (
     Quantity("lever", "m", "from the section to the centre of gravity of that part", 0.0),
     Quantity("area", "m2", "of the critical section", 0.0, exclusive=True),
     Quantity("section_modulus", "m3", "of the critical section", 0.0, exclusive=True),
+    Quantity(
+        "concentration", "-", "largest over nominal bending stress, at a held base", 1.0, optional=True, default=1.0
+    ),
 )
+_HIGHEST = Quantity(
+    "frequency_high", "Hz", "upper end of the band that is searched, from the frequency on", 0.0, exclusive=True,
+    optional=True,
+)  # fmt: skip
 _STRESSES = (
     Quantity("tension", "Pa", "largest tensile stress: bending less self-weight"),
     Quantity("compression", "Pa", "largest compressive stress: bending plus self-weight"),
@@ -56,7 +65,7 @@ def section_stresses(push: Array, parameters: Mapping[str, Array]) -> Columns:
     push : ndarray, shape (n,) or float
         [m/s2].
     parameters : mapping of str to ndarray, shape (n,)
-        mass [kg], lever [m], area [m2] and section_modulus [m3].
+        mass [kg], lever [m], area [m2], section_modulus [m3] and concentration [-].
 
     Returns
     -------
@@ -65,7 +74,7 @@ def section_stresses(push: Array, parameters: Mapping[str, Array]) -> Columns:
         reproduces the acceleration.
     """
     mass, area = parameters["mass"], parameters["area"]
-    bending = mass * push * parameters["lever"] / parameters["section_modulus"]
+    bending = parameters["concentration"] * mass * push * parameters["lever"] / parameters["section_modulus"]
     weight = mass * G / area
     share = push / G
     too_much = share >= 1.0
@@ -91,18 +100,30 @@ def _run(
     return section_stresses(parameters["amplification"] * largest_push(motion), parameters)
 
 
+def _pushes(motion: Excitation, parameters: Mapping[str, Array]) -> tuple[Array, Array]:
+    """Return the least and the largest pseudo-acceleration [m/s2], (n,) each, along x: of one frequency the same."""
+    low, high, zeta = (parameters[name] for name in ("frequency", "frequency_high", "damping"))
+    banded = ~np.isnan(high)
+    least, most = np.empty_like(low), np.empty_like(low)
+    w = 2.0 * np.pi * low[~banded]
+    displacement, _ = oscillate(motion, w, zeta[~banded], np.ones_like(w))
+    least[~banded] = most[~banded] = w**2 * displacement
+    least[banded], most[banded] = band_accelerations(motion, low[banded], high[banded], zeta[banded])
+    return least, most
+
+
 def _run_flexible(
     motion: Excitation,
     parameters: Mapping[str, Array],
     refine: int,  # noqa: ARG001
     estimate: bool,  # noqa: ARG001
 ) -> Columns:
-    w = 2.0 * np.pi * parameters["frequency"]
-    displacement, _ = oscillate(motion, w, parameters["damping"], np.ones_like(w))
-    push = w**2 * displacement
+    least, push = _pushes(motion, parameters)
     out = section_stresses(push, parameters)
     error, note = out.pop("error"), out.pop("note")
-    return {**out, "pseudo_acceleration": push, "error": error, "note": note}
+    error += np.where(np.isnan(parameters["frequency_high"]), 0.0, MISSED * out["compression"])
+    lowest = section_stresses(least, parameters)["tension"]
+    return {**out, "pseudo_acceleration": push, "tension_least": lowest, "error": error, "note": note}
 
 
 def _screen(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
@@ -119,12 +140,29 @@ def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
 
 
 def _bound_flexible(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
-    w = 2.0 * np.pi * parameters["frequency"]
-    displacement, _ = oscillate_bounds(motion, w, parameters["damping"], np.ones_like(w))
-    pushes = w**2 * displacement[0], w**2 * displacement[1]
-    least, most = (section_stresses(push, parameters) for push in pushes)
-    bounds = {q.name: (least[q.name], most[q.name]) for q in _STRESSES}
-    return Bounds({**bounds, "pseudo_acceleration": pushes}, most["note"])
+    banded = ~np.isnan(parameters["frequency_high"])
+    off = np.where(banded, MISSED, PROMISED)
+    least, most = _pushes(motion, parameters)
+    along_x = (1.0 - off) * most
+    if motion.y is None:
+        pushes, leasts = (along_x, (1.0 + off) * most), ((1.0 - off) * least, (1.0 + off) * least)
+    else:
+        # The oscillator is linear: no direction exceeds the resultant of its peaks along both, nor do those of a band;
+        # and the least over a band is no more than at its ends.
+        across = Excitation(motion.dt, motion.y, None, motion.z, motion.tail)
+        pushes = np.zeros_like(most), (1.0 + off) * np.hypot(most, _pushes(across, parameters)[1])
+        edges = [pushes[1]]
+        for end in ("frequency", "frequency_high"):
+            at = {**parameters, "frequency": np.where(banded, parameters[end], parameters["frequency"])}
+            at["frequency_high"] = np.where(banded, at["frequency"], np.nan)
+            edges.append((1.0 + off) * np.hypot(_pushes(motion, at)[1], _pushes(across, at)[1]))
+        leasts = np.zeros_like(most), np.min(edges, axis=0)
+    low, high = (section_stresses(push, parameters) for push in pushes)
+    bounds = {q.name: (low[q.name], high[q.name]) for q in _STRESSES}
+    lowest, highest = (section_stresses(push, parameters)["tension"] for push in leasts)
+    bounds["tension_least"] = (lowest, highest)
+    worst = {} if motion.y is None else {"tension": section_stresses(along_x, parameters)["tension"]}
+    return Bounds({**bounds, "pseudo_acceleration": pushes}, high["note"], worst)
 
 
 def _say(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
@@ -135,7 +173,7 @@ def _say(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
 
 def _mark(frequency: float, parameters: Mapping[str, float], tension: float) -> tuple[str, float, float] | None:
     # The acceleration behind a tension: the inverse of section_stresses; none where nothing is above the section.
-    moment = parameters["mass"] * parameters["lever"]
+    moment = parameters["concentration"] * parameters["mass"] * parameters["lever"]
     if moment <= 0.0:
         return None
     weight = parameters["mass"] * G / parameters["area"]
@@ -149,7 +187,8 @@ def _holds(scene: Scene, flexible: bool) -> str:
     if missing:
         return f"its critical section is not known ({missing})"
     frequency = scene.parameters.get("frequency")
-    bends = frequency is not None and frequency.value < 1.0 / RIGID_PERIOD
+    # Where it may be either, the flexible one has both: over the whole range of its frequency.
+    bends = frequency is not None and frequency.low < 1.0 / RIGID_PERIOD
     if flexible and not bends:
         return "it is rigid: no natural period above 0.06 s is known or estimated"
     if not flexible and bends:
@@ -157,9 +196,9 @@ def _holds(scene: Scene, flexible: bool) -> str:
     return ""
 
 
-def _bends(item: Item, _object_class: str, models: Sequence[str]) -> bool:
-    # Its own frequency, where it is recorded, says which of the two it is (see _holds).
-    return item.frequency_hz is not None and STRESS.name in models
+def _stands(_item: Item, _object_class: str, models: Sequence[str]) -> bool:
+    # Its frequency, recorded, stated or estimated, says which of the two it is (see _holds).
+    return "sliding" in models or STRESS.name in models
 
 
 _RANGES = {
@@ -171,6 +210,11 @@ _RANGES = {
 
 _LOOSE = "it is free to move instead"
 
+_BENDS = (
+    "Its base taken as held while it bends, its critical section reaches {demand} ({low} to {high}); {capacity} is "
+    "allowed."
+)
+
 _SENTENCE = "Held at its base, its critical section reaches {demand} ({low} to {high}); {capacity} is allowed."
 
 STRESS = Model(
@@ -178,7 +222,7 @@ STRESS = Model(
     title="Stress",
     kind="rigid",
     source="Agbabian et al. 1991, sec. 2.3",
-    equation="F = m A_max; sigma = M/S -/+ N/A",
+    equation="F = m A_max; sigma = K M/S -/+ N/A",
     needs=(*_SECTION, Quantity("amplification", "-", "of A_max", 0.0, optional=True, default=1.0)),
     gives=_STRESSES,
     directions=1,
@@ -207,12 +251,15 @@ FLEXIBLE_STRESS = Model(
     title="Dynamic stress",
     kind="flexible",
     source="Agbabian et al. 1991, sec. 2.5",
-    equation="sigma = M/S -/+ N/A under F = m PSA(f, zeta)",
-    needs=(*_SECTION, FREQUENCY, DAMPING),
+    equation="sigma = K M/S -/+ N/A under F = m PSA(f, zeta), the largest over the range of f",
+    needs=(*_SECTION, FREQUENCY, DAMPING, _HIGHEST),
     gives=(
         *_STRESSES,
         Quantity("pseudo_acceleration", "m/s2", "peak of the damped oscillator that takes A_max's place"),
+        Quantity("tension_least", "Pa", "least over the band of frequencies of what the tension is the largest of"),
     ),
+    searched={"frequency": "frequency_high"},
+    least="tension_least",
     directions=1,
     axes=_AXES,
     run=_run_flexible,
@@ -223,15 +270,14 @@ FLEXIBLE_STRESS = Model(
     demand="tension",
     capacity="allowable_stress",
     applies=lambda scene: _holds(scene, flexible=True),
-    sentence=_SENTENCE,
+    sentence=_BENDS,
     at_most=(
-        "Held at its base, its critical section reaches at most {demand} (at most {high}, its measures being "
-        "uncertain); {capacity} is allowed."
+        "Its base taken as held while it bends, its critical section reaches at most {demand} (at most {high}, its "
+        "measures being uncertain); {capacity} is allowed."
     ),
     fails="breaks",
     trials=Trials(ranges={**_RANGES, "frequency": (1.0, 16.0), "damping": (0.01, 0.05)}),
     listed="Table 1, Flexible: Stress, dynamic",
     supports=(Support.FASTENED, Support.ISOLATED),
-    joins=_bends,
-    unasked=_LOOSE,
+    joins=_stands,
 )

@@ -31,10 +31,14 @@ class Bounds:
         by 0 and 1.
     note : ndarray, shape (n,)
         Bit flags, see models.common.NOTES.
+    worst : mapping of str to ndarray
+        Of a model of one direction that is given two: output -> what it is at least, (n,), along the worst of all
+        directions, of which x is one.
     """
 
     outputs: Mapping[str, tuple[Array, Array]]
     note: Array
+    worst: Mapping[str, Array] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -241,6 +245,11 @@ class Model:
         along it.
     vertical : bool
         Whether the vertical shaking is so much of it that its findings say where a motion has none.
+    searched : mapping of str to str
+        Parameters over whose range the demand is not monotone -> the optional parameter that takes the upper end of the
+        range, the other then being the lower: the model searches the band between them.
+    least : str
+        Output that is the least over what is searched of what `demand` is the largest of; "" where nothing is.
     symmetric : callable
         parameters -> True when the response does not change with the sign of the motion.
     screen : callable, optional
@@ -314,6 +323,8 @@ class Model:
     axes: tuple[Mapping[str, str], ...] = ({}, {})
     across: bool = False
     vertical: bool = False
+    searched: Mapping[str, str] = field(default_factory=dict)
+    least: str = ""
     symmetric: Callable[[Mapping[str, Array]], bool] = lambda _: True
     screen: Callable[[Excitation, Mapping[str, Array]], Columns] | None = None
     say_screen: Callable[[Mapping[str, float], Mapping[str, float]], str] = lambda _row, _parameters: ""
@@ -343,6 +354,8 @@ class Model:
         named: tuple[tuple[str, Iterable[str], Sequence[str]], ...] = (
             ("demand", (self.demand,), made),
             ("errors", self.errors, made),
+            ("searched", (*self.searched, *self.searched.values()), known),
+            ("least", (self.least,) if self.least else (), made),
             ("axes", (name for axis in self.axes for name in axis), known),
             ("chart", () if self.chart is None else (self.chart.name, *self.chart.absent), known),
             ("trials.ranges", self.trials.ranges, known),
@@ -378,6 +391,21 @@ class Model:
             A key of what `run` returns.
         """
         return self.errors.get(output, "error")
+
+    def least_of(self, output: str) -> str:
+        """Return the name of the output that is the least of another one over what is searched.
+
+        Parameters
+        ----------
+        output : str
+            Its name.
+
+        Returns
+        -------
+        str
+            The same where nothing is searched.
+        """
+        return self.least if self.least and output == self.demand else output
 
     def output(self, name: str) -> Quantity:
         """Return the output of that name.

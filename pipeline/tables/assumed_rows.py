@@ -4,7 +4,7 @@ from collections.abc import Collection
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo, field_validator
+from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, ValidationInfo, field_validator
 
 from pipeline.errors import InputError
 from pipeline.records import Support
@@ -194,6 +194,11 @@ class Material(AssumedRow):
         The row of friction.csv whose friction it has; "" for any.
     density, tensile : float
         [kg/m3] and [Pa], with the ends of their ranges.
+    modulus : float or None
+        Young's modulus [Pa] of what is slender of it, with the ends of its range; None where a museum's row leaves it
+        to Kouros's.
+    ductile : bool or None
+        Whether it yields before it breaks; None as of the modulus.
     source : str
         Who says so.
     """
@@ -209,12 +214,20 @@ class Material(AssumedRow):
     tensile: Above0
     tensile_low: Above0
     tensile_high: Above0
+    # Museums have rows from before there were these columns.
+    modulus: Annotated[Optional, Field(gt=0.0)] = None
+    modulus_low: Annotated[Optional, Field(gt=0.0)] = None
+    modulus_high: Annotated[Optional, Field(gt=0.0)] = None
+    ductile: Annotated[YesNo | None, BeforeValidator(lambda cell: None if cell == "" else cell)] = None
     source: Text
 
-    @field_validator("density_high", "tensile_high")
+    @field_validator("density_high", "tensile_high", "modulus_high")
     @classmethod
-    def _in_order(cls, high: float, info: ValidationInfo) -> float | None:
+    def _in_order(cls, high: float | None, info: ValidationInfo) -> float | None:
         kind = (info.field_name or "").removesuffix("_high")
+        three = (info.data.get(f"{kind}_low"), info.data.get(kind), high)
+        if None in three and any(cell is not None for cell in three):
+            raise InputError(f"{kind}, {kind}_low and {kind}_high go together: fill all three, or none")
         return in_order(high, info, f"{kind}_low", kind)
 
     @property
@@ -235,8 +248,18 @@ class Material(AssumedRow):
     @cached_property
     def tensile_range(self) -> Range:
         """Stress that it bears [Pa]."""
-        source = f"{self.where} ({self.source})" if self.own else self.source
-        return Range(self.tensile, self.tensile_low, self.tensile_high, source)
+        return Range(self.tensile, self.tensile_low, self.tensile_high, self._said)
+
+    @cached_property
+    def modulus_range(self) -> Range | None:
+        """Young's modulus [Pa]; None where the row leaves it to Kouros's."""
+        if self.modulus is None or self.modulus_low is None or self.modulus_high is None:
+            return None
+        return Range(self.modulus, self.modulus_low, self.modulus_high, self._said)
+
+    @property
+    def _said(self) -> str:
+        return f"{self.where} ({self.source})" if self.own else self.source
 
 
 class PairRow(AssumedRow, RangeRow):

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from pipeline.analysis.classify import NO_MODEL, WHEN_HELD, classify, material_of, section_properties
+from pipeline.analysis.classify import NO_MODEL, WHEN_HELD, classify, material_of
 from pipeline.analysis.footing import bearing_of
 from pipeline.analysis.survey import measurable_of, measurables
 from pipeline.collection.mapping import load_mapping
@@ -71,7 +71,7 @@ def test_a_tall_marble_figure_is_checked_for_stress() -> None:
     )
     scene = classify(figure)
     assert scene.object_class == "standing_figure"
-    assert scene.models == ("standing", "sliding", "stress")
+    assert scene.models == ("standing", "sliding", "stress", "flexible_stress")
 
 
 HELD = {"mass_kg": 2.0, "section_width_m": 0.02, "base_width_m": 0.1, "base_depth_m": 0.1}
@@ -170,15 +170,6 @@ def test_every_range_of_class_and_material_travels_to_the_models(row: Row, mater
     assert [getattr(found["mass"], s) for s in ends] == pytest.approx(masses)
 
 
-def test_no_class_is_given_a_frequency_that_nobody_measured() -> None:
-    """No source gives the first frequency of a class of museum objects: flexible models wait for a measured one."""
-    assert not any("frequency" in column for column in table("classes")[0])
-    assert "frequency" not in classify(VASE).parameters
-    found = classify(replace(VASE, frequency_hz=8.0)).parameters
-    assert found["frequency"].value == 8.0
-    assert (found["damping"].low, found["damping"].high) == (0.01, 0.05)
-
-
 def test_what_the_museum_measured_wins_and_is_not_called_assumed() -> None:
     known = replace(
         VASE, support=Support.FREESTANDING, base_width_m=0.12, base_depth_m=0.10, cg_height_m=0.15, mass_kg=2.5,
@@ -238,27 +229,3 @@ def test_the_material_is_the_word_that_stands_first() -> None:
     assert material_of(replace(VASE, medium="bronze on a marble base")).name == "bronze"
     assert material_of(replace(VASE, medium="mixed media")).name == "unknown"
     assert material_of(replace(VASE, medium="oil on masonite")).name == "unknown"  # no "stone" inside a word
-
-
-@pytest.mark.parametrize(
-    ("shape", "width", "depth", "count", "wall", "area", "modulus"),
-    [
-        ("round", 0.1, 0.1, 1, 0.0, pi * 0.05**2, pi * 0.1**3 / 32),
-        ("round", 0.1, 0.1, 2, 0.0, 2 * pi * 0.05**2, 2 * pi * 0.1**3 / 32),
-        ("round", 0.1, 0.1, 1, 0.01, pi * (0.05**2 - 0.04**2), pi * (0.1**4 - 0.08**4) / (32 * 0.1)),
-        ("rectangle", 0.2, 0.1, 1, 0.0, 0.02, 0.2 * 0.1**2 / 6),
-        ("rectangle", 0.1, 0.2, 1, 0.0, 0.02, 0.2 * 0.1**2 / 6),
-        ("rectangle", 0.2, 0.1, 1, 0.01, 0.02 - 0.18 * 0.08, (0.2 * 0.1**3 - 0.18 * 0.08**3) / (6 * 0.1)),
-        ("ring", 0.01, 0.1, 1, 0.1, pi * (0.05**2 - 0.04**2), pi * (0.1**4 - 0.08**4) / (32 * 0.1)),
-    ],
-)
-def test_section_properties(
-    shape: str, width: float, depth: float, count: int, wall: float, area: float, modulus: float
-) -> None:
-    """Textbook: A and S of circle, tube, rectangle and box; the weaker axis counts; equal legs bend side by side."""
-    assert section_properties(shape, width, depth, count, wall) == pytest.approx((area, modulus), rel=1e-12)
-
-
-def test_an_unknown_section_is_refused() -> None:
-    with pytest.raises(ValueError, match="section_shape 'star' is not known"):
-        section_properties("star", 0.1, 0.1, 1, 0.0)

@@ -145,6 +145,10 @@ def test_ranges_of_everything_at_random(motions: tuple[Motion, ...], charts: Cha
         replace(BLOCK, support=Support.FASTENED, mass_kg=30.0, allowable_stress_pa=2e5, section_width_m=0.05),
         replace(BLOCK, support=Support.FASTENED, mass_kg=30.0, allowable_stress_pa=4e5, section_width_m=0.05,
                 frequency_hz=5.0),
+        # Its frequency is estimated, and searched.
+        replace(BLOCK, support=Support.FASTENED, mass_kg=30.0, allowable_stress_pa=3e8, section_width_m=0.012,
+                medium="bronze"),
+        replace(BLOCK, mass_kg=30.0, allowable_stress_pa=2e8, section_width_m=0.012, medium="glass"),
         replace(BLOCK, support=Support.ISOLATED, isolator="friction_isolator", friction=0.08),
         replace(PAINTING, damping=None, suspension_length_m=None),
     )  # fmt: skip

@@ -41,9 +41,12 @@ def rejected(advice: Recommendation) -> Sequence[str]:
 BLOCK = Item(
     "1", "G", title="Block", support=Support.FREESTANDING, height_m=0.2, width_m=0.6, depth_m=0.6, base_width_m=0.6,
     base_depth_m=0.6, cg_height_m=0.1, mass_kg=20.0, friction=0.1, clearance_m=0.02, section_shape="rectangle",
-    section_width_m=0.3, section_depth_m=0.3, allowable_stress_pa=5e6,
+    section_width_m=0.3, section_depth_m=0.3, allowable_stress_pa=5e6, medium="Bronze", frequency_hz=60.0,
 )  # fmt: skip
-"""A squat block that never rocks under the demonstration's motion and slides about 5 cm."""
+"""A squat block that never rocks under the demonstration's motion and slides about 5 cm.
+
+Of a metal that does not break where its base is held, and so stiff that it moves as one piece.
+"""
 
 TOWER = replace(BLOCK, title="Tower", height_m=1.0, width_m=0.2, depth_m=0.2, base_width_m=0.2, base_depth_m=0.2,
                 cg_height_m=0.5, friction=0.9, clearance_m=0.3, section_width_m=0.1, section_depth_m=0.1)  # fmt: skip

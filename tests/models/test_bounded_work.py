@@ -102,7 +102,7 @@ def work(answers: Queue[Any]) -> None:
             answers.put((what, "" if fair else repr(problem)))
             continue
         # A tension below zero is a compression.
-        plain = table.drop(columns=["tension", "low", "high"], errors="ignore")
+        plain = table.drop(columns=["tension", "tension_least", "low", "high"], errors="ignore")
         wrong = [complaint(model_named(name), row) for _, row in plain.iterrows()]
         lost = table["note"].str.contains("not followed").to_numpy()
         first = table[table.columns[0]].to_numpy()

@@ -253,5 +253,5 @@ def test_what_is_not_tried_on_an_object_says_so_and_no_more() -> None:
     (why,) = plan([scene]).skipped
     assert why["Stress"].startswith("not required: ")
     assert why["Stress"].endswith("; it is free to move instead")
-    assert {model.name for model in MODELS if model.unasked} == {"stress", "flexible_stress", "unhooking"}
+    assert {model.name for model in MODELS if model.unasked} == {"stress", "unhooking"}
     assert model_named("rocking").unasked == ""

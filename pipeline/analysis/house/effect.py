@@ -82,11 +82,9 @@ class HouseEffect:
 
     def laid_over(self, item: Item) -> Item:
         """Return a record with what is stated where it says nothing, as far as it decides which models are tried."""
-        held, frequency = self.stated.get("held"), self.stated.get("frequency_hz")
+        held = self.stated.get("held")
         if held is not None:
             item = replace(item, support=Support(str(held.value)))
-        if frequency is not None and isinstance(frequency.value, Span):
-            item = replace(item, frequency_hz=frequency.value.best)
         return item
 
     def hanging(self, item: Item) -> Hanging | None:

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from math import ceil, isfinite
 from typing import ClassVar
 
-from pipeline.analysis.classify import models_of
+from pipeline.analysis.classify import material_of, models_of
+from pipeline.analysis.flexibility import concentration
 from pipeline.analysis.hanging import OF_HANGING, hanging_estimates, hanging_of
 from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused
 from pipeline.mitigate.rows import MeasureRow
@@ -211,7 +212,13 @@ def with_parameters(scene: Scene, **found: Estimate) -> Scene:
 
 
 def held(scene: Scene) -> Scene:
-    """Return it held at its base: it neither rocks nor slides, and its critical section bears the push."""
+    """Return it held at its base: it neither rocks nor slides, and its critical section bears the push.
+
+    What concentrates the stress there counts from now on.
+    """
+    concentrated = concentration(scene.item, material_of(scene.item)) if knows_section(scene) else None
+    if concentrated is not None and scene.support is not Support.FASTENED:
+        scene = with_parameters(scene, concentration=concentrated)
     return replace(scene, support=Support.FASTENED, models=models_of(Support.FASTENED))
 
 

@@ -4,17 +4,20 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
-from math import inf, pi
+from math import inf, nan, pi
 from typing import ClassVar
 
+import numpy as np
+
 from pipeline.analysis.classify import material_of
-from pipeline.analysis.response import respond
+from pipeline.analysis.model_runs import run_model
 from pipeline.mitigate.fixing_rows import FixingStrength, fixing_strengths
 from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, held, knows_section
 from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models.stress import FLEXIBLE_STRESS, STRESS
-from pipeline.records import Check, Estimate, Finding, Item, Motion, Scene, Support
+from pipeline.records import Check, Estimate, Finding, Item, Scene, Support
+from pipeline.records.numerics import HISTORIES
 from pipeline.tables.assumed import AssumedValues
 
 HOLDS = ("force", "moment")
@@ -52,27 +55,44 @@ def force_and_moment(scene: Scene, runner: TrialRunner, findings: Sequence[Findi
     Agbabian et al. (1991), sec. 2.3.
     """
     bends = any(f.model == FLEXIBLE_STRESS.name for f in findings)
-    push = max(runner.push, _pseudo_acceleration(scene, runner)) if bends else runner.push
+    push = max(runner.push, _pseudo_acceleration(scene, runner)[1]) if bends else runner.push
     force = scene.parameters["mass"].high * push
     return {"force": (force, "N"), "moment": (force * scene.parameters["cg_height"].high, "N m")}
 
 
-def _pseudo_acceleration(scene: Scene, runner: TrialRunner) -> float:
-    """Return the largest that its oscillator feels [m/s2], in any direction, at all ends of what is uncertain."""
-    f, zeta = scene.parameters["frequency"], scene.parameters["damping"]
-    # Each of several fixings asks for it, and the fixing itself once more.
-    return runner.once(("pseudo_acceleration", f, zeta), lambda: _of_oscillator(f, zeta, runner))
+def _pseudo_acceleration(scene: Scene, runner: TrialRunner) -> tuple[float, float]:
+    """Return what its oscillator feels [m/s2], in the worst direction: by the best estimates, and at most."""
+    return _pseudo_accelerations([scene], runner)[0]
 
 
-def _of_oscillator(f: Estimate, zeta: Estimate, runner: TrialRunner) -> float:
-    ends = [(f.value, zeta.value), *product((f.low, f.high), (zeta.low, zeta.high))]
-    frequencies, dampings = [one for one, _ in ends], [other for _, other in ends]
+def _pseudo_accelerations(scenes: Sequence[Scene], runner: TrialRunner) -> list[tuple[float, float]]:
+    """Return the same of several; each oscillator is run once, together with the others that are new."""
+    keys = [(scene.parameters["frequency"], scene.parameters["damping"]) for scene in scenes]
+    known: dict[tuple[Estimate, Estimate], tuple[float, float]] = runner.once("pseudo-accelerations", dict)
+    fresh = [key for key in dict.fromkeys(keys) if key not in known]
+    if fresh:
+        sets = [one for f, zeta in fresh for one in _oscillators(f, zeta)]
+        values = {q.name: np.ones(len(sets)) for q in FLEXIBLE_STRESS.needs}
+        values |= zip(("frequency", "frequency_high", "damping"), np.transpose(sets), strict=True)
+        best, most = np.zeros(len(fresh)), np.zeros(len(fresh))
+        for level in runner.levels:
+            ran = (run_model(FLEXIBLE_STRESS, motion, values, HISTORIES, None)[0] for motion in level.motions)
+            felt = [columns["pseudo_acceleration"] for columns in ran]
+            best = np.maximum(best, level.over([one[::3] for one in felt]))
+            most = np.maximum(most, level.over([one.reshape(-1, 3).max(axis=1) for one in felt]))
+        known.update(zip(fresh, zip(best.tolist(), most.tolist(), strict=True), strict=True))
+    return [known[key] for key in keys]
 
-    def largest(motion: Motion) -> float:
-        rows = respond("oscillator", motion, angle=None, frequency=frequencies, damping=dampings)
-        return float(rows["pseudo_acceleration"].max())
 
-    return runner.largest(largest)
+def _oscillators(f: Estimate, zeta: Estimate) -> tuple[tuple[float, float, float], ...]:
+    """Return the best oscillator, and all that it may be at both ends of the damping: frequencies, and damping."""
+    low, high = (f.low, f.high) if f.low < f.high else (f.value, nan)
+    return (f.value, nan, zeta.value), (low, high, zeta.low), (low, high, zeta.high)
+
+
+def _bends(scene: Scene) -> bool:
+    """Say whether it is flexible where it is held."""
+    return bool(STRESS.applies(held(scene))) and not FLEXIBLE_STRESS.applies(held(scene))
 
 
 @dataclass(frozen=True)
@@ -104,13 +124,15 @@ class HoldingDemand:
         """
         p = scene.parameters
         mass, cg, half = p["mass"], p["cg_height"], p["half_width"]
-        bends = bool(STRESS.applies(held(scene))) and not FLEXIBLE_STRESS.applies(held(scene))
-        times = max(1.0, _pseudo_acceleration(scene, runner) / runner.push) if bends and runner.push > 0.0 else 1.0
+        push = worst = runner.push
+        if _bends(scene):
+            push, worst = (max(push, felt) for felt in _pseudo_acceleration(scene, runner))
+        times, most = (one / runner.push if runner.push > 0.0 else 1.0 for one in (push, worst))
         return cls(
-            mass.value * times * runner.push,
-            mass.high * times * runner.push,
+            mass.value * push,
+            mass.high * worst,
             mass.value * runner.tipping(times * cg.value, half.value),
-            mass.high * runner.tipping(times * cg.high, half.low),
+            mass.high * runner.tipping(most * cg.high, half.low),
         )
 
 
@@ -150,6 +172,11 @@ class Fixing(Measure, ABC):
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
         """Return it held at its base."""
         return held(scene)
+
+    def prepare(self, objects: Sequence[Deficiency], runner: TrialRunner) -> None:
+        """Find what all flexible ones feel together: one by one costs hundreds of times as much."""
+        free = [one.scene for one in objects if one.scene.support is Support.FREESTANDING and knows_section(one.scene)]
+        _pseudo_accelerations([scene for scene in free if _bends(scene)], runner)
 
     @property
     def strength(self) -> FixingStrength:

@@ -43,6 +43,10 @@ class Strengthen(Measure):
         powers = {"area": 2, **dict.fromkeys(MODULI, 3)}
         known = {name: power for name, power in powers.items() if name in scene.parameters}
         found = {name: _times(scene.parameters[name], times**power) for name, power in known.items()}
+        if "frequency" in scene.parameters:
+            # With the root of the second moment, the fourth power, if all that bends is made thicker; less if not.
+            f = scene.parameters["frequency"]
+            found["frequency"] = replace(f, high=max(f.high, times**2 * f.value), note="")
         return held(with_parameters(scene, **found))
 
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:

@@ -1,0 +1,144 @@
+r"""Largest and least pseudo-acceleration of an oscillator over a band of natural frequencies: searched, not sampled.
+
+A response spectrum is no monotone function of the frequency: its largest value over a band lies inside it as a rule.
+It is looked for on a grid that is finer than any peak of it can be narrow, the half-power width 2 zeta f of a resonance
+that lasts, and closer where it has an extremum.  The grid does not depend on the band, so that a spectrum is worked out
+once for all who ask: by decades of frequency, of each direction of shaking and damping.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from hashlib import blake2b
+
+import numpy as np
+
+from pipeline.models.oscillator import oscillate
+from pipeline.quantities import Array
+from pipeline.records import Excitation
+
+PER_WIDTH = 5.0
+"""Points of the grid in a half-power width: the one nearest to the peak of a resonance is 2 % below it at most."""
+
+WIDEST = 8e-3
+"""Largest step of the grid, relative: a spectrum of large damping has kinks all the same."""
+
+LEAST_DAMPING = 0.0025
+"""Ratio below which the grid becomes no finer: records of minutes do not tell narrower peaks apart."""
+
+HALVINGS = 2
+"""How often the steps beside an extremum are halved, each of which leaves a quarter of what was missed."""
+
+MISSED = 1e-2
+"""Share by which the largest value found may be below the true one: of 2,400 bands of a record none was by more."""
+
+LOWEST, HIGHEST = -2, 3
+"""Powers of ten between which the grid lies [Hz]: beyond 1 kHz an object feels the acceleration of its base."""
+
+_GRAIN = 2.0**30
+"""Steps to the peak in which shaking is told apart, so that what is only scaled has the same spectrum, scaled."""
+
+_KEPT = 4096
+"""Spectra of a decade that are remembered, of 10 kB as a rule."""
+
+
+@dataclass(frozen=True)
+class _Shaking:
+    """Shaking along one direction with a peak of 1, known by its contents."""
+
+    key: bytes
+    excitation: Excitation
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Shaking) and self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+
+def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array) -> tuple[Array, Array]:
+    """Return the least and the largest pseudo-acceleration over bands of natural frequencies.
+
+    Parameters
+    ----------
+    motion : Excitation
+        Its direction x; y is left aside.
+    low, high : ndarray, shape (n,)
+        Ends of each band [Hz].
+    zeta : ndarray, shape (n,)
+        Damping ratio [-].
+
+    Returns
+    -------
+    least, most : ndarray, shape (n,)
+        [m/s2].
+    """
+    peak = float(np.abs(motion.x).max(initial=0.0))
+    if peak == 0.0 or low.size == 0:
+        return np.zeros_like(low), np.zeros_like(low)
+    shaking = _shaking(motion, peak)
+    # Parameter sets differ in more than these: each band is searched once.
+    order = np.lexsort((zeta, high, low))
+    rows = np.column_stack([low, high, zeta])[order]
+    first = np.concatenate([[True], (rows[1:] != rows[:-1]).any(axis=1)])
+    place = np.empty(low.size, dtype=np.intp)
+    place[order] = np.cumsum(first) - 1
+    bands = rows[first]
+    least, most = np.full(bands.shape[0], np.inf), np.zeros(bands.shape[0])
+    begin, end = (np.clip(side, 10.0**LOWEST, 10.0**HIGHEST) for side in bands.T[:2])
+    for damping in np.unique(bands[:, 2]):
+        for decade in range(LOWEST, HIGHEST):
+            bottom, top = 10.0**decade, 10.0 ** (decade + 1)
+            chosen = np.flatnonzero((bands[:, 2] == damping) & (begin <= top) & (end >= bottom))
+            if chosen.size == 0:
+                continue
+            logs, values = _decade(shaking, float(damping), decade)
+            ends = np.log([np.maximum(begin[chosen], bottom), np.minimum(end[chosen], top)])
+            for fold, best in ((np.minimum, least), (np.maximum, most)):
+                best[chosen] = fold(best[chosen], _between(fold, logs, values, ends))
+    return peak * least[place], peak * most[place]
+
+
+def _between(fold: np.ufunc, logs: Array, values: Array, ends: Array) -> Array:
+    """Return the largest (or least) of a curve between pairs of ends (2, n), themselves included."""
+    out = fold(*np.interp(ends, logs, values))
+    first, last = np.searchsorted(logs, ends[0], side="left"), np.searchsorted(logs, ends[1], side="right")
+    inside = np.flatnonzero(first < last)
+    if inside.size:
+        # Every other one is what lies between a band and the next.
+        pairs = np.column_stack([first[inside], last[inside]]).reshape(-1)
+        out[inside] = fold(out[inside], fold.reduceat(values, pairs)[::2])
+    return np.asarray(out)
+
+
+def _shaking(motion: Excitation, peak: float) -> _Shaking:
+    grains = np.rint(motion.x / peak * _GRAIN)
+    digest = blake2b(np.array([motion.dt, -1.0 if motion.tail is None else motion.tail]).tobytes(), digest_size=16)
+    digest.update(grains.tobytes())
+    x = grains / _GRAIN
+    return _Shaking(digest.digest(), Excitation(motion.dt, x, None, np.zeros_like(x), motion.tail))
+
+
+@lru_cache(maxsize=_KEPT)
+def _decade(shaking: _Shaking, zeta: float, decade: int) -> tuple[Array, Array]:
+    """Return the natural logarithms of frequencies over a decade and a step beyond, and the spectrum there."""
+    whole = np.log(10.0)
+    steps = int(np.ceil(whole / min(WIDEST, 2.0 * max(zeta, LEAST_DAMPING) / PER_WIDTH)))
+    logs = decade * whole + np.arange(-1, steps + 2) * (whole / steps)
+
+    def spectrum(at: Array) -> Array:
+        w = 2.0 * np.pi * np.exp(at)
+        return np.asarray(w**2 * oscillate(shaking.excitation, w, np.full_like(w, zeta), np.ones_like(w))[0])
+
+    return _refined(spectrum, logs, spectrum(logs))
+
+
+def _refined(of: Callable[[Array], Array], logs: Array, values: Array) -> tuple[Array, Array]:
+    """Return a curve with the steps beside its extrema halved a few times."""
+    for _ in range(HALVINGS):
+        rise = np.diff(values)
+        turns = np.flatnonzero(rise[:-1] * rise[1:] <= 0.0) + 1
+        where = np.unique(np.concatenate([turns - 1, turns]))
+        fresh = 0.5 * (logs[where] + logs[where + 1])
+        logs, values = np.insert(logs, where + 1, fresh), np.insert(values, where + 1, of(fresh))
+    return logs, values

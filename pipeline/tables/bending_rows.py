@@ -1,0 +1,94 @@
+"""Rows of the tables of what bends: slender.csv, and bending.csv, whose numbers hold for all classes."""
+
+from collections.abc import Mapping
+from functools import cache
+from types import MappingProxyType
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from pipeline.errors import InputError
+from pipeline.tables import Range, table
+from pipeline.tables.rows import Number, RangeRow, TableRow, Text, checked, in_order, once
+
+
+class SlenderRow(TableRow):
+    """A row of slender.csv: how much of an object of a class is about as slender as its critical section.
+
+    Attributes
+    ----------
+    object_class : str
+        Row of classes.csv.
+    slender, slender_low, slender_high : float
+        Share of its height above that section [-].
+    source : str
+        Who says so.
+    """
+
+    object_class: Text = Field(alias="class")
+    slender: Number
+    slender_low: Number
+    slender_high: Number
+    source: Text
+
+    @field_validator("slender_high")
+    @classmethod
+    def _shares(cls, high: float, info: ValidationInfo) -> float | None:
+        low = info.data.get("slender_low")
+        if high > 1.0 or (low is not None and low <= 0.0):
+            raise InputError("is a share of the height: low must be above 0 and high at most 1")
+        return in_order(high, info, "slender_low", "slender")
+
+    @property
+    def range(self) -> Range:
+        """The share with its range."""
+        return Range(self.slender, self.slender_low, self.slender_high, f"slender.csv ({self.source})")
+
+
+class BendingRow(RangeRow):
+    """A row of bending.csv: a number that holds for whatever bends [-]."""
+
+    name: Text
+
+
+@cache
+def slender_shares() -> Mapping[str, Range]:
+    """Return how much of an object bends, by class; a class that bends in its joints or not at all has none.
+
+    Returns
+    -------
+    mapping of str to Range
+
+    Raises
+    ------
+    TableError
+        Naming the line of slender.csv.
+    """
+    rows = checked(SlenderRow, table("slender"), "slender.csv", named="class")
+    once((row.object_class for row in rows), "class", "slender.csv")
+    return MappingProxyType({row.object_class: row.range for row in rows})
+
+
+@cache
+def bending(name: str) -> Range:
+    """Return a number of bending.csv.
+
+    Parameters
+    ----------
+    name : str
+        "restraint", "damping" or "concentration".
+
+    Returns
+    -------
+    Range
+        [-].
+
+    Raises
+    ------
+    TableError
+        Naming the line of bending.csv.
+    KeyError
+        For another name.
+    """
+    rows = checked(BendingRow, table("bending"), "bending.csv", named="name")
+    once((row.name for row in rows), "name", "bending.csv")
+    return {row.name: row.range for row in rows}[name]
