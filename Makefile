@@ -35,7 +35,7 @@ lint: $(STAMP)
 
 # Offline; a broken link, a page that no table of contents names and an unreadable docstring are errors.
 docs: $(STAMP)  ## the documentation, in build/docs
-	$(BIN)/python -m docs.generate
+	$(BIN)/python -m docs.rooms
 	$(BIN)/python -m sphinx -W --keep-going -q -b html -d build/doctrees docs build/docs
 	@echo "build/docs/index.html"
 

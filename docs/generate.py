@@ -155,7 +155,7 @@ def exit_codes() -> str:
         numbers = [int(code) for code in re.findall(r"\d+", codes)]
         rows.append((codes, meaning, ", ".join(sorted(name for n in numbers for name in errors.pop(n, [])))))
     _agree(not errors, f"the command's help does not say what these exit codes mean: {errors}")
-    return "# Exit codes\n\n" + _table(("Code", "Meaning", "Errors"), rows)
+    return "# Exit codes\n\n" + markdown_table(("Code", "Meaning", "Errors"), rows)
 
 
 def _below(error: type[KourosError]) -> Iterable[type[KourosError]]:
@@ -181,14 +181,14 @@ def settings() -> str:
         part = _resolved(field, schema)
         if part.get("type") == "array":
             table = _resolved(part["items"], schema)
-            parts.append(f"## `[[{name}]]`\n\n{_plain(part['description'])}\n\n{_keys(table, schema)}")
+            parts.append(f"## `[[{name}]]`\n\n{plain(part['description'])}\n\n{_keys(table, schema)}")
             continue
-        parts.append(f"## `[{name}]`\n\n{_plain(part.get('description', ''))}")
+        parts.append(f"## `[{name}]`\n\n{plain(part.get('description', ''))}")
         parts += [_keys(part, schema, skip={"command", "webhook", "email"} if name == "hooks" else set())]
         if name == "hooks":
             for hook in ("command", "webhook", "email"):
                 table = _resolved(part["properties"][hook]["items"], schema)
-                parts.append(f"### `[[hooks.{hook}]]`\n\n{_plain(table['description'])}\n\n{_keys(table, schema)}")
+                parts.append(f"### `[[hooks.{hook}]]`\n\n{plain(table['description'])}\n\n{_keys(table, schema)}")
     return "\n\n".join(part for part in parts if part)
 
 
@@ -211,7 +211,9 @@ def manifest() -> str:
         for name, module in sorted(formats["obspy.plugin.waveform"].items())
     ]
     said = "Whatever obspy reads, and these, which Kouros adds to obspy as plugins:"
-    return "\n\n".join([*parts, f"## Formats of records\n\n{said}\n\n{_table(('Format', 'What it reads'), rows)}"])
+    return "\n\n".join(
+        [*parts, f"## Formats of records\n\n{said}\n\n{markdown_table(('Format', 'What it reads'), rows)}"]
+    )
 
 
 def experiment() -> str:
@@ -236,24 +238,24 @@ def mapping() -> str:
         one = next((kind for kind in field.get("anyOf", ()) if "$ref" in kind), field)
         table = _resolved(field["additionalProperties"] if name == "columns" else one, schema)
         place = "[columns.FIELD]" if name == "columns" else f"[{name}]"
-        parts.append(f"## `{place}`\n\n{_plain(table['description'])}\n\n{_keys(table, schema)}")
+        parts.append(f"## `{place}`\n\n{plain(table['description'])}\n\n{_keys(table, schema)}")
         for kind in table.get("oneOf", ()):
             own = _resolved(kind, schema)
             if "properties" in own and "description" in own:
-                said = _plain(own["description"].partition("\n")[0])
+                said = plain(own["description"].partition("\n")[0])
                 parts.append(f"### `{place}`: {said}\n\n{_keys(own, schema)}")
     parts.append("### Fields that may be mapped\n\n" + ", ".join(f"`{name}`" for name in MAPPABLE))
     rows = []
     for preset in sorted(PRESETS.glob("*.toml")):
         said = re.match(r"(?:# ?.*\n)+", preset.read_text(encoding="utf-8"))
         rows.append((f"`{preset.stem}`", " ".join(said[0].replace("#", "").split()) if said else ""))
-    return "\n\n".join([*parts, "## Presets\n\n" + _table(("Preset", "For"), rows)])
+    return "\n\n".join([*parts, "## Presets\n\n" + markdown_table(("Preset", "For"), rows)])
 
 
 def records() -> str:
     """Return the fields of an object record."""
     schema = _schema("item")
-    return f"# The object record\n\n{_plain(schema['description'])}\n\n{_keys(schema, schema)}"
+    return f"# The object record\n\n{plain(schema['description'])}\n\n{_keys(schema, schema)}"
 
 
 def exports() -> str:
@@ -270,8 +272,8 @@ def exports() -> str:
     for name, columns in {**tables, "reading": READING_COLUMNS}.items():
         own = described if name == "findings" else {}
         used |= set(columns) - set(own)
-        rows = [(f"`{c}`", _plain(own[c]["description"] if c in own else COLUMN_WORDS[c])) for c in columns]
-        parts.append(f"## {name}\n\n{_table(('Column', 'Meaning'), rows)}")
+        rows = [(f"`{c}`", plain(own[c]["description"] if c in own else COLUMN_WORDS[c])) for c in columns]
+        parts.append(f"## {name}\n\n{markdown_table(('Column', 'Meaning'), rows)}")
     _agree(used == set(COLUMN_WORDS), "a column is described that is not there")
     return "\n\n".join(parts)
 
@@ -287,7 +289,7 @@ def events() -> str:
     parts = ["# Summary, status, events\n\nDocuments in JSON; each has its JSON Schema in the folder `schemas`."]
     for name, title in {"run-summary": "summary.json", "status": "status.json", "event": "What a hook is told"}.items():
         schema = _schema(name)
-        parts.append(f"## {title}\n\n{_plain(schema['description'])}\n\n{_keys(schema, schema)}")
+        parts.append(f"## {title}\n\n{plain(schema['description'])}\n\n{_keys(schema, schema)}")
     return "\n\n".join(parts)
 
 
@@ -306,7 +308,7 @@ def _model(model: Model) -> str:
     offered = [("bound", model.bound), ("chart", model.chart), ("screen", model.screen)]
     facts = [
         f"**Name** `{model.name}` ({model.kind})",
-        f"**Source** {_plain(model.source)}",
+        f"**Source** {plain(model.source)}",
         f"**Demand and capacity** {demand}",
         "**Fidelities** " + ", ".join([*(name for name, has in offered if has), "history", "reference"]),
     ]
@@ -323,13 +325,13 @@ def supports() -> str:
 
 def _quantities(quantities: Iterable[Quantity], *, needed: bool) -> str:
     if not needed:
-        rows = [(f"`{q.name}`", q.unit, _plain(q.meaning)) for q in quantities]
-        return _table(("Gives", "Unit", "Meaning"), rows)
+        rows = [(f"`{q.name}`", q.unit, plain(q.meaning)) for q in quantities]
+        return markdown_table(("Gives", "Unit", "Meaning"), rows)
     said = []
     for q in quantities:
         needs = "yes" if not q.optional else "no" if q.default is None else f"no, {q.default:g}"
-        said.append((f"`{q.name}`", q.unit, needs, _plain(q.allowed()), _plain(q.meaning)))
-    return _table(("Needs", "Unit", "Required", "Allowed", "Meaning"), said)
+        said.append((f"`{q.name}`", q.unit, needs, plain(q.allowed()), plain(q.meaning)))
+    return markdown_table(("Needs", "Unit", "Required", "Allowed", "Meaning"), said)
 
 
 CONTRACTS = {
@@ -358,8 +360,8 @@ def tables() -> str:
     for file in sorted(TABLES.glob("*.csv")):
         with file.open(encoding="utf-8", newline="") as stream:
             header, *rows = csv.reader(stream)
-        cells = [[_plain(cell.replace("|", ", ")) for cell in row] for row in rows]
-        shown = _table(header, cells) if len(header) <= WIDE else "\n".join(_row(header, row) for row in cells)
+        cells = [[plain(cell.replace("|", ", ")) for cell in row] for row in rows]
+        shown = markdown_table(header, cells) if len(header) <= WIDE else "\n".join(_row(header, row) for row in cells)
         parts.append(f"## {file.name}\n\n{TABLE_WORDS[file.stem]}\n\n{shown}")
     return "\n\n".join(parts)
 
@@ -370,7 +372,7 @@ WIDE = 7
 
 def _row(header: Iterable[str], cells: Iterable[str]) -> str:
     (_, first), *others = zip(header, cells, strict=True)
-    return f"- **{first}**: " + "; ".join(f"*{_plain(name)}* {cell}" for name, cell in others if cell)
+    return f"- **{first}**: " + "; ".join(f"*{plain(name)}* {cell}" for name, cell in others if cell)
 
 
 # Markdown -------------------------------------------------------------------------------------------------------------
@@ -400,8 +402,8 @@ def _keys(table: Schema, schema: Schema, skip: Iterable[str] = ()) -> str:
         shown = _resolved(field, schema)
         default = "required" if key in table.get("required", ()) else _json(field.get("default"))
         words = field.get("description") or told.get(key) or shown.get("description", "").partition("\n")[0]
-        rows.append((f"`{key}`", _type(field, schema), default, _plain(words)))
-    return _table(("Key", "Type", "Default", "Meaning"), rows) if rows else ""
+        rows.append((f"`{key}`", _type(field, schema), default, plain(words)))
+    return markdown_table(("Key", "Type", "Default", "Meaning"), rows) if rows else ""
 
 
 def _json(value: object) -> str:
@@ -449,10 +451,10 @@ def _docstring_words(text: str) -> dict[str, str]:
 
 
 def _opening(table: Schema) -> str:
-    return _plain(str(table.get("description", "")).partition("\n\n")[0])
+    return plain(str(table.get("description", "")).partition("\n\n")[0])
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
     """Return a text on one line that Markdown takes as it stands, but for code between grave accents."""
     words = " ".join(str(text).replace("``", "`").split())
     parts = words.split("`")
@@ -468,40 +470,8 @@ def _block(text: str) -> str:
     return f"```text\n{text.strip()}\n```"
 
 
-def _table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+def markdown_table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     """Return a table of Markdown."""
     names = list(header)
     lines = ["| " + " | ".join(names) + " |", "|" + "---|" * len(names)]
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
-
-
-# What committed pages repeat of the code ------------------------------------------------------------------------------
-
-CONTRIBUTING = ROOT / "CONTRIBUTING.md"
-
-_ROOMS = re.compile(r"(?<=<!-- rooms: begin -->\n).*?(?=<!-- rooms: end -->)", re.S)
-
-
-def rooms(container: str) -> str:
-    """Return the rooms of a package, the top floor first, each in the words of its docstring."""
-    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
-        "contracts"
-    ]
-    floors = next(c["layers"] for c in contracts if c["type"] == "layers" and c["containers"] == [container])
-    rows = []
-    for floor in floors:
-        for room in re.split(r" [|:] ", floor):
-            said = inspect.getdoc(importlib.import_module(f"{container}.{room}")) or ""
-            rows.append((f"`{room}`", _plain(said.partition("\n\n")[0])))
-    return _table(("Room", "What it is"), rows) + "\n"
-
-
-def with_rooms(text: str) -> str:
-    """Return the text of CONTRIBUTING.md with its table of rooms as the code has it."""
-    analysis = "Inside the analysis, from findings down to the classes of objects:"
-    tables = f"{rooms('pipeline')}\n{analysis}\n\n{rooms('pipeline.analysis')}"
-    return _ROOMS.sub(lambda _: tables, text)
-
-
-if __name__ == "__main__":
-    CONTRIBUTING.write_text(with_rooms(CONTRIBUTING.read_text(encoding="utf-8")), encoding="utf-8")

@@ -17,6 +17,7 @@ import yaml
 
 import pipeline
 from docs import generate
+from docs.rooms import with_rooms
 from pipeline.cli import kouros
 from tests.docs.pages import DOCS, PAGES, PROMISED, ROOT, blocks, codes, links
 from tests.docs.runner import NOT_RUN, Reader, short_site, use_site
@@ -132,7 +133,7 @@ def test_every_dotted_name_leads_somewhere() -> None:
 def test_the_rooms_are_those_of_the_code() -> None:
     """`make docs` writes them."""
     text = generate.CONTRIBUTING.read_text(encoding="utf-8")
-    assert generate.with_rooms(text) == text
+    assert with_rooms(text) == text
     assert "| `kernels` |" in text
 
 
