@@ -12,7 +12,7 @@ from pipeline.cli.console import Console
 from pipeline.collection.database import open_database
 from pipeline.night.run import run
 from pipeline.operations.run_summary import Summary
-from pipeline.records import Item, RunRecord
+from pipeline.records import Furniture, Item, RunRecord
 from pipeline.resources import resource
 from pipeline.settings import KEPT, Settings, load_settings, template
 from pipeline.store.runs import load_run
@@ -21,7 +21,7 @@ from tests.warm import kouros_process
 
 SILENT = Console(quiet=True)
 VASE = Item("1", "G", title="Covered vase", classification="Ceramics", medium="porcelain",
-            height_m=0.4, width_m=0.2, depth_m=0.2)  # fmt: skip
+            height_m=0.4, width_m=0.2, depth_m=0.2, furniture=Furniture.FLOOR)  # fmt: skip
 PAINTING = Item("3", "G", title="Landscape", classification="paintings", height_m=1.0, width_m=1.2)
 COLUMNS = "object_number,gallery,title,height_m,width_m,depth_m"
 ROWS = ['1,"Gallery ""A"" <b>",<script>alert(1)</script>,1.2,0.2,0.2', "2,B,Plate,0.03,0.3,0.3", "3,B,Vase,,0.2,0.2"]

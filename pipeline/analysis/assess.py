@@ -4,10 +4,11 @@ import logging
 from collections.abc import MutableMapping, Sequence
 from time import perf_counter
 
+from pipeline.analysis.cases import Effort
 from pipeline.analysis.context import Context
 from pipeline.analysis.findings import findings
 from pipeline.analysis.plan import Plan, plan
-from pipeline.analysis.refinement import Effort, examine
+from pipeline.analysis.refinement import examine
 from pipeline.analysis.verdicts import Judgement, LevelMotions, capacity_of, judge
 from pipeline.records import Finding, Numerics, Scene
 from pipeline.records.numerics import AUTO, CHART, VERDICTS

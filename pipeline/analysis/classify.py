@@ -12,6 +12,7 @@ from math import pi
 
 from pipeline.analysis.flexibility import Body, concentration, estimated_frequency
 from pipeline.analysis.footing import base_extents, half_widths
+from pipeline.analysis.furniture import in_furniture
 from pipeline.analysis.hanging import HangingGuess, hanging_estimates, hanging_of, swings
 from pipeline.analysis.house.effect import NO_EFFECT, HouseEffect
 from pipeline.analysis.house.matching import HouseRules
@@ -339,8 +340,8 @@ def classify(
     row = values.classes[object_class]
     said = NO_EFFECT if house is None else house.effect(item, object_class, item.support or row.support)
     scene = _scene(item, row, words, values, said)
-    hanging = said.hanging(item) or scene.hanging
-    return replace(scene, hanging=hanging, furniture=said.furniture(item), statements=said.statements)
+    scene = replace(scene, hanging=said.hanging(item) or scene.hanging, statements=said.statements)
+    return in_furniture(scene, said, values)
 
 
 def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:

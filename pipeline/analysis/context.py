@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 from pipeline.analysis.response_charts import PROCESS_CHARTS, ChartCache
-from pipeline.analysis.response_charts.histories import Histories
+from pipeline.analysis.response_charts.histories import CommonHistories, Histories
 from pipeline.cache import Cache
 from pipeline.records import Executor, Progress, Silent
 
@@ -35,7 +35,7 @@ class Context:
 
 
 @contextmanager
-def remembered(cache: Cache | None, key: str) -> Iterator[Histories]:
+def remembered(cache: Cache | None, key: str, common: CommonHistories | None = None) -> Iterator[Histories]:
     """Lend the histories that are kept under a key, and keep there those that are used until the end.
 
     Parameters
@@ -44,12 +44,14 @@ def remembered(cache: Cache | None, key: str) -> Iterator[Histories]:
         That keeps them; None: nothing is kept, and only what is asked for twice is run once.
     key
         Of what is worked on together.
+    common
+        The histories of this process that others who work ask for too; None: each batch runs its own.
 
     Yields
     ------
     Histories
         For the `Context` of one batch of objects.  Nothing is kept where the work on it fails.
     """
-    histories = Histories(cache, key)
+    histories = Histories(cache, key, common)
     yield histories
     histories.keep()

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline import __version__
+from pipeline.analysis.cases import DemandCase, Known
 from pipeline.analysis.demands import Step
+from pipeline.analysis.furniture import OF_FURNITURE
 from pipeline.analysis.model_runs import run_model
 from pipeline.analysis.plan import Indices, Work
-from pipeline.analysis.refinement import DemandCase, FidelitySearch, Known
+from pipeline.analysis.refinement import FidelitySearch
 from pipeline.analysis.verdicts import LevelMotions, Mask, utilisation
 from pipeline.models.common import NO_VERTICAL, words
 from pipeline.quantities import Array
@@ -43,16 +45,18 @@ class _Numbers:
 
 def _numbers(search: FidelitySearch, case: DemandCase) -> _Numbers:
     level, spans = search.level, case.spans
-    points = [found.points(case.output) for found in search.found]
+    every = [found.points(case.output) for found in search.found]
+    points = every[: len(search.best)]
     demand = level.over([spans.best(high) for _, high in points])
     slack = _gap(level.over([spans.best(low) for low, _ in points]), demand)
     motion, row = search.governing(case)
     if level.combine == "max":
         # Under the other motions it may be less by more.
         slack = np.array([_gap(low[row], high[row]) for low, high in points])[motion, np.arange(row.size)]
+    # Over all variants of the furniture; the best estimates are those of the first.
     leasts = [found.points(search.work.model.least_of(case.output)) for found in search.found]
-    lows = [level.over([spans.lowest(side) for side in sides]) for sides in zip(*leasts, strict=True)]
-    highs = [level.over([spans.highest(side) for side in sides]) for sides in zip(*points, strict=True)]
+    lows = [np.min(search.each([spans.lowest(side) for side in sides]), axis=0) for sides in zip(*leasts, strict=True)]
+    highs = [np.max(search.each([spans.highest(side) for side in sides]), axis=0) for sides in zip(*every, strict=True)]
     return _Numbers(
         demand,
         lows[0],
@@ -103,11 +107,12 @@ def findings(search: FidelitySearch, case: DemandCase, known: Known, scenes: Seq
     for demand, low, high, used, at, row, at_most, slack, enclosed, index, step, verdict, capacity in zip(
         *lists, steps, verdicts, case.estimates, strict=True
     ):
-        scene, motion, said = scenes[index], level.motions[at], rows.said(row, at)
+        scene, motion, said = scenes[index], level.told[at], rows.said(row, at)
         other = model.otherwise(scene)
         bound = model.at_most if at_most or enclosed else ""
         sentence = other[2] if other else bound or model.sentence
-        marked = model.mark(said.parameters, demand)
+        # Charts are drawn of the motions of the floor.
+        marked = None if level.passed_on else model.mark(said.parameters, demand)
         out.append(
             Finding(
                 object_number=scene.item.object_number,
@@ -171,7 +176,7 @@ class _Rows:
         self._known: dict[tuple[int, int], _Said] = {}
         self._screens = [
             _screens(search.work, search.level, at, np.unique(numbers.row[numbers.motion == at]))
-            for at in range(len(search.found))
+            for at in range(len(search.best))
         ]
 
     def said(self, row: int, at: int) -> _Said:
@@ -223,6 +228,6 @@ def _screens(work: Work, level: LevelMotions, at: int, rows: Indices) -> tuple[I
 
 def _assumptions(scene: Scene, model: Model, capacity: Estimate) -> tuple[str, ...]:
     known = scene.parameters
-    used = [known[name] for name in model.inputs if name in known]
+    used = [known[name] for name in (*model.inputs, *OF_FURNITURE) if name in known]
     notes = [e.note for e in (*used, capacity) if e.origin is Origin.ASSUMED and e.note]
     return tuple(dict.fromkeys(notes))

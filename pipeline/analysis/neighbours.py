@@ -7,6 +7,8 @@ from itertools import product
 
 import numpy as np
 
+from pipeline.analysis.furnished import furnished
+from pipeline.analysis.furniture import filter_of
 from pipeline.analysis.plan import corners, own_angle
 from pipeline.analysis.response import trace
 from pipeline.analysis.verdicts import LevelMotions, judge
@@ -61,7 +63,9 @@ def neighbours(
     judged against the nearest one at least.  A gap that is as wide as both move at most together is decided by that
     bound; otherwise both are traced under the same motion and the largest closing along the line between their centres
     counts.  Outlines are compared along that line, so that a gap that stays open keeps them apart, as long as neither
-    turns.  What rocks, falls or breaks is not judged here.
+    turns.  What rocks, falls or breaks is not judged here.  How far each moves is found as its furniture shakes it.  Of
+    objects in furniture that shakes, those of one recorded case move under the same motion, whichever of its variants
+    that is; of others only the bound decides, as two showcases need not move alike.
     findings : of each scene; what moves is known from them
     returns  : in the order of the scenes, the nearest pairs first
     cost     : grows with the number of near pairs, not with that of all
@@ -156,10 +160,17 @@ def _judge(gallery: str, first: Place, second: Place, level: LevelMotions, shake
         who = " and ".join(place.scene.item.object_number for place in loose)
         why = f"only the sum of both is known: where {who} moves is not (orientation_deg, or it stands on an isolator)"
         return replace(known, verdict=Verdict.UNDETERMINED, note=why)
-    each = [_closing(first, second, direction, motion, level.x_azimuth, shaken) for motion in level.motions]
-    best, low, high, radial = (level.combined([one[i] for one in each]) for i in range(4))
+    furniture, other = filter_of(first.scene), filter_of(second.scene)
+    if furniture != other or (furniture is not None and not first.scene.item.case.strip()):
+        why = "only the sum of both is known: they may stand in two showcases, which need not move alike"
+        return replace(known, verdict=Verdict.UNDETERMINED, note=why)
+    level = furnished(level, furniture)
+    each = {motion.hash: _closing(first, second, direction, motion, level.x_azimuth, shaken) for motion in level.every}
+    combined = [[level.combined([each[m.hash][i] for m in some]) for i in range(4)] for some in level.variants]
+    best, radial = combined[0][0], combined[0][3]
+    low, high = min(one[1] for one in combined), max(one[2] for one in combined)
     judged = judge(best, low, high, Estimate.measured(gap, "m"))
-    governing = level.motions[int(np.argmax([one[0] for one in each]))]
+    governing = level.told[int(np.argmax([each[motion.hash][0] for motion in level.motions]))]
     return replace(
         known,
         needed=best,

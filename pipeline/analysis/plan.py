@@ -1,13 +1,14 @@
 """Scene -> which models, with which parameters, and why the others not; equal work only once."""
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.analysis.furniture import FurnitureFilter, filter_of
 from pipeline.analysis.verdicts import EAST, capacity_of
 from pipeline.models import MODELS
 from pipeline.quantities import Array
@@ -71,12 +72,13 @@ class Spans:
 
 @dataclass(frozen=True)
 class Work:
-    """All analyses of one model: parameter sets, and which of them each scene asked for.
+    """All analyses of one model in one kind of furniture: parameter sets, and which of them each scene asked for.
 
     values : by parameter, (k,) sets, each once for those that ask the same of it
     angles : (k,) degrees from x towards y along which each is shaken; NaN: in both directions, or the worst counts
     scenes : (m,) index of the scene of each analysis
     spans  : which sets each analysis looks at
+    furniture : what they all stand in; None: it does nothing to the shaking
     """
 
     model: Model
@@ -84,6 +86,7 @@ class Work:
     angles: Array
     scenes: Indices
     spans: Spans
+    furniture: FurnitureFilter | None = None
 
     @property
     def size(self) -> int:
@@ -128,7 +131,7 @@ def plan(scenes: Sequence[Scene], x_azimuth: float = EAST) -> Plan:
     x_azimuth : degrees clockwise from north of the x axis of the motions
     """
     reasons: dict[Hashable, tuple[tuple[int, ...], Mapping[str, str]]] = {}
-    chosen: list[list[int]] = [[] for _ in MODELS]
+    chosen: list[dict[FurnitureFilter | None, list[int]]] = [{} for _ in MODELS]
     skipped = []
     for index, scene in enumerate(scenes):
         key = _kind(scene)
@@ -136,9 +139,14 @@ def plan(scenes: Sequence[Scene], x_azimuth: float = EAST) -> Plan:
             reasons[key] = _choose(scene)
         models, why = reasons[key]
         skipped.append(why)
+        furniture = filter_of(scene)
         for model in models:
-            chosen[model].append(index)
-    work = (_gather(model, scenes, which, x_azimuth) for model, which in zip(MODELS, chosen, strict=True) if which)
+            chosen[model].setdefault(furniture, []).append(index)
+    work = (
+        replace(_gather(model, scenes, which, x_azimuth), furniture=furniture)
+        for model, groups in zip(MODELS, chosen, strict=True)
+        for furniture, which in groups.items()
+    )
     return Plan(tuple(work), tuple(skipped))
 
 

@@ -7,141 +7,35 @@ sets of analyses that are still open, and of those only the ones that the answer
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pipeline.analysis.cases import DemandCase, Effort, Known, together
 from pipeline.analysis.context import Context
 from pipeline.analysis.demands import Demands, Step, bounded, chart, integrate
-from pipeline.analysis.plan import Indices, Spans, Work
+from pipeline.analysis.furnished import feels_resonance, furnished
+from pipeline.analysis.plan import Indices, Work
 from pipeline.analysis.verdicts import LevelMotions, Mask, capacity_of, exceeds
 from pipeline.models.common import largest_push
 from pipeline.quantities import Array
-from pipeline.records import Estimate, Numerics, Scene
+from pipeline.records import Numerics, Scene
 from pipeline.records.numerics import AUTO, CHART
 
+_Ends = tuple[Array, Array, Array, Array]
 
-@dataclass(frozen=True)
-class DemandCase:
-    """The analyses of a work that one of the model's outputs counts for.
+_PASSING, _FAILING = "may_pass", "may_fail"
 
-    analyses : (m,) places in the work's list
-    spans    : their parameter sets
-    capacity : low, best, high, (m,) each
-    estimates: (m) of them, with where they come from
-    """
-
-    output: str
-    analyses: Indices
-    spans: Spans
-    capacity: tuple[Array, Array, Array]
-    estimates: Sequence[Estimate]
-
-    @classmethod
-    def of(cls, work: Work, output: str, analyses: Indices, capacities: Sequence[Estimate]) -> "DemandCase":
-        """Return the case of some analyses with their capacities.
-
-        Parameters
-        ----------
-        work
-            That the analyses belong to.
-        output
-            Of the work's model, that counts for them.
-        analyses
-            (m,) places in the work's list.
-        capacities
-            Of each of them, in the unit of the output.
-
-        Returns
-        -------
-        Case
-            With their parameter sets.
-        """
-        spans = work.spans if analyses.size == work.scenes.size else work.spans.take(analyses)
-        ends = tuple(np.array([getattr(c, end) for c in capacities]) for end in ("low", "value", "high"))
-        return cls(output, analyses, spans, (ends[0], ends[1], ends[2]), capacities)
-
-    def take(self, chosen: Indices) -> "DemandCase":
-        """Return a part of the analyses.
-
-        Parameters
-        ----------
-        chosen
-            (p,) places in the case.
-
-        Returns
-        -------
-        Case
-            Of these, in their order.
-        """
-        low, best, high = self.capacity
-        capacity = (low[chosen], best[chosen], high[chosen])
-        estimates = [self.estimates[at] for at in chosen]
-        return DemandCase(self.output, self.analyses[chosen], self.spans.take(chosen), capacity, estimates)
-
-
-@dataclass(frozen=True)
-class Known:
-    """What the intervals answer of each analysis, (m,) each."""
-
-    passes: Mask
-    may_pass: Mask
-    fails: Mask
-    may_fail: Mask
-
-    @property
-    def open(self) -> Mask:
-        """Whose verdict could still be another; undetermined is a verdict too."""
-        return np.asarray(~self.passes & ~self.fails & (self.may_pass | self.may_fail))
-
-
-@dataclass
-class Effort:
-    """What the verdicts of one model took.
-
-    analyses : objects times levels
-    decided  : of which by a certificate (a bound), a chart, histories
-    sets     : parameter sets times motions, each once however many objects share it
-    verdicts : how many of these were integrated because a verdict hung on them
-    numbers  : and because an advice or a report needs the number, or what the object does, although the verdict stood
-    needing  : analyses for which any history was run
-    """
-
-    analyses: int = 0
-    decided: list[int] = field(default_factory=lambda: [0, 0, 0])
-    sets: int = 0
-    verdicts: int = 0
-    numbers: int = 0
-    needing: int = 0
-
-    def plain(self) -> dict[str, int]:
-        """Return the counts by name."""
-        names = ("certificate", "chart", "history")
-        return {
-            "analyses": self.analyses,
-            **dict(zip(names, self.decided, strict=True)),
-            "needing_history": self.needing,
-            "sets": self.sets,
-            "histories_for_verdicts": self.verdicts,
-            "histories_for_numbers": self.numbers,
-        }
-
-    def add(self, other: "Effort") -> None:
-        """Add what another level or floor took."""
-        self.analyses += other.analyses
-        self.decided = [a + b for a, b in zip(self.decided, other.decided, strict=True)]
-        self.sets += other.sets
-        self.verdicts += other.verdicts
-        self.numbers += other.numbers
-        self.needing += other.needing
+_BOTH = frozenset({_PASSING, _FAILING})
 
 
 @dataclass
 class FidelitySearch:
-    """One work under the motions of one level.
+    """One work under the motions of one level, as each variant of its furniture passes them on.
 
-    found   : what is known under each motion
+    found   : what is known under each motion of every variant, those by the best estimates first
+    cells   : of each variant, the place in ``found`` of each motion of the level
     decided : of each analysis of the work, the step at which its verdict stood
     """
 
@@ -150,6 +44,7 @@ class FidelitySearch:
     context: Context
     numerics: Numerics
     found: list[Demands]
+    cells: tuple[tuple[int, ...], ...]
     decided: NDArray[np.int8]
     effort: Effort
 
@@ -180,10 +75,27 @@ class FidelitySearch:
         auto = numerics.fidelity == AUTO
         # The least over what a model searches is an output of its own.
         outputs = tuple(dict.fromkeys([*outputs, *map(work.model.least_of, outputs)]))
-        found = [bounded(work, motion, outputs, context.executor, whole=auto) for motion in level.motions]
+        # The best estimates keep their places, motion by motion; of the others each different one is looked at once.
+        every, places = list(level.motions), {motion.hash: at for at, motion in enumerate(level.motions)}
+        cells = [tuple(range(len(every)))]
+        for some in level.others:
+            for motion in some:
+                if places.setdefault(motion.hash, len(every)) == len(every):
+                    every.append(motion)
+            cells.append(tuple(places[motion.hash] for motion in some))
+        found = [bounded(work, motion, outputs, context.executor, whole=auto) for motion in every]
         effort = Effort(analyses=work.scenes.size, sets=work.size * len(found))
         decided = np.zeros(work.scenes.size, dtype=np.int8)
-        return cls(work, level, context, numerics, found, decided, effort)
+        return cls(work, level, context, numerics, found, tuple(cells), decided, effort)
+
+    @property
+    def best(self) -> list[Demands]:
+        """What is known under each motion of the level, as the best estimates of the furniture pass it on."""
+        return self.found[: len(self.level.motions)]
+
+    def each(self, columns: Sequence[Array]) -> list[Array]:
+        """Return the demands (m,) of the level under each variant, from those of each of ``found``."""
+        return [self.level.over([columns[at] for at in cells]) for cells in self.cells]
 
     def decide(self, case: DemandCase) -> Known:
         """Go on until the verdict of every analysis of the case stands.
@@ -226,8 +138,7 @@ class FidelitySearch:
             return
         part = case.take(chosen)
         if self.numerics.fidelity == AUTO:
-            self._up(Step.CHART, self._numbers(part))
-            self.effort.numbers += self._up(Step.HISTORY, self._numbers(part))
+            self._tell_range(part)
         model = self.work.model
         if model.exact and model.rests is not None and case.output == model.demand:
             governing, rows = self.governing(part)
@@ -238,7 +149,7 @@ class FidelitySearch:
             self.effort.numbers += self._up(Step.HISTORY, moving)
 
     def governing(self, case: DemandCase) -> tuple[Indices, Indices]:
-        """Return under which motion the best estimates of each analysis demand most.
+        """Return under which motion the best estimates of each analysis, and of its furniture, demand most.
 
         Parameters
         ----------
@@ -255,7 +166,7 @@ class FidelitySearch:
         bests = case.spans.rows[case.spans.starts]
         most = np.full(bests.shape[0], -np.inf)
         motion, row = np.zeros(bests.shape[0], dtype=np.intp), bests[:, 0].copy()
-        for at, found in enumerate(self.found):
+        for at, found in enumerate(self.best):
             high = found.points(case.output)[1]
             for side in bests.T:
                 larger = high[side] > most
@@ -294,78 +205,152 @@ class FidelitySearch:
         return list(zip(rows, self.found, strict=True))
 
     def _known(self, case: DemandCase) -> Known:
+        return together(self._known_each(case, [self._ends(case, found) for found in self.found]))
+
+    @staticmethod
+    def _ends(case: DemandCase, found: Demands) -> _Ends:
+        """Return, (m,) each, between what the highest demand of each analysis lies, and between what the lowest."""
+        spans, output = case.spans, case.output
+        least = found.work.model.least_of(output)
+        low, high = found.low, found.high
+        return (
+            spans.highest(low[output]), spans.highest(high[output]), spans.lowest(low[least]), spans.lowest(high[least]),
+        )  # fmt: skip
+
+    def _known_each(self, case: DemandCase, ends: Sequence[_Ends]) -> list[Known]:
+        """Return what is known under each variant, of the ends of the demands under each motion."""
         low, _, high = case.capacity
-        output, lowest = case.output, self.work.model.least_of(case.output)
-        spans, over, found = case.spans, self.level.over, self.found
-        return Known(
-            passes=~exceeds(over([spans.highest(one.high[output]) for one in found]), low),
-            may_pass=~exceeds(over([spans.highest(one.low[output]) for one in found]), low),
-            fails=exceeds(over([spans.lowest(one.low[lowest]) for one in found]), high),
-            may_fail=exceeds(over([spans.lowest(one.high[lowest]) for one in found]), high),
-        )
+        return [
+            Known(
+                passes=~exceeds(most_high, low),
+                may_pass=~exceeds(least_high, low),
+                fails=exceeds(least_low, high),
+                may_fail=exceeds(most_low, high),
+            )
+            for least_high, most_high, least_low, most_low in zip(*map(self.each, zip(*ends, strict=True)), strict=True)
+        ]
 
     def _look_up(self, case: DemandCase) -> None:
         """Look up in charts what the open verdicts hang on."""
-        known = self._known(case)
-        still = np.flatnonzero(known.open)
+        each = self._known_each(case, [self._ends(case, found) for found in self.found])
+        still = np.flatnonzero(together(each).open)
         if still.size:
-            part = case.take(still)
-            self._up(Step.CHART, [self._hanging(part, known, still, found) for found in self.found])
+            part, some = case.take(still), [one.take(still) for one in each]
+            self._up(Step.CHART, [self._hanging(part, some, at) for at in range(len(self.found))])
             self.decided[part.analyses] = Step.CHART
 
     def _integrate(self, case: DemandCase) -> None:
-        """Integrate what the open verdicts hang on, the strongest motions first: the others may not be needed."""
-        pushes = [largest_push(motion.excitation(None)) for motion in self.level.motions]
-        for at in np.argsort(np.negative(pushes), kind="stable"):
-            known = self._known(case)
-            still = np.flatnonzero(known.open)
+        """Integrate what the open verdicts hang on, in an order in which the last motions may not be needed."""
+        ends = [self._ends(case, found) for found in self.found]
+        each = self._known_each(case, ends)
+        for at, asked in self._order():
+            still = np.flatnonzero(together(each).open)
             if still.size == 0:
                 return
-            case = case.take(still)
-            rows = self._hanging(case, known, still, self.found[at])
-            self.effort.verdicts += self._up(Step.HISTORY, [rows if at == i else rows[:0] for i in range(len(pushes))])
+            if still.size < case.analyses.size:
+                case, each = case.take(still), [one.take(still) for one in each]
+                ends = [(a[still], b[still], c[still], d[still]) for a, b, c, d in ends]
+            rows = self._hanging(case, each, at, asked)
             self.decided[case.analyses] = Step.HISTORY
+            if rows.size:
+                self.effort.verdicts += self._up(Step.HISTORY, self._only(at, rows))
+                ends[at] = self._ends(case, self.found[at])
+                each = self._known_each(case, ends)
 
-    def _hanging(self, part: DemandCase, known: Known, chosen: Indices, found: Demands) -> Indices:
+    def _only(self, at: int, rows: Indices) -> list[Indices]:
+        """Return some rows under one motion, and none under the others."""
+        return [rows if at == other else rows[:0] for other in range(len(self.found))]
+
+    def _order(self) -> list[tuple[int, frozenset[str]]]:
+        """Return which motions are integrated one after the other, and which questions are asked of each.
+
+        The strongest come first.  Where furniture has variants, whether all pass is asked first, for which one that is
+        too strong is enough, and then whether all fail, for which one variant is enough whose motions are mild.
+        """
+        pushes = [largest_push(found.motion.excitation(None)) for found in self.found]
+        strongest = np.argsort(np.negative(pushes), kind="stable").tolist()
+        if len(self.cells) == 1:
+            return [(at, _BOTH) for at in strongest]
+        mild = sorted(self.cells, key=lambda cells: max(pushes[at] for at in cells))
+        mildest = dict.fromkeys(at for cells in mild for at in strongest if at in cells)
+        return [(at, frozenset({_PASSING})) for at in strongest] + [(at, frozenset({_FAILING})) for at in mildest]
+
+    def _hanging(self, part: DemandCase, each: Sequence[Known], at: int, asked: frozenset[str] = _BOTH) -> Indices:
         """Return the rows of open analyses that their verdicts hang on under a motion."""
-        rows, spread = part.spans.rows, part.spans.spread
-        lowest = self.work.model.least_of(part.output)
+        rows, lengths = part.spans.rows, part.spans.lengths
+        found, lowest = self.found[at], self.work.model.least_of(part.output)
+        known = together(each)
+        here = [one for one, cells in zip(each, self.cells, strict=True) if at in cells]
+        # A variant that is known to pass, or to fail, has nothing more to say to that.
+        passing = known.may_pass & ~np.logical_and.reduce([one.passes for one in here]) & (_PASSING in asked)
+        failing = known.may_fail & ~np.logical_and.reduce([one.fails for one in here]) & (_FAILING in asked)
         if self.level.combine == "mean":
-            needed = found.low[part.output][rows] < found.high[part.output][rows]
+            open_ = found.low[part.output][rows] < found.high[part.output][rows]
+            needed = open_ & np.repeat(passing | failing, lengths)[:, None]
         else:
             # Of a maximum only this counts: on which side of the capacity's ends each demand lies.
             needed = np.zeros(rows.shape, dtype=bool)
-            ends = ((part.output, known.may_pass, part.capacity[0]), (lowest, known.may_fail, part.capacity[2]))
-            for output, asked, capacity in ends:
+            ends = ((part.output, passing, part.capacity[0]), (lowest, failing, part.capacity[2]))
+            for output, wanted, capacity in ends:
                 low, high = found.low[output], found.high[output]
-                limit = spread(capacity)[:, None]
+                limit = part.spans.spread(capacity)[:, None]
                 straddles = (low[rows] <= limit) & (high[rows] > limit)
-                needed |= straddles & np.repeat(asked[chosen], part.spans.lengths)[:, None]
+                needed |= straddles & np.repeat(wanted, lengths)[:, None]
         return np.unique(rows[needed])
 
     def _unknown(self, case: DemandCase, found: Demands) -> Indices:
         rows = np.unique(case.spans.rows)
         return rows[found.low[case.output][rows] < found.high[case.output][rows]]
 
-    def _numbers(self, part: DemandCase) -> list[Indices]:
-        """Return the rows that may have a say in the range of the demand, and are no better known than by a bound."""
-        output, spans = part.output, part.spans
-        least, mean = self.work.model.least_of(output), self.level.combine == "mean"
-        # Of a maximum, what lies below the lowest that it can be under any one motion is never heard of.
-        lowest = np.max([spans.lowest(found.low[least]) for found in self.found], axis=0)
-        out = []
-        for found in self.found:
-            low, high = found.low[output], found.high[output]
-            heard = mean | (high[spans.rows] > spans.spread(lowest)[:, None])
-            rows = np.unique(spans.rows[heard])
-            out.append(rows[(found.step[rows] == Step.BOUND) & (low[rows] < high[rows])])
-        return out
+    def _tell_range(self, part: DemandCase) -> None:
+        """Find the range of the demand, first by charts, then by histories of what may still have a say in it.
+
+        Where furniture has variants, the best estimates come first, then the bare floor, under which the demand is
+        mostly the least, then the strongest: most of the others are known then to lie in between.
+        """
+        every = range(len(self.found))
+        ends = [self._ends(part, found) for found in self.found]
+        self._up(Step.CHART, [self._heard(part, ends, at) for at in every])
+        for at in every:
+            ends[at] = self._ends(part, self.found[at])
+        if len(self.cells) == 1:
+            self.effort.numbers += self._up(Step.HISTORY, [self._heard(part, ends, at) for at in every])
+            return
+        strongest = (at for at, asked in self._order() if _PASSING in asked)
+        for at in dict.fromkeys((*self.cells[0], *self.cells[-1], *strongest)):
+            rows = self._heard(part, ends, at)
+            if rows.size:
+                self.effort.numbers += self._up(Step.HISTORY, self._only(at, rows))
+                ends[at] = self._ends(part, self.found[at])
+
+    def _heard(self, part: DemandCase, ends: Sequence[_Ends], at: int) -> Indices:
+        """Return the rows that may have a say in the range under a motion, and are no better known than by a bound."""
+        found, spans = self.found[at], part.spans
+        low, high = found.low[part.output], found.high[part.output]
+        least_high, most_high, least_low, most_low = map(self.each, zip(*ends, strict=True))
+        top, bottom = np.max(least_high, axis=0), np.min(most_low, axis=0)
+        heard = np.zeros(spans.rows.shape, dtype=bool)
+        for variant, cells in enumerate(self.cells):
+            if at not in cells:
+                continue
+            # Of a maximum, what lies below the lowest that it can be under any one motion is never heard of.
+            lowest = np.max([ends[cell][2] for cell in cells], axis=0)
+            # A variant is heard of where the demand under it may be the lowest of all, or the highest.
+            least, most = (least_low[variant] < bottom) | (variant == 0), most_high[variant] > top
+            limit = spans.spread(np.where(least, lowest, np.where(most, np.maximum(lowest, top), np.inf)))[:, None]
+            heard |= np.isfinite(limit) if self.level.combine == "mean" else high[spans.rows] > limit
+        rows = np.unique(spans.rows[heard])
+        return np.asarray(rows[(found.step[rows] == Step.BOUND) & (low[rows] < high[rows])])
 
     def _up(self, step: Step, rows: Sequence[Indices]) -> int:
         """Take rows under each motion to a step; return how many were integrated."""
         fresh = [(r[f.step[r] < step], f) for r, f in self._with(rows)]
         if step is Step.CHART:
             charts = self.context.charts
+            if self.level.passed_on and self.numerics.fidelity == AUTO:
+                # Charts of all that furniture may pass on would be dearer than the few histories that are asked for.
+                site = {motion.hash for motion in self.level.told}
+                fresh = [(rows, found) for rows, found in fresh if found.motion.hash in site]
             self.context.executor.map(lambda one: chart(one[1], one[0], charts, self.numerics), fresh)
             return 0
         return sum(integrate(found, some, self.context, self.numerics) for some, found in fresh)
@@ -398,7 +383,7 @@ def examine(
     scenes
         Those that the work refers to.
     level
-        The motions.
+        The motions of the floor, or of what stands on it; the furniture that the work is in passes the former on.
     context
         Where it runs, and what was computed before.
     numerics
@@ -417,7 +402,8 @@ def examine(
     outputs: dict[str, list[int]] = {}
     for at, (output, _) in enumerate(capacities):
         outputs.setdefault(output, []).append(at)
-    search = FidelitySearch.begin(work, level, tuple(outputs), context, numerics)
+    felt = furnished(level, work.furniture, resonant=feels_resonance(work.model))
+    search = FidelitySearch.begin(work, felt, tuple(outputs), context, numerics)
     watch(search)
     cases = []
     for output, members in outputs.items():

@@ -1,7 +1,9 @@
 """A demand against a capacity, both with their ranges: pass, fail or undetermined."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +22,50 @@ class LevelMotions:
     """The motions of one level of the site, and how their demands are combined ("max" or "mean").
 
     x_azimuth : degrees clockwise from north of their x axis
+    others    : where something that is uncertain passes them on, the same motions as its other variants do; ``motions``
+                are those by its best estimates then
+    site      : those of the floor, where something passes them on; findings are of these, whatever passes them on
     """
 
     name: str
     combine: str
     motions: tuple[Motion, ...]
     x_azimuth: float = EAST
+    others: tuple[tuple[Motion, ...], ...] = ()
+    site: tuple[Motion, ...] = ()
+
+    @property
+    def passed_on(self) -> bool:
+        """Whether something stands between the floor and what feels these motions."""
+        return bool(self.site)
+
+    @property
+    def told(self) -> tuple[Motion, ...]:
+        """The motions that findings are of, in the order of ``motions``."""
+        return self.site or self.motions
+
+    @property
+    def variants(self) -> tuple[tuple[Motion, ...], ...]:
+        """The motions under each variant of what passes them on, the best estimates first."""
+        return (self.motions, *self.others)
+
+    @property
+    def every(self) -> tuple[Motion, ...]:
+        """The motions under all variants, each once."""
+        return tuple({motion.hash: motion for some in self.variants for motion in some}.values())
+
+    def through(self, passed: Callable[[Motion], Sequence[Motion]]) -> LevelMotions:
+        """Return the level as it is passed on.
+
+        passed : a motion -> the same as each variant passes it on, the best estimates first; always as many
+        """
+        each = [[passed(motion) for motion in some] for some in self.variants]
+        variants = [tuple(made[at] for made in some) for some in each for at in range(len(some[0]))]
+        return replace(self, motions=variants[0], others=tuple(variants[1:]), site=self.told)
+
+    def worst(self, of: Callable[[Motion], float]) -> float:
+        """Return the largest over the variants of what is combined from the motions of each."""
+        return max(self.combined([of(motion) for motion in some]) for some in self.variants)
 
     def combined(self, each: Sequence[float] | Array) -> float:
         """Return the demand of the level from that under each of its motions."""

@@ -9,6 +9,8 @@ from typing import Any
 
 from pipeline.analysis.assess import LevelMotions, assess
 from pipeline.analysis.context import Context
+from pipeline.analysis.furnished import furnished
+from pipeline.analysis.furniture import FurnitureFilter, filter_of
 from pipeline.analysis.transmission import transmit
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures.base import held
@@ -124,7 +126,7 @@ def assess_above(
     ----------
     objects : sequence of Placed
     levels : sequence of LevelMotions
-        The shaking of the floor.
+        The shaking of the floor; an isolator stands in the furniture of its object, which passes that on to it.
     context : Context
         Where models are run.
     numerics : Numerics
@@ -137,18 +139,18 @@ def assess_above(
         finding names the motion of the site, and lies on no chart: those are drawn for that motion itself.
     """
     out: list[tuple[list[Finding], Mapping[str, str]]] = [([], {}) for _ in objects]
-    groups: dict[Transfer, list[tuple[int, Scene]]] = {}
+    groups: dict[tuple[Transfer, FurnitureFilter | None], list[tuple[int, Scene]]] = {}
     for index, one in enumerate(objects):
         if one.above is not None:
-            groups.setdefault(one.passing(), []).append((index, one.above))
-    for transfer, members in groups.items():
-        passed = [_passed(level, transfer) for level in levels]
+            groups.setdefault((one.passing(), filter_of(one.scene)), []).append((index, one.above))
+    for (transfer, furniture), members in groups.items():
+        passed = [_passed(furnished(level, furniture), transfer) for level in levels]
         for index, above in members:
             found: list[Finding] = []
             skipped: dict[str, str] = {}
             for scene, under in _shaken(above, transfer[0], levels, passed):
                 plan, judged = assess([scene], under, context, numerics)
-                found += [_of_site(finding, levels, under) for finding in judged[0]]
+                found += judged[0] if under is levels else [_told_above(finding) for finding in judged[0]]
                 skipped |= plan.skipped[0]
             out[index] = found, skipped
     return out
@@ -157,7 +159,7 @@ def assess_above(
 def _passed(level: LevelMotions, transfer: Transfer) -> LevelMotions:
     kind, parameters = transfer
     given: dict[str, Any] = dict(parameters)
-    return replace(level, motions=tuple(transmit(kind, motion, **given) for motion in level.motions))
+    return level.through(lambda motion: (transmit(kind, motion, **given),))
 
 
 def _shaken(
@@ -173,14 +175,5 @@ def _shaken(
     return [(scene, under) for scene, under in both if scene.models]
 
 
-def _of_site(finding: Finding, ground: Sequence[LevelMotions], under: Sequence[LevelMotions]) -> Finding:
-    if under is ground:
-        return finding
-    pairs = (
-        (p.hash, g)
-        for one, other in zip(under, ground, strict=True)
-        for p, g in zip(one.motions, other.motions, strict=True)
-    )
-    motion = dict(pairs)[finding.motion_hash]
-    note = f"{finding.note}; {ON_TOP}" if finding.note else ON_TOP
-    return replace(finding, motion=motion.name, motion_hash=motion.hash, mark=None, note=note)
+def _told_above(finding: Finding) -> Finding:
+    return replace(finding, note=f"{finding.note}; {ON_TOP}" if finding.note else ON_TOP)

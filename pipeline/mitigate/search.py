@@ -1,11 +1,13 @@
 """The search for what helps: the least intrusive measure that passes when the models of the object are run again."""
 
 import re
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 from pipeline.analysis.context import Context
 from pipeline.analysis.figures import chart_key
+from pipeline.analysis.furniture import FurnitureFilter, filter_of
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures import Measure
@@ -59,7 +61,8 @@ def advise(
     findings : sequence of sequence of Finding
         Of each scene, under these levels.
     levels : sequence of LevelMotions
-        Levels of shaking, with the motions that the findings were made under.
+        Levels of shaking of the floor, with the motions that the findings were made under.  Measures are tried under
+        what the furniture of each object passes on: an isolator stands in it.
     context : Context
         Where trials are run, and who is told how far they are.
     numerics : Numerics, optional
@@ -77,18 +80,47 @@ def advise(
     have = catalogue or own_catalogue()
     transmitted = transmitted or TransmittedMotions()
     unassessed = _unassessed(scenes, findings)
+    groups: dict[FurnitureFilter | None, list[int]] = {}
+    for index, scene in enumerate(scenes):
+        groups.setdefault(filter_of(scene), []).append(index)
+    out: list[list[Recommendation]] = [[] for _ in scenes]
+    for furniture, members in groups.items():
+        some, found = [scenes[index] for index in members], [findings[index] for index in members]
+        runner = partial(
+            TrialRunner,
+            isolators=have.isolators,
+            context=context,
+            numerics=numerics,
+            transmitted=transmitted,
+            values=have.values,
+            furniture=furniture,
+        )
+        for index, one in zip(members, _advised(some, found, levels, have, runner, unassessed), strict=True):
+            out[index] = one
+    return out
+
+
+def _advised(
+    scenes: Sequence[Scene],
+    findings: Sequence[Sequence[Finding]],
+    levels: Sequence[LevelMotions],
+    have: MeasureCatalogue,
+    runner_of: Callable[[Sequence[LevelMotions]], TrialRunner],
+    unassessed: Mapping[Case, tuple[str, ...]],
+) -> list[list[Recommendation]]:
+    """Return what is recommended for scenes that all stand in the same furniture."""
     rounds = [tuple(levels), *((level,) for level in levels if len(levels) > 1)]
     advised: dict[tuple[int, str], Recommendation] = {}
     for at, some in enumerate(rounds):
         # What holds at all levels stands; the others are looked at level by level.
         stands = {key for key, found in advised.items() if found.measure not in LAST_RESORTS}
-        runner = TrialRunner(some, have.isolators, context, numerics, transmitted, have.values)
+        runner = runner_of(some)
         search = _Search(runner, _deficiencies(scenes, findings, some, stands), unassessed)
         for done, measure in enumerate(have.measures, start=1):
             if measure.isolator or measure.last_resort:
                 search.settles()
             search.tries(measure)
-            context.progress.step("recommendations", at * len(have.measures) + done, len(rounds) * len(have.measures))
+            runner.progress.step("recommendations", at * len(have.measures) + done, len(rounds) * len(have.measures))
         alone = len(some) < len(levels)
         advised |= {key: _alone(found) if alone else found for key, found in search.recommended.items()}
     return [
@@ -299,8 +331,9 @@ class _Search:
     def _mark(self, candidate: Candidate, ran: Sequence[Finding], title: str, level: str) -> Mark | None:
         if level in candidate.marks:
             kind, x, y = candidate.marks[level]
-            motions = next(one.motions for one in self.runner.levels if one.name == level)
-            return Mark(chart_key(kind, motions[0]), x, y, title)
+            shaking = next(one for one in self.runner.levels if one.name == level)
+            # Charts are drawn of the motions of the floor.
+            return None if shaking.passed_on else Mark(chart_key(kind, shaking.motions[0]), x, y, title)
         marks = [f.mark for f in ran if f.model == candidate.mark_of and f.mark is not None]
         return replace(marks[0], label=title) if marks else None
 

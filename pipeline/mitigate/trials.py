@@ -1,7 +1,7 @@
 """Trials of measures: the models of changed scenes run again, and what all scenes under the same shaking share."""
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from math import isinf
 from typing import Any, TypeVar
@@ -11,15 +11,18 @@ import numpy as np
 from pipeline.analysis.assess import assess
 from pipeline.analysis.context import Context
 from pipeline.analysis.fragility.curve import ENOUGH, stated
+from pipeline.analysis.furnished import furnished, isolating
+from pipeline.analysis.furniture import FurnitureFilter
 from pipeline.analysis.model_runs import prepare
 from pipeline.analysis.response import answer
 from pipeline.analysis.transmission import transmit
 from pipeline.analysis.verdicts import LevelMotions, capacity_of
+from pipeline.mitigate.hull import corners_of
 from pipeline.mitigate.rows import Isolator
 from pipeline.models import model_named
 from pipeline.models.common import largest_push, lift_ratios
 from pipeline.quantities import Array, G
-from pipeline.records import Check, Finding, Motion, Numerics, Scene, Verdict
+from pipeline.records import Check, Finding, Motion, Numerics, Progress, Scene, Verdict
 from pipeline.records.numerics import CHART
 from pipeline.tables.assumed import AssumedValues, assumed
 
@@ -102,7 +105,7 @@ Bodies = tuple[tuple[float, float], ...]
 
 
 class SharedLevel:
-    """What a level of shaking is to all objects on the same floor, each worked out once."""
+    """What a level of shaking is to all objects on the same floor, in the same furniture, each worked out once."""
 
     def __init__(self, level: LevelMotions) -> None:
         self.level = level
@@ -111,20 +114,25 @@ class SharedLevel:
     @cached_property
     def push(self) -> float:
         """A_max [m/s2], resultant."""
-        return self.level.combined([largest_push(m.excitation(None)) for m in self.level.motions])
+        return self.level.worst(lambda motion: largest_push(motion.excitation(None)))
 
     @cached_property
     def lift(self) -> float:
         """The largest |a_h| / N: what an object's slope b/h is held against."""
-        return self.level.combined([max(lift_ratios(m.excitation(None))) for m in self.level.motions])
+        return self.level.worst(lambda motion: max(lift_ratios(motion.excitation(None))))
 
     @cached_property
-    def hardest(self) -> Sequence[tuple[Array, Array]]:
-        """|a_h| and N [m/s2] at the samples that may lift an edge, (k,) each, of what the level is combined from."""
-        each = [(np.hypot(*m.acceleration[:2]), np.maximum(0.0, G + m.acceleration[2])) for m in self.level.motions]
+    def hardest(self) -> Sequence[Sequence[tuple[Array, Array]]]:
+        """|a_h| and N [m/s2] at the samples that may lift an edge, (k,) each, of what the level is combined from.
+
+        Of each variant of the furniture; one takes the place of all where the largest counts.
+        """
+        felt = {
+            m.hash: (np.hypot(*m.acceleration[:2]), np.maximum(0.0, G + m.acceleration[2])) for m in self.level.every
+        }
         if self.level.combine == "mean":
-            return [_hardest(*one) for one in each]
-        return [_hardest(*(np.concatenate(part) for part in zip(*each, strict=True)))]
+            return [[corners_of(*felt[motion.hash]) for motion in some] for some in self.level.variants]
+        return [[corners_of(*(np.concatenate(part) for part in zip(*felt.values(), strict=True)))]]
 
 
 class TransmittedMotions:
@@ -135,7 +143,8 @@ class TransmittedMotions:
 
     def of(self, level: LevelMotions) -> SharedLevel:
         """Return what is known of a level so far."""
-        key = (level.name, level.combine, level.x_azimuth, tuple(motion.hash for motion in level.motions))
+        hashes = tuple(tuple(motion.hash for motion in some) for some in level.variants)
+        key = (level.name, level.combine, level.x_azimuth, hashes)
         return self._shared.setdefault(key, SharedLevel(level))
 
 
@@ -148,7 +157,7 @@ class TrialRunner:
     Parameters
     ----------
     levels : sequence of LevelMotions
-        Levels of shaking, with their motions.
+        Levels of shaking of the floor, with their motions.
     isolators : sequence of Isolator
         The catalogue of isolators that there are.
     context : Context
@@ -159,6 +168,8 @@ class TrialRunner:
         What isolators pass on, kept from one runner to the next.
     values : AssumedValues, optional
         What is assumed of materials and surfaces; Kouros's own tables where it is left out.
+    furniture : FurnitureFilter, optional
+        What all objects that measures are tried for stand in: ``levels`` is what it passes on.
     """
 
     def __init__(
@@ -169,23 +180,31 @@ class TrialRunner:
         numerics: Numerics,
         transmitted: TransmittedMotions | None = None,
         values: AssumedValues | None = None,
+        furniture: FurnitureFilter | None = None,
     ) -> None:
         self.values = values or assumed()
-        self.levels, self._isolators = tuple(levels), tuple(isolators)
+        self._floor, self._isolators = tuple(levels), tuple(isolators)
+        self.levels = tuple(furnished(level, furniture) for level in levels)
         self._context, self._numerics = context, numerics
         transmitted = transmitted or TransmittedMotions()
         self._shared = [transmitted.of(level) for level in self.levels]
+        self._isolating = [transmitted.of(isolating(level, furniture)) for level in levels]
         self._isolated: dict[Isolator, IsolatorResponse] = {}
         self._on_pads: dict[tuple[Isolator, Bodies], tuple[float, float]] = {}
         self._made: dict[Hashable, Any] = {}
+
+    @property
+    def progress(self) -> Progress:
+        """Who is told how far the trials are."""
+        return self._context.progress
 
     def catalogue(self, kind: str) -> list[Isolator]:
         """Return the isolators of a kind that there are, in the order of their table."""
         return [isolator for isolator in self._isolators if isolator.kind == kind]
 
     def largest(self, of: Callable[[Motion], float]) -> float:
-        """Return the largest over the levels of what is combined from the motions of each."""
-        return max(level.combined([of(motion) for motion in level.motions]) for level in self.levels)
+        """Return the largest over the levels, and over the variants of the furniture, of what is combined of each."""
+        return max(level.worst(of) for level in self.levels)
 
     @property
     def push(self) -> float:
@@ -222,8 +241,9 @@ class TrialRunner:
             In any direction [m2/s2]: times the mass the moment that lifts the base off.
         """
         each = (
-            shared.level.combined([float(np.max(arm * push - base * weight)) for push, weight in shared.hardest])
+            shared.level.combined([float(np.max(arm * push - base * weight)) for push, weight in some])
             for shared in self._shared
+            for some in shared.hardest
         )
         return max(0.0, *each)
 
@@ -266,7 +286,8 @@ class TrialRunner:
                 numerics = numerics.integrated
             _, found = assess(
                 [trials[at].scene for at in members],
-                self.levels if on is None else on.shaking,
+                # What stands on no isolator is run in its own furniture, as it is assessed.
+                self._floor if on is None else on.shaking,
                 self._context.silent,
                 numerics,
                 outcomes=False,
@@ -278,12 +299,12 @@ class TrialRunner:
     def isolated(self, kind: str) -> list[IsolatorResponse]:
         """Return the isolators of a kind that stand on the floor, by the length of their stroke."""
         listed = self.catalogue(kind)
-        fresh = [(g, isolator) for g in self._shared for isolator in listed if isolator not in g.responses]
+        fresh = [(g, isolator) for g in self._isolating for isolator in listed if isolator not in g.responses]
         for (shared, isolator), one in zip(fresh, self._context.executor.map(_run_isolator, fresh), strict=True):
             shared.responses[isolator] = one
         for isolator in listed:
             if isolator not in self._isolated:
-                each = {shared.level.name: shared.responses[isolator] for shared in self._shared}
+                each = {shared.level.name: shared.responses[isolator] for shared in self._isolating}
                 self._isolated[isolator] = IsolatorResponse(
                     isolator,
                     {name: one.stroke for name, one in each.items()},
@@ -335,39 +356,16 @@ class TrialRunner:
         turns = np.zeros((len(self.levels), len(fresh)))
         shares = np.zeros(len(fresh))
         for at, level in enumerate(self.levels):
-            rotations = []
-            for motion in level.motions:
+            rotations = {}
+            for motion in level.every:
                 rows = answer("rotational_isolator", motion, given, self._numerics.at("history"), angle=None)
-                rotations.append(np.maximum.reduceat(np.asarray(rows["rotation"]), starts))
+                rotations[motion.hash] = np.maximum.reduceat(np.asarray(rows["rotation"]), starts)
                 most = np.maximum.reduceat(np.asarray(rows["acceleration"]), starts)
                 shares = np.maximum(shares, most / _push(motion))
-            turns[at] = level.over(rotations)
+            each = [level.over([rotations[motion.hash] for motion in some]) for some in level.variants]
+            turns[at] = np.max(each, axis=0)
         for one, turn, share in zip(fresh, turns.max(axis=0).tolist(), shares.tolist(), strict=True):
             self._on_pads[pad, one] = (turn, share)
-
-
-def _hardest(push: Array, weight: Array) -> tuple[Array, Array]:
-    """Return those samples at which some a |a_h| - b N, with a and b above 0, is largest.
-
-    They are the corners of the upper left of the convex hull in the plane of N and |a_h|: some ten of 20,000, so that
-    what holds an object costs microseconds.
-    """
-    order = np.lexsort((-push, weight))
-    # To be larger at a greater weight it must push harder than all that weighs less.
-    harder = np.concatenate([[-1.0], np.maximum.accumulate(push[order])[:-1]])
-    corners: list[tuple[float, float]] = []
-    for at in order[push[order] > harder]:
-        x, y = float(weight[at]), float(push[at])
-        while len(corners) > 1 and _below(corners[-2], corners[-1], (x, y)):
-            corners.pop()
-        corners.append((x, y))
-    found = np.array(corners)
-    return np.ascontiguousarray(found[:, 1]), np.ascontiguousarray(found[:, 0])
-
-
-def _below(first: tuple[float, float], middle: tuple[float, float], last: tuple[float, float]) -> bool:
-    # Whether the middle one of three points, from left to right, is not above the line through the others.
-    return (middle[0] - first[0]) * (last[1] - first[1]) >= (last[0] - first[0]) * (middle[1] - first[1])
 
 
 def _run_isolator(task: tuple[SharedLevel, Isolator]) -> LevelResponse:
@@ -375,17 +373,22 @@ def _run_isolator(task: tuple[SharedLevel, Isolator]) -> LevelResponse:
     names = {"frequency": isolator.frequency, "damping": isolator.damping, "friction": isolator.friction}
     given: dict[str, Any] = {"friction_static": isolator.friction} if isolator.kind == "friction_isolator" else names
     model = model_named(isolator.kind)
-    strokes, accelerations, passed_on = [], [], []
-    for motion in level.motions:
+    strokes, accelerations, passed_on = {}, {}, {}
+    for motion in level.every:
         # One pass without an error estimate: it only ranks, and its own model is run again with the rest.
         own = model.run(motion.excitation(None), prepare(model, given), 2, False)
         passed = transmit(isolator.kind, motion, error=TRANSMITTED_ERROR, **given)
-        strokes.append(float(own["displacement"][0]))
-        accelerations.append(max(float(own["acceleration"][0]), largest_push(passed.excitation(None))))
-        passed_on.append(passed.scaled(SAMPLING_FACTOR, "for what its sampling may hide"))
-    shaking = replace(level, motions=tuple(passed_on))
-    stroke = level.combined(strokes)
-    return LevelResponse(stroke, max(stroke, upper_stroke(strokes)), level.combined(accelerations), shaking)
+        strokes[motion.hash] = float(own["displacement"][0])
+        accelerations[motion.hash] = max(float(own["acceleration"][0]), largest_push(passed.excitation(None)))
+        passed_on[motion.hash] = passed.scaled(SAMPLING_FACTOR, "for what its sampling may hide")
+    stroke = level.worst(lambda motion: strokes[motion.hash])
+    rare = max(upper_stroke([strokes[motion.hash] for motion in some]) for some in level.variants)
+    return LevelResponse(
+        stroke,
+        max(stroke, rare),
+        level.worst(lambda motion: accelerations[motion.hash]),
+        level.through(lambda motion: (passed_on[motion.hash],)),
+    )
 
 
 def upper_stroke(strokes: Sequence[float]) -> float:

@@ -10,6 +10,7 @@ from typing import Any
 from pipeline.analysis.context import Context, remembered
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.response_charts import ChartCache
+from pipeline.analysis.response_charts.histories import CommonHistories
 from pipeline.analysis.rules import RuleTable
 from pipeline.cache import Cache, key_of
 from pipeline.execute import Threads
@@ -58,7 +59,7 @@ class RunContext:
 
     def __getstate__(self) -> dict[str, Any]:
         # What was made on the way is made again where it is needed.
-        made = {"charts", "transmitted", "renderer", "executor"}
+        made = {"charts", "transmitted", "renderer", "executor", "common"}
         return {name: value for name, value in self.__dict__.items() if name not in made}
 
     @property
@@ -81,8 +82,13 @@ class RunContext:
             What the histories of what is worked on together are kept under from night to night; None: they are not.
         """
         kept = None if self.kept is None or batch is None else Cache(self.kept)
-        with remembered(kept, key_of(*batch or ())) as histories:
+        with remembered(kept, key_of(*batch or ()), self.common) as histories:
             yield Context(self.executor, charts=self.charts, histories=histories)
+
+    @cached_property
+    def common(self) -> CommonHistories:
+        """Histories that batches of this process share."""
+        return {}
 
     @cached_property
     def transmitted(self) -> TransmittedMotions:

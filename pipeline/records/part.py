@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pipeline.records.fragility import Fragility
 from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.result import Assessment, Finding, Recommendation, Spacing
-from pipeline.records.scene import Estimate, Furniture, Hanging, Support
+from pipeline.records.scene import Estimate, Furniture, Hanging, Origin, Support
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Result:
     ----------
     object_class, rule, support, models, parameters, assumptions, missing, skipped, floor
         See `Scene`.
-    hanging, furniture, statements
+    hanging, furniture, statements, furniture_origin
         See `Scene`.
     findings : tuple of Finding
         One for each demand and level.
@@ -74,6 +74,7 @@ class Result:
     wishes: tuple[MeasurementRequest, ...] | None = None
     fault: str = ""
     aside: bool = False
+    furniture_origin: Origin | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -275,8 +275,10 @@ class Scene:
     floor : str
         Of the building that it stands on; "" for the ground.
     hanging, furniture : Hanging or None, Furniture or None
-        How it hangs, and what it stands on or in or hangs from, by its record or else by a house rule; None where
-        neither says.
+        How it hangs, by its record or else by a house rule, None where neither says; and what it stands on or in or
+        hangs from.
+    furniture_origin : Origin or None
+        Where the furniture is known from: the record, a house rule, the case that the record names, or what is usual.
     statements : tuple of str
         What house rules say of it besides its numbers, and where its record overrules them, in words.
     """
@@ -294,3 +296,4 @@ class Scene:
     hanging: Hanging | None = None
     furniture: Furniture | None = None
     statements: tuple[str, ...] = ()
+    furniture_origin: Origin | None = None

@@ -206,6 +206,7 @@ class OwnTables(_Part):
     damping: str = Field(
         default="", description="a CSV file with the columns of Kouros's damping.csv: a row is known by its pair"
     )
+    furniture: str = Field(default="", description="a CSV file with the columns of Kouros's furniture.csv")
 
 
 class Charts(_Part):

@@ -107,6 +107,7 @@ def anonymous(assessment: Assessment, needing: dict[str, int], wishes: tuple[Mea
         None if wishes is None else tuple(replace(w, object_number="", gallery="", title="") for w in wishes),
         assessment.fault,
         assessment.aside,
+        scene.furniture_origin,
     )
 
 
@@ -127,6 +128,7 @@ def of_object(result: Result, item: Item) -> Assessment:
         result.hanging,
         result.furniture,
         result.statements,
+        result.furniture_origin,
     )
     return Assessment(
         scene,
@@ -337,13 +339,13 @@ def _digests(result: Result) -> Digests:
         key = (finding.model, finding.level)
         if key not in worst or _SEVERITY[finding.verdict] > _SEVERITY[worst[key]]:
             worst[key] = finding.verdict
-    held = (result.support, result.hanging, result.furniture)
+    held = (result.support, result.hanging, result.furniture, result.furniture_origin)
     run_with = (held, result.object_class, result.models, dict(result.parameters))
     verdicts = tuple((model, level, verdict.value) for (model, level), verdict in worst.items())
     return result.floor, _digest(_RunWith, run_with), verdicts
 
 
-_RunWith = tuple[tuple[Any, Any, Any], str, tuple[str, ...], dict[str, Any]]
+_RunWith = tuple[tuple[Any, Any, Any, Any], str, tuple[str, ...], dict[str, Any]]
 
 
 def _digest(hint: Any, value: Any) -> str:

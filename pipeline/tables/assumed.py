@@ -10,6 +10,7 @@ from typing import TypeVar
 
 from pipeline.tables import Range, Row, TableError, read_table, table
 from pipeline.tables.assumed_rows import AssumedRow, Friction, Material, ObjectClass, PairRow, WallDamping
+from pipeline.tables.furniture_rows import FurnitureRow
 from pipeline.tables.rows import checked
 
 UNKNOWN = "unknown"
@@ -28,7 +29,7 @@ class AssumedValues:
 
     Attributes
     ----------
-    classes, materials : mapping
+    classes, materials, furniture : mapping
         Rows by name, in the order of the table.
     friction, damping : tuple
         Rows in the order of the table.
@@ -38,6 +39,7 @@ class AssumedValues:
     materials: Mapping[str, Material]
     friction: tuple[Friction, ...]
     damping: tuple[WallDamping, ...]
+    furniture: Mapping[str, FurnitureRow]
 
     @cached_property
     def _words(self) -> tuple[tuple[re.Pattern[str], Material], ...]:
@@ -47,7 +49,7 @@ class AssumedValues:
     @property
     def own(self) -> dict[str, int]:
         """How many rows are the museum's, by table; those without any are left out."""
-        tables = {"classes": self.classes.values(), "materials": self.materials.values()}
+        tables = {name: getattr(self, name).values() for name in ("classes", "materials", "furniture")}
         pairs = {"friction": self.friction, "damping": self.damping}
         counts = {name: sum(bool(row.own) for row in rows) for name, rows in (tables | pairs).items()}
         return {name: count for name, count in counts.items() if count}
@@ -167,7 +169,7 @@ def assumed_with(own: Mapping[str, Path], models: Collection[str] | None = None)
     Parameters
     ----------
     own : mapping of str to Path
-        CSV files by the name of the table: "classes", "materials", "friction", "damping".
+        CSV files by the name of the table: "classes", "materials", "friction", "damping", "furniture".
     models : collection of str, optional
         Names of the models that a class may ask for; None: whatever is there is taken.
 
@@ -192,6 +194,7 @@ def assumed_with(own: Mapping[str, Path], models: Collection[str] | None = None)
         materials,
         tuple(friction.values()),
         tuple(_merged(WallDamping, "damping", own).values()),
+        _merged(FurnitureRow, "furniture", own),
     )
 
 

@@ -12,7 +12,7 @@ from pipeline.analysis.survey import measurable_of, measurables
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.night.importing import bundled_collection
-from pipeline.records import Item, Origin, Support
+from pipeline.records import Furniture, Item, Origin, Support
 from pipeline.tables import Row, table
 from pipeline.tables.assumed import assumed, span
 
@@ -174,6 +174,7 @@ def test_what_the_museum_measured_wins_and_is_not_called_assumed() -> None:
     known = replace(
         VASE, support=Support.FREESTANDING, base_width_m=0.12, base_depth_m=0.10, cg_height_m=0.15, mass_kg=2.5,
         friction=0.3, clearance_m=0.2, allowable_stress_pa=2e7, section_shape="round", section_width_m=0.1,
+        furniture=Furniture.FLOOR,
     )  # fmt: skip
     parameters = classify(known).parameters
     assert parameters["half_width"].value == pytest.approx(0.05)  # half of the narrower side

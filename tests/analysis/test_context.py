@@ -15,7 +15,7 @@ from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.cache import Cache
 from pipeline.execute import Threads
-from pipeline.records import Columns, Item, Motion, Support
+from pipeline.records import Columns, Furniture, Item, Motion, Support
 from pipeline.records.numerics import HISTORIES
 
 
@@ -36,7 +36,8 @@ def test_batches_at_the_same_time_keep_the_histories_of_their_own_work(
         return true(task)
 
     def batch(friction: float, file: str, *, together: bool = False) -> None:
-        item = Item("1", "G", support=Support.FREESTANDING, height_m=0.1, base_width_m=0.3, base_depth_m=0.3,
+        item = Item("1", "G", support=Support.FREESTANDING, furniture=Furniture.FLOOR,
+                    height_m=0.1, base_width_m=0.3, base_depth_m=0.3,
                     friction=friction, clearance_m=0.01)  # fmt: skip
         with remembered(Cache(tmp_path), file) as histories:
             if together:

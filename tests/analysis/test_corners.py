@@ -14,7 +14,7 @@ from pipeline.execute import Threads
 from pipeline.models import MODELS
 from pipeline.motions import read_motion
 from pipeline.quantities import Array, G
-from pipeline.records import Finding, Item, Motion, Numerics, Scene, Support, Verdict
+from pipeline.records import Finding, Furniture, Item, Motion, Numerics, Scene, Support, Verdict
 from pipeline.resources import resource
 
 pytestmark = pytest.mark.slow_file
@@ -38,7 +38,8 @@ def judged(motion: Motion) -> list[tuple[Scene, Finding]]:
         support = Support.FASTENED if at % 2 else Support.FREESTANDING
         kind = ("Bust", "Vase", "Statue")[at % 3]
         item = Item(str(at), "G", title=kind, object_name=kind, medium=("bronze", "porcelain", "marble")[at % 3],
-                    support=support, height_m=height, width_m=across, depth_m=across)  # fmt: skip
+                    support=support, furniture=Furniture.FLOOR,
+                    height_m=height, width_m=across, depth_m=across)  # fmt: skip
         scenes.append(classify(item))
     found = assess(scenes, [LevelMotions("design", "max", (motion,))], Context(Threads(1)))[1]
     return [(s, f) for s, each in zip(scenes, found, strict=True) for f in each if f.model in ("standing", "stress")]
@@ -109,9 +110,10 @@ def test_every_combination_of_ends_comes_once() -> None:
 def test_no_object_has_more_than_six_uncertain_inputs_in_a_model() -> None:
     """All combinations of k ends are 2^k: an object with a range in every field has 64 at the most."""
     flexible = Item("1", "G", title="Statue", object_name="Statue", medium="marble", support=Support.FASTENED,
+                    furniture=Furniture.FLOOR,
                     height_m=1.0, width_m=0.3, depth_m=0.2, frequency_hz=3.0, orientation_deg=30.0)  # fmt: skip
     free = Item("2", "G", title="Statue", object_name="Statue", medium="marble", height_m=1.0, width_m=0.3, depth_m=0.2,
-                orientation_deg=30.0)  # fmt: skip
+                orientation_deg=30.0, furniture=Furniture.FLOOR)  # fmt: skip
     hung = Item("3", "G", title="Landscape", classification="paintings", height_m=1.0, width_m=1.0)
     work = plan([classify(one) for one in (flexible, free, hung)]).work
     assert (
@@ -126,7 +128,8 @@ def test_falling_is_looked_for_at_every_corner(motion: Motion) -> None:
     """Narrow and top-heavy together falls where neither does on its own: nobody may say of it that it passes."""
     items = [
         Item(str(at), "G", title="Vase", object_name="Vase", susceptible=False, support=Support.FREESTANDING,
-             height_m=height, width_m=float(slope * height), depth_m=float(slope * height), friction=2.0)
+             furniture=Furniture.FLOOR, friction=2.0,
+             height_m=height, width_m=float(slope * height), depth_m=float(slope * height))
         for at, (slope, height) in enumerate(product(np.linspace(0.6, 2.2, 9), (0.1, 0.3, 0.8)))
     ]  # fmt: skip
     scenes = [classify(item) for item in items]

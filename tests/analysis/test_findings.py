@@ -14,7 +14,7 @@ from pipeline.analysis.response import respond
 from pipeline.collection.database import open_database
 from pipeline.execute import Threads
 from pipeline.motions import read_motion
-from pipeline.records import Finding, Item, Motion, RunRecord, Support, Verdict
+from pipeline.records import Finding, Furniture, Item, Motion, RunRecord, Support, Verdict
 from pipeline.records.result import BOUNDS, DEMANDS
 from pipeline.report.pages.judging import most, spanned
 from pipeline.report.units import Units
@@ -67,7 +67,8 @@ def test_ranges_of_what_passes_are_demands_or_say_that_they_are_bounds(record: R
 
 def bounded(**fields: float | str | None) -> Finding:
     """A block on a rough floor with much room: its bound is enough."""
-    item = Item("1", "G", title="Block", support=Support.FREESTANDING, height_m=0.3, base_width_m=0.3, base_depth_m=0.3,
+    item = Item("1", "G", title="Block", support=Support.FREESTANDING, furniture=Furniture.FLOOR,
+                height_m=0.3, base_width_m=0.3, base_depth_m=0.3,
                 width_m=0.3, depth_m=0.3, cg_height_m=0.15, clearance_m=5.0, **fields)  # type: ignore[arg-type] # fmt: skip
     x, y, z = read_motion(resource("site_motions", "demo"))[0].acceleration[:, 1500:3500]
     shaking = Motion(0.01, [x, y, z], "strong")

@@ -16,7 +16,7 @@ from pipeline.analysis.plan import plan
 from pipeline.errors import InputError
 from pipeline.execute import Threads
 from pipeline.quantities import G
-from pipeline.records import ContactPolygon, Finding, Item, Motion, Origin, Support
+from pipeline.records import ContactPolygon, Finding, Furniture, Item, Motion, Origin, Support
 from pipeline.tables import table
 
 DT = 0.005
@@ -26,7 +26,7 @@ PUSH = np.where(TIME < 0.5, 0.15 * G * np.sin(2.0 * pi * TIME), 0.0)
 
 STAND = Item(
     "1", "G", "Figure", height_m=0.5, width_m=0.3, depth_m=0.3, cg_height_m=0.25, mass_kg=10.0,
-    support=Support.FREESTANDING, clearance_m=0.3, friction=0.9,
+    support=Support.FREESTANDING, furniture=Furniture.FLOOR, clearance_m=0.3, friction=0.9,
 )  # fmt: skip
 
 

@@ -24,7 +24,7 @@ from pipeline.collection.database import open_database
 from pipeline.execute import Threads
 from pipeline.motions.synthesis import half_sine_pulse
 from pipeline.quantities import G
-from pipeline.records import Fragility, Item, Motion, Support
+from pipeline.records import Fragility, Furniture, Item, Motion, Support
 from pipeline.store.runs import load_run
 
 pytestmark = pytest.mark.slow_file
@@ -32,7 +32,8 @@ pytestmark = pytest.mark.slow_file
 SILENT = Console(quiet=True)
 
 BLOCK = Item(
-    "1", "A", "Block", support=Support.FREESTANDING, height_m=0.4, base_width_m=0.1, base_depth_m=0.1, width_m=0.1,
+    "1", "A", "Block", support=Support.FREESTANDING, furniture=Furniture.FLOOR,
+    height_m=0.4, base_width_m=0.1, base_depth_m=0.1, width_m=0.1,
     depth_m=0.1, cg_height_m=0.2, friction=0.3, clearance_m=0.05, mass_kg=2.0,
 )  # fmt: skip
 

@@ -186,7 +186,8 @@ def test_a_statement_is_of_things_that_are_held_so() -> None:
     here = rule(gallery=["East", "West"], furniture="showcase", hanging="two_hooks", friction=0.3, clearance_m=0.07)
     vase, painting = scene(VASE, here), scene(PAINTING, here)
     assert (vase.furniture, vase.hanging) == (Furniture.SHOWCASE, None)
-    assert (painting.furniture, painting.hanging) == (None, Hanging.TWO_HOOKS)
+    assert (painting.furniture, painting.hanging) == (Furniture.WALL, Hanging.TWO_HOOKS)
+    assert (vase.furniture_origin, painting.furniture_origin) == (Origin.STATED, Origin.ASSUMED)
     assert "friction_static" not in painting.parameters
     assert {one.parameters["clearance"].value for one in (vase, painting)} == {0.07}
 

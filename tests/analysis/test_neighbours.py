@@ -15,12 +15,13 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.cli.console import Console
 from pipeline.execute import Threads
 from pipeline.quantities import G
-from pipeline.records import Item, Motion, Numerics, Spacing, Support, Verdict
+from pipeline.records import Furniture, Item, Motion, Numerics, Spacing, Support, Verdict
 
 SILENT = Console(quiet=True)
 
 VASE = Item(
-    "1", "A", "Vase", support=Support.FREESTANDING, height_m=0.1, base_width_m=0.2, base_depth_m=0.2, width_m=0.2,
+    "1", "A", "Vase", support=Support.FREESTANDING, furniture=Furniture.FLOOR,
+    height_m=0.1, base_width_m=0.2, base_depth_m=0.2, width_m=0.2,
     depth_m=0.2, cg_height_m=0.02, friction=0.1, clearance_m=5.0, mass_kg=2.0, orientation_deg=0.0,
     position_x_m=0.0, position_y_m=0.0,
 )  # fmt: skip

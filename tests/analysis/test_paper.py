@@ -15,7 +15,7 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.models import model_named
 from pipeline.quantities import G
-from pipeline.records import Figure, Item, Motion, Support, Verdict
+from pipeline.records import Figure, Furniture, Item, Motion, Support, Verdict
 from tests.mitigate.scenes import TOWER, demo_motion, solve
 
 
@@ -69,7 +69,8 @@ def test_a_teflon_pad_does_not_excuse_a_tall_object(motion: Motion) -> None:
 
 
 GLASS = Item(
-    "1", "G", title="Wine glass", material="glass", support=Support.FREESTANDING, height_m=0.35, width_m=0.08,
+    "1", "G", title="Wine glass", material="glass", support=Support.FREESTANDING, furniture=Furniture.FLOOR,
+    height_m=0.35, width_m=0.08,
     depth_m=0.08, base_width_m=0.08, base_depth_m=0.08, cg_height_m=0.21, mass_kg=0.4, section_shape="round",
     section_width_m=0.005,
 )  # fmt: skip

@@ -7,19 +7,20 @@ import numpy as np
 import pytest
 
 from pipeline.analysis.assess import LevelMotions, assess
+from pipeline.analysis.cases import Effort
 from pipeline.analysis.chart_runs import DECIDES, deciding, response_chart
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
-from pipeline.analysis.refinement import Effort
 from pipeline.analysis.response import respond
 from pipeline.analysis.response_charts import ChartCache
 from pipeline.execute import Threads
 from pipeline.motions import read_motion
 from pipeline.quantities import Array
-from pipeline.records import Estimate, Finding, Item, Motion, Numerics, Origin, Scene, Support, Verdict
+from pipeline.records import Estimate, Finding, Furniture, Item, Motion, Numerics, Origin, Scene, Support, Verdict
 from pipeline.resources import resource
 
-BLOCK = Item("1", "G", title="Block", support=Support.FREESTANDING, height_m=0.3, base_width_m=0.3, base_depth_m=0.3,
+BLOCK = Item("1", "G", title="Block", support=Support.FREESTANDING, furniture=Furniture.FLOOR,
+             height_m=0.3, base_width_m=0.3, base_depth_m=0.3,
              width_m=0.3, depth_m=0.3, cg_height_m=0.15, friction=0.3, clearance_m=0.1)  # fmt: skip
 PAINTING = Item("2", "G", title="Landscape", classification="paintings", height_m=1.0, width_m=1.2, damping=0.02,
                 suspension_length_m=0.5, clearance_m=0.1)  # fmt: skip

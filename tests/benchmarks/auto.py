@@ -16,10 +16,11 @@ from pathlib import Path
 
 import numpy as np
 
+from pipeline.analysis.cases import Effort
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
 from pipeline.analysis.plan import Work, plan
-from pipeline.analysis.refinement import Effort, examine
+from pipeline.analysis.refinement import examine
 from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.mapping import load_mapping

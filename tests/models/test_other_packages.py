@@ -158,11 +158,12 @@ unit = "m"
 
 
 def museum(folder: Path, *rows: str) -> None:
-    """A museum of its own in a folder."""
+    """A museum of its own in a folder, whose objects stand on the floor: closed forms hold of its motion."""
     (folder / "export.csv").write_text("\n".join(["number,gallery,title,height,width", *rows]) + "\n", encoding="utf-8")
     (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
     settings = template(museum="Test", source="export.csv", mapping="mapping.toml", site="demo")
-    (folder / "kouros.toml").write_text(settings, encoding="utf-8")
+    stands = '[[house]]\ngallery = "A"\nfurniture = "floor"\nsaid_by = "Ann"\nsaid_on = 2031-05-01\n'
+    (folder / "kouros.toml").write_text(f"{settings}\n{stands}", encoding="utf-8")
 
 
 def report(folder: Path) -> Path:

@@ -33,12 +33,17 @@ from tests.museum import SILENT, in_common
 COLUMNS = (
     "object_number", "title", "object_name", "gallery", "case", "on_display", "medium", "height_m", "width_m",
     "depth_m", "friction", "mass_kg", "clearance_m", "position_x_m", "position_y_m", "value_class", "support",
+    "furniture",
 )  # fmt: skip
 EXPORTS = ("findings.csv", "objects.csv", "recommendations.csv")
 NAMES = ("Vase", "Vase", "Bowl", "Plate", "Painting", "Figurine")
 FLOOR = '\n[[floor]]\nname = "2"\nheight_ratio = 0.5\nperiod_s = 0.4\n'
 RULES = "rule,class,aat,classification,words,medium,shape,why\nours,{},,,{},,,ours\n"
 ISOLATORS = "name,kind,frequency,damping,friction,stroke,source\nours,friction_isolator,,,{},,the maker\n"
+FURNITURE = (
+    "furniture,title,frequency,frequency_low,frequency_high,damping,damping_low,damping_high,level_error,source\n"
+    "showcase,a showcase,{0},{0},{0},0.05,0.05,0.05,0,hammer tests\n"
+)
 FRICTION = "object_material,surface_material,value,low,high,source\nMarble,Formica,{0},{0},{0},tilt tests\n"
 
 
@@ -288,6 +293,8 @@ class Changing:
         self.tables["classes.csv"] = vessels(self.random.choice((0.06, 0.2)))
         self.set("friction", self.random.choice(('"friction.csv"', '""')))
         self.tables["friction.csv"] = FRICTION.format(self.random.choice((0.1, 0.4)))
+        self.set("furniture", self.random.choice(('"furniture.csv"', '""')))
+        self.tables["furniture.csv"] = FURNITURE.format(self.random.choice((5, 9)))
 
     def other_house_rules(self) -> None:
         what, states = self.random.choice((

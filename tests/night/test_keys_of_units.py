@@ -23,7 +23,7 @@ from pipeline.records import DecisionKind
 from pipeline.report.files import page_renderer, report_writer
 from pipeline.tools.decisions import Wish, decide
 from tests.museum import SILENT
-from tests.night.changing import FRICTION, ISOLATORS, RULES, Changing, measures, vessels
+from tests.night.changing import FRICTION, FURNITURE, ISOLATORS, RULES, Changing, measures, vessels
 
 
 @dataclass
@@ -77,8 +77,9 @@ def alike_in_no_way(museum: Changing) -> None:
     museum.tables = {
         "rules.csv": RULES.format("bust", "vase"), "measures.csv": measures(0.2), "classes.csv": vessels(0.2),
         "isolators.csv": ISOLATORS.format(0.1), "friction.csv": FRICTION.format(0.2),
+        "furniture.csv": FURNITURE.format(6),
     }  # fmt: skip
-    for name in ("rules", "measures", "friction"):
+    for name in ("rules", "measures", "friction", "furniture"):
         museum.set(name, f'"{name}.csv"')
     museum.set("catalogue", '"isolators.csv"')
 
@@ -131,6 +132,14 @@ def isolator(museum: Changing) -> None:
 
 def friction(museum: Changing) -> None:
     museum.tables["friction.csv"] = FRICTION.format(0.3)
+
+
+def stiffer(museum: Changing) -> None:
+    museum.tables["furniture.csv"] = FURNITURE.format(9)
+
+
+def on_a_shelf(museum: Changing) -> None:
+    museum.rows[1]["furniture"] = "shelf"
 
 
 def another_name(museum: Changing) -> None:
@@ -241,6 +250,7 @@ def accepted(museum: Changing) -> None:
         (limits, ALL),
         (isolator, ALL),
         (friction, ALL),
+        (stiffer, ALL),
         (another_name, ALL),
         (setting("classes", '"classes.csv"'), ALL),
         # A setting of each group.
@@ -267,6 +277,7 @@ def accepted(museum: Changing) -> None:
         (upstairs, (8, 2, 5)),
         # Records.
         (height, (1, 0, 1)),
+        (on_a_shelf, (1, 0, 1)),
         (in_a_case, (1, 0, 1)),
         # Where an object stands is its neighbours' business, and what it is worth that of its page.
         (place, (0, 0, 1)),
@@ -278,6 +289,7 @@ def accepted(museum: Changing) -> None:
         # House rules: what each comes to for an object alone, and what it matches in no other way.
         (house_rule('gallery = "B"', "clearance_m = 0.07"), (8, 2, 2)),
         (house_rule('number = "014"', "clearance_m = 0.07"), (1, 0, 1)),
+        (house_rule('number = "014"', 'furniture = "pedestal"'), (1, 0, 1)),
         (house_rule('gallery = "Nowhere"', "clearance_m = 0.07"), NOTHING),
         (house_rule('medium = "ormolu"', "clearance_m = 0.07"), NOTHING),
         # Decisions.

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from lxml import html
 
-from pipeline.analysis.refinement import Effort
+from pipeline.analysis.cases import Effort
 from pipeline.report import Language, Units
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.report_writer import ReportWriter

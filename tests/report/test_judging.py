@@ -6,8 +6,10 @@ from math import inf
 import pytest
 from lxml import etree
 
+from pipeline.analysis.classify import classify
 from pipeline.quantities import G
-from pipeline.records import Fragility, Item, Spacing, Verdict
+from pipeline.records import Fragility, Furniture, Item, Spacing, Verdict
+from pipeline.report.pages.describe import furniture
 from pipeline.report.pages.judging import fragility_views, shaking_view, spacing_views, years
 from pipeline.report.units import Units
 
@@ -109,3 +111,20 @@ def test_each_gallery_has_its_own_neighbours() -> None:
     found = {g.name: len(g.spacings) for g in shown(record, Units()).galleries}
     assert found[builder.PAINT] == 1
     assert sum(found.values()) == 1
+
+
+def test_what_an_object_stands_in_is_said_with_where_that_is_known_from() -> None:
+    """Of a painting nothing that all paintings do; of what a record or a rule says always."""
+    vase = Item("1", "G", "Vase", object_name="vase", height_m=0.3, width_m=0.2, depth_m=0.2)
+    painting = Item("2", "G", "Landscape", classification="paintings", height_m=1.0, width_m=1.2)
+    told = [
+        furniture(classify(item))
+        for item in (
+            vase, replace(vase, furniture=Furniture.SHELF), replace(vase, case="Plinth 1"),
+            painting, replace(painting, furniture=Furniture.RAIL),
+        )
+    ]  # fmt: skip
+    assert told == [
+        "in a showcase (assumed)", "on a shelf (as recorded)", "on a pedestal or plinth (as its record names a case)",
+        "", "from a rail or the ceiling (as recorded)",
+    ]  # fmt: skip

@@ -9,6 +9,7 @@ import pytest
 
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
+from pipeline.analysis.furniture import filter_of
 from pipeline.analysis.rules import RuleTable, with_own
 from pipeline.execute import Threads
 from pipeline.mitigate import measure_catalogue
@@ -16,7 +17,7 @@ from pipeline.mitigate.measures.surfaces import Surface
 from pipeline.mitigate.proposals import Deficiency
 from pipeline.mitigate.trials import TrialRunner
 from pipeline.models import MODELS
-from pipeline.records import Numerics, Origin, Scene
+from pipeline.records import Furniture, Numerics, Origin, Scene
 from pipeline.tables import TableError, table
 from pipeline.tables.assumed import assumed, assumed_with, span
 from tests.museum import PAINTING, VASE
@@ -26,6 +27,7 @@ KEYS = {
     "materials": {"material": "porcelain"},
     "friction": {"object_material": "Marble", "surface_material": "Formica"},
     "damping": {"wall_surface": "Paint", "back_surface": "Wood"},
+    "furniture": {"furniture": "showcase"},
 }
 """The row of each table that the museum of these tests has an own one of."""
 
@@ -127,6 +129,19 @@ def test_an_own_damping_counts_for_its_pair(tmp_path: Path) -> None:
     assert "wood on paint, the least of the museum's our-damping.csv and Table 4" in unknown.note
 
 
+def test_an_own_showcase_is_as_stiff_as_the_museum_measured_it(tmp_path: Path) -> None:
+    """Cases that were measured: the scene has the museum's numbers, and names its file."""
+    cells = {"frequency": "8", "frequency_low": "7.5", "frequency_high": "8.5", "source": "hammer test 2026"}
+    scene = classify(replace(VASE, furniture=Furniture.SHOWCASE), rules(own(tmp_path, "furniture", **cells)))
+    assert ends(scene, "furniture_frequency") == [7.5, 8.0, 8.5]
+    assert scene.parameters["furniture_frequency"].source == "the museum's our-furniture.csv (hammer test 2026)"
+    assert "of 8 Hz (7.5 to 8.5), or stiff, the museum's our-furniture.csv" in scene.assumptions[-3]
+    filtered = filter_of(scene)
+    assert filtered is not None
+    assert filtered.frequency == (7.5, 8.0, 8.5)
+    assert filtered.damping == (0.03, 0.05, 0.1)
+
+
 def test_a_surface_is_proposed_with_the_museums_own_friction(tmp_path: Path) -> None:
     """Marble on Formica is 0.18 in Table 3: the museum that measured 0.28 is advised with that, and Kouros's is not.
 
@@ -174,6 +189,14 @@ def test_a_surface_is_proposed_with_the_museums_own_friction(tmp_path: Path) -> 
         ("friction", {"value": "0,2"}, r"column 'value': .*valid number.*, not '0,2'"),
         ("damping", {"back_surface": "Cork"}, r"has no row 'paint on cork'"),
         ("damping", {"value": "2", "high": "5"}, r"column 'high': is a ratio of critical damping: .* below 1"),
+        ("furniture", {"furniture": "crate"}, r"line 2, furniture 'crate': column 'furniture': .*'floor', 'showcase'"),
+        ("furniture", {"frequency": "0"}, r"column 'frequency': must be from 0.1 to 50 Hz, not 0"),
+        ("furniture", {"frequency": "2"}, r"column 'frequency_high': frequency_low <= frequency <= frequency_high"),
+        ("furniture", {"frequency": ""}, r"column 'frequency_high': frequency, frequency_low and frequency_high go"),
+        ("furniture", {"damping_low": "1.5"}, r"column 'damping_low': is a share of the critical damping: .* not 1.5"),
+        ("furniture", {"damping": "", "damping_low": "", "damping_high": ""}, r"what shakes has a frequency and a dam"),
+        ("furniture", {"level_error": "7"}, r"column 'level_error': .* less than or equal to 5, not '7'"),
+        ("furniture", {"title": ""}, r"column 'title': is empty; every row needs it"),
     ],
 )  # fmt: skip
 def test_a_mistake_in_an_own_table_is_named(name: str, cells: dict[str, str], message: str, tmp_path: Path) -> None:

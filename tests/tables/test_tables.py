@@ -60,6 +60,8 @@ def test_there_is_every_table() -> None:
         "rules",
         "measures",
         "fixings",
+        "furniture",
+        "usual_furniture",
     } <= set(NAMES)
 
 

@@ -21,7 +21,7 @@ from pipeline.execute import Threads
 from pipeline.mitigate.installed import InstalledMeasure, placed
 from pipeline.operations.workspace import open_workspace
 from pipeline.quantities import G
-from pipeline.records import ITEM_FIELDS, Item, MeasurementRequest, Motion, Origin, Support, Verdict
+from pipeline.records import ITEM_FIELDS, Furniture, Item, MeasurementRequest, Motion, Origin, Support, Verdict
 from pipeline.report.files.sheet_cells import HEADER_ROW
 from pipeline.report.files.survey_sheet import column_name, sheet_title, write_survey
 from pipeline.settings import load_settings
@@ -40,7 +40,7 @@ MOTION = Motion(dt=DT, acceleration=np.array([SINE, 0.4 * SINE, 0.0 * SINE]), na
 LEVELS = [LevelMotions("design", "max", (MOTION,))]
 
 BOX = Item("1", "East", "Box", height_m=0.2, base_width_m=0.6, base_depth_m=0.6, cg_height_m=0.08, mass_kg=5.0,
-           support=Support.FREESTANDING, clearance_m=0.05, susceptible=False)  # fmt: skip
+           support=Support.FREESTANDING, furniture=Furniture.FLOOR, clearance_m=0.05, susceptible=False)  # fmt: skip
 
 
 def surveyed(*items: Item) -> list[MeasurementRequest]:
@@ -85,7 +85,7 @@ def test_what_is_settled_already_is_not_asked_for() -> None:
 
 
 def test_what_is_missing_comes_first_and_what_is_not_on_display_never() -> None:
-    lost = Item("2", "West", height_m=0.2, support=Support.FREESTANDING)
+    lost = Item("2", "West", height_m=0.2, support=Support.FREESTANDING, furniture=Furniture.FLOOR)
     first, *_ = found = surveyed(BOX, lost, replace(lost, object_number="3", on_display=False))
     assert (first.object_number, first.field, first.settles_nothing) == ("2", "width_m", False)
     assert first.unlocks > 0

@@ -11,6 +11,8 @@ from pipeline.analysis.fragility.curve import ENOUGH, NINETY, fit, from_span, st
 from pipeline.analysis.fragility.hazard import Hazard, NoHazardError
 from pipeline.analysis.fragility.published import in_si, published
 from pipeline.analysis.fragility.scaling import FACTORS, Questions, first_failures
+from pipeline.analysis.furnished import best_furnished
+from pipeline.analysis.furniture import FurnitureFilter
 from pipeline.analysis.plan import Indices, Work
 from pipeline.analysis.verdicts import capacity_of
 from pipeline.quantities import Array
@@ -78,7 +80,8 @@ def fragilities(
 ) -> list[tuple[Fragility, ...]]:
     """Scale every motion of every level until each object fails, in each of its ways, and fit fragility curves.
 
-    How a level combines its motions plays no part: a curve is about single earthquakes.
+    How a level combines its motions plays no part: a curve is about single earthquakes.  Furniture is that of the best
+    estimates, and level: what its range does is not in the dispersion.
 
     Parameters
     ----------
@@ -106,9 +109,9 @@ def fragilities(
     Dynamics 31(3), 491-514.
     """
     numerics = replace(numerics, azimuth_step=max(numerics.azimuth_step, DIRECTIONS))
-    motions, intensities = _scaled(stripes)
+    shaking = {furniture: _scaled(stripes, furniture) for furniture in {one.furniture for one in work}}
     out: list[list[Fragility]] = [[] for _ in scenes]
-    if not motions:
+    if not any(motions for motions, _ in shaking.values()):
         return [() for _ in scenes]
     try:
         hazard, why = hazard_of(stripes), ""
@@ -116,6 +119,7 @@ def fragilities(
         hazard, why = None, str(problem)
     for done, one in enumerate(work):
         context.progress.step("fragilities", done, len(work))
+        motions, intensities = shaking[one.furniture]
         for output, members in _by_output(one, scenes, chosen).items():
             for index, found in _curves(one, output, members, scenes, motions, intensities, context, numerics):
                 out[index].append(_with_rate(found, hazard, why))
@@ -123,10 +127,15 @@ def fragilities(
     return [tuple(sorted(found, key=lambda f: (f.bound == ABOVE, f.median))) for found in out]
 
 
-def _scaled(stripes: Sequence[Stripe]) -> tuple[list[Motion], Array]:
-    """Return the motions of all levels with their intensities, each once; what does not shake cannot be scaled."""
+def _scaled(stripes: Sequence[Stripe], furniture: FurnitureFilter | None) -> tuple[list[Motion], Array]:
+    """Return the motions of all levels with the intensities of the floor, each once, as furniture passes them on.
+
+    What does not shake cannot be scaled.  An oscillator passes on so many times as much where its floor shakes so many
+    times as much.
+    """
     each = {m.hash: (m, pga) for s in stripes for m, pga in zip(s.motions, s.intensities, strict=True) if pga > 0.0}
-    return [motion for motion, _ in each.values()], np.array([pga for _, pga in each.values()])
+    passed = best_furnished([motion for motion, _ in each.values()], furniture)
+    return list(passed), np.array([pga for _, pga in each.values()])
 
 
 def _by_output(work: Work, scenes: Sequence[Scene], chosen: Sequence[bool] | None) -> Mapping[str, Indices]:

@@ -92,11 +92,6 @@ class HouseEffect:
         told = self.stated.get("hanging")
         return item.hanging if told is None else Hanging(str(told.value))
 
-    def furniture(self, item: Item) -> Furniture | None:
-        """Return what an object stands on or hangs from, by its record or else by a rule."""
-        told = self.stated.get("furniture")
-        return item.furniture if told is None else Furniture(str(told.value))
-
     @property
     def statements(self) -> tuple[str, ...]:
         """What is stated besides numbers, and what is doubtful, in words."""

@@ -9,7 +9,7 @@ from statistics import median
 from typing import Any
 
 from pipeline.analysis.house.rule import QUANTITIES, STANDING
-from pipeline.records import Furniture, Hanging, MeasurementRequest, Scene, Support
+from pipeline.records import Furniture, Hanging, MeasurementRequest, Origin, Scene, Support
 
 MANY = 5
 """Objects of which the same is asked, from which one rule is asked for first."""
@@ -155,7 +155,7 @@ def _unsaid(scenes: Iterable[Scene], supports: Mapping[str, set[Support]]) -> li
     for scene in scenes:
         if scene.support is Support.HUNG and scene.hanging is None:
             numbers[scene.object_class, scene.support, "hanging"] += 1
-        if scene.support in STANDING and scene.furniture is None and scene.models:
+        if scene.support in STANDING and scene.furniture_origin is Origin.ASSUMED and scene.models:
             numbers[scene.object_class, scene.support, "furniture"] += 1
     return [
         RuleQuestion(kind, held.value if len(supports[kind]) > 1 else "", field, "", None, None, None, number, 0.0, 0)

@@ -5,6 +5,7 @@ night that must judge a sheet again because something changed finds here all tha
 """
 
 from collections.abc import Mapping
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,13 @@ from numpy.typing import NDArray
 from pipeline.cache import HISTORIES, Cache, CacheEntry
 from pipeline.quantities import Array
 from pipeline.records import Columns
+
+COMMON = 300
+"""Parameter sets of a model under a motion that are common to all who work in a process: of those that tables give,
+such as a friction, there are few, and all objects share them."""
+
+CommonHistories = dict[str, tuple[tuple[str, ...], dict[bytes, Array]]]
+"""By key, the names of the columns and the histories by their parameters."""
 
 
 class Histories:
@@ -23,10 +31,12 @@ class Histories:
         None: nothing is kept, and only what is asked for twice is run once.
     key : str, optional
         Under which they are kept together.
+    common : CommonHistories, optional
+        Those of this process that others who work ask for too.
     """
 
-    def __init__(self, cache: Cache | None = None, key: str = "") -> None:
-        self._cache, self._key = cache, key
+    def __init__(self, cache: Cache | None = None, key: str = "", common: CommonHistories | None = None) -> None:
+        self._cache, self._key, self._common = cache, key, common
         self._old = {} if cache is None else _tables(cache.get(HISTORIES, key))
         self._places: dict[str, dict[bytes, int]] = {}
         self._used: dict[str, dict[bytes, Array]] = {}
@@ -57,6 +67,10 @@ class Histories:
                 self._places[key] = {row.tobytes(): at for at, row in enumerate(parameters)}
             places = self._places[key]
             used.update((row, table[places[row], len(values) :]) for row in rows if row in places and row not in used)
+        if self._common is not None and key in self._common:
+            names, common = self._common[key]
+            self._names[key] = names
+            used.update((row, common[row]) for row in rows if row not in used and row in common)
         there = np.array([row in used for row in rows], dtype=bool)
         if not there.any():
             return there, {}
@@ -75,7 +89,12 @@ class Histories:
         """
         self._names[key] = tuple(columns)
         table = np.column_stack([np.asarray(column, dtype=np.float64) for column in columns.values()])
-        self._used.setdefault(key, {}).update(zip(_rows(values), table, strict=True))
+        fresh = dict(zip(_rows(values), table, strict=True))
+        self._used.setdefault(key, {}).update(fresh)
+        if self._common is not None:
+            _, common = self._common.setdefault(key, (self._names[key], {}))
+            for row, told in islice(fresh.items(), max(0, COMMON - len(common))):
+                common[row] = told
 
     def keep(self) -> None:
         """Keep what was used."""

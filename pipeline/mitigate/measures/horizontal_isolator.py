@@ -187,7 +187,7 @@ class Load:
 
 def lift_of(response: IsolatorResponse) -> float:
     """Return the largest |a_h| / (g + a_z) of what an isolator passes on [-]; infinite where the load loses contact."""
-    return max(max(lift_ratios(m.excitation(None))) for level in response.shaking for m in level.motions)
+    return max(max(lift_ratios(m.excitation(None))) for level in response.shaking for m in level.every)
 
 
 def _unsuited(scene: Scene) -> str:

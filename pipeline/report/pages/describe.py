@@ -11,12 +11,14 @@ from pipeline.records import (
     Check,
     Estimate,
     Finding,
+    Furniture,
     Mark,
     MeasurementRequest,
     MotionSummary,
     Origin,
     Recommendation,
     RunRecord,
+    Scene,
     Support,
 )
 from pipeline.records.result import BOUNDS
@@ -107,6 +109,29 @@ def support(of: Support) -> str:
     return told[of]
 
 
+def furniture(scene: Scene) -> str:
+    """Say in words what an object stands in or on, and where that is known from; "" of what hangs as all such do."""
+    if scene.furniture is None or scene.furniture_origin is None:
+        return ""
+    if scene.support in (Support.HUNG, Support.SUSPENDED) and scene.furniture_origin is Origin.ASSUMED:
+        return ""
+    told = {
+        Furniture.FLOOR: _("on the floor"),
+        Furniture.SHOWCASE: _("in a showcase"),
+        Furniture.PEDESTAL: _("on a pedestal or plinth"),
+        Furniture.SHELF: _("on a shelf"),
+        Furniture.WALL: _("on a wall"),
+        Furniture.RAIL: _("from a rail or the ceiling"),
+    }
+    known = {
+        Origin.MEASURED: _("as recorded"),
+        Origin.DERIVED: _("as its record names a case"),
+        Origin.STATED: _("stated by a house rule"),
+        Origin.ASSUMED: _("assumed"),
+    }
+    return f"{told[scene.furniture]} ({known[scene.furniture_origin]})"
+
+
 def bar(utilisation: float | None) -> Bar | None:
     """Return the bar of a utilisation: its track spans 0 to 2, and the limit, 1, lies in the middle."""
     if utilisation is None or isnan(utilisation):
@@ -172,6 +197,7 @@ class Describer:
             rule=said(clean(scene.rule)),
             support=support(scene.support),
             place=clean(item.case),
+            furniture=furniture(scene),
             lead=findings[0] if findings else None,
             findings=findings,
             measures=self._measures(assessment),

@@ -180,6 +180,7 @@ class ObjectView:
     rule: str
     support: str
     place: str
+    furniture: str
     lead: FindingView | None
     findings: tuple[FindingView, ...]
     measures: tuple[MeasureView, ...]

@@ -1,0 +1,177 @@
+"""Furniture that an object stands on or in, or hangs from, and the numbers by which that passes the shaking on.
+
+Which furniture it is comes from the record, else from a house rule, else from the case that the record names, else from
+what is usual for the class and height of the object (tables/usual_furniture.csv).  Its numbers come from the row of its
+kind (tables/furniture.csv) and are ranges: what they do to the shaking is found for the whole range
+(`pipeline.analysis.furnished`).
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
+from math import radians
+
+from pipeline.analysis.house.effect import HouseEffect
+from pipeline.records import Estimate, Furniture, Item, Origin, Scene, Support
+from pipeline.tables.assumed import AssumedValues
+from pipeline.tables.furniture_rows import ANY, STANDING, FurnitureRow, UsualFurniture, usual_furniture
+
+FREQUENCY, DAMPING, LEVEL_ERROR = "furniture_frequency", "furniture_damping", "level_error"
+
+OF_FURNITURE = (FREQUENCY, DAMPING, LEVEL_ERROR)
+"""Parameters of a scene that follow from its furniture."""
+
+_CASES = (
+    (
+        re.compile(r"\b(pedestals?|plinths?|socles?|Sockel|Podest|socle|plinto|pedestal)\b", re.IGNORECASE),
+        Furniture.PEDESTAL,
+    ),
+    (re.compile(r"\b(shelf|shelves|Regal|étagère)\b", re.IGNORECASE), Furniture.SHELF),
+)
+"""Words by which the name of a case says that it is none; any other name is that of a showcase."""
+
+
+@dataclass(frozen=True, slots=True)
+class FurnitureFilter:
+    """What furniture does to the shaking of its floor, as far as it is known.
+
+    Attributes
+    ----------
+    frequency, damping : tuple of float
+        Low, best and high of its lowest mode [Hz] and [-]; () for what moves as the floor does.
+    level_error : float
+        By how much it may be off level, in any direction [rad].
+    """
+
+    frequency: tuple[float, ...]
+    damping: tuple[float, ...]
+    level_error: float
+
+
+@dataclass(frozen=True, slots=True)
+class FurnitureGuess:
+    """Furniture of an object, and where that is known from.
+
+    Attributes
+    ----------
+    furniture : Furniture
+        Its kind.
+    origin : Origin
+        Of that knowledge.
+    words, source : str
+        In words, and who says so.
+    """
+
+    furniture: Furniture
+    origin: Origin
+    words: str
+    source: str = ""
+
+
+@cache
+def _usual(object_class: str, support: str, height: float) -> UsualFurniture:
+    here = [row for row in usual_furniture() if row.support == support and height >= row.taller_than]
+    mine = [row for row in here if row.object_class == object_class]
+    others = [row for row in here if row.object_class == ANY]
+    return max(mine or others, key=lambda row: row.taller_than)
+
+
+def furniture_of(item: Item, object_class: str, support: Support, house: HouseEffect) -> FurnitureGuess:
+    """Return what an object stands on or in, or hangs from.
+
+    Parameters
+    ----------
+    item : Item
+        Its record.
+    object_class : str
+        Row of classes.csv.
+    support : Support
+        How it is held.
+    house : HouseEffect
+        What the house rules come to for it.
+
+    Returns
+    -------
+    FurnitureGuess
+        By its record, else by a house rule, else by the case that its record names, else as is usual for its class.
+    """
+    stated = house.stated.get("furniture")
+    if item.furniture is not None and stated is None:
+        return FurnitureGuess(item.furniture, Origin.MEASURED, "as recorded")
+    if stated is not None:
+        return FurnitureGuess(Furniture(str(stated.value)), Origin.STATED, stated.origin, stated.source)
+    hangs = support in (Support.HUNG, Support.SUSPENDED)
+    case = item.case.strip()
+    if case and not hangs:
+        kind = next((kind for words, kind in _CASES if words.search(case)), Furniture.SHOWCASE)
+        return FurnitureGuess(kind, Origin.DERIVED, f"for its record names the case or plinth {case!r}")
+    row = _usual(object_class, support.value if hangs else STANDING, item.height_m or 0.0)
+    about = "what stands" if row.object_class == ANY else object_class.replace("_", " ")
+    from_ = f" from {row.taller_than:g} m on" if row.taller_than else ""
+    about = {Support.HUNG: "what hangs on a wall", Support.SUSPENDED: "what hangs from above"}.get(support, about)
+    words = f"assumed for: {about}{from_}, usual_furniture.csv; not recorded"
+    return FurnitureGuess(row.furniture, Origin.ASSUMED, words, f"usual_furniture.csv ({row.source})")
+
+
+def in_furniture(scene: Scene, house: HouseEffect, values: AssumedValues) -> Scene:
+    """Return a scene with the furniture that its object stands on or in, or hangs from.
+
+    Parameters
+    ----------
+    scene : Scene
+        Without it.
+    house : HouseEffect
+        What the house rules come to for the object.
+    values : AssumedValues
+        The numbers of each kind of furniture.
+
+    Returns
+    -------
+    Scene
+        With its kind, where that comes from, and, where models are run on it, its numbers and what is assumed of them.
+    """
+    guess = furniture_of(scene.item, scene.object_class, scene.support, house)
+    scene = replace(scene, furniture=guess.furniture, furniture_origin=guess.origin)
+    if not scene.models:
+        return scene
+    known = _numbers(values.furniture[guess.furniture.value], guess)
+    if known:
+        notes = tuple(one.note for one in known.values())
+    elif guess.origin is Origin.ASSUMED and scene.support not in (Support.HUNG, Support.SUSPENDED):
+        notes = (f"furniture: {values.furniture[guess.furniture.value].title}, {guess.words}",)
+    else:
+        notes = ()
+    return replace(scene, parameters={**scene.parameters, **known}, assumptions=(*scene.assumptions, *notes))
+
+
+@lru_cache(maxsize=4096)
+def _numbers(row: FurnitureRow, guess: FurnitureGuess) -> Mapping[str, Estimate]:
+    out = {}
+    frequency, damping = row.range("frequency"), row.range("damping")
+    if frequency is not None and damping is not None:
+        low, best, high = frequency.low, frequency.value, frequency.high
+        note = f"furniture: {row.title}, {guess.words}; of {best:g} Hz ({low:g} to {high:g}), or stiff"
+        out[FREQUENCY] = _assumed(best, low, high, "Hz", f"{note}, {row.table}", frequency.source)
+        low, best, high = damping.low, damping.value, damping.high
+        note = f"damping of its furniture: {best:g} ({low:g} to {high:g}), {row.table} for {row.title}"
+        out[DAMPING] = _assumed(best, low, high, "-", note, damping.source)
+    if row.level_error:
+        most = radians(row.level_error)
+        note = f"level: off by up to {row.level_error:g}° either way, {row.table} for {row.title}"
+        out[LEVEL_ERROR] = _assumed(0.0, -most, most, "rad", note, f"{row.table} ({row.source})")
+    return out
+
+
+def _assumed(best: float, low: float, high: float, unit: str, note: str, source: str) -> Estimate:
+    return Estimate(best, unit, Origin.ASSUMED, low, high, note, source)
+
+
+def filter_of(scene: Scene) -> FurnitureFilter | None:
+    """Return what the furniture of a scene does to the shaking of its floor; None where it does nothing to it."""
+    known = scene.parameters
+    frequency, damping, level = (known.get(name) for name in OF_FURNITURE)
+    if frequency is None and level is None:
+        return None
+    ends = [() if one is None else (one.low, one.value, one.high) for one in (frequency, damping)]
+    return FurnitureFilter(ends[0], ends[1], 0.0 if level is None else max(abs(level.low), abs(level.high)))

@@ -1,0 +1,129 @@
+"""Rows of the tables of what objects stand on or in, or hang from: furniture.csv and usual_furniture.csv."""
+
+from functools import cache
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field, ValidationInfo, field_validator
+
+from pipeline.errors import InputError
+from pipeline.records import Furniture, Support
+from pipeline.tables import Range, TableError, table
+from pipeline.tables.assumed_rows import AssumedRow
+from pipeline.tables.rows import Number, Optional, TableRow, Text, checked, in_order
+
+ANY = "*"
+"""In the column object_class of usual_furniture.csv: of every class that no other row names."""
+
+STANDING = "standing"
+"""In the column support of usual_furniture.csv: whatever is neither hung nor suspended."""
+
+_STEEPEST = 5.0
+
+
+def _shaking(hertz: float | None) -> float | None:
+    if hertz is not None and not 0.1 <= hertz <= 50.0:
+        raise InputError(f"must be from 0.1 to 50 Hz, not {hertz:g}")
+    return hertz
+
+
+def _damped(share: float | None) -> float | None:
+    if share is not None and not 0.0 < share < 1.0:
+        raise InputError(f"is a share of the critical damping: it must be above 0 and below 1, not {share:g}")
+    return share
+
+
+Hertz = Annotated[Optional, AfterValidator(_shaking)]
+"""A cell that holds a frequency, or nothing."""
+
+Damping = Annotated[Optional, AfterValidator(_damped)]
+"""A cell that holds a damping ratio, or nothing."""
+
+
+class FurnitureRow(AssumedRow):
+    """A row of furniture.csv: one kind of furniture.
+
+    Attributes
+    ----------
+    furniture, title : Furniture, str
+        Which kind, and in words with its article.
+    frequency, damping : float or None, with _low and _high
+        Of its lowest mode [Hz] and [-]; None for what moves as the floor does.
+    level_error : float
+        By how much its top may be off level at most, in any direction [degrees].
+    source : str
+        Who says so.
+    """
+
+    printed, named = "furniture.csv", "furniture"
+
+    furniture: Furniture
+    title: Text
+    frequency: Hertz
+    frequency_low: Hertz
+    frequency_high: Hertz
+    damping: Damping
+    damping_low: Damping
+    damping_high: Damping
+    level_error: Annotated[Number, Field(ge=0.0, le=_STEEPEST)]
+    source: Text
+
+    @field_validator("frequency_high", "damping_high")
+    @classmethod
+    def _in_order(cls, high: float | None, info: ValidationInfo) -> float | None:
+        kind = str(info.field_name).removesuffix("_high")
+        three = (info.data.get(f"{kind}_low"), info.data.get(kind), high)
+        if any(cell is not None for cell in three) and None in three:
+            raise InputError(f"{kind}, {kind}_low and {kind}_high go together: fill all three, or none")
+        if kind == "damping" and (high is None) is not (info.data.get("frequency") is None):
+            raise InputError("what shakes has a frequency and a damping: fill both, or neither")
+        return in_order(high, info, f"{kind}_low", kind)
+
+    @property
+    def key(self) -> str:
+        """Its kind."""
+        return self.furniture.value
+
+    def range(self, column: str) -> Range | None:
+        """Return value, low and high of ``frequency`` [Hz] or ``damping`` [-]; None where it does not shake."""
+        low, value, high = (getattr(self, name) for name in (f"{column}_low", column, f"{column}_high"))
+        return None if value is None else Range(value, low, high, f"{self.table} ({self.source})")
+
+
+class UsualFurniture(TableRow):
+    """A row of usual_furniture.csv: what objects of a class usually stand on or hang from.
+
+    Attributes
+    ----------
+    object_class : str
+        Row of classes.csv; "*" for every one that no other row of the same support names.
+    support : str
+        How it is held: hung, suspended, or standing for all others.
+    taller_than : float
+        Height from which it holds [m]; of several rows that hold the one of the largest counts.
+    furniture : Furniture
+        What it stands on or hangs from.
+    source : str
+        Who says so.
+    """
+
+    object_class: Text
+    support: Literal["standing", "hung", "suspended"]
+    taller_than: Annotated[Number, Field(ge=0.0)]
+    furniture: Furniture
+    source: Text
+
+
+@cache
+def usual_furniture() -> tuple[UsualFurniture, ...]:
+    """Return what objects of each class usually stand on or hang from.
+
+    Raises
+    ------
+    TableError
+        For a cell that cannot be used, naming it, and where there is no row for what no other row names.
+    """
+    rows = checked(UsualFurniture, table("usual_furniture"), "usual_furniture.csv", named="object_class")
+    for held in (STANDING, Support.HUNG, Support.SUSPENDED):
+        if not any((row.object_class, row.support, row.taller_than) == (ANY, held, 0.0) for row in rows):
+            raise TableError(f"usual_furniture.csv: has no row of class {ANY} and support {held} from 0 m on; add it")
+    return rows
