@@ -22,7 +22,7 @@ from pipeline.models.common import largest_push
 from pipeline.models.oscillator import OSCILLATOR
 from pipeline.models.sliding import SLIDING
 from pipeline.quantities import Array, G
-from pipeline.records import Excitation, Model, Motion
+from pipeline.records import Excitation, Motion
 
 PER_PERIOD = 15.0
 """Samples of what furniture passes on in a period of its own, at least."""
@@ -37,7 +37,7 @@ SLIPPERY = (0.3, 0.7)
 """Frictions of the bodies that stand for what slides, as shares of what holds one under the motion of the floor."""
 
 
-def furnished(level: LevelMotions, furniture: FurnitureFilter | None, *, resonant: bool = False) -> LevelMotions:
+def furnished(level: LevelMotions, furniture: FurnitureFilter | None) -> LevelMotions:
     """Return a level as what stands in some furniture feels it.
 
     Parameters
@@ -46,8 +46,6 @@ def furnished(level: LevelMotions, furniture: FurnitureFilter | None, *, resonan
         The motions of the floor; those of something that stands on it already come back as they are.
     furniture : FurnitureFilter or None
         None: nothing is between the object and its floor.
-    resonant : bool
-        Whether what stands in it has a frequency of its own, so that any frequency of the furniture may be the worst.
 
     Returns
     -------
@@ -58,7 +56,7 @@ def furnished(level: LevelMotions, furniture: FurnitureFilter | None, *, resonan
     """
     if furniture is None or level.passed_on:
         return level
-    return level.through(partial(_whole_grid if resonant else _variants, furniture=furniture))
+    return level.through(partial(_whole_grid if furniture.resonant else _variants, furniture=furniture))
 
 
 def isolating(level: LevelMotions, furniture: FurnitureFilter | None) -> LevelMotions:
@@ -86,11 +84,6 @@ def isolating(level: LevelMotions, furniture: FurnitureFilter | None) -> LevelMo
 def _for_isolators(motion: Motion, *, furniture: FurnitureFilter) -> tuple[Motion, ...]:
     every = _variants(motion, furniture=furniture)
     return every[1:2] if not furniture.frequency else every[3 + EVEN : 4 + EVEN]
-
-
-def feels_resonance(model: Model) -> bool:
-    """Say whether a model is of something with a frequency of its own that stands in furniture."""
-    return model.kind != "isolator" and any(quantity.name == "frequency" for quantity in model.needs)
 
 
 def best_furnished(motions: Sequence[Motion], furniture: FurnitureFilter | None) -> tuple[Motion, ...]:

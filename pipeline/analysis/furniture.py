@@ -42,11 +42,14 @@ class FurnitureFilter:
         Low, best and high of its lowest mode [Hz] and [-]; () for what moves as the floor does.
     level_error : float
         By how much it may be off level, in any direction [rad].
+    resonant : bool
+        Whether what stands in it has a frequency of its own that is known, so that any of its own may be the worst.
     """
 
     frequency: tuple[float, ...]
     damping: tuple[float, ...]
     level_error: float
+    resonant: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,4 +177,7 @@ def filter_of(scene: Scene) -> FurnitureFilter | None:
     if frequency is None and level is None:
         return None
     ends = [() if one is None else (one.low, one.value, one.high) for one in (frequency, damping)]
-    return FurnitureFilter(ends[0], ends[1], 0.0 if level is None else max(abs(level.low), abs(level.high)))
+    own = known.get("frequency")
+    # Of one that is a range the worst is searched for anyway; that of an isolator is not the object's.
+    resonant = own is not None and own.low == own.high and scene.support is not Support.ISOLATED
+    return FurnitureFilter(ends[0], ends[1], 0.0 if level is None else max(abs(level.low), abs(level.high)), resonant)

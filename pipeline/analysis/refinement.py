@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from pipeline.analysis.cases import DemandCase, Effort, Known, together
 from pipeline.analysis.context import Context
 from pipeline.analysis.demands import Demands, Step, bounded, chart, integrate
-from pipeline.analysis.furnished import feels_resonance, furnished
+from pipeline.analysis.furnished import furnished
 from pipeline.analysis.plan import Indices, Work
 from pipeline.analysis.verdicts import LevelMotions, Mask, capacity_of, exceeds
 from pipeline.models.common import largest_push
@@ -214,8 +214,11 @@ class FidelitySearch:
         least = found.work.model.least_of(output)
         low, high = found.low, found.high
         return (
-            spans.highest(low[output]), spans.highest(high[output]), spans.lowest(low[least]), spans.lowest(high[least]),
-        )  # fmt: skip
+            spans.highest(low[output]),
+            spans.highest(high[output]),
+            spans.lowest(low[least]),
+            spans.lowest(high[least]),
+        )
 
     def _known_each(self, case: DemandCase, ends: Sequence[_Ends]) -> list[Known]:
         """Return what is known under each variant, of the ends of the demands under each motion."""
@@ -402,8 +405,7 @@ def examine(
     outputs: dict[str, list[int]] = {}
     for at, (output, _) in enumerate(capacities):
         outputs.setdefault(output, []).append(at)
-    felt = furnished(level, work.furniture, resonant=feels_resonance(work.model))
-    search = FidelitySearch.begin(work, felt, tuple(outputs), context, numerics)
+    search = FidelitySearch.begin(work, furnished(level, work.furniture), tuple(outputs), context, numerics)
     watch(search)
     cases = []
     for output, members in outputs.items():

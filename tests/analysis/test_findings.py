@@ -10,6 +10,8 @@ import pytest
 from pipeline.analysis.assess import LevelMotions, assess
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
+from pipeline.analysis.furnished import furnished
+from pipeline.analysis.furniture import FurnitureFilter, filter_of
 from pipeline.analysis.response import respond
 from pipeline.collection.database import open_database
 from pipeline.execute import Threads
@@ -42,11 +44,13 @@ def test_an_outcome_is_told_exactly_where_the_best_demand_is_beyond_the_capacity
 
 
 def test_ranges_of_what_passes_are_demands_or_say_that_they_are_bounds(record: RunRecord, motion: Motion) -> None:
-    """Histories at both ends of the friction, of all that slides and passes in the demonstration."""
+    """Histories at both ends of the friction, in all variants of the furniture, of all that slides and passes."""
+    site = LevelMotions("design", "max", (motion,))
 
     @cache
-    def slides(friction: float) -> float:
-        return float(respond("sliding", motion, friction_static=friction)["displacement"].iloc[0])
+    def slides(friction: float, furniture: FurnitureFilter | None) -> list[float]:
+        shaking = furnished(site, furniture).every
+        return [float(respond("sliding", one, friction_static=friction)["displacement"].iloc[0]) for one in shaking]
 
     seen: Counter[str] = Counter()
     for a in record.assessments:
@@ -55,7 +59,8 @@ def test_ranges_of_what_passes_are_demands_or_say_that_they_are_bounds(record: R
             assert friction is not None
             assert f.low is not None
             assert f.high is not None
-            truth = [slides(one) for one in (friction.low, friction.value, friction.high)]
+            stands = filter_of(a.scene)
+            truth = [d for one in (friction.low, friction.value, friction.high) for d in slides(one, stands)]
             # What was bounded is off by no more than what a history is.
             assert f.low <= min(truth) * 1.002
             assert f.high >= max(truth) * 0.998
