@@ -311,6 +311,12 @@ class FidelitySearch:
         Where furniture has variants, the best estimates come first, then the bare floor, under which the demand is
         mostly the least, then the strongest: most of the others are known then to lie in between.
         """
+        if self.work.model.searched:
+            # The ends are bounds: a range over bands is wide, and the worst of all directions of a band is dear.
+            bests = np.unique(part.spans.rows[part.spans.starts])
+            asked = [bests if at in self.cells[0] else bests[:0] for at in range(len(self.found))]
+            self.effort.numbers += self._up(Step.HISTORY, asked)
+            return
         every = range(len(self.found))
         ends = [self._ends(part, found) for found in self.found]
         self._up(Step.CHART, [self._heard(part, ends, at) for at in every])

@@ -11,10 +11,12 @@ from pipeline.analysis.furniture import FurnitureFilter, filter_of
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures import Measure
+from pipeline.mitigate.measures.base import UNKNOWN_FREQUENCY, held
 from pipeline.mitigate.measures.remove import LAST_RESORTS
 from pipeline.mitigate.proposals import Candidate, Case, Deficiency, Option, Proposal, case_of, company, known_to_swing
 from pipeline.mitigate.trials import TransmittedMotions, Trial, TrialRunner, checks, passes, passes_at_best, why_not
 from pipeline.models import settled_by_room
+from pipeline.models.stress import FLEXIBLE_STRESS
 from pipeline.records import Check, Finding, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 
@@ -215,13 +217,16 @@ class _Search:
         measure.prepare(pending, self.runner)
         open_: list[tuple[Unit, Proposal, Iterator[Candidate]]] = []
         for unit in self._units(pending, measure):
-            proposal = (
-                measure.propose_shared(unit, self.runner) if measure.shared else measure.propose(unit[0], self.runner)
-            )
+            proposal = self._proposed(unit, measure)
             open_.append((unit, proposal, iter(proposal.candidates)))
         last: dict[Unit, str] = {}
         while open_:
             open_ = self._round(open_, measure, last)
+
+    def _proposed(self, unit: Unit, measure: Measure) -> Proposal:
+        if measure.isolator and any(_band_unknown(one.scene) for one in unit):
+            return UNKNOWN_FREQUENCY
+        return measure.propose_shared(unit, self.runner) if measure.shared else measure.propose(unit[0], self.runner)
 
     def settles(self) -> None:
         """Let what passes by the best estimates stand, where nothing that fastens is sure."""
@@ -353,3 +358,9 @@ def _filled(sentence: str, words: Mapping[str, str]) -> str:
         return found[0] if text is None else text.replace("{", "{{").replace("}", "}}")
 
     return re.sub(r"{(\w+)}", said, sentence)
+
+
+def _band_unknown(scene: Scene) -> bool:
+    # What an isolator does to an object that bends hangs on how fast it sways: a range of that is no basis for one.
+    frequency = scene.parameters.get("frequency")
+    return not FLEXIBLE_STRESS.applies(held(scene)) and frequency is not None and frequency.low < frequency.high

@@ -105,9 +105,11 @@ def _pushes(motion: Excitation, parameters: Mapping[str, Array]) -> tuple[Array,
     low, high, zeta = (parameters[name] for name in ("frequency", "frequency_high", "damping"))
     banded = ~np.isnan(high)
     least, most = np.empty_like(low), np.empty_like(low)
-    w = 2.0 * np.pi * low[~banded]
-    displacement, _ = oscillate(motion, w, zeta[~banded], np.ones_like(w))
-    least[~banded] = most[~banded] = w**2 * displacement
+    # Parameter sets differ in more than these: each oscillator is run once.
+    oscillators, place = np.unique(np.column_stack([low, zeta])[~banded], axis=0, return_inverse=True)
+    w = 2.0 * np.pi * oscillators[:, 0]
+    displacement, _ = oscillate(motion, w, oscillators[:, 1], np.ones_like(w))
+    least[~banded] = most[~banded] = (w**2 * displacement)[place.reshape(-1)]
     least[banded], most[banded] = band_accelerations(motion, low[banded], high[banded], zeta[banded])
     return least, most
 

@@ -15,6 +15,7 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, each_apart, fault, unassessed
 from pipeline.analysis.fragility.objects import fragilities
 from pipeline.analysis.house.matching import HouseRules
+from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.rules import RuleTable
 from pipeline.analysis.survey import measurement_requests
 from pipeline.collection.record import INDIVIDUAL
@@ -35,6 +36,7 @@ from pipeline.records import (
     Scene,
     Support,
 )
+from pipeline.records.numerics import AUTO
 
 if TYPE_CHECKING:
     from pipeline.night.context import RunContext
@@ -152,11 +154,12 @@ def _found(
     began = perf_counter()
     if context.surveyed:
         # Each trial is asked once: a chart would not pay.
+        numerics = context.analysis.numerics
+        uncharted = Context(working.executor, charts=ChartCache(admitted=frozenset()))
+        finely = numerics if numerics.fidelity == AUTO else numerics.integrated
         assessments, several = each_apart(
             assessments,
-            lambda scenes, found: measurement_requests(
-                scenes, found, floor.shaking, Context(working.executor), context.analysis.numerics.integrated
-            ),
+            lambda scenes, found: measurement_requests(scenes, found, floor.shaking, uncharted, finely),
             "what is worth measuring on it is not known",
             faults,
         )
@@ -294,14 +297,19 @@ def _assessed(
     )
     curves: Sequence[tuple[Fragility, ...]] = [()] * len(scenes)
     if context.fragile:
-        # What an isolator passes on would have to be scaled too.
-        shown = [s.item.on_display and s.support is not Support.ISOLATED for s in scenes]
+        shown = [s.item.on_display and _has_a_curve(s) for s in scenes]
         curves = fragilities(scenes, plan.work, floor.stripes, Context(working.executor), chosen=shown)
     scenes = [_needing(scene, those) for scene, those in zip(scenes, findings, strict=True)]
     return [
         (Assessment(scene, tuple(those), tuple(advised), curve), counts)
         for scene, those, advised, curve, counts in zip(scenes, findings, advice, curves, needing, strict=True)
     ]
+
+
+def _has_a_curve(scene: Scene) -> bool:
+    # What an isolator passes on would have to be scaled too; of a work of which nobody knows how it hangs, nobody knows
+    # how it fails at any shaking.
+    return scene.support is not Support.ISOLATED and (scene.support is not Support.HUNG or scene.hanging is not None)
 
 
 def _needing(scene: Scene, findings: Sequence[Finding]) -> Scene:

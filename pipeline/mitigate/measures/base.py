@@ -23,6 +23,7 @@ SPARE = 1.01
 """Margin on sizes that are found in closed form and then run: 1 %, so that rounding never decides."""
 
 NOT_FREE = refused("it does not stand free")
+UNKNOWN_FREQUENCY = refused("how fast it sways is only estimated: its natural frequency must be measured first")
 UNKNOWN_SECTION = refused("its mass or critical section is not known, so the stress of a held base cannot be checked")
 
 SECTION = ("mass", "lever", "area", "section_modulus", "allowable_stress")
