@@ -424,7 +424,6 @@ STANDING = Model(
         sample={"half_width": 0.15, "cg_height": 0.5, "friction_static": 0.5},
         promised=1e-4,
     ),
-    listed="Table 1, Rigid: Rocking, with sec. 2.2",
     supports=(Support.FREESTANDING,),
     tips=True,
     says=(HARMLESS, UNHARMED, OVERTURNS, SLIDES),

@@ -7,10 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pipeline.analysis.furnished import furnished
+from pipeline.analysis.furniture import filter_of
 from pipeline.analysis.response import respond
 from pipeline.analysis.transmission import transmit
+from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.database import open_database
 from pipeline.mitigate.fixing_rows import fixing_strengths
+from pipeline.mitigate.measures.base import held
 from pipeline.mitigate.search import AT_BEST, SIZED
 from pipeline.motions import read_motion
 from pipeline.quantities import G
@@ -35,19 +39,39 @@ def advised(record: RunRecord, measure: str) -> list[tuple[Assessment, Recommend
     return [(a, r) for a in record.assessments for r in a.recommendations if r.measure == measure]
 
 
+def felt(assessment: Assessment, motion: Motion) -> tuple[Motion, ...]:
+    """What its furniture may make of the motion of the floor: of what that is, tests/analysis/test_furniture.py."""
+    level = LevelMotions("design", "max", (motion,))
+    return furnished(level, filter_of(assessment.scene)).every
+
+
+def pushed(assessment: Assessment, motion: Motion) -> float:
+    """A_max [m/s2] at the worst of its furniture."""
+    return max(float(np.hypot(*one.acceleration[:2]).max()) for one in felt(assessment, motion))
+
+
+def bends(assessment: Assessment) -> bool:
+    """Whether it is flexible: what it bears then is not the push of its base."""
+    frequency = assessment.scene.parameters.get("frequency")
+    return frequency is not None and frequency.low < 1.0 / 0.06
+
+
 def tension(assessment: Assessment, push: float) -> float:
-    """sigma = m A l / S - m g / A where all of what is uncertain is at its worse end at once (paper, 2.3)."""
-    p = assessment.scene.parameters
-    each = push * p["lever"].high / p["section_modulus"].low - G / p["area"].value
+    """sigma = K m A l / S - m g / A where all of what is uncertain is at its worse end at once (paper, 2.3)."""
+    p = held(assessment.scene).parameters
+    k = p["concentration"].high if "concentration" in p else 1.0
+    each = k * push * p["lever"].high / p["section_modulus"].low - G / p["area"].value
     return max(p["mass"].low * each, p["mass"].high * each)
 
 
-def bears(assessment: Assessment, advice: Recommendation, push: float) -> bool:
+def bears(assessment: Assessment, advice: Recommendation, motion: Motion) -> bool:
     """Whether its section does: at all worse ends, or by the best estimates where the advice says so."""
-    p = assessment.scene.parameters
+    p = held(assessment.scene).parameters
     if not advice.sentence.endswith(AT_BEST):
-        return tension(assessment, push) <= p["allowable_stress"].low
-    each = push * p["lever"].value / p["section_modulus"].value - G / p["area"].value
+        return tension(assessment, pushed(assessment, motion)) <= p["allowable_stress"].low
+    push = float(np.hypot(*felt(assessment, motion)[0].acceleration[:2]).max())
+    k = p["concentration"].value if "concentration" in p else 1.0
+    each = k * push * p["lever"].value / p["section_modulus"].value - G / p["area"].value
     return bool(p["mass"].value * each <= p["allowable_stress"].value)
 
 
@@ -68,11 +92,10 @@ def test_each_failing_object_has_one_advice_and_each_advice_a_reason(record: Run
 
 def test_more_than_one_kind_of_measure_is_needed(record: RunRecord) -> None:
     kinds = Counter(r.measure for a in record.assessments for r in a.recommendations)
-    assert {"clearance", "ties", "clamps", "fasten", "remove"} <= set(kinds), kinds
+    assert {"ties", "clamps", "fasten", "brackets", "remove"} <= set(kinds), kinds
     rerun = {"clearance", "wide_base", "fasten", "restrain", "horizontal_isolator", "remove", *FIXINGS}
     assert set(kinds) <= rerun, "a measure that no test here runs again"
-    # Wax was never advised, and an isolator for every tenth object.
-    assert kinds["wax"] > 30
+    # An isolator was advised for every tenth object.
     assert kinds["horizontal_isolator"] < 10
 
 
@@ -90,17 +113,12 @@ def unsettled(assessment: Assessment) -> list[Finding]:
 
 def test_clearances(record: RunRecord, motion: Motion) -> None:
     """The room advised is more than the model moves at the worse end of what is not known."""
-
-    @cache
-    def slides(friction: float) -> float:
-        return float(respond("sliding", motion, friction_static=friction)["displacement"].iloc[0])
-
-    advice = advised(record, "clearance")
-    assert len(advice) > 30
-    for assessment, recommended in advice:
+    for assessment, recommended in advised(record, "clearance"):
         assert assessment.scene.support is Support.FREESTANDING
         friction = assessment.scene.parameters["friction_static"].low
-        assert slides(friction) < recommended.parameters["clearance"]
+        for one in felt(assessment, motion):
+            slid = float(respond("sliding", one, friction_static=friction)["displacement"].iloc[0])
+            assert slid < recommended.parameters["clearance"]
 
 
 def test_what_nobody_recorded_how_it_hangs_is_open_and_is_not_told_to_keep_clear(record: RunRecord) -> None:
@@ -116,11 +134,12 @@ def test_what_nobody_recorded_how_it_hangs_is_open_and_is_not_told_to_keep_clear
 
 
 def test_fastened_objects_bear_the_push(record: RunRecord, motion: Motion) -> None:
-    push = float(np.hypot(*motion.acceleration[:2]).max())
-    for assessment, recommended in advised(record, "fasten"):
-        p = assessment.scene.parameters
-        assert bears(assessment, recommended, push)
-        assert recommended.parameters["force"] == pytest.approx(p["mass"].high * push)
+    rigid = [(a, r) for a, r in advised(record, "fasten") if not bends(a)]
+    assert rigid
+    for assessment, recommended in rigid:
+        push = pushed(assessment, motion)
+        assert bears(assessment, recommended, motion)
+        assert recommended.parameters["force"] == pytest.approx(assessment.scene.parameters["mass"].high * push)
 
 
 def slopes(assessment: Assessment, half: float | None = None) -> float:
@@ -157,11 +176,13 @@ def test_fixings_hold(record: RunRecord, motion: Motion) -> None:
 
     By the low ends of the strengths for the former, by the strengths themselves for the latter.
     """
-    x, y, z = motion.acceleration
-    push = np.hypot(x, y)
     for name in FIXINGS:
         row = fixing_strengths()[name]
         for assessment, recommended in advised(record, name):
+            if bends(assessment):
+                continue
+            x, y, z = np.concatenate([one.acceleration for one in felt(assessment, motion)], axis=1)
+            push = np.hypot(x, y)
             p, at = assessment.scene.parameters, recommended.parameters
             pieces, area = at["pieces"], 0.25 * np.pi * at["size"] ** 2 if "size" in at else 1.0
             sure = not recommended.sentence.endswith((SIZED, AT_BEST))
@@ -173,19 +194,19 @@ def test_fixings_hold(record: RunRecord, motion: Motion) -> None:
                 top = assessment.scene.item.height_m or 2.0 * low_h  # noqa: B023
                 share = {"ties": 0.25 * np.cos(np.pi / 4), "brackets": 1.0, "wax": 1.0, "putty": 1.0}.get(name, 0.25)  # noqa: B023
                 arm = {"ties": share * low_h, "brackets": top, "pins": np.inf}.get(name, 2.0 / 3.0 * b)  # noqa: B023
-                moment = max(mass * float((push * h - (G + z) * b).max()), 1e-9)
-                force = mass * float(push.max())
+                moment = max(mass * float((push * h - (G + z) * b).max()), 1e-9)  # noqa: B023
+                force = mass * float(push.max())  # noqa: B023
                 return min(pieces * area * shear * share / force, pieces * area * tension * arm / moment)  # noqa: B023
 
             held = holds(True, row.tension_low, row.shear_low) if sure else holds(False, row.tension, row.shear)
             assert held >= (1.0 if sure else row.factor) * (1.0 - 1e-9), assessment.scene.item.object_number
             assert holds(False, row.tension, row.shear) == pytest.approx(at["margin"])
-            assert bears(assessment, recommended, float(push.max()))
+            assert bears(assessment, recommended, motion)
 
 
 def test_no_isolator_stands_where_a_mount_holds_by_the_best_estimates(record: RunRecord, motion: Motion) -> None:
-    push = float(np.hypot(*motion.acceleration[:2]).max())
     for assessment, _ in advised(record, "horizontal_isolator"):
+        push = pushed(assessment, motion)
         p = assessment.scene.parameters
         best = p["mass"].value * (push * p["lever"].value / p["section_modulus"].value - G / p["area"].value)
         assert best > p["allowable_stress"].value
