@@ -48,7 +48,9 @@ unit = "m"
 column = "depth_m"
 unit = "m"
 """
-VASE_COLUMNS = ("object_number", "title", "object_name", "gallery", "height_m", "width_m", "depth_m", "medium")
+VASE_COLUMNS = (
+    "object_number", "title", "object_name", "gallery", "height_m", "width_m", "depth_m", "medium", "furniture",
+)  # fmt: skip
 
 
 def in_common(folder: Path) -> None:
@@ -68,6 +70,14 @@ def workspace(folder: Path, rows: list[str] | None = None, site: str = "demo") -
     (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
     file = folder / "kouros.toml"
     file.write_text(template(museum="Test", source="export.csv", mapping="mapping.toml", site=site), encoding="utf-8")
+    return load_settings(file)
+
+
+def on_the_floor(folder: Path) -> Settings:
+    """Let a house rule of the museum in a folder say that everything stands on the floor itself."""
+    rule = '\n[[house]]\nsupport = "freestanding"\nfurniture = "floor"\nsaid_by = "a test"\nsaid_on = 2026-01-01\n'
+    file = folder / "kouros.toml"
+    file.write_text(file.read_text(encoding="utf-8") + rule, encoding="utf-8")
     return load_settings(file)
 
 

@@ -138,7 +138,11 @@ class FidelitySearch:
             return
         part = case.take(chosen)
         if self.numerics.fidelity == AUTO:
-            self._tell_range(part)
+            banded = self._banded(part)
+            if banded.any():
+                self._tell_bests(part.take(np.flatnonzero(banded)))
+            if not banded.all():
+                self._tell_range(part.take(np.flatnonzero(~banded)))
         model = self.work.model
         if model.exact and model.rests is not None and case.output == model.demand:
             governing, rows = self.governing(part)
@@ -305,18 +309,27 @@ class FidelitySearch:
         rows = np.unique(case.spans.rows)
         return rows[found.low[case.output][rows] < found.high[case.output][rows]]
 
+    def _banded(self, part: DemandCase) -> Mask:
+        """Return of which analyses something is searched for over a band."""
+        upper = [self.work.values[name] for name in self.work.model.searched.values()]
+        searched = np.any([~np.isnan(column) for column in upper], axis=0) if upper else np.zeros(self.work.size, bool)
+        return np.asarray(part.spans.highest(searched.astype(np.float64)) > 0.0)
+
+    def _tell_bests(self, part: DemandCase) -> None:
+        """Find the demand of the best estimates alone.
+
+        The ends of the range are bounds: one over bands is wide, and the worst of all directions of a band is dear.
+        """
+        bests = np.unique(part.spans.rows[part.spans.starts])
+        asked = [bests if at in self.cells[0] else bests[:0] for at in range(len(self.found))]
+        self.effort.numbers += self._up(Step.HISTORY, asked)
+
     def _tell_range(self, part: DemandCase) -> None:
         """Find the range of the demand, first by charts, then by histories of what may still have a say in it.
 
         Where furniture has variants, the best estimates come first, then the bare floor, under which the demand is
         mostly the least, then the strongest: most of the others are known then to lie in between.
         """
-        if self.work.model.searched:
-            # The ends are bounds: a range over bands is wide, and the worst of all directions of a band is dear.
-            bests = np.unique(part.spans.rows[part.spans.starts])
-            asked = [bests if at in self.cells[0] else bests[:0] for at in range(len(self.found))]
-            self.effort.numbers += self._up(Step.HISTORY, asked)
-            return
         every = range(len(self.found))
         ends = [self._ends(part, found) for found in self.found]
         self._up(Step.CHART, [self._heard(part, ends, at) for at in every])

@@ -25,17 +25,18 @@ from pipeline.models.band import MISSED
 from pipeline.models.stress import FLEXIBLE_STRESS, RIGID_PERIOD, STRESS
 from pipeline.motions import read_motion
 from pipeline.quantities import Array, G
-from pipeline.records import Estimate, Item, Motion, Origin, Scene, Support, Verdict
+from pipeline.records import Estimate, Furniture, Item, Motion, Origin, Scene, Support, Verdict
 from pipeline.resources import resource
 from pipeline.tables import table
 from pipeline.tables.assumed import assumed, assumed_with
 from pipeline.tables.bending_rows import bending, slender_shares
 
 FIGURE = Item("1", "G", title="Dancer", object_name="Sculpture", medium="bronze",
-              height_m=1.2, width_m=0.3, depth_m=0.25)  # fmt: skip
+              height_m=1.2, width_m=0.3, depth_m=0.25, furniture=Furniture.FLOOR)  # fmt: skip
 """A slender bronze."""
 
-JAR = Item("2", "G", title="Jar", object_name="Jar", medium="stoneware", height_m=0.3, width_m=0.25, depth_m=0.25)
+JAR = Item("2", "G", title="Jar", object_name="Jar", medium="stoneware", height_m=0.3, width_m=0.25, depth_m=0.25,
+           furniture=Furniture.FLOOR)  # fmt: skip
 """A squat one."""
 
 EI, LENGTH, MASS = 2.0e4, 0.8, 12.0

@@ -132,7 +132,7 @@ def test_every_dotted_name_leads_somewhere() -> None:
 
 def test_the_rooms_are_those_of_the_code() -> None:
     """`make docs` writes them."""
-    text = generate.CONTRIBUTING.read_text(encoding="utf-8")
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     assert with_rooms(text) == text
     assert "| `kernels` |" in text
 

@@ -20,10 +20,10 @@ from pipeline.tables import TableError
 from tests.packages import install
 
 COLLECTION = """\
-object_number,gallery,title,object_name,medium,support,hanging,height_m,width_m,depth_m,mass_kg,friction
-1,A,Portrait,Painting,,hung,wire,0.8,0.6,0.03,8,
-2,A,Vase,Vase,bronze,freestanding,,0.5,0.1,0.1,3,0.5
-3,A,Plate,Plate,,freestanding,,0.03,0.3,0.3,1,
+object_number,gallery,title,object_name,medium,support,hanging,height_m,width_m,depth_m,mass_kg,friction,furniture
+1,A,Portrait,Painting,,hung,wire,0.8,0.6,0.03,8,,
+2,A,Vase,Vase,bronze,freestanding,,0.5,0.1,0.1,3,0.5,floor
+3,A,Plate,Plate,,freestanding,,0.03,0.3,0.3,1,,floor
 """
 
 HOOK = """\

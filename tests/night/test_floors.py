@@ -15,7 +15,7 @@ from pipeline.records import Motion, RunRecord
 from pipeline.settings import Settings, SettingsError, load_settings
 from pipeline.store.runs import load_run
 from pipeline.tools.doctor import diagnose
-from tests.museum import SILENT, own_site, workspace
+from tests.museum import SILENT, on_the_floor, own_site, workspace
 
 BASE = "".join(f'[columns.base_{side}_m]\ncolumn = "{side}_m"\nunit = "m"\n' for side in ("width", "depth"))
 """What it stands on is as wide as it is."""
@@ -36,7 +36,7 @@ def museum(folder: Path, site: Path, floors: str = "") -> Settings:
     workspace(folder, ["1,A,Block,0.4,0.1,0.1", "2,B,Block,0.4,0.1,0.1"], site=str(site))
     file = folder / "kouros.toml"
     file.write_text(file.read_text().replace("[analysis]", f"{floors}\n[analysis]").replace("[floors]\n#", "#"))
-    return load_settings(file)
+    return on_the_floor(folder)
 
 
 def record_of(settings: Settings) -> RunRecord:

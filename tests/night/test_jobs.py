@@ -172,7 +172,7 @@ def test_a_swapped_motion_moves_verdicts_and_is_named(tmp_path: Path) -> None:
     settings = workspace(tmp_path, site="site")
     run(settings, SILENT)
     manifest = site / "manifest.toml"
-    manifest.write_text(manifest.read_text(encoding="utf-8").replace("scale_to_pga_g = 0.7", "scale_to_pga_g = 0.02"))
+    manifest.write_text(manifest.read_text(encoding="utf-8").replace("scale_to_pga_g = 0.7", "scale_to_pga_g = 0.004"))
     changes = run(settings, SILENT).changes
     assert changes is not None
     assert len(changes.motions) == 1

@@ -15,7 +15,7 @@ from pipeline.quantities import G
 from pipeline.records import Assessment, RunRecord, Verdict
 from pipeline.settings import Settings, load_settings
 from pipeline.store.runs import load_run
-from tests.museum import SILENT, workspace
+from tests.museum import SILENT, on_the_floor, workspace
 
 EXTRA = """
 [columns.position_x_m]
@@ -37,6 +37,7 @@ ROWS = [
     "1,A,Block,0.4,0.1,0.1,0,0,0,0.1,0.5",
     "2,A,Block,0.1,0.1,0.1,0.15,0,0,0.1,0.5",
     "3,A,Block,0.1,0.1,0.1,0.30,0,0,0.02,0.5",
+    "10,A,Block,0.4,0.1,0.1,9,9,0,0.9,0.5",
 ]
 HOSTILE = [
     '"<b>4</b>",A,<script>alert(1)</script>,0.1,0.1,0.1,0.15,0,0,0.1,0.5',  # where 2 stands
@@ -67,7 +68,7 @@ def museum(folder: Path, *levels: tuple[str, float | None, tuple[float, ...]], c
     (folder / "export.csv").write_text("\n".join([HEADER, *(rows or ROWS)]) + "\n", encoding="utf-8")
     mapping = folder / "mapping.toml"
     mapping.write_text(mapping.read_text() + EXTRA, encoding="utf-8")
-    return load_settings(folder / "kouros.toml")
+    return on_the_floor(folder)
 
 
 def record_of(settings: Settings) -> RunRecord:
@@ -92,9 +93,9 @@ def page(settings: Settings) -> str:
 def test_two_levels_make_curves_rates_and_spacings(tmp_path: Path) -> None:
     settings = museum(tmp_path, ("often", 100.0, (0.2,)), ("rare", 1000.0, (0.4,)))
     record = record_of(settings)
-    first = of(record, "1").fragilities[0]
-    assert first.title == "Rocking"
-    assert first.median == pytest.approx(onset(record, "1"), rel=1e-3)
+    first = of(record, "10").fragilities[0]
+    assert first.title == "Tipping"
+    assert first.median == pytest.approx(onset(record, "10"), rel=1e-3)
     assert first.motions == 2
     # The hazard falls by 10 where the shaking doubles: a slope of 3.3, and a rate of failure above that of the median.
     assert first.annual_rate is not None
@@ -115,7 +116,7 @@ def test_two_levels_make_curves_rates_and_spacings(tmp_path: Path) -> None:
     assert "Room to keep" in text
     assert "objects on a slippery shelf" in text
     with (tmp_path / "reports/latest/objects.csv").open(encoding="utf-8", newline="") as stream:
-        row = next(r for r in csv.DictReader(stream) if r["object_number"] == "1")
+        row = next(r for r in csv.DictReader(stream) if r["object_number"] == "10")
     assert float(row["median_g"]) == pytest.approx(first.median / G)
     assert float(row["dispersion"]) == pytest.approx(first.dispersion)
     assert float(row["annual_rate"]) == pytest.approx(first.annual_rate)
@@ -127,11 +128,11 @@ def test_how_a_level_combines_its_motions_leaves_the_curves_alone(tmp_path: Path
     peaks = (0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4)
     most = record_of(museum(tmp_path / "max", ("design", None, peaks)))
     mean = record_of(museum(tmp_path / "mean", ("design", None, peaks), combine="mean"))
-    for number in ("1", "2", "3"):
+    for number in ("1", "2", "3", "10"):
         assert of(most, number).fragilities == of(mean, number).fragilities
     assert of(most, "1").findings != of(mean, "1").findings
     assert [s.together for s in most.spacings] > [s.together for s in mean.spacings]
-    assert not of(most, "1").fragilities[0].stated
+    assert not of(most, "10").fragilities[0].stated
 
 
 def test_one_level_without_a_period_says_what_is_missing(tmp_path: Path) -> None:

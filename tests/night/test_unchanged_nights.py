@@ -231,7 +231,7 @@ def test_a_page_whose_report_was_tampered_with_is_drawn_again(settings: Settings
 
 def test_one_changed_motion_runs_its_own_histories_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of two motions one changes: no history of the other is run again, and a first night would find the same."""
-    made = museum_of(tmp_path / "two", vases())
+    made = museum_of(tmp_path / "two", [{**vase, "furniture": "floor"} for vase in vases()])
     file = made.home / "kouros.toml"
     file.write_text(file.read_text(encoding="utf-8").replace('fragility = "auto"', "fragility = false"), "utf-8")
     made = load_settings(file)
