@@ -96,7 +96,7 @@ def test_what_stands_on_an_installed_isolator_is_explained_as_the_night_judged_i
     decide(open_workspace(settings), wish)
     run(settings, Console(quiet=True))
     (night,) = [a for a in load_run(open_database(settings.database)).assessments if a.scene.item.object_number == "1"]
-    assert {f.model for f in night.findings} == {"horizontal_isolator", "standing", "sliding"}
+    assert {f.model for f in night.findings} == {"horizontal_isolator", "standing", "sliding", "flexible_stress"}
     result = explained(settings, "1", "--json")
     (one,) = json.loads(result.stdout)
     assert [(r["finding"]["model"], r["finding"]["demand"]) for r in one["reasonings"]] == [
