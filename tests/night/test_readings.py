@@ -30,7 +30,7 @@ from pipeline.settings import Settings, load_settings
 from pipeline.store.migrate import upgrade
 from pipeline.tools.doctor import diagnose
 from pipeline.tools.rerender import render_again
-from pipeline.tools.survey import add_measurements
+from pipeline.tools.survey import take_sheet
 from tests.collection.real_exports import read
 from tests.museum import SILENT, workspace
 from tests.report import builder
@@ -156,7 +156,7 @@ def test_what_a_sheet_got_wrong_stays_until_a_sheet_mends_it(tmp_path: Path) -> 
         (tmp_path / name).write_text(
             "\n".join(["object_number,gallery,mass_kg,friction", *rows]) + "\n", encoding="utf-8"
         )
-        add_measurements(place, tmp_path / name)
+        take_sheet(place, tmp_path / "kouros.toml", tmp_path / name)
 
     sheet("one.csv", "1,,heavy,0.3", "2,,1.5,", "9,,2.0,", ",,1.0,")
     told = account(place.engine)
