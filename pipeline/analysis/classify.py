@@ -39,10 +39,6 @@ def material_of(item: Item, values: AssumedValues | None = None) -> Material:
     return values.material_in(item.material or item.medium) or values.materials[UNKNOWN]
 
 
-def _assumed(value: float, low: float, high: float, unit: str, note: str, source: str) -> Estimate:
-    return Estimate(value, unit, Origin.ASSUMED, low, high, note, source)
-
-
 def _measured(value: float | None, unit: str) -> Estimate | None:
     return None if value is None else Estimate.measured(value, unit)
 
@@ -57,7 +53,7 @@ def _clearance_of(values: AssumedValues, object_class: str) -> Estimate | None:
         return None
     low, value, high = (100.0 * v for v in (row.room.low, row.room.value, row.room.high))
     note = f"clearance: {value:g} cm ({low:g} to {high:g}) to neighbour, wall or edge, assumed for: {row.told}"
-    return _assumed(row.room.value, row.room.low, row.room.high, "m", note, row.room.source)
+    return Estimate.assumed(row.room.value, row.room.low, row.room.high, "m", note, row.room.source)
 
 
 @lru_cache(maxsize=4096)
@@ -66,7 +62,7 @@ def _friction_of(values: AssumedValues, material: str, surface: str) -> Estimate
     found = span(rows)
     pair = f"{material or 'any material'} on {surface or 'any floor'}"
     note = f"friction: {found.value:g} ({found.low:g} to {found.high:g}), {tables_of(rows)} for {pair}; not measured"
-    return _assumed(found.value, found.low, found.high, "-", note, found.source)
+    return Estimate.assumed(found.value, found.low, found.high, "-", note, found.source)
 
 
 @lru_cache(maxsize=4096)
@@ -79,7 +75,7 @@ def _wall_damping_of(values: AssumedValues, wall: str, back: str) -> Estimate:
         pair = f"{least.back_surface.lower()} on {least.wall_surface.lower()}"
         note = f"damping against the wall: {pair}, the least of {tables_of(rows)}; wall and back surfaces not recorded"
     # With nothing known of its back the lowest damping counts.
-    return _assumed(found.value if back else found.low, found.low, found.high, "-", note, found.source)
+    return Estimate.assumed(found.value if back else found.low, found.low, found.high, "-", note, found.source)
 
 
 @cache
@@ -87,7 +83,7 @@ def _own_damping() -> Estimate:
     found = bending("damping")
     low, value, high = (100.0 * v for v in (found.low, found.value, found.high))
     note = f"damping of the object itself: {value:g} % ({low:g} to {high:g} %), assumed"
-    return _assumed(found.value, found.low, found.high, "-", note, found.source)
+    return Estimate.assumed(found.value, found.low, found.high, "-", note, found.source)
 
 
 def _own_base(row: ObjectClass) -> bool:
@@ -148,14 +144,14 @@ class _Builder:
             half = 0.5 * item.height_m
             note = "length from hook to centre of gravity: half its height, assumed for: hung from its upper edge; "
             note += "a hook further down gives half of that, a cord from a rail up to 1 m more"
-            length = _assumed(half, 0.5 * half, half + 1.0, "m", note, "judgement")
+            length = Estimate.assumed(half, 0.5 * half, half + 1.0, "m", note, "judgement")
         self._keep("length", length)
         damping = self._known("damping", "damping", "-")
         if damping is None and self.support is Support.HUNG:
             damping = _wall_damping_of(self.values, item.wall_surface, item.back_surface)
         elif damping is None:
             note = "damping: none, as the paper takes it for chandeliers"
-            damping = _assumed(0.0, 0.0, 0.0, "-", note, "Agbabian et al. 1991, sec. 2.4")
+            damping = Estimate.assumed(0.0, 0.0, 0.0, "-", note, "Agbabian et al. 1991, sec. 2.4")
         self._keep("damping", damping)
 
     def _standing(self) -> None:
@@ -172,7 +168,7 @@ class _Builder:
         if item.susceptible is None and not self.row.rocking_harms:
             note = f"rocking itself is not taken to harm it, assumed for: {self.row.told}"
             source = f"{self.row.table}, {self.row.name} ({self.row.source})"
-            self._keep(FALLS_IN, _assumed(HALF, HALF, HALF, "-", note, source))
+            self._keep(FALLS_IN, Estimate.assumed(HALF, HALF, HALF, "-", note, source))
         self._friction()
         self._mass()
         if not self._section(width, depth) and self.support is Support.FASTENED:
@@ -219,7 +215,7 @@ class _Builder:
                 return None, None, [lost if assumes else f"base {lost}"]
             note = f"{lost} not recorded: taken as round"
             source = known.source or f"{row.table}, {row.name}"
-            other = _assumed(known.value, known.low, known.high, "m", note, source)
+            other = Estimate.assumed(known.value, known.low, known.high, "m", note, source)
             return (known, other, []) if depth is None else (other, known, [])
         return width, depth, []
 
@@ -243,14 +239,14 @@ class _Builder:
         if mass is None and self.support in (Support.HUNG, Support.SUSPENDED) and item.height_m and item.width_m:
             area = item.height_m * item.width_m
             note = "mass: 15 kg (5 to 40 kg) for each square metre of a framed work, assumed"
-            mass = _assumed(15.0 * area, 5.0 * area, 40.0 * area, "kg", note, "judgement")
+            mass = Estimate.assumed(15.0 * area, 5.0 * area, 40.0 * area, "kg", note, "judgement")
         across = item.width_m or item.depth_m
         along = item.depth_m or item.width_m
         if mass is None and row.filled is not None and item.height_m and across and along:
             box = item.height_m * across * along * (0.25 * pi if row.round else 1.0)
             fill, density = row.filled, self.material.density_range
             note = f"mass: {self.material.told} of {density.value:g} kg/m3 filling {fill.value:g} of its outline"
-            mass = _assumed(
+            mass = Estimate.assumed(
                 box * fill.value * density.value,
                 box * fill.low * density.low,
                 box * fill.high * density.high,
@@ -272,7 +268,7 @@ class _Builder:
             note += (
                 ", condition factor 1 (not recorded)" if item.condition is None else f", condition factor {condition:g}"
             )
-            allowable = _assumed(
+            allowable = Estimate.assumed(
                 bears.value * condition, bears.low * condition, bears.high * condition, "Pa", note, bears.source
             )
         found = section_of(item, self.row, width, depth)

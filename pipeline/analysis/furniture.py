@@ -155,19 +155,15 @@ def _numbers(row: FurnitureRow, guess: FurnitureGuess) -> Mapping[str, Estimate]
     if frequency is not None and damping is not None:
         low, best, high = frequency.low, frequency.value, frequency.high
         note = f"furniture: {row.title}, {guess.words}; of {best:g} Hz ({low:g} to {high:g}), or stiff"
-        out[FREQUENCY] = _assumed(best, low, high, "Hz", f"{note}, {row.table}", frequency.source)
+        out[FREQUENCY] = Estimate.assumed(best, low, high, "Hz", f"{note}, {row.table}", frequency.source)
         low, best, high = damping.low, damping.value, damping.high
         note = f"damping of its furniture: {best:g} ({low:g} to {high:g}), {row.table} for {row.title}"
-        out[DAMPING] = _assumed(best, low, high, "-", note, damping.source)
+        out[DAMPING] = Estimate.assumed(best, low, high, "-", note, damping.source)
     if row.level_error:
         most = radians(row.level_error)
         note = f"level: off by up to {row.level_error:g}° either way, {row.table} for {row.title}"
-        out[LEVEL_ERROR] = _assumed(0.0, -most, most, "rad", note, f"{row.table} ({row.source})")
+        out[LEVEL_ERROR] = Estimate.assumed(0.0, -most, most, "rad", note, f"{row.table} ({row.source})")
     return out
-
-
-def _assumed(best: float, low: float, high: float, unit: str, note: str, source: str) -> Estimate:
-    return Estimate(best, unit, Origin.ASSUMED, low, high, note, source)
 
 
 def filter_of(scene: Scene) -> FurnitureFilter | None:

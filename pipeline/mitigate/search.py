@@ -11,12 +11,11 @@ from pipeline.analysis.furniture import FurnitureFilter, filter_of
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures import Measure
-from pipeline.mitigate.measures.base import UNKNOWN_FREQUENCY, held
+from pipeline.mitigate.measures.base import UNKNOWN_FREQUENCY, bends
 from pipeline.mitigate.measures.remove import LAST_RESORTS
 from pipeline.mitigate.proposals import Candidate, Case, Deficiency, Option, Proposal, case_of, company, known_to_swing
 from pipeline.mitigate.trials import TransmittedMotions, Trial, TrialRunner, checks, passes, passes_at_best, why_not
 from pipeline.models import settled_by_room
-from pipeline.models.stress import FLEXIBLE_STRESS
 from pipeline.records import Check, Finding, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 
@@ -363,4 +362,4 @@ def _filled(sentence: str, words: Mapping[str, str]) -> str:
 def _band_unknown(scene: Scene) -> bool:
     # What an isolator does to an object that bends hangs on how fast it sways: a range of that is no basis for one.
     frequency = scene.parameters.get("frequency")
-    return not FLEXIBLE_STRESS.applies(held(scene)) and frequency is not None and frequency.low < frequency.high
+    return frequency is not None and frequency.low < frequency.high and bends(scene)

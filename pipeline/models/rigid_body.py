@@ -182,6 +182,11 @@ def screen(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
     }
 
 
+def narrow_slope(parameters: Mapping[str, float]) -> float:
+    """Return b/h of one body towards its nearer edge [-]."""
+    return float(np.fmin(parameters["half_width"], parameters["half_width_other"])) / parameters["cg_height"]
+
+
 def say_screen(row: Mapping[str, float], parameters: Mapping[str, float]) -> str:
     """Return the paper's criterion in words.
 
@@ -192,7 +197,7 @@ def say_screen(row: Mapping[str, float], parameters: Mapping[str, float]) -> str
     parameters : mapping of str to float
         Of that body.
     """
-    slope = float(np.fmin(parameters["half_width"], parameters["half_width_other"])) / parameters["cg_height"]
+    slope = narrow_slope(parameters)
     rocks = "rocks" if row["uplift_ratio"] > 1.0 else "does not rock"
     falls = "overturns" if row["overturned"] else "does not overturn"
     return (

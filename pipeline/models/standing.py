@@ -77,6 +77,7 @@ from pipeline.models.rigid_body import (
     comes_back,
     falls_over,
     found_again,
+    narrow_slope,
     one_width,
     overturning,
     say_screen,
@@ -298,8 +299,7 @@ def _screen(motion: Excitation, parameters: Mapping[str, Array]) -> Columns:
 
 
 def _say(row: Mapping[str, float], parameters: Mapping[str, float]) -> str:
-    slope = float(np.fmin(parameters["half_width"], parameters["half_width_other"])) / parameters["cg_height"]
-    friction = parameters["friction_static"]
+    slope, friction = narrow_slope(parameters), parameters["friction_static"]
     slides = friction < min(slope, row["uplift_ratio"] * slope)
     held = f" But its friction of {friction:.2f} lets it slide before it tips." if slides else ""
     return say_screen(row, parameters) + held

@@ -249,6 +249,26 @@ class Estimate:
         """
         return cls(value, unit, Origin.MEASURED, value, value, note)
 
+    @classmethod
+    def assumed(cls, value: float, low: float, high: float, unit: str, note: str, source: str) -> Estimate:
+        """Return a number that nobody recorded.
+
+        Parameters
+        ----------
+        value, low, high : float
+            In that unit.
+        unit : str
+            SI, or "-".
+        note, source : str
+            See the class.
+
+        Returns
+        -------
+        Estimate
+            With its range.
+        """
+        return cls(value, unit, Origin.ASSUMED, low, high, note, source)
+
 
 @dataclass(frozen=True, slots=True)
 class Scene:

@@ -13,6 +13,7 @@ from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal
 from pipeline.mitigate.rows import MeasureRow
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models import settled_by_room
+from pipeline.models.stress import FLEXIBLE_STRESS
 from pipeline.quantities import Quantity
 from pipeline.records import Check, Estimate, Finding, Hanging, Item, Origin, Scene, Support
 
@@ -236,6 +237,11 @@ def rehung(scene: Scene, way: Hanging) -> Scene:
         parameters=kept | found,
         assumptions=tuple(text for text in scene.assumptions if text not in notes),
     )
+
+
+def bends(scene: Scene) -> bool:
+    """Say whether it is flexible where it is held at its base."""
+    return "frequency" in scene.parameters and not FLEXIBLE_STRESS.applies(held(scene))
 
 
 def cleared(scene: Scene, parameters: Mapping[str, float]) -> Scene:

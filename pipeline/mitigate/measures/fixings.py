@@ -12,10 +12,10 @@ import numpy as np
 from pipeline.analysis.classify import material_of
 from pipeline.analysis.model_runs import run_model
 from pipeline.mitigate.fixing_rows import FixingStrength, fixing_strengths
-from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, held, knows_section
+from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, bends, held, knows_section
 from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
-from pipeline.models.stress import FLEXIBLE_STRESS, STRESS
+from pipeline.models.stress import FLEXIBLE_STRESS
 from pipeline.records import Check, Estimate, Finding, Item, Scene, Support
 from pipeline.records.numerics import HISTORIES
 from pipeline.tables.assumed import AssumedValues
@@ -95,11 +95,6 @@ def _oscillators(f: Estimate, zeta: Estimate) -> tuple[tuple[float, float, float
     return (f.value, nan, zeta.value), (low, high, zeta.low), (low, high, zeta.high)
 
 
-def _bends(scene: Scene) -> bool:
-    """Say whether it is flexible where it is held."""
-    return bool(STRESS.applies(held(scene))) and not FLEXIBLE_STRESS.applies(held(scene))
-
-
 @dataclass(frozen=True)
 class HoldingDemand:
     """Demand on what holds an object where it stands.
@@ -130,7 +125,7 @@ class HoldingDemand:
         p = scene.parameters
         mass, cg, half = p["mass"], p["cg_height"], p["half_width"]
         push = worst = runner.push
-        if _bends(scene):
+        if bends(scene):
             push, worst = (max(push, felt) for felt in _pseudo_acceleration(scene, runner))
         times, most = (one / runner.push if runner.push > 0.0 else 1.0 for one in (push, worst))
         return cls(
@@ -181,7 +176,7 @@ class Fixing(Measure, ABC):
     def prepare(self, objects: Sequence[Deficiency], runner: TrialRunner) -> None:
         """Find what all flexible ones feel together: one by one costs hundreds of times as much."""
         free = [one.scene for one in objects if one.scene.support is Support.FREESTANDING and knows_section(one.scene)]
-        _pseudo_accelerations([scene for scene in free if _bends(scene)], runner)
+        _pseudo_accelerations([scene for scene in free if bends(scene)], runner)
 
     @property
     def strength(self) -> FixingStrength:
