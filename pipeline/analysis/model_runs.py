@@ -137,7 +137,7 @@ def run_model(
         The outputs, "error" (in the unit of the first output) and "note" (bits), (n,) each; at "bound" "low" and
         "high" besides.
     angles : ndarray
-        (n,) degrees; NaN: shaken in two directions.
+        (n,) degrees; NaN: shaken in two directions, or the worst of all was found without an angle.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def run_model(
         closed = _screened if numerics.fidelity == "screen" else _bounded
         return closed(model, motion.excitation(way, tail), values), np.full(size, np.nan if way is None else way)
     refine = REFINE[numerics.fidelity]
-    if both:
+    if both or (angle is None and model.resultant):
         return model.run(motion.excitation(None, tail), values, refine, True), np.full(size, np.nan)
     if angle is not None:
         return model.run(motion.excitation(angle, tail), values, refine, True), np.full(size, angle)

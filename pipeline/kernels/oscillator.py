@@ -52,7 +52,7 @@ MOST, STEEPEST, SHARPEST = range(3)
 
 
 @inlined
-def _next(
+def next_state(
     u: float,
     v: float,
     a0: float,
@@ -66,6 +66,7 @@ def _next(
     v0: float,
     v1: float,
 ) -> tuple[float, float]:
+    """Return u and v a sample later, by the rows of coefficients that are named alike."""
     return uu * u + uv * v + (u0 * a0 + u1 * a1), vu * u + vv * v + (v0 * a0 + v1 * a1)
 
 
@@ -82,8 +83,8 @@ def _coefficients(w: float, zeta: float, share: float, dt: float, k: int, factor
 
 
 @inlined
-def _energy(pull: float, v: float, difference: float, w: float, twice: float, ramp: float) -> float:
-    # f^2 + (f' / w)^2 of the interval that begins here; pull is -f.
+def interval_energy(pull: float, v: float, difference: float, w: float, twice: float, ramp: float) -> float:
+    """Return f^2 + (f' / w)^2 of the interval that begins here, f being u'' and pull -f."""
     jerk = ramp * difference - twice * pull + w * v
     return pull * pull + jerk * jerk
 
@@ -134,15 +135,15 @@ def _walk(a: Array, s: int, end: int, state: Array, factor: Array) -> None:
                 uu, uv, u0, u1 = factor[UU, k], factor[UV, k], factor[U0, k], factor[U1, k]
                 vu, vv, v0, v1 = factor[VU, k], factor[VV, k], factor[V0, k], factor[V1, k]
                 yu, yv, ya = factor[YU, k], factor[YV, k], factor[YA, k]
-                u, v = _next(u, v, a0, a1, uu, uv, u0, u1, vu, vv, v0, v1)
+                u, v = next_state(u, v, a0, a1, uu, uv, u0, u1, vu, vv, v0, v1)
                 top_u, top_y = max(top_u, abs(u)), max(top_y, abs(ya * a1 + (yu * u + yv * v)))
-                u, v = _next(u, v, a1, a2, uu, uv, u0, u1, vu, vv, v0, v1)
+                u, v = next_state(u, v, a1, a2, uu, uv, u0, u1, vu, vv, v0, v1)
                 top_u, top_y = max(top_u, abs(u)), max(top_y, abs(ya * a2 + (yu * u + yv * v)))
-                u, v = _next(u, v, a2, a3, uu, uv, u0, u1, vu, vv, v0, v1)
+                u, v = next_state(u, v, a2, a3, uu, uv, u0, u1, vu, vv, v0, v1)
                 top_u, top_y = max(top_u, abs(u)), max(top_y, abs(ya * a3 + (yu * u + yv * v)))
-                u, v = _next(u, v, a3, a4, uu, uv, u0, u1, vu, vv, v0, v1)
+                u, v = next_state(u, v, a3, a4, uu, uv, u0, u1, vu, vv, v0, v1)
                 pull = a4 + (factor[C, k] * v + factor[B, k] * u)
-                energy = _energy(pull, v, a5 - a4, factor[W, k], factor[TWICE, k], factor[RAMP, k])
+                energy = interval_energy(pull, v, a5 - a4, factor[W, k], factor[TWICE, k], factor[RAMP, k])
                 state[U, k], state[V, k] = u, v
                 state[TOP_U, k], state[TOP_Y, k] = max(top_u, abs(u)), max(top_y, abs(ya * a4 + (yu * u + yv * v)))
                 state[TOP_E, k] = max(state[TOP_E, k], energy)
@@ -151,9 +152,9 @@ def _walk(a: Array, s: int, end: int, state: Array, factor: Array) -> None:
             for k in range(LANES):
                 uu, uv, u0, u1 = factor[UU, k], factor[UV, k], factor[U0, k], factor[U1, k]
                 vu, vv, v0, v1 = factor[VU, k], factor[VV, k], factor[V0, k], factor[V1, k]
-                u, v = _next(state[U, k], state[V, k], a0, a1, uu, uv, u0, u1, vu, vv, v0, v1)
+                u, v = next_state(state[U, k], state[V, k], a0, a1, uu, uv, u0, u1, vu, vv, v0, v1)
                 pull = a1 + (factor[C, k] * v + factor[B, k] * u)
-                energy = _energy(pull, v, a2 - a1, factor[W, k], factor[TWICE, k], factor[RAMP, k])
+                energy = interval_energy(pull, v, a2 - a1, factor[W, k], factor[TWICE, k], factor[RAMP, k])
                 state[U, k], state[V, k] = u, v
                 state[TOP_U, k] = max(state[TOP_U, k], abs(u))
                 state[TOP_Y, k] = max(state[TOP_Y, k], abs(a1 - factor[SHARE, k] * pull))
@@ -174,7 +175,7 @@ def _shake(
             u, v = state[U, k], state[V, k]
             pull = here + (factor[C, k] * v + factor[B, k] * u)
             top_y = abs(here - factor[SHARE, k] * pull)
-            energy = _energy(pull, v, rise, factor[W, k], factor[TWICE, k], factor[RAMP, k])
+            energy = interval_energy(pull, v, rise, factor[W, k], factor[TWICE, k], factor[RAMP, k])
             stretch[part, BEGIN_U, k], stretch[part, BEGIN_V, k] = u, v
             state[TOP_U, k], state[TOP_Y, k], state[TOP_E, k] = abs(u), top_y, energy
         _walk(a, begin, min(n - 1, begin + length), state, factor)
@@ -295,13 +296,13 @@ def _search(
     size = abs(a[begin] - share * pull)
     for s in range(begin, end):
         a0, a1 = a[s], a[s + 1]
-        un, vn = _next(u, v, a0, a1, uu, uv, u0, u1, vu, vv, v0, v1)
+        un, vn = next_state(u, v, a0, a1, uu, uv, u0, u1, vu, vv, v0, v1)
         pull_n = a1 + (c * vn + b * un)
         size_n = abs(a1 - share * pull_n)
         near_u, near_y, most = max(abs(u), abs(un)), max(size, size_n), max(abs(a0), abs(a1))
         # First with what the whole stretch grants, then with what this interval does.
         if _beyond(near_u, near_y, most, b, gap_u, gap_y, room_u, room_y, max_u, max_y):
-            energy = math.sqrt(_energy(pull, v, a1 - a0, w, twice, ramp))
+            energy = math.sqrt(interval_energy(pull, v, a1 - a0, w, twice, ramp))
             most_pull = max(abs(pull), abs(pull_n))
             here = _gaps(energy, most_pull, abs(a1 - a0), dt, b, abs(share), twice, ramp, norm)
             if _beyond(near_u, near_y, most, b, here[0], here[1], here[2], here[3], max_u, max_y):

@@ -3,17 +3,18 @@ r"""Largest and least pseudo-acceleration of an oscillator over a band of natura
 A response spectrum is no monotone function of the frequency: its largest value over a band lies inside it as a rule.
 It is looked for on a grid that is finer than any peak of it can be narrow, the half-power width 2 zeta f of a resonance
 that lasts, and closer where it has an extremum.  The grid does not depend on the band, so that a spectrum is worked out
-once for all who ask: by decades of frequency, of each direction of shaking and damping.
+once for all who ask: a piece of it at a time, for each shaking and damping.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from hashlib import blake2b
+from weakref import WeakValueDictionary
 
 import numpy as np
 
-from pipeline.models.oscillator import oscillate
+from pipeline.models.oscillator import oscillate_any
 from pipeline.quantities import Array
 from pipeline.records import Excitation
 
@@ -29,22 +30,28 @@ LEAST_DAMPING = 0.0025
 HALVINGS = 2
 """How often the steps beside an extremum are halved, each of which leaves a quarter of what was missed."""
 
+CALM = 5e-3
+"""Relative rise in the steps beside an extremum up to which it is left as it is: a kink hides half of that at most."""
+
 MISSED = 1e-2
 """Share by which the largest value found may be below the true one: of 2,400 bands of a record none was by more."""
 
 LOWEST, HIGHEST = -2, 3
 """Powers of ten between which the grid lies [Hz]: beyond 1 kHz an object feels the acceleration of its base."""
 
+PIECES = 5
+"""Pieces of a decade, each worked out where a band touches it: a few dozen points, which run side by side."""
+
 _GRAIN = 2.0**30
 """Steps to the peak in which shaking is told apart, so that what is only scaled has the same spectrum, scaled."""
 
-_KEPT = 4096
-"""Spectra of a decade that are remembered, of 10 kB as a rule."""
+_KEPT = 16384
+"""Pieces of spectra that are remembered, of 2 kB as a rule."""
 
 
 @dataclass(frozen=True)
 class _Shaking:
-    """Shaking along one direction with a peak of 1, known by its contents."""
+    """Shaking along one direction or in two with a peak of 1, known by its contents."""
 
     key: bytes
     excitation: Excitation
@@ -56,13 +63,17 @@ class _Shaking:
         return hash(self.key)
 
 
+_known: "WeakValueDictionary[bytes, _Shaking]" = WeakValueDictionary()
+"""One of each, however many pieces of its spectrum are remembered."""
+
+
 def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array) -> tuple[Array, Array]:
     """Return the least and the largest pseudo-acceleration over bands of natural frequencies.
 
     Parameters
     ----------
     motion : Excitation
-        Its direction x; y is left aside.
+        Along one direction; in two each oscillator answers with its longest resultant, the worst of all directions.
     low, high : ndarray, shape (n,)
         Ends of each band [Hz].
     zeta : ndarray, shape (n,)
@@ -73,7 +84,7 @@ def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array)
     least, most : ndarray, shape (n,)
         [m/s2].
     """
-    peak = float(np.abs(motion.x).max(initial=0.0))
+    peak = max(float(np.abs(way).max(initial=0.0)) for way in _ways(motion))
     if peak == 0.0 or low.size == 0:
         return np.zeros_like(low), np.zeros_like(low)
     shaking = _shaking(motion, peak)
@@ -87,12 +98,12 @@ def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array)
     least, most = np.full(bands.shape[0], np.inf), np.zeros(bands.shape[0])
     begin, end = (np.clip(side, 10.0**LOWEST, 10.0**HIGHEST) for side in bands.T[:2])
     for damping in np.unique(bands[:, 2]):
-        for decade in range(LOWEST, HIGHEST):
-            bottom, top = 10.0**decade, 10.0 ** (decade + 1)
+        for piece in range(LOWEST * PIECES, HIGHEST * PIECES):
+            bottom, top = 10.0 ** (piece / PIECES), 10.0 ** ((piece + 1) / PIECES)
             chosen = np.flatnonzero((bands[:, 2] == damping) & (begin <= top) & (end >= bottom))
             if chosen.size == 0:
                 continue
-            logs, values = _decade(shaking, float(damping), decade)
+            logs, values = _piece(shaking, float(damping), piece)
             ends = np.log([np.maximum(begin[chosen], bottom), np.minimum(end[chosen], top)])
             for fold, best in ((np.minimum, least), (np.maximum, most)):
                 best[chosen] = fold(best[chosen], _between(fold, logs, values, ends))
@@ -111,24 +122,30 @@ def _between(fold: np.ufunc, logs: Array, values: Array, ends: Array) -> Array:
     return np.asarray(out)
 
 
+def _ways(motion: Excitation) -> tuple[Array, ...]:
+    return (motion.x,) if motion.y is None else (motion.x, motion.y)
+
+
 def _shaking(motion: Excitation, peak: float) -> _Shaking:
-    grains = np.rint(motion.x / peak * _GRAIN)
+    grains = [np.rint(way / peak * _GRAIN) for way in _ways(motion)]
     digest = blake2b(np.array([motion.dt, -1.0 if motion.tail is None else motion.tail]).tobytes(), digest_size=16)
-    digest.update(grains.tobytes())
-    x = grains / _GRAIN
-    return _Shaking(digest.digest(), Excitation(motion.dt, x, None, np.zeros_like(x), motion.tail))
+    for one in grains:
+        digest.update(one.tobytes())
+    key = digest.digest()
+    x, y = grains[0] / _GRAIN, grains[1] / _GRAIN if len(grains) > 1 else None
+    return _known.setdefault(key, _Shaking(key, Excitation(motion.dt, x, y, np.zeros_like(x), motion.tail)))
 
 
 @lru_cache(maxsize=_KEPT)
-def _decade(shaking: _Shaking, zeta: float, decade: int) -> tuple[Array, Array]:
-    """Return the natural logarithms of frequencies over a decade and a step beyond, and the spectrum there."""
-    whole = np.log(10.0)
+def _piece(shaking: _Shaking, zeta: float, piece: int) -> tuple[Array, Array]:
+    """Return the natural logarithms of frequencies over a piece and a step beyond, and the spectrum there."""
+    whole = np.log(10.0) / PIECES
     steps = int(np.ceil(whole / min(WIDEST, 2.0 * max(zeta, LEAST_DAMPING) / PER_WIDTH)))
-    logs = decade * whole + np.arange(-1, steps + 2) * (whole / steps)
+    logs = piece * whole + np.arange(-1, steps + 2) * (whole / steps)
 
     def spectrum(at: Array) -> Array:
         w = 2.0 * np.pi * np.exp(at)
-        return np.asarray(w**2 * oscillate(shaking.excitation, w, np.full_like(w, zeta), np.ones_like(w))[0])
+        return np.asarray(w**2 * oscillate_any(shaking.excitation, w, np.full_like(w, zeta)))
 
     return _refined(spectrum, logs, spectrum(logs))
 
@@ -138,6 +155,7 @@ def _refined(of: Callable[[Array], Array], logs: Array, values: Array) -> tuple[
     for _ in range(HALVINGS):
         rise = np.diff(values)
         turns = np.flatnonzero(rise[:-1] * rise[1:] <= 0.0) + 1
+        turns = turns[np.maximum(np.abs(rise[turns - 1]), np.abs(rise[turns])) > CALM * values[turns]]
         where = np.unique(np.concatenate([turns - 1, turns]))
         fresh = 0.5 * (logs[where] + logs[where + 1])
         logs, values = np.insert(logs, where + 1, fresh), np.insert(values, where + 1, of(fresh))

@@ -19,6 +19,7 @@ import numpy as np
 from pipeline.errors import InputError
 from pipeline.kernels import samples
 from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
+from pipeline.kernels.resultant import resultant_batch
 from pipeline.models.common import ROUNDING, after_record, curve, grid
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.quantities import Array, Quantity
@@ -56,6 +57,45 @@ def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[
     InputError
         For an oscillator that turns more than MOST_PHASE in a sample interval.
     """
+    _check_phase(motion, w, zeta)
+    max_u, max_y = np.empty(w.size), np.empty(w.size)
+    tail = -1.0 if motion.tail is None else float(motion.tail)
+    arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta, share)]
+    oscillator_batch(samples(motion.x), motion.dt, *arrays, tail, max_u, max_y)
+    return max_u, max_y
+
+
+def oscillate_any(motion: Excitation, w: Array, zeta: Array) -> Array:
+    """Return the largest displacement of n oscillators, shaken in two directions the longest resultant (RotD100).
+
+    Parameters
+    ----------
+    motion : Excitation
+        Along one direction or in two.
+    w, zeta : ndarray, shape (n,)
+        As in `oscillate`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [m].
+
+    Raises
+    ------
+    InputError
+        As `oscillate`.
+    """
+    if motion.y is None:
+        return oscillate(motion, w, zeta, np.ones_like(w))[0]
+    _check_phase(motion, w, zeta)
+    most, angle = np.empty(w.size), np.empty(w.size)
+    tail = -1.0 if motion.tail is None else float(motion.tail)
+    arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta)]
+    resultant_batch(samples(motion.x), samples(motion.y), motion.dt, *arrays, tail, most, angle)
+    return most
+
+
+def _check_phase(motion: Excitation, w: Array, zeta: Array) -> None:
     phase = w * (1.0 + 2.0 * zeta) * motion.dt
     if phase.max(initial=0.0) > MOST_PHASE:
         at = int(np.argmax(phase))
@@ -63,11 +103,6 @@ def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[
             f"frequency {w[at] / (2.0 * np.pi):g} Hz at a damping of {zeta[at]:g} is too high for a time step of "
             f"{motion.dt:g} s (entry {at}): what lies between two samples would be searched for ever"
         )
-    max_u, max_y = np.empty(w.size), np.empty(w.size)
-    tail = -1.0 if motion.tail is None else float(motion.tail)
-    arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta, share)]
-    oscillator_batch(samples(motion.x), motion.dt, *arrays, tail, max_u, max_y)
-    return max_u, max_y
 
 
 Between = tuple[Array, Array]

@@ -23,7 +23,7 @@ import numpy as np
 from pipeline.models.band import MISSED, band_accelerations
 from pipeline.models.common import NO_TILT, ROUNDING, largest_push, needs, smallest_push
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
-from pipeline.models.oscillator import OSCILLATES, PROMISED, oscillate
+from pipeline.models.oscillator import OSCILLATES, PROMISED, oscillate_any
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Bounds, Columns, Excitation, Item, Model, Scene, Support, Trials
 
@@ -101,15 +101,18 @@ def _run(
 
 
 def _pushes(motion: Excitation, parameters: Mapping[str, Array]) -> tuple[Array, Array]:
-    """Return the least and the largest pseudo-acceleration [m/s2], (n,) each, along x: of one frequency the same."""
+    """Return the least and the largest pseudo-acceleration [m/s2], (n,) each: of one frequency the same.
+
+    In two directions those of the worst of all.
+    """
     low, high, zeta = (parameters[name] for name in ("frequency", "frequency_high", "damping"))
     banded = ~np.isnan(high)
     least, most = np.empty_like(low), np.empty_like(low)
     # Parameter sets differ in more than these: each oscillator is run once.
     oscillators, place = np.unique(np.column_stack([low, zeta])[~banded], axis=0, return_inverse=True)
     w = 2.0 * np.pi * oscillators[:, 0]
-    displacement, _ = oscillate(motion, w, oscillators[:, 1], np.ones_like(w))
-    least[~banded] = most[~banded] = (w**2 * displacement)[place.reshape(-1)]
+    push = w**2 * oscillate_any(motion, w, oscillators[:, 1])
+    least[~banded] = most[~banded] = push[place.reshape(-1)]
     least[banded], most[banded] = band_accelerations(motion, low[banded], high[banded], zeta[banded])
     return least, most
 
@@ -142,29 +145,19 @@ def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
 
 
 def _bound_flexible(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
-    banded = ~np.isnan(parameters["frequency_high"])
-    off = np.where(banded, MISSED, PROMISED)
+    # Along one direction the bound is the stress itself, and of all directions it is the worst of them.
+    off = np.where(np.isnan(parameters["frequency_high"]), PROMISED, MISSED)
     least, most = _pushes(motion, parameters)
-    along_x = (1.0 - off) * most
+    low, high = (section_stresses(side * most, parameters) for side in (1.0 - off, 1.0 + off))
+    ends = {q.name: (low[q.name], high[q.name]) for q in _STRESSES}
+    lowest, highest = (section_stresses(side * least, parameters)["tension"] for side in (1.0 - off, 1.0 + off))
+    ends |= {"tension_least": (lowest, highest), "pseudo_acceleration": ((1.0 - off) * most, (1.0 + off) * most)}
     if motion.y is None:
-        pushes, leasts = (along_x, (1.0 + off) * most), ((1.0 - off) * least, (1.0 + off) * least)
-    else:
-        # The oscillator is linear: no direction exceeds the resultant of its peaks along both, nor do those of a band;
-        # and the least over a band is no more than at its ends.
-        across = Excitation(motion.dt, motion.y, None, motion.z, motion.tail)
-        pushes = np.zeros_like(most), (1.0 + off) * np.hypot(most, _pushes(across, parameters)[1])
-        edges = [pushes[1]]
-        for end in ("frequency", "frequency_high"):
-            at = {**parameters, "frequency": np.where(banded, parameters[end], parameters["frequency"])}
-            at["frequency_high"] = np.where(banded, at["frequency"], np.nan)
-            edges.append((1.0 + off) * np.hypot(_pushes(motion, at)[1], _pushes(across, at)[1]))
-        leasts = np.zeros_like(most), np.min(edges, axis=0)
-    low, high = (section_stresses(push, parameters) for push in pushes)
-    bounds = {q.name: (low[q.name], high[q.name]) for q in _STRESSES}
-    lowest, highest = (section_stresses(push, parameters)["tension"] for push in leasts)
-    bounds["tension_least"] = (lowest, highest)
-    worst = {} if motion.y is None else {"tension": section_stresses(along_x, parameters)["tension"]}
-    return Bounds({**bounds, "pseudo_acceleration": pushes}, high["note"], worst)
+        return Bounds(ends, high["note"])
+    none = section_stresses(np.zeros_like(most), parameters)
+    anyhow = {name: (none.get(name, np.zeros_like(most)), up) for name, (_, up) in ends.items()}
+    anyhow["tension_least"] = (none["tension"], highest)
+    return Bounds(anyhow, high["note"], {name: low for name, (low, _) in ends.items()})
 
 
 def _say(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
@@ -263,6 +256,7 @@ FLEXIBLE_STRESS = Model(
     searched={"frequency": "frequency_high"},
     least="tension_least",
     directions=1,
+    resultant=True,
     axes=_AXES,
     run=_run_flexible,
     bound=_bound_flexible,

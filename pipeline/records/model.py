@@ -229,6 +229,9 @@ class Model:
         Whether its failure is a collision, so that room settles it.
     tips : bool
         Whether its failure is that an object tips, so that a wider or a heavier base helps.
+    resultant : bool
+        Of a model of one direction that is linear: given both, `run` answers with the worst of all directions, in
+        place of which no angle is looked for.
     turns : bool
         Whether its plane of motion turns by itself, so that its last part does not tell all directions.
     pictures : tuple of Figure or ChartFigure
@@ -316,6 +319,7 @@ class Model:
     unasked: str = ""
     room_settles: bool = False
     tips: bool = False
+    resultant: bool = False
     turns: bool = False
     pictures: tuple[Figure | ChartFigure, ...] = ()
     at_most: str = ""
