@@ -166,7 +166,9 @@ def slip_bounds(motion: Excitation, mu_s: Array, mu_k: Array, *outputs: str) -> 
         Of each of them; exactly 0 where nothing slips, and infinite above where nothing stops it.
     """
     quiet = Quiet(motion)
-    results = np.empty((mu_s.size, 4))
+    # Bodies differ in more than these: each friction is bounded once.
+    frictions, place = np.unique(np.column_stack([mu_s, mu_k]), axis=0, return_inverse=True)
+    results = np.empty((frictions.shape[0], 4))
     slip_bounds_batch(
         quiet.x,
         quiet.y,
@@ -176,11 +178,11 @@ def slip_bounds(motion: Excitation, mu_s: Array, mu_k: Array, *outputs: str) -> 
         quiet.maxima,
         quiet.pushes,
         quiet.dt,
-        np.ascontiguousarray(mu_s, dtype=np.float64),
-        np.ascontiguousarray(mu_k, dtype=np.float64),
+        *np.ascontiguousarray(frictions.T),
         quiet.tail,
         results,
     )
+    results = results[place.reshape(-1)]
     margin = ROUNDING if motion.y is None else PROMISED
     low, high = results[:, 0] * (1.0 - margin), results[:, 1] * (1.0 + margin)
     bounds = {
