@@ -265,14 +265,14 @@ def integrate(found: Demands, rows: Indices, context: Context, numerics: Numeric
     context
         Where they are run, and the histories that were run before.
     numerics
-        How finely: at "reference" where that is its fidelity, else at "history".
+        How finely: a fidelity that integrates.
 
     Returns
     -------
     int
         How many rows there were.
     """
-    work, histories, numerics = found.work, context.histories, numerics.integrated
+    work, histories = found.work, context.histories
     # What a motion is made ready for is worth as many sets as there are, where nobody else waits for some.
     most = WHOLE if context.executor.workers == 1 else CHUNK
     groups: list[_Group] = []

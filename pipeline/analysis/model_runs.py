@@ -12,7 +12,7 @@ from pipeline.models.common import BOUND
 from pipeline.models.directions import worst_direction
 from pipeline.quantities import Array, Quantity, checked, real_array
 from pipeline.records import Columns, Excitation, Model, Motion, Numerics
-from pipeline.records.numerics import REFINE
+from pipeline.records.numerics import REFINE, SCAN
 
 
 class Parametric(Protocol):
@@ -125,7 +125,7 @@ def run_model(
     values
         Its parameters as `prepare` returns them, (n,) each.
     numerics
-        How finely: fidelity "screen", "bound", "history" or "reference", and the step between directions.
+        How finely: fidelity "screen", "bound", "scan", "history" or "reference", and the step between directions.
     angle
         Degrees from x towards y along which a one-direction model is shaken; None: the worst direction of each row.
     tail
@@ -134,8 +134,8 @@ def run_model(
     Returns
     -------
     columns : dict of str to ndarray
-        The outputs, "error" (in the unit of the first output) and "note" (bits), (n,) each; at "bound" "low" and
-        "high" besides.
+        The outputs, "error" (in the unit of the first output; NaN at "scan") and "note" (bits), (n,) each; at "bound"
+        "low" and "high" besides.
     angles : ndarray
         (n,) degrees; NaN: shaken in two directions, or the worst of all was found without an angle.
 
@@ -151,12 +151,12 @@ def run_model(
         way = None if both else angle
         closed = _screened if numerics.fidelity == "screen" else _bounded
         return closed(model, motion.excitation(way, tail), values), np.full(size, np.nan if way is None else way)
-    refine = REFINE[numerics.fidelity]
+    refine, estimate = REFINE[numerics.fidelity], numerics.fidelity != SCAN
     if both or (angle is None and model.resultant):
-        return model.run(motion.excitation(None, tail), values, refine, True), np.full(size, np.nan)
+        return model.run(motion.excitation(None, tail), values, refine, estimate), np.full(size, np.nan)
     if angle is not None:
-        return model.run(motion.excitation(angle, tail), values, refine, True), np.full(size, angle)
-    return worst_direction(model, motion, values, refine, tail, azimuth_step)
+        return model.run(motion.excitation(angle, tail), values, refine, estimate), np.full(size, angle)
+    return worst_direction(model, motion, values, refine, tail, azimuth_step, confirm=estimate)
 
 
 def both_ways(model: Model, values: Mapping[str, Array]) -> bool:

@@ -328,7 +328,8 @@ class FidelitySearch:
         """Find the range of the demand, first by charts, then by histories of what may still have a say in it.
 
         Where furniture has variants, the best estimates come first, then the bare floor, under which the demand is
-        mostly the least, then the strongest: most of the others are known then to lie in between.
+        mostly the least, then the strongest: most of the others are known then to lie in between.  No verdict hangs on
+        the ends of such a range any more: they are scanned.
         """
         every = range(len(self.found))
         ends = [self._ends(part, found) for found in self.found]
@@ -338,11 +339,17 @@ class FidelitySearch:
         if len(self.cells) == 1:
             self.effort.numbers += self._up(Step.HISTORY, [self._heard(part, ends, at) for at in every])
             return
+        bests = part.spans.rows[part.spans.starts]
         strongest = (at for at, asked in self._order() if _PASSING in asked)
-        for at in dict.fromkeys((*self.cells[0], *self.cells[-1], *strongest)):
+        asked_of = [(at, True) for at in self.cells[0]]
+        asked_of += [(at, False) for at in dict.fromkeys((*self.cells[0], *self.cells[-1], *strongest))]
+        for at, best in asked_of:
             rows = self._heard(part, ends, at)
+            if best:
+                rows = np.intersect1d(rows, bests)
             if rows.size:
-                self.effort.numbers += self._up(Step.HISTORY, self._only(at, rows))
+                numerics = self.numerics.integrated if best else self.numerics.scanning
+                self.effort.numbers += self._up(Step.HISTORY, self._only(at, rows), numerics)
                 ends[at] = self._ends(part, self.found[at])
 
     def _heard(self, part: DemandCase, ends: Sequence[_Ends], at: int) -> Indices:
@@ -364,8 +371,8 @@ class FidelitySearch:
         rows = np.unique(spans.rows[heard])
         return np.asarray(rows[(found.step[rows] == Step.BOUND) & (low[rows] < high[rows])])
 
-    def _up(self, step: Step, rows: Sequence[Indices]) -> int:
-        """Take rows under each motion to a step; return how many were integrated."""
+    def _up(self, step: Step, rows: Sequence[Indices], numerics: Numerics | None = None) -> int:
+        """Take rows under each motion to a step, as finely as asked or as verdicts; return how many were integrated."""
         fresh = [(r[f.step[r] < step], f) for r, f in self._with(rows)]
         if step is Step.CHART:
             charts = self.context.charts
@@ -375,7 +382,8 @@ class FidelitySearch:
                 fresh = [(rows, found) for rows, found in fresh if found.motion.hash in site]
             self.context.executor.map(lambda one: chart(one[1], one[0], charts, self.numerics), fresh)
             return 0
-        return sum(integrate(found, some, self.context, self.numerics) for some, found in fresh)
+        finely = numerics or self.numerics.integrated
+        return sum(integrate(found, some, self.context, finely) for some, found in fresh)
 
 
 @dataclass(frozen=True)

@@ -154,8 +154,18 @@ def _shake(
 
 @inner
 def _longest(
-    ux: float, vx: float, uy: float, vy: float, ax: float, rise_x: float, ay: float, rise_y: float,
-    factor: Array, k: int, span: float, known: Array,
+    ux: float,
+    vx: float,
+    uy: float,
+    vy: float,
+    ax: float,
+    rise_x: float,
+    ay: float,
+    rise_y: float,
+    factor: Array,
+    k: int,
+    span: float,
+    known: Array,
 ) -> None:
     # The longest resultant in a short span, if it is longer than what is known: where u . v changes its sign.
     w, zeta = factor[W, k], factor[ZETA, k]
@@ -178,7 +188,15 @@ def _longest(
 
 @inner
 def _search(
-    ax: Array, ay: Array, begin: int, end: int, dt: float, stretch: Array, part: int, factor: Array, k: int,
+    ax: Array,
+    ay: Array,
+    begin: int,
+    end: int,
+    dt: float,
+    stretch: Array,
+    part: int,
+    factor: Array,
+    k: int,
     known: Array,
 ) -> None:
     # Walk one oscillator from sample begin to sample end again, and search what can hold the longest resultant.
@@ -187,7 +205,10 @@ def _search(
     uu, uv, u0, u1 = factor[UU, k], factor[UV, k], factor[U0, k], factor[U1, k]
     vu, vv, v0, v1 = factor[VU, k], factor[VV, k], factor[V0, k], factor[V1, k]
     ux, vx, uy, vy = (
-        stretch[part, BEGIN_UX, k], stretch[part, BEGIN_VX, k], stretch[part, BEGIN_UY, k], stretch[part, BEGIN_VY, k]
+        stretch[part, BEGIN_UX, k],
+        stretch[part, BEGIN_VX, k],
+        stretch[part, BEGIN_UY, k],
+        stretch[part, BEGIN_VY, k],
     )
     spans = max(1, math.ceil(w * dt * (1.0 + twice) / PHASE))
     size = math.hypot(ux, uy)

@@ -45,7 +45,7 @@ PIECES = 5
 _GRAIN = 2.0**30
 """Steps to the peak in which shaking is told apart, so that what is only scaled has the same spectrum, scaled."""
 
-_KEPT = 16384
+_KEPT = 65536
 """Pieces of spectra that are remembered, of 2 kB as a rule."""
 
 

@@ -13,7 +13,14 @@ CLOSE = 1e-3
 
 
 def worst_direction(
-    model: Model, motion: Motion, values: Mapping[str, Array], refine: int, tail: float | None, azimuth_step: float
+    model: Model,
+    motion: Motion,
+    values: Mapping[str, Array],
+    refine: int,
+    tail: float | None,
+    azimuth_step: float,
+    *,
+    confirm: bool = True,
 ) -> tuple[Columns, Array]:
     """Return the response of each row in its worst direction.
 
@@ -33,6 +40,9 @@ def worst_direction(
         Seconds of rest after the record; None: until rest.
     azimuth_step : float
         Degrees between the directions that are looked at.
+    confirm : bool, optional
+        Whether the worst of the coarse steps is confirmed by a finer one; else what these found comes back, without an
+        error.
 
     Returns
     -------
@@ -64,6 +74,9 @@ def worst_direction(
         # of what is alike in all, the first direction: of what is turned round that is the last.
         ranked = np.lexsort([one[::-1, left] for one in (others, pushes, outputs)], axis=0)
         worst = ways.size - 1 - ranked[-1]
+        if not confirm:
+            each = np.arange(size)
+            return {name: np.array([one[name] for one in scans])[worst, each] for name in scans[0]}, ways[worst]
         for way in np.unique(worst):
             rows = left[worst == way]
             one = {name: v[rows] for name, v in values.items()}

@@ -7,7 +7,10 @@ from dataclasses import dataclass, replace
 AUTO, CHART = "auto", "chart"
 """The fidelities that choose for each verdict, and for each parameter set, what is looked up and what is integrated."""
 
-REFINE = {"history": 2, "reference": 16}
+SCAN = "scan"
+"""Integrated as coarsely as where the worst direction is looked for, without an estimate of the error."""
+
+REFINE = {SCAN: 1, "history": 2, "reference": 16}
 """How much finer than the coarsest step, which only ever looks for the worst direction, each fidelity integrates."""
 
 TOLERANCE = 1e-3
@@ -15,6 +18,9 @@ TOLERANCE = 1e-3
 
 AZIMUTH_STEP = 10.0
 """Degrees between the directions of which the worst counts when the orientation is unknown (RotD100)."""
+
+SCAN_STEP = 20.0
+"""The same of a scan."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,8 +30,8 @@ class Numerics:
     Attributes
     ----------
     fidelity : str
-        Of one run "screen", "bound", "chart", "history" or "reference"; of verdicts besides the last three "auto",
-        which goes from bounds over charts to histories as far as each verdict needs.
+        Of one run "screen", "bound", "scan", "chart", "history" or "reference"; of verdicts besides the last three
+        "auto", which goes from bounds over charts to histories as far as each verdict needs.
     azimuth_step : float
         Degrees between the directions of which the worst counts, above 0 and at most 90.
     tolerance : float
@@ -43,6 +49,11 @@ class Numerics:
     def integrated(self) -> Numerics:
         """The same for what is integrated whatever happens: at "reference" where that was asked, else at "history"."""
         return replace(self, fidelity="reference" if self.fidelity == "reference" else "history")
+
+    @property
+    def scanning(self) -> Numerics:
+        """The same for the ends of a range that no verdict hangs on."""
+        return replace(self, fidelity=SCAN, azimuth_step=max(SCAN_STEP, self.azimuth_step))
 
     def at(self, fidelity: str) -> Numerics:
         """Return the same at another fidelity."""

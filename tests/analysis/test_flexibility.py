@@ -234,7 +234,9 @@ def test_passes_only_if_the_largest_does_and_fails_only_if_the_least_does(motion
     best = respond("flexible_stress", motion, angle=None, frequency=5.0, damping=0.02, **section)["tension"].iloc[0]
     told = findings[1]
     assert told.demand == pytest.approx(best, rel=MISSED)
-    assert told.high == pytest.approx(felt.max(), rel=MISSED)
+    # The ends of its range are bounds: off by what the search may miss, on either side of what it finds.
+    assert told.high is not None
+    assert felt.max() <= told.high <= (1.0 + 2.0 * MISSED) * felt.max()
     assert told.low is not None
     assert told.low <= felt.min() * (1.0 + 2.0 * MISSED)
     assert "taken as held while it bends" in told.sentence
@@ -269,13 +271,18 @@ def test_the_tension_of_a_held_base_is_so_many_times(motion: Motion, kind: str) 
     push = (
         float(np.hypot(*motion.acceleration[:2]).max())
         if kind == "stress"
-        else float(respond("oscillator", motion, angle=None, frequency=5.0, damping=0.02)["pseudo_acceleration"][0])
+        else float(
+            # Of the worst direction 1 - cos(0.1 deg) is missed, 1.5e-6.
+            respond("oscillator", motion, angle=None, azimuth_step=0.2, frequency=5.0, damping=0.02)[
+                "pseudo_acceleration"
+            ][0]
+        )
     )
     bends, weight = 5.0 * push * 0.15 / p["section_modulus"].value, 5.0 * G / p["area"].value
     k = bending("concentration")
-    assert finding.demand == pytest.approx(k.value * bends - weight, rel=1e-6)
-    assert finding.low == pytest.approx(k.low * bends - weight, rel=1e-6)
-    assert finding.high == pytest.approx(k.high * bends - weight, rel=1e-6)
+    assert finding.demand == pytest.approx(k.value * bends - weight, rel=3e-6)
+    assert finding.low == pytest.approx(k.low * bends - weight, rel=3e-6)
+    assert finding.high == pytest.approx(k.high * bends - weight, rel=3e-6)
 
 
 # Tables

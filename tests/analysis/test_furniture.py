@@ -279,10 +279,11 @@ def test_a_verdict_holds_under_every_variant_of_the_furniture(combine: str, fide
         assert finding.verdict is expected
         assert finding.motion in {motion.name for motion in motions}
         if expected is not Verdict.PASS or fidelity == "history":
-            # A history may be off by what it states, and a bound says that it is one.
+            # A history may be off by what it states; no verdict hangs on the ends of an open range, which are scanned.
             assert finding.demand == pytest.approx(demands[0], rel=2e-3)
-            assert finding.high == pytest.approx(demands.max(), rel=2e-3)
-            assert finding.low == pytest.approx(demands.min(), rel=2e-3)
+            ends = 2e-3 if fidelity == "history" else 2e-2
+            assert finding.high == pytest.approx(demands.max(), rel=ends)
+            assert finding.low == pytest.approx(demands.min(), rel=ends)
 
 
 def test_a_finding_names_its_furniture_and_the_motion_of_the_site() -> None:
