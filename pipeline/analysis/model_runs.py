@@ -9,10 +9,10 @@ import numpy as np
 from pipeline.errors import InputError
 from pipeline.models import MODELS
 from pipeline.models.common import BOUND
-from pipeline.models.directions import worst_direction
+from pipeline.models.directions import worst_direction, worst_scanned
 from pipeline.quantities import Array, Quantity, checked, real_array
 from pipeline.records import Columns, Excitation, Model, Motion, Numerics
-from pipeline.records.numerics import REFINE
+from pipeline.records.numerics import PICTURE, REFINE
 
 
 class Parametric(Protocol):
@@ -125,7 +125,7 @@ def run_model(
     values
         Its parameters as `prepare` returns them, (n,) each.
     numerics
-        How finely: fidelity "screen", "bound", "history" or "reference", and the step between directions.
+        How finely: fidelity "screen", "bound", "picture", "history" or "reference", and the step between directions.
     angle
         Degrees from x towards y along which a one-direction model is shaken; None: the worst direction of each row.
     tail
@@ -135,7 +135,7 @@ def run_model(
     -------
     columns : dict of str to ndarray
         The outputs, "error" (in the unit of the first output) and "note" (bits), (n,) each; at "bound" "low" and
-        "high" besides.
+        "high" besides; at "picture" an error that takes a second pass is NaN.
     angles : ndarray
         (n,) degrees; NaN: shaken in two directions, or the worst of all was found without an angle.
 
@@ -151,11 +151,14 @@ def run_model(
         way = None if both else angle
         closed = _screened if numerics.fidelity == "screen" else _bounded
         return closed(model, motion.excitation(way, tail), values), np.full(size, np.nan if way is None else way)
-    refine = REFINE[numerics.fidelity]
+    pictured = numerics.fidelity == PICTURE
+    refine = 1 if pictured else REFINE[numerics.fidelity]
     if both or (angle is None and model.resultant):
-        return model.run(motion.excitation(None, tail), values, refine, True), np.full(size, np.nan)
+        return model.run(motion.excitation(None, tail), values, refine, not pictured), np.full(size, np.nan)
     if angle is not None:
-        return model.run(motion.excitation(angle, tail), values, refine, True), np.full(size, angle)
+        return model.run(motion.excitation(angle, tail), values, refine, not pictured), np.full(size, angle)
+    if pictured:
+        return worst_scanned(model, motion, values, tail, azimuth_step)
     return worst_direction(model, motion, values, refine, tail, azimuth_step)
 
 

@@ -43,13 +43,10 @@ def worst_direction(
         Degrees from x towards y.
     """
     size = next(iter(values.values())).size
-    turn = 180.0 if model.symmetric(values) else 360.0
-    scan = max(1, refine // 2)
     first, demand = model.gives[0].name, model.demand
     next_one = next((q.name for q in model.gives[1:] if q.unit not in ("bool", "count") and not q.optional), first)
     outcome = next((q.name for q in model.gives if q.unit == "bool"), None)
-    ways = np.arange(0.0, turn - 1e-9, azimuth_step)
-    scans = [model.run(motion.excitation(float(way), tail), values, scan, False) for way in ways]
+    ways, scans = _scanned(model, motion, values, max(1, refine // 2), tail, azimuth_step)
     outputs, pushes, others = (
         np.nan_to_num([columns[name] for columns in scans], nan=-np.inf, posinf=np.inf)
         for name in (first, demand, next_one)
@@ -79,6 +76,38 @@ def worst_direction(
     if outcome is not None:
         _doubt_directions(model, motion, values, tail, dict(zip(ways, scans, strict=True)), where, best, outcome)
     return best, where
+
+
+def worst_scanned(
+    model: Model, motion: Motion, values: Mapping[str, Array], tail: float | None, azimuth_step: float
+) -> tuple[Columns, Array]:
+    """Return the response of each row in its worst direction as the coarsest step finds it: for pictures.
+
+    Parameters
+    ----------
+    model, motion, values, tail, azimuth_step
+        As in `worst_direction`.
+
+    Returns
+    -------
+    columns : Columns
+        As `Model.run` gives them without an estimate.
+    direction : ndarray, shape (n,)
+        Degrees from x towards y.
+    """
+    ways, scans = _scanned(model, motion, values, 1, tail, azimuth_step)
+    worst = np.argmax([columns[model.gives[0].name] for columns in scans], axis=0)
+    rows = np.arange(worst.size)
+    return {name: np.array([columns[name] for columns in scans])[worst, rows] for name in scans[0]}, ways[worst]
+
+
+def _scanned(
+    model: Model, motion: Motion, values: Mapping[str, Array], refine: int, tail: float | None, azimuth_step: float
+) -> tuple[Array, list[Columns]]:
+    """Return the directions that are looked at, and the response of all rows in each."""
+    turn = 180.0 if model.symmetric(values) else 360.0
+    ways = np.arange(0.0, turn - 1e-9, azimuth_step)
+    return ways, [model.run(motion.excitation(float(way), tail), values, refine, False) for way in ways]
 
 
 def _doubt_directions(

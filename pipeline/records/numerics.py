@@ -7,8 +7,12 @@ from dataclasses import dataclass, replace
 AUTO, CHART = "auto", "chart"
 """The fidelities that choose for each verdict, and for each parameter set, what is looked up and what is integrated."""
 
+PICTURE = "picture"
+"""The fidelity of what is only looked at: the coarsest step, the worst direction as it finds it, no error estimate."""
+
 REFINE = {"history": 2, "reference": 16}
-"""How much finer than the coarsest step, which only ever looks for the worst direction, each fidelity integrates."""
+"""How much finer than the coarsest step, which only looks for the worst direction and draws, each fidelity integrates.
+"""
 
 TOLERANCE = 1e-3
 """Relative error that a chart's interpolation is granted."""
@@ -25,7 +29,7 @@ class Numerics:
     ----------
     fidelity : str
         Of one run "screen", "bound", "chart", "history" or "reference"; of verdicts besides the last three "auto",
-        which goes from bounds over charts to histories as far as each verdict needs.
+        which goes from bounds over charts to histories as far as each verdict needs; of pictures "picture".
     azimuth_step : float
         Degrees between the directions of which the worst counts, above 0 and at most 90.
     tolerance : float
