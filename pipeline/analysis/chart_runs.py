@@ -23,7 +23,7 @@ from pipeline.errors import InputError
 from pipeline.models import model_named
 from pipeline.quantities import Array, checked, real_number
 from pipeline.records import Columns, Model, Motion, Numerics
-from pipeline.records.numerics import VERDICTS
+from pipeline.records.numerics import SCAN, VERDICTS
 
 DECIDES = 1e-2
 """Tolerance of a chart that only has to tell a verdict: what lies closer to its capacity is integrated.
@@ -155,7 +155,7 @@ def response_chart(
     angle
         Degrees from x towards y along which a one-direction model is shaken; None: the worst direction.
     numerics
-        Tolerance of the chart, and the step between directions.
+        Tolerance of the chart, and the step between directions; of the fidelities only "scan" has a say.
     low
         Where the chart begins, in the unit of its axis; None: as the model says.
     charts
@@ -197,8 +197,9 @@ def _charted(
     """Return how the nodes of a chart are run, and what the chart depends on besides model and motion."""
     angle, tail, azimuth_step = checked(angle, tail, numerics.azimuth_step)
     both = both_ways(model, values)
-    # Whatever the fidelity of what looks it up, a chart is made of histories.
-    finely = replace(numerics, fidelity="history", azimuth_step=azimuth_step)
+    # Whatever the fidelity of what looks it up, a chart is made of histories, unless it is only drawn.
+    fidelity = SCAN if numerics.fidelity == SCAN else "history"
+    finely = replace(numerics, fidelity=fidelity, azimuth_step=azimuth_step)
 
     def run(some: Mapping[str, Array]) -> Columns:
         return run_model(model, motion, some, finely, angle, tail)[0]

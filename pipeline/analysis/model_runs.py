@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.errors import InputError
 from pipeline.models import MODELS
 from pipeline.models.common import BOUND
-from pipeline.models.directions import worst_direction
+from pipeline.models.directions import worst_direction, worst_scanned
 from pipeline.quantities import Array, Quantity, checked, real_array
 from pipeline.records import Columns, Excitation, Model, Motion, Numerics
 from pipeline.records.numerics import REFINE, SCAN
@@ -156,7 +156,8 @@ def run_model(
         return model.run(motion.excitation(None, tail), values, refine, estimate), np.full(size, np.nan)
     if angle is not None:
         return model.run(motion.excitation(angle, tail), values, refine, estimate), np.full(size, angle)
-    return worst_direction(model, motion, values, refine, tail, azimuth_step, confirm=estimate)
+    search = worst_direction if estimate else worst_scanned
+    return search(model, motion, values, refine, tail, azimuth_step)
 
 
 def both_ways(model: Model, values: Mapping[str, Array]) -> bool:

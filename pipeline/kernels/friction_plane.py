@@ -21,7 +21,7 @@ from pipeline.kernels.friction_line import CAP, FAINT, MOST_AFTER
 from pipeline.kernels.plane_peaks import felt, inner_felt, inner_radius, note, stop_radius
 from pipeline.kernels.plane_step import plane_step
 from pipeline.kernels.plane_stop import come_to_rest
-from pipeline.kernels.quiet import largest, next_above
+from pipeline.kernels.quiet import largest, next_above, next_slip, onset
 from pipeline.quantities import Array, G
 
 Control = tuple[float, float, float, float, float]
@@ -43,22 +43,6 @@ SHARE = 1.5
 """Share of its speed that a step may take off or turn away, over the eighth root of the tolerance."""
 SLOW = 1e-2
 """Scale of speeds before any motion, as a share of the largest push over a sample interval."""
-
-
-@inner
-def _onset(qx: float, qy: float, q1x: float, q1y: float, l0: float, l1: float, span: float) -> float:
-    # First time in [0, span] at which |q| > l, given |q| <= l at 0: |q| - l is convex, so there is at most one.
-    end = math.hypot(qx + q1x * span, qy + q1y * span) - (l0 + l1 * span)
-    if end <= 0.0:
-        return -1.0
-    a = q1x * q1x + q1y * q1y - l1 * l1
-    half = qx * q1x + qy * q1y - l0 * l1
-    c = min(0.0, (math.hypot(qx, qy) - l0) * (math.hypot(qx, qy) + l0))
-    # a t^2 + 2 half t + c = 0 with c <= 0: the root that is not negative, without cancellation.
-    root = math.sqrt(max(0.0, half * half - a * c))
-    if half >= 0.0:
-        return min(span, -c / (half + root)) if half + root > 0.0 else 0.0
-    return min(span, max(0.0, (root - half) / a)) if a > 0.0 else 0.0
 
 
 @inner
@@ -104,7 +88,7 @@ def _piece(
                         out[5] = max(out[5], late * (math.hypot(load[1], load[3]) + abs(load[5])))
                     late = 0.0
                 stray = w * off
-                wait = _onset(qx, qy, load[1], load[3], hold, load[7], left)
+                wait = onset(qx, qy, load[1], load[3], hold, load[7], left)
                 felt_most = max(felt_most, math.sqrt(ax * ax + ay * ay))
                 if wait < 0.0:
                     ax, ay = load[0] + load[1] * span, load[2] + load[3] * span
@@ -301,8 +285,7 @@ def _follow(
     mu_s: float,
     mu_k: float,
     tail: float,
-    rtol: float,
-    longest: float,
+    control: Control,
     state: Array,
     load: Array,
     out: Array,
@@ -312,19 +295,22 @@ def _follow(
     n = x.shape[0]
     b, c = w * w, 2.0 * zeta * w
     scale = SLOW * peak * dt
-    control = (rtol, SHARE * rtol**0.125, 2.0 * rtol**0.25, 1e-2 * math.sqrt(rtol), longest)
     slipping, guess = state[7] > 0.0, dt
     recording = history.shape[0] > 0
     i = FIRST
     state[10] = float(MOST_STEPS + MOST_EACH * n)
     while i < n - 1 and not int(out[3]) & UNRESOLVED:
-        if not slipping and w == 0.0 and not recording:
-            ahead = next_above(ratio, maxima, i, mu_s)
+        if not slipping and not recording:
+            if w == 0.0:
+                ahead = next_above(ratio, maxima, i, mu_s)
+            else:
+                ahead = next_slip(x, y, z, i, b * state[0], b * state[1], mu_s)
             if ahead >= n:
                 out[2] = max(out[2], largest(push, pushes, i, n))
                 break
             if ahead > i + 1:
                 out[2] = max(out[2], largest(push, pushes, i, ahead))
+                state[8] = w * state[9]
                 i = ahead - 1
         if i < history.shape[0]:
             note(history, i, state, x[i], y[i], mu_s, mu_k, max(0.0, G + z[i]), b, c, slipping)
@@ -434,6 +420,7 @@ def friction_plane_batch(
     mu_k: Array,
     tail: float,
     rtol: float,
+    stopping: float,
     longest: float,
     results: Array,
     history: Array,
@@ -446,9 +433,9 @@ def friction_plane_batch(
         As in `pipeline.kernels.friction_line.friction_line_batch`, y beside x.
     push, pushes, peak : ndarray, shape (n,); ndarray; float
         ``|a_h|``, its block maxima and the largest of it, m/s2.
-    rtol, longest : float
-        Tolerance of a step's velocity, relative to the scale of speeds; the longest step as a share of a sample
-        interval.
+    rtol, stopping, longest : float
+        Tolerance of a step's velocity, relative to the scale of speeds; that of a stop; the longest step as a share of
+        a sample interval.
     results : ndarray, shape (m, 7)
         Receives the largest ``|u|``, the residual ``|u|``, the path [m], the largest acceleration passed on [m/s2], the
         flags; and what each step may have been off by, summed up, of u [m] and of that acceleration [m/s2].
@@ -461,6 +448,7 @@ def friction_plane_batch(
     Newmark (1965) and Agbabian et al. (1991), as in `pipeline.kernels.friction_line.friction_line_batch`.
     """
     moving = x.shape[0] > 1 and peak > 0.0
+    control = (rtol, SHARE * rtol**0.125, 2.0 * stopping**0.25, 1e-2 * math.sqrt(stopping), longest)
     state, load, out = np.empty(11), np.empty(8), np.empty(6)
     for k in range(w.shape[0]):
         residual = 0.0
@@ -483,8 +471,7 @@ def friction_plane_batch(
                 # Grips are divided by: a denormal friction is none.
                 mu_k[k] if mu_k[k] >= 1e-300 else 0.0,
                 tail,
-                rtol,
-                longest,
+                control,
                 state,
                 load,
                 out,

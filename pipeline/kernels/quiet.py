@@ -13,11 +13,14 @@ import math
 
 import numpy as np
 
-from pipeline.kernels import bare, kernel
+from pipeline.kernels import bare, inner, kernel
 from pipeline.quantities import Array, G
 
 BLOCK = 64
 """Samples in a block of the maxima that let a resting object skip ahead."""
+
+HAIR = 1e-9
+"""Share of the square of its friction by which a body on a spring must be clear of slipping to be skipped."""
 
 
 @kernel
@@ -102,6 +105,66 @@ def next_above(values: Array, maxima: Array, start: int, limit: float) -> int:
             return i
         i += 1
     return n
+
+
+@bare
+def next_slip(x: Array, y: Array, z: Array, start: int, pull_x: float, pull_y: float, friction: float) -> int:
+    """Return the first index from a start on at which a body that its spring pulls at may slip.
+
+    Parameters
+    ----------
+    x, y, z : ndarray, shape (n,)
+        Acceleration of the base, m/s2.
+    start : int
+        Where to begin.
+    pull_x, pull_y : float
+        Of the spring on the body at rest, m/s2.
+    friction : float
+        At rest.
+
+    Returns
+    -------
+    int
+        n where there is none; too early where only rounding could tell.
+    """
+    for i in range(start, x.shape[0]):
+        push_x, push_y, hold = x[i] + pull_x, y[i] + pull_y, friction * (G + z[i])
+        # Without weight it no longer holds on, even where nothing pushes.
+        if G + z[i] <= 0.0 or push_x * push_x + push_y * push_y > (1.0 - HAIR) * hold * hold:
+            return i
+    return x.shape[0]
+
+
+@inner
+def onset(qx: float, qy: float, q1x: float, q1y: float, l0: float, l1: float, span: float) -> float:
+    """Return when a push that changes linearly outgrows a hold that does; it does not at first.
+
+    Parameters
+    ----------
+    qx, qy, q1x, q1y : float
+        The push at first, m/s2, and its rate, m/s3.
+    l0, l1 : float
+        The hold at first, and its rate.
+    span : float
+        How long it is looked at, s.
+
+    Returns
+    -------
+    float
+        s; below 0 where it is not.
+    """
+    # |q| - l is convex, so there is at most one.
+    end = math.hypot(qx + q1x * span, qy + q1y * span) - (l0 + l1 * span)
+    if end <= 0.0:
+        return -1.0
+    a = q1x * q1x + q1y * q1y - l1 * l1
+    half = qx * q1x + qy * q1y - l0 * l1
+    c = min(0.0, (math.hypot(qx, qy) - l0) * (math.hypot(qx, qy) + l0))
+    # a t^2 + 2 half t + c = 0 with c <= 0: the root that is not negative, without cancellation.
+    root = math.sqrt(max(0.0, half * half - a * c))
+    if half >= 0.0:
+        return min(span, -c / (half + root)) if half + root > 0.0 else 0.0
+    return min(span, max(0.0, (root - half) / a)) if a > 0.0 else 0.0
 
 
 @bare

@@ -1,8 +1,9 @@
 """The worst of all directions (RotD100) of models that are shaken along one: found coarsely, then integrated."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.models.common import SENSITIVE
 from pipeline.quantities import Array
@@ -19,8 +20,6 @@ def worst_direction(
     refine: int,
     tail: float | None,
     azimuth_step: float,
-    *,
-    confirm: bool = True,
 ) -> tuple[Columns, Array]:
     """Return the response of each row in its worst direction.
 
@@ -40,9 +39,6 @@ def worst_direction(
         Seconds of rest after the record; None: until rest.
     azimuth_step : float
         Degrees between the directions that are looked at.
-    confirm : bool, optional
-        Whether the worst of the coarse steps is confirmed by a finer one; else what these found comes back, without an
-        error.
 
     Returns
     -------
@@ -53,30 +49,17 @@ def worst_direction(
         Degrees from x towards y.
     """
     size = next(iter(values.values())).size
-    turn = 180.0 if model.symmetric(values) else 360.0
-    scan = max(1, refine // 2)
-    first, demand = model.gives[0].name, model.demand
-    next_one = next((q.name for q in model.gives[1:] if q.unit not in ("bool", "count") and not q.optional), first)
+    first = model.gives[0].name
     outcome = next((q.name for q in model.gives if q.unit == "bool"), None)
-    ways = np.arange(0.0, turn - 1e-9, azimuth_step)
-    scans = [model.run(motion.excitation(float(way), tail), values, scan, False) for way in ways]
-    outputs, pushes, others = (
-        np.nan_to_num([columns[name] for columns in scans], nan=-np.inf, posinf=np.inf)
-        for name in (first, demand, next_one)
-    )
+    ways, scans = _scanned(model, motion, values, max(1, refine // 2), tail, azimuth_step)
+    outputs, pushes, others = _ranking(model, scans)
     where = np.full(size, np.nan)
     best: Columns = {first: np.full(size, -np.inf)}
     left = np.arange(size)
     # A worst direction that the finer integration does not confirm (a block that fell, and then did not), or that
     # others come close to, says nothing: each of those is looked at, unless an outcome is settled.
     while left.size:
-        # Where the first output ties (nothing moved in either direction), the demand decides, then the next output, and
-        # of what is alike in all, the first direction: of what is turned round that is the last.
-        ranked = np.lexsort([one[::-1, left] for one in (others, pushes, outputs)], axis=0)
-        worst = ways.size - 1 - ranked[-1]
-        if not confirm:
-            each = np.arange(size)
-            return {name: np.array([one[name] for one in scans])[worst, each] for name in scans[0]}, ways[worst]
+        worst = _worst(outputs[:, left], pushes[:, left], others[:, left])
         for way in np.unique(worst):
             rows = left[worst == way]
             one = {name: v[rows] for name, v in values.items()}
@@ -92,6 +75,59 @@ def worst_direction(
     if outcome is not None:
         _doubt_directions(model, motion, values, tail, dict(zip(ways, scans, strict=True)), where, best, outcome)
     return best, where
+
+
+def worst_scanned(
+    model: Model, motion: Motion, values: Mapping[str, Array], refine: int, tail: float | None, azimuth_step: float
+) -> tuple[Columns, Array]:
+    """Return the response of each row in its worst direction as one look at each finds it.
+
+    Parameters
+    ----------
+    model, motion, values, refine, tail, azimuth_step
+        As in `worst_direction`; each direction is looked at with all of `refine`.
+
+    Returns
+    -------
+    columns : Columns
+        As `Model.run` gives them without an estimate.
+    direction : ndarray, shape (n,)
+        Degrees from x towards y.
+    """
+    ways, scans = _scanned(model, motion, values, refine, tail, azimuth_step)
+    worst = _worst(*_ranking(model, scans))
+    rows = np.arange(worst.size)
+    return {name: np.array([columns[name] for columns in scans])[worst, rows] for name in scans[0]}, ways[worst]
+
+
+def _ranking(model: Model, scans: Sequence[Columns]) -> tuple[Array, Array, Array]:
+    """Return what ranks directions, (ways, n) each: the first output, then the demand, then the next output."""
+    first = model.gives[0].name
+    next_one = next((q.name for q in model.gives[1:] if q.unit not in ("bool", "count") and not q.optional), first)
+    outputs, pushes, others = (
+        np.nan_to_num([columns[name] for columns in scans], nan=-np.inf, posinf=np.inf)
+        for name in (first, model.demand, next_one)
+    )
+    return outputs, pushes, others
+
+
+def _worst(outputs: Array, pushes: Array, others: Array) -> NDArray[np.intp]:
+    """Return the place of the worst direction of each row.
+
+    Where the first output ties (nothing moved in either direction), the demand decides, then the next output, and of
+    what is alike in all, the first direction: of what is turned round that is the last.
+    """
+    ranked = np.lexsort([one[::-1] for one in (others, pushes, outputs)], axis=0)
+    return np.asarray(outputs.shape[0] - 1 - ranked[-1])
+
+
+def _scanned(
+    model: Model, motion: Motion, values: Mapping[str, Array], refine: int, tail: float | None, azimuth_step: float
+) -> tuple[Array, list[Columns]]:
+    """Return the directions that are looked at, and the response of all rows in each."""
+    turn = 180.0 if model.symmetric(values) else 360.0
+    ways = np.arange(0.0, turn - 1e-9, azimuth_step)
+    return ways, [model.run(motion.excitation(float(way), tail), values, refine, False) for way in ways]
 
 
 def _doubt_directions(

@@ -8,10 +8,11 @@ AUTO, CHART = "auto", "chart"
 """The fidelities that choose for each verdict, and for each parameter set, what is looked up and what is integrated."""
 
 SCAN = "scan"
-"""Integrated as coarsely as where the worst direction is looked for, without an estimate of the error."""
+"""The fidelity of what is only looked at, or only an end of a range: the coarsest step, the worst direction as that
+finds it, no estimate of the error."""
 
 REFINE = {SCAN: 1, "history": 2, "reference": 16}
-"""How much finer than the coarsest step, which only ever looks for the worst direction, each fidelity integrates."""
+"""How much finer than the coarsest step each fidelity integrates."""
 
 TOLERANCE = 1e-3
 """Relative error that a chart's interpolation is granted."""
@@ -31,7 +32,8 @@ class Numerics:
     ----------
     fidelity : str
         Of one run "screen", "bound", "scan", "chart", "history" or "reference"; of verdicts besides the last three
-        "auto", which goes from bounds over charts to histories as far as each verdict needs.
+    "auto", which goes from bounds over charts to histories as far as each verdict needs; of pictures, and of ends
+    of ranges that no verdict hangs on, "scan".
     azimuth_step : float
         Degrees between the directions of which the worst counts, above 0 and at most 90.
     tolerance : float

@@ -8,18 +8,22 @@ import numpy as np
 import pytest
 
 from pipeline.analysis.context import Context
-from pipeline.analysis.figures import chart_keys, draw
+from pipeline.analysis.figures import PICTURED, chart_keys, draw
+from pipeline.analysis.model_runs import prepare, run_model
 from pipeline.analysis.response import respond
-from pipeline.analysis.response_charts import ChartCache, ResponseChart
+from pipeline.analysis.response_charts import ChartCache, ResponseChart, axis_of
 from pipeline.cache import CHARTS, PICTURES, CacheWarning
 from pipeline.execute import Threads
 from pipeline.models import model_named
 from pipeline.models.common import lift_ratios
 from pipeline.models.swing import PICTURED_EVERY
+from pipeline.motions import read_motion
 from pipeline.motions.synthesis import band_limited_random
 from pipeline.night import figures
 from pipeline.quantities import Array, G
-from pipeline.records import Chart, ChartFigure, Motion, Silent
+from pipeline.records import Chart, ChartFigure, Motion, Numerics, Silent
+from pipeline.records.numerics import SCAN
+from pipeline.resources import resource
 from pipeline.settings import KEPT, Settings
 
 pytestmark = pytest.mark.slow_file
@@ -73,24 +77,60 @@ def true(motion: Motion, name: str, at: Array) -> list[Array]:
     ]
 
 
-@pytest.mark.parametrize("name", ["sliding", "swing", "isolator"])
-def test_a_figure_is_as_far_off_as_it_says(motion: Motion, drawn: dict[str, Chart], name: str) -> None:
-    """Straight lines between its points at 60 fresh places against histories: within the error told in 97 of 100.
+@pytest.fixture(scope="module", params=["noise", "record"])
+def pictured(
+    request: pytest.FixtureRequest, motion: Motion, drawn: dict[str, Chart]
+) -> tuple[Motion, dict[str, Chart]]:
+    """The noise, and the demonstration's record, with their pictures."""
+    if request.param == "noise":
+        return motion, drawn
+    record = read_motion(resource("site_motions", "demo"))[0]
+    return record, draw(record, Context(Threads(2), charts=ChartCache()))
 
-    Relative to max(value, 1 % of the largest), as the caption says.  A kink may hide between held-out points; the lines
-    between 240 points and more, and five digits, are far below the 0.2 % that is always claimed.
+
+@pytest.mark.parametrize("name", ["sliding", "swing", "isolator"])
+def test_a_figure_is_as_far_off_as_it_says(pictured: tuple[Motion, dict[str, Chart]], name: str) -> None:
+    """Straight lines between its points at 60 fresh places against histories: within the error told in 98 of 100.
+
+    Relative to max(value, 1 % of the largest), as the caption says.  A kink may hide between held-out points: of 8,400
+    places under seven motions 99.7 in 100 were within, and none was off by three times the 2 % that are allowed; the
+    lines between 240 points and more, and five digits, are far below that.
     """
-    chart = kind(drawn, name)
+    motion, charts = pictured
+    chart = kind(charts, name)
     ends = chart.curves[0].x[0], chart.curves[0].x[-1]
     at = np.exp(np.random.default_rng(7).uniform(*np.log(ends), 60))
-    within = []
+    off, within = [], []
     errors = told(chart)
     assert len(errors) == len(chart.curves)
     for curve, error, want in zip(chart.curves, errors, true(motion, name, at), strict=True):
-        assert 0.0 < error < 0.05
+        # The figure that decides is told to half of a verdict's 1 %.
+        assert 0.0 < error <= (0.005 if name == "sliding" else PICTURED)
         got = np.interp(np.log(at), np.log(curve.x), curve.y)
-        within.append(np.abs(got - want) <= error * np.maximum(want, 0.01 * want.max()) + 1e-12)
-    assert np.concatenate(within).mean() >= 0.97
+        off.append(np.abs(got - want) / np.maximum(want, 0.01 * want.max()))
+        within.append(off[-1] <= error + 1e-12)
+    assert np.concatenate(within).mean() >= 0.98
+    assert np.concatenate(off).max() < 3.0 * PICTURED
+
+
+@pytest.mark.parametrize("name", ["swing", "horizontal_isolator"])
+def test_what_is_only_drawn_is_integrated_coarsely_and_hardly_off(name: str) -> None:
+    """Under the demonstration's record, against histories: a tenth of what a picture is told to.
+
+    Of 3,600 isolators under six motions the worst was off by 0.14 %.
+    """
+    record = read_motion(resource("site_motions", "demo"))[0]
+    model = model_named(name)
+    (first, axis), places = (model.gives[0].name, axis_of(model)), np.random.default_rng(8)
+    for fixed in curves_of(name):
+        at = np.exp(places.uniform(np.log(max(0.1, axis.low)), np.log(axis.high), 40))
+        values = prepare(model, {**fixed, axis.name: at})
+        drawn, true = (
+            run_model(model, record, values, Numerics(fidelity, PICTURED_EVERY), None)[0]
+            for fidelity in (SCAN, "history")
+        )
+        np.testing.assert_allclose(drawn[first], true[first], rtol=0.1 * PICTURED)
+        assert np.isnan(drawn["error"]).all()
 
 
 def test_every_figure_is_there_and_points_lie_where_the_response_turns(drawn: dict[str, Chart], motion: Motion) -> None:

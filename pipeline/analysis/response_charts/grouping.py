@@ -13,7 +13,6 @@ from pipeline.cache import key_of
 from pipeline.errors import InputError
 from pipeline.quantities import Array, real_number
 from pipeline.records import Columns, Model, Motion, Numerics
-from pipeline.records.numerics import REFINE
 
 MOST_CHARTS = 16
 """Charts built for one call: where the fixed parameters take more combinations, the rarer ones are integrated.
@@ -230,7 +229,7 @@ def _identity(model: Model, motion: Motion, fixed: Mapping[str, float], settings
         "both" if settings.both else settings.angle,
         numerics.azimuth_step if worst else None,
         settings.tail,
-        REFINE[numerics.fidelity],
+        numerics.fidelity,
         numerics.tolerance,
         settings.low,
         numerics.first,
