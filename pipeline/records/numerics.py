@@ -32,8 +32,8 @@ class Numerics:
     ----------
     fidelity : str
         Of one run "screen", "bound", "scan", "chart", "history" or "reference"; of verdicts besides the last three
-    "auto", which goes from bounds over charts to histories as far as each verdict needs; of pictures, and of ends
-    of ranges that no verdict hangs on, "scan".
+        "auto", which goes from bounds over charts to histories as far as each verdict needs; of pictures, and of ends
+        of ranges that no verdict hangs on, "scan".
     azimuth_step : float
         Degrees between the directions of which the worst counts, above 0 and at most 90.
     tolerance : float
