@@ -75,6 +75,11 @@ COLUMN_WORDS = {
     "on_display": "whether it is on display",
     "state": "act, open, safe, cannot, or not on display",
     "object_class": "the class it was taken for: a row of the table of classes",
+    "furniture": "what it stands on or in, or hangs from: a row of the table of furniture",
+    "furniture_origin": (
+        "where that is known from: its record (measured), the case that it names (derived), a house rule (stated), or "
+        "what is usual for its class (assumed)"
+    ),
     "missing": "what is not recorded, so that it cannot be assessed",
     "median_g": "the peak ground acceleration at which half of such objects fail first, in g",
     "median_is": "whether the median was found, or is only a bound",

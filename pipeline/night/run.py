@@ -315,6 +315,7 @@ def summarise(head: RunRecord, pages: Sequence[Page], found: Tally) -> Summary:
         stores=stores,
         reading=head.settings.get(READING),
         first=[f"{u.object_number}  {u.title[:48]}  ({u.gallery}): {u.outcome}" for u in _unsettled(head, found)],
+        stands_by=found.stands_by,
         faults=found.faults,
         worth=found.worth if found.surveyed else None,
         survey_seconds=float(head.settings.get(SURVEY_SECONDS, 0.0)),

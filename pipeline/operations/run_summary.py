@@ -60,6 +60,8 @@ class Summary:
         Why objects could not be assessed, with how many of each.
     first : sequence of str
         Lines of the first objects that are not settled.
+    stands_by : mapping of str to int
+        How many by where it is known from what they stand on: an `Origin`.
     faults : int
         How many objects Kouros itself failed on; the log has the tracebacks.
     fresh : int
@@ -106,6 +108,7 @@ class Summary:
     measures: Mapping[str, int]
     missing: Mapping[str, int]
     first: Sequence[str]
+    stands_by: Mapping[str, int]
     faults: int = 0
     fresh: int = 0
     stores: "Stores | None" = None

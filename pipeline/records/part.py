@@ -152,6 +152,8 @@ class Tally:
         How many there are, of objects that are on display and that are not.
     verdicts : mapping of str to int
         Of all objects, by what they are.
+    stands_by : mapping of str to int
+        Objects on display by where it is known from what they stand on, see `Scene.stands_by`.
     """
 
     states: Mapping[str, int]
@@ -171,6 +173,7 @@ class Tally:
     findings: int = 0
     stored_findings: int = 0
     verdicts: Mapping[str, int] = field(default_factory=dict)
+    stands_by: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -317,3 +317,9 @@ class Scene:
     furniture: Furniture | None = None
     statements: tuple[str, ...] = ()
     furniture_origin: Origin | None = None
+
+    @property
+    def stands_by(self) -> Origin | None:
+        """Where it is known from what the object stands on; None where nobody says, or it hangs as all such do."""
+        hangs = self.support in (Support.HUNG, Support.SUSPENDED)
+        return None if hangs and self.furniture_origin is Origin.ASSUMED else self.furniture_origin

@@ -31,8 +31,8 @@ RECOMMENDATION_COLUMNS = (
     "source",
 )  # fmt: skip
 OBJECT_COLUMNS = (
-    "run", "object_number", "title", "gallery", "on_display", "state", "object_class", "missing", "median_g",
-    "median_is", "dispersion", "annual_rate", "page",
+    "run", "object_number", "title", "gallery", "on_display", "state", "object_class", "furniture", "furniture_origin",
+    "missing", "median_g", "median_is", "dispersion", "annual_rate", "page",
 )  # fmt: skip
 
 
@@ -185,6 +185,8 @@ def _object(run: str, a: Assessment, page: str) -> dict[str, Any]:
         "on_display": item.on_display,
         "state": _NOT_SHOWN if a.aside else state_of(a).value,
         "object_class": a.scene.object_class,
+        "furniture": a.scene.furniture,
+        "furniture_origin": a.scene.furniture_origin,
         "missing": "" if a.aside else "; ".join(a.scene.missing),
         **first_failure(a),
         "page": page,

@@ -9,7 +9,7 @@ from pipeline.records import Assessment, Page, Recommendation, RunRecord, Tally,
 from pipeline.report.errors import ReportError
 from pipeline.report.language import ngettext, said
 from pipeline.report.pages.decided import Decided, decisions_view, merged
-from pipeline.report.pages.describe import Describer, percent
+from pipeline.report.pages.describe import Describer, furniture_known, percent
 from pipeline.report.pages.floor_plan import plan_view
 from pipeline.report.pages.ground import motion_view
 from pipeline.report.pages.judging import room_views, shaking_view, spacing_views
@@ -203,6 +203,7 @@ def museum_view(
         self_test=self_test_view(head),
         decided=decided_views(tally),
         fidelities=fidelities(tally),
+        furniture=furniture_known(tally.stands_by),
         survey=survey_sentence(tally, float(head.settings.get(SURVEY_SECONDS, 0.0))),
         decisions=merged([*(entry.decisions for entry in entries), strangers]),
         since=since,

@@ -40,7 +40,7 @@ from pipeline.report.pages.views import (
     State,
 )
 from pipeline.report.plots.chart import Spot
-from pipeline.report.text import clean, digest, plain, short, words
+from pipeline.report.text import clean, count, digest, plain, short, words
 from pipeline.report.units import Units, ratio
 
 _PLACEHOLDER = re.compile(r"{(\w+)}")
@@ -111,9 +111,7 @@ def support(of: Support) -> str:
 
 def furniture(scene: Scene) -> str:
     """Say in words what an object stands in or on, and where that is known from; "" of what hangs as all such do."""
-    if scene.furniture is None or scene.furniture_origin is None:
-        return ""
-    if scene.support in (Support.HUNG, Support.SUSPENDED) and scene.furniture_origin is Origin.ASSUMED:
+    if scene.furniture is None or scene.stands_by is None:
         return ""
     told = {
         Furniture.FLOOR: _("on the floor"),
@@ -129,7 +127,21 @@ def furniture(scene: Scene) -> str:
         Origin.STATED: _("stated by a house rule"),
         Origin.ASSUMED: _("assumed"),
     }
-    return f"{told[scene.furniture]} ({known[scene.furniture_origin]})"
+    return f"{told[scene.furniture]} ({known[scene.stands_by]})"
+
+
+def furniture_known(counts: Mapping[str, int]) -> str:
+    """Say in one line of how many objects it is known from where what they stand on; "" of none.
+
+    counts : by origin
+    """
+    told = {
+        Origin.MEASURED: _("%(count)s by their record"),
+        Origin.DERIVED: _("%(count)s by the case that their record names"),
+        Origin.STATED: _("%(count)s by a house rule"),
+        Origin.ASSUMED: _("%(count)s by what is usual for their class"),
+    }
+    return ", ".join(text % {"count": count(counts[of])} for of, text in told.items() if counts.get(of))
 
 
 def bar(utilisation: float | None) -> Bar | None:

@@ -64,6 +64,7 @@ class MuseumView:
     decided    : what settled the verdicts, by kind
     fidelities : how many verdicts were asked at which fidelity, in one line
     self_test  : None where none was run before this run
+    furniture  : of how many objects it is known from where what they stand on, in one line, "" of none
     survey     : what is worth measuring in the whole museum and what asking cost, "" where it was not asked
     since     : None where there was no run before
     """
@@ -85,6 +86,7 @@ class MuseumView:
     self_test: SelfTestView | None = None
     decided: tuple[DecidedView, ...] = ()
     fidelities: str = ""
+    furniture: str = ""
     survey: str = ""
     decisions: DecisionsView = NO_DECISIONS
     since: SinceView | None = None

@@ -39,6 +39,7 @@ def tally(found: Found) -> Tally:
         findings=sum(len(a.findings) for a in shown),
         stored_findings=sum(len(a.findings) for a in stored),
         verdicts=dict(Counter(f.verdict.value for f in findings)),
+        stands_by=dict(Counter(a.scene.stands_by.value for a in shown if a.scene.stands_by is not None)),
     )
 
 
@@ -63,6 +64,7 @@ def total(tallies: Iterable[Tally]) -> Tally:
         findings=sum(t.findings for t in listed),
         stored_findings=sum(t.stored_findings for t in listed),
         verdicts=_sum(t.verdicts for t in listed),
+        stands_by=_sum(t.stands_by for t in listed),
     )
 
 
