@@ -50,7 +50,9 @@ class BodyTable(Table):
     mesh : in m, z up, resting on its lowest points; a cloud of points without triangles counts as its convex hull
     hull : the convex hull stands for a mesh that is not closed
     width_m, depth_m, height_m : of a block, instead of a mesh; its width lies along x
-    mass_kg, surface : for the page; no model needs them
+    surface : what stands on what, such as "marble on wood", by the names of the table of frictions where it has them
+    friction : its static coefficient there, where somebody measured it; else that of the table
+    mass_kg : for the page; no model needs it
     """
 
     name: Text
@@ -61,6 +63,7 @@ class BodyTable(Table):
     height_m: Positive | None = None
     mass_kg: Positive | None = None
     surface: Text | None = None
+    friction: Annotated[float, Field(gt=0.0, le=5.0)] | None = None
 
     @property
     def sizes(self) -> tuple[float | None, float | None, float | None]:

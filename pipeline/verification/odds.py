@@ -1,15 +1,16 @@
-"""Odds of overturning: planar rocking of a body under every motion of an experiment, over ranges of what is not known.
+"""Odds of overturning: a standing body under every motion of an experiment, over ranges of what is not known.
 
-A body rocks about the edges of its contact polygon.  Along a direction its half widths are the distances from the
-projected centre of gravity to the edge before it and to the edge behind it; its inertia is about the axis across.  On a
-table of one axis that direction is the table's.  On one of several, a body overturns where it does so along any of the
-directions every `SPREAD` degrees; vertical motion counts in each.
+A body slides on its base and rocks about the edges of its contact polygon (model `standing`, in a plane).  Along a
+direction its half widths are the distances from the projected centre of gravity to the edge before it and to the edge
+behind it; its inertia is about the axis across.  On a table of one axis that direction is the table's.  On one of
+several, a body overturns where it does so along any of the directions every `SPREAD` degrees; vertical motion counts in
+each.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Literal
@@ -23,10 +24,10 @@ from pipeline.execute import Threads
 from pipeline.meshes import scan_object
 from pipeline.meshes.reading import holds_triangles
 from pipeline.models import model_named
-from pipeline.models.rigid_body import bodies
 from pipeline.quantities import Array
 from pipeline.records import ContactPolygon, Motion, Progress
-from pipeline.tables import table
+from pipeline.tables import Range, table
+from pipeline.tables.assumed import assumed, span
 from pipeline.tables.rows import Number, checked
 from pipeline.verification.experiment import EXPERIMENT, BodyTable, Experiment, ExperimentError
 
@@ -37,7 +38,7 @@ DRAWS = 256
 """Draws of what is not known of a body that nothing is fitted for; a power of two, as a Sobol sequence asks."""
 
 FIT_DRAWS = 1024
-"""Draws of both half widths and of the restitution from which the odds at what could be fitted are weighed together."""
+"""Draws of both half widths, restitution and friction, from which the odds at what could be fitted are weighed."""
 
 WIDER, CENTRES = (0.25, 6.0), (1.0 / 3.0, 4.5)
 """Half widths that are drawn, and those among which one is fitted, as multiples of the least that the shape gives."""
@@ -114,6 +115,8 @@ class Shape:
         Of the centre of gravity above the base, m.
     gyration : (float, float)
         Radii of gyration about the horizontal axes through the centre of gravity, m.
+    friction : Range
+        Between it and the table [-].
     notes : tuple of str
         What is doubtful of it.
     """
@@ -121,12 +124,33 @@ class Shape:
     reach: Array
     cg_height: float
     gyration: tuple[float, float]
+    friction: Range
     notes: tuple[str, ...]
 
     def across(self, angle: NDArray[np.int64]) -> Array:
         """Return the radius of gyration about the horizontal axis across a direction, m; products are left out."""
         turn = np.radians(angle)
         return np.hypot(self.gyration[0] * np.sin(turn), self.gyration[1] * np.cos(turn))
+
+    def frictions(self, share: Array) -> Array:
+        """Return the frictions below which these shares of it are taken to lie.
+
+        Half lies on either side of the best estimate, evenly in the logarithm.
+        """
+        ends = np.log([self.friction.low, self.friction.value, self.friction.high])
+        return np.exp(np.interp(share, [0.0, 0.5, 1.0], ends))
+
+
+def friction_of(body: BodyTable) -> Range:
+    """Return the friction of a body: what is stated, or what the table of frictions says of what stands on what."""
+    if body.friction is not None:
+        return Range(body.friction, body.friction, body.friction, "stated")
+    said = body.surface or ""
+    what, on = said.split(" on ", 1) if " on " in said else ("", said)
+    values = assumed()
+    material = values.material_in(what)
+    found = span(values.friction_of("" if material is None else material.friction_as, on))
+    return replace(found, source=f"table of frictions, {said or 'of any pair'}")
 
 
 def shape_of(experiment: Experiment, body: BodyTable) -> Shape:
@@ -150,19 +174,20 @@ def shape_of(experiment: Experiment, body: BodyTable) -> Shape:
         For a mesh that is missing or not closed, naming file and field.
     """
     if body.mesh is not None:
-        return _scanned(experiment.folder, body.mesh, f"body {body.name!r}: mesh", hull=body.hull)
+        return _scanned(experiment.folder, body.mesh, body)
     width, depth, height = (float(size) for size in body.sizes if size is not None)
     x, y = 0.5 * width, 0.5 * depth
     polygon = ContactPolygon(((x, y), (-x, y), (-x, -y), (x, -y)))
     gyration = (np.hypot(depth, height) / np.sqrt(12.0), np.hypot(width, height) / np.sqrt(12.0))
-    return Shape(_reach(polygon), 0.5 * height, (float(gyration[0]), float(gyration[1])), ())
+    return Shape(_reach(polygon), 0.5 * height, (float(gyration[0]), float(gyration[1])), friction_of(body), ())
 
 
-def _scanned(folder: Path, mesh: str, where: str, *, hull: bool) -> Shape:
+def _scanned(folder: Path, mesh: str, body: BodyTable) -> Shape:
+    where = f"body {body.name!r}: mesh"
     try:
         # A cloud of points has no surface that could be open: only its hull can stand for it.
         cloud = not holds_triangles(folder / mesh)
-        found = scan_object(folder / mesh, hull=hull or cloud)
+        found = scan_object(folder / mesh, hull=body.hull or cloud)
     except InputError as problem:
         said = str(problem).replace("--hull takes", "hull = true in its table takes")
         raise ExperimentError(f"{folder / EXPERIMENT}: {where}: {said}") from problem
@@ -171,7 +196,7 @@ def _scanned(folder: Path, mesh: str, where: str, *, hull: bool) -> Shape:
         raise ExperimentError(
             f"{folder / EXPERIMENT}: {where}: {mesh}: it rests on no facet; level the mesh as the body stood"
         )
-    return Shape(_reach(facet), found.cg_height, found.gyration[:2], found.notes)
+    return Shape(_reach(facet), found.cg_height, found.gyration[:2], friction_of(body), found.notes)
 
 
 def _reach(polygon: ContactPolygon) -> Array:
@@ -195,19 +220,21 @@ def drawn_odds(experiment: Experiment, shape: Shape, progress: Progress, name: s
     Returns
     -------
     ndarray, shape (runs,)
-        The share of `DRAWS` of a Sobol sequence of direction, half width and restitution that overturn.
+        The share of `DRAWS` of a Sobol sequence of direction, half width, restitution and friction that overturn.
     """
-    share = _sobol(6, DRAWS)
+    share = _sobol(7, DRAWS)
     known = priors()
     direction = experiment.said.direction
     turned = 360.0 * share[:, 0] if direction == "unknown" else np.full(DRAWS, float(direction))
     factor = known["half_width_factor"].at(share[:, 1])
     before, behind = (factor * known["scatter_half_width"].at(share[:, at]) for at in (2, 3))
     restitution = known["restitution_factor"].at(share[:, 4]) + known["scatter_restitution"].at(share[:, 5])
+    friction = shape.frictions(share[:, 6])
 
     def parameters(azimuth: int) -> dict[str, Array]:
         angle = np.rint(azimuth - turned).astype(np.int64) % 360
-        return _block(shape.reach[angle] * before, shape.reach[(angle + 180) % 360] * behind, shape, restitution, angle)
+        sides = shape.reach[angle] * before, shape.reach[(angle + 180) % 360] * behind
+        return _block(sides, shape, restitution, friction, angle)
 
     overturned = _overturned(experiment, parameters, progress, f"{name}, unfitted")
     return np.asarray(overturned.mean(axis=1), float)
@@ -245,7 +272,7 @@ def fit_grid(experiment: Experiment, shape: Shape, progress: Progress, name: str
     Parameters
     ----------
     experiment, shape, progress, name
-        As in `drawn_odds`; of the shape only height and inertia are used.
+        As in `drawn_odds`; of the shape only height, inertia and friction are used.
 
     Returns
     -------
@@ -253,16 +280,17 @@ def fit_grid(experiment: Experiment, shape: Shape, progress: Progress, name: str
         Of draws that are weighed by the scatter of the table of priors about each pair: from run to run the two half
         widths differ from each other and from those of the last run.
     """
-    share, least = _sobol(3, FIT_DRAWS), float(shape.reach.min())
+    share, least = _sobol(4, FIT_DRAWS), float(shape.reach.min())
     low, high = WIDER
     before, behind = (least * low * (high / low) ** share[:, at] for at in (0, 1))
     restitution = RESTITUTIONS[0] + (RESTITUTIONS[-1] - RESTITUTIONS[0]) * share[:, 2]
     # Of no direction in particular: the mean of the inertia about its two axes.
     mean = float(np.sqrt(0.5 * (shape.gyration[0] ** 2 + shape.gyration[1] ** 2)))
-    round_one = Shape(shape.reach, shape.cg_height, (mean, mean), ())
+    round_one = replace(shape, gyration=(mean, mean))
+    friction = shape.frictions(share[:, 3])
 
     def parameters(azimuth: int) -> dict[str, Array]:
-        return _block(before, behind, round_one, restitution, np.full(FIT_DRAWS, azimuth % 360))
+        return _block((before, behind), round_one, restitution, friction, np.full(FIT_DRAWS, azimuth % 360))
 
     fell = _overturned(experiment, parameters, progress, f"{name}, fitted").astype(float)
     widths = least * np.geomspace(*CENTRES, WIDTHS)
@@ -275,16 +303,18 @@ def fit_grid(experiment: Experiment, shape: Shape, progress: Progress, name: str
     return FitGrid(widths, RESTITUTIONS, np.einsum("wen,rn->rwe", weights, fell))
 
 
-def _block(one: Array, other: Array, shape: Shape, factor: Array, angle: NDArray[np.int64]) -> dict[str, Array]:
-    model = model_named("rocking")
+def _block(
+    sides: tuple[Array, Array], shape: Shape, factor: Array, friction: Array, angle: NDArray[np.int64]
+) -> dict[str, Array]:
     given = {
-        "half_width": one,
-        "half_width_other": other,
-        "cg_height": np.full(one.size, shape.cg_height),
+        "half_width": sides[0],
+        "half_width_other": sides[1],
+        "cg_height": np.full(factor.size, shape.cg_height),
         "gyration_radius": shape.across(angle),
+        "friction_static": friction,
+        "restitution_factor": factor,
     }
-    theory = bodies(prepare(model, given))[:, 4:].mean(axis=1)
-    return prepare(model, {**given, "restitution": np.clip(factor * theory, 0.0, 1.0)})
+    return prepare(model_named("standing"), given)
 
 
 def _overturned(
@@ -308,6 +338,6 @@ def _overturned(
 
 def _run(motion: Motion, azimuth: int, values: dict[str, Array]) -> NDArray[np.bool_]:
     # At the coarsest step: the odds are over a thousand outcomes, of which it changes fewer than the draws do.
-    found = model_named("rocking").run(motion.excitation(float(azimuth), TAIL), values, 1, False)
+    found = model_named("standing").run(motion.excitation(float(azimuth), TAIL), values, 1, False)
     fell: NDArray[np.bool_] = found["overturned"] > 0.0
     return fell

@@ -13,7 +13,7 @@ from pipeline.report.pages.validated import (
     ValidationView,
     validation_page,
 )
-from pipeline.verification.odds import Prior, priors
+from pipeline.verification.odds import Prior, friction_of, priors
 from pipeline.verification.scores import Score
 from pipeline.verification.validation import BodyValidation, Validation
 
@@ -97,7 +97,10 @@ def _body(found: Validation, at: int) -> ValidatedBody:
     shape = said.mesh if said.mesh is not None else " x ".join(f"{size:g} m" for size in said.sizes if size is not None)
     facts = [("Shape", shape), *((("Mass", f"{said.mass_kg:g} kg"),) if said.mass_kg is not None else ())]
     facts += [("Surface", said.surface)] if said.surface is not None else []
+    friction = friction_of(said)
+    between = "" if friction.low == friction.high else f" ({friction.low:g} to {friction.high:g})"
     facts += [
+        ("Friction", f"{friction.value:g}{between}; {friction.source}"),
         ("Fitted half width", f"{1000.0 * one.parameters.half_width:.1f} mm"),
         ("Fitted restitution", f"{one.parameters.restitution:.2f} of Housner's"),
     ]

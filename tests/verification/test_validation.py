@@ -31,6 +31,9 @@ STANDS, FALLS = (0.02, 0.05), (2.0, 3.0)
 """g, amplitudes of the pulses: a quarter of what lifts an edge (width / height is 0.2), and what throws the block down
 in the first half cycle; no outcome lies near an end of what is scattered from run to run."""
 
+FRICTION = 0.8
+"""Of the block on its table: four times what its edge lifts at, so that it rocks and does not slide."""
+
 FREQUENCIES = (0.8, 1.1, 1.6)
 """Hz, of the sine pulses that are scaled: each is a motion."""
 
@@ -38,7 +41,7 @@ DT = 0.01
 
 TABLE = f"""
 title = "A block on a table"
-source = "computed with Housner's model"
+source = "computed with the model of a standing body"
 licence = "public domain"
 runs = "runs.csv"
 run_column = "run"
@@ -55,6 +58,7 @@ name = "block"
 width_m = {WIDTH}
 depth_m = {DEPTH}
 height_m = {HEIGHT}
+friction = {FRICTION}
 
 [[prediction]]
 name = "an oracle"
@@ -72,7 +76,8 @@ def falls(acceleration: np.ndarray) -> bool:
     """What the model says of the block, told its sizes and asked at its usual fidelity."""
     still = np.zeros_like(acceleration)
     motion = Motion(DT, np.vstack([9.80665 * acceleration, still, still]))
-    return bool(respond("rocking", motion, half_width=0.5 * WIDTH, cg_height=0.5 * HEIGHT).overturned[0])
+    sizes = {"half_width": 0.5 * WIDTH, "cg_height": 0.5 * HEIGHT, "friction_static": FRICTION}
+    return bool(respond("standing", motion, **sizes).overturned[0])
 
 
 @pytest.fixture(scope="module")
@@ -120,6 +125,47 @@ def test_what_the_model_itself_did_is_found_without_error(found: Validation) -> 
     assert {"name", "always_stands", "pgv_threshold", "fitted", "unfitted"} <= body.keys()
     assert body["fitted"].keys() == {"accuracy", "brier", "parameters"}
     assert {"accuracy", "brier", "coverage"} <= body["unfitted"].keys()
+
+
+def test_a_block_on_a_slippery_table_slides_and_is_not_said_to_fall(folder: Path, tmp_path: Path) -> None:
+    """It tilts only where friction is above half width over height: 0.02 is a tenth of that of the block.
+
+    Of half widths with a scatter of sqrt(0.5^2 + 0.3^2) in the logarithm, one in 25,000 is below a tenth (4.0 of them).
+    """
+    slippery = copied(folder, tmp_path, experiment=lambda t: t.replace(f"friction = {FRICTION}", "friction = 0.02"))
+    experiment = read_experiment(slippery)
+    shape = odds.shape_of(experiment, experiment.said.body[0])
+    assert odds.drawn_odds(experiment, shape, Silent(), "block").max() < 0.01
+
+
+@pytest.mark.parametrize(
+    ("surface", "wanted"),
+    [
+        ('surface = "marble on Terrazzo"', (0.15, 0.15, 0.15)),  # Agbabian et al. 1991, Table 3
+        ('surface = "Marble on felt"', (0.35, 0.15, 0.60)),
+        ('friction = 0.42\nsurface = "marble on felt"', (0.42, 0.42, 0.42)),
+    ],
+)
+def test_friction_is_what_is_stated_or_that_of_the_surfaces(
+    folder: Path, tmp_path: Path, surface: str, wanted: tuple[float, float, float]
+) -> None:
+    said = copied(folder, tmp_path, experiment=lambda t: t.replace(f"friction = {FRICTION}", surface))
+    (body,) = read_experiment(said).said.body
+    found = odds.friction_of(body)
+    assert (found.value, found.low, found.high) == wanted
+
+
+def test_of_surfaces_that_no_table_has_any_friction_is_drawn(folder: Path, tmp_path: Path) -> None:
+    """Half of the draws on either side of the best estimate, none beyond the ends."""
+    said = copied(
+        folder, tmp_path, experiment=lambda t: t.replace(f"friction = {FRICTION}", 'surface = "slate on ice"')
+    )
+    experiment = read_experiment(said)
+    shape = odds.shape_of(experiment, experiment.said.body[0])
+    drawn = shape.frictions(np.linspace(0.0, 1.0, 5))
+    assert drawn[[0, 2, 4]] == pytest.approx([shape.friction.low, shape.friction.value, shape.friction.high])
+    assert drawn[1] == pytest.approx(np.sqrt(drawn[0] * drawn[2]))
+    assert shape.friction.high > 5.0 * shape.friction.low
 
 
 def test_folds_never_part_a_motion(folder: Path) -> None:
