@@ -95,7 +95,7 @@ def test_an_own_material_is_named(tmp_path: Path) -> None:
     scene, before = classify(VASE, rules(files)), classify(VASE)
     ratio = [new / old for new, old in zip(ends(scene, "mass"), ends(before, "mass"), strict=True)]
     assert ratio == pytest.approx([1900 / 2300, 2000 / 2400, 2100 / 2500])
-    assert ends(scene, "allowable_stress") == [3e6, 4e6, 45e6]
+    assert ends(scene, "allowable_stress") == [3e6, 4e6, 60e6]
     assert scene.parameters["mass"].source == "the museum's our-materials.csv, porcelain"
     assert scene.parameters["allowable_stress"].source == "the museum's our-materials.csv, porcelain (our laboratory)"
     assert "porcelain (the museum's our-materials.csv)" in scene.parameters["allowable_stress"].note
