@@ -37,8 +37,9 @@ SPREAD = 30
 DRAWS = 256
 """Draws of what is not known of a body that nothing is fitted for; a power of two, as a Sobol sequence asks."""
 
-FIT_DRAWS = 1024
-"""Draws of both half widths, restitution and friction, from which the odds at what could be fitted are weighed."""
+FIT_DRAWS = 2048
+"""Draws of both half widths, restitution and friction, from which the odds at what could be fitted are weighed; half as
+many move the accuracy on 268 runs by up to 0.006."""
 
 WIDER, CENTRES = (0.25, 6.0), (1.0 / 3.0, 4.5)
 """Half widths that are drawn, and those among which one is fitted, as multiples of the least that the shape gives."""

@@ -2,7 +2,8 @@
 
 The nine bodies are solid blocks of the published depth and height.  Each pair of components is scaled as one; the
 intensity is the peak velocity at which a body first overturns, and the median that of a lognormal through 22 pairs, or
-44 components.  P-58 does not say whose velocity it means where there are two directions, nor which friction holds.
+44 components.  P-58 does not say whose velocity it means where there are two directions, nor which friction holds; its
+rows are marked non-directional, of which the demand is taken as 1.2 times that of the stronger direction.
 
 References
 ----------
