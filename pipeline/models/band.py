@@ -34,7 +34,11 @@ CALM = 5e-3
 """Relative rise in the steps beside an extremum up to which it is left as it is: a kink hides half of that at most."""
 
 MISSED = 1e-2
-"""Share by which the largest value found may be below the true one: of 2,400 bands of a record none was by more."""
+"""Share by which the largest value found may be below the true one: of 57,000 bands of 38 motions none was by 0.8 %."""
+
+OVER = 4e-2
+"""Share by which what is found may be above the true one: at a kink, where the least is, and where a band ends between
+two points of the grid.  Of the same bands the least was by 2.7 % at most, the largest of a narrow band by 4.0 %."""
 
 LOWEST, HIGHEST = -2, 3
 """Powers of ten between which the grid lies [Hz]: beyond 1 kHz an object feels the acceleration of its base."""

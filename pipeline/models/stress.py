@@ -20,7 +20,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from pipeline.models.band import MISSED, band_accelerations
+from pipeline.models.band import MISSED, OVER, band_accelerations
 from pipeline.models.common import NO_TILT, ROUNDING, largest_push, needs, smallest_push
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
 from pipeline.models.oscillator import OSCILLATES, PROMISED, oscillate_any
@@ -146,12 +146,13 @@ def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
 
 def _bound_flexible(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
     # Along one direction the bound is the stress itself, and of all directions it is the worst of them.
-    off = np.where(np.isnan(parameters["frequency_high"]), PROMISED, MISSED)
+    single = np.isnan(parameters["frequency_high"])
+    sides = 1.0 - np.where(single, PROMISED, OVER), 1.0 + np.where(single, PROMISED, MISSED)
     least, most = _pushes(motion, parameters)
-    low, high = (section_stresses(side * most, parameters) for side in (1.0 - off, 1.0 + off))
+    low, high = (section_stresses(side * most, parameters) for side in sides)
     ends = {q.name: (low[q.name], high[q.name]) for q in _STRESSES}
-    lowest, highest = (section_stresses(side * least, parameters)["tension"] for side in (1.0 - off, 1.0 + off))
-    ends |= {"tension_least": (lowest, highest), "pseudo_acceleration": ((1.0 - off) * most, (1.0 + off) * most)}
+    lowest, highest = (section_stresses(side * least, parameters)["tension"] for side in sides)
+    ends |= {"tension_least": (lowest, highest), "pseudo_acceleration": (sides[0] * most, sides[1] * most)}
     if motion.y is None:
         return Bounds(ends, high["note"])
     none = section_stresses(np.zeros_like(most), parameters)
