@@ -17,6 +17,7 @@ from pipeline.mitigate.measures.remove import LAST_RESORTS
 from pipeline.mitigate.proposals import Candidate, Case, Deficiency, Option, Proposal, case_of, company, known_to_swing
 from pipeline.mitigate.trials import TransmittedMotions, Trial, TrialRunner, checks, passes, passes_at_best, why_not
 from pipeline.models import settled_by_room
+from pipeline.models.unanchored import UNANCHORED
 from pipeline.records import Check, Finding, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 
@@ -58,8 +59,8 @@ def advise(
     one sought for each level alone, and its sentence says so.  A measure that fastens is also advised where it passes
     by the best estimates only and no other fastening is sure: its sentence says so, and no isolator takes its place.
     Where nothing fails and something else than room is open, nothing is advised: a measurement may settle that
-    (`pipeline.analysis.survey`).  Where nothing helps in furniture that is not fastened, what helps in
-    it once it is fastened is advised together with fastening it.
+    (`pipeline.analysis.survey`); only furniture that is not fastened and may fall is better fastened.  Where nothing
+    helps in such furniture, what helps in it once it is fastened is advised together with fastening it.
 
     Parameters
     ----------
@@ -177,7 +178,9 @@ def _deficiencies(
 def _wanted(scene: Scene, findings: Sequence[Finding]) -> bool:
     # Where it is not known whether it swings at all, a look behind it settles more than room.
     room = known_to_swing(scene) and _for_room_alone(findings)
-    return room or any(f.verdict is Verdict.FAIL for f in findings)
+    # Furniture that is known not to be fastened and may fall is better fastened than measured.
+    tips = any(f.model == UNANCHORED.name and f.verdict is not Verdict.PASS for f in findings)
+    return room or tips or any(f.verdict is Verdict.FAIL for f in findings)
 
 
 def _for_room_alone(findings: Sequence[Finding]) -> bool:

@@ -13,6 +13,7 @@ class Anchor(Measure):
     """Fasten its furniture to the floor or a wall: it shakes what stands in it as its own frequency makes it."""
 
     name = "anchor"
+    for_room = True
 
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
         """Return it in furniture that is fastened."""
