@@ -89,8 +89,8 @@ def assess(
             )  # fmt: skip
             done += len(level.motions)
             progress.step("analyses", done, total)
-    # On an isolator that shakes no more than the object, its furniture is judged under the floor's motions already.
-    stands = [index for index, scene in enumerate(scenes) if loose(scene) and not levels[0].passed_on]
+    # Furniture is judged under the motions of its floor, and never makes an object look assessed that is not.
+    stands = [at for at, scene in enumerate(scenes) if loose(scene) and found[at] and not levels[0].passed_on]
     if stands:
         _, judged = assess(
             [itself(scenes[index]) for index in stands],

@@ -14,7 +14,17 @@ from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures import Measure
 from pipeline.mitigate.measures.base import UNKNOWN_FREQUENCY, bends
 from pipeline.mitigate.measures.remove import LAST_RESORTS
-from pipeline.mitigate.proposals import Candidate, Case, Deficiency, Option, Proposal, case_of, company, known_to_swing
+from pipeline.mitigate.proposals import (
+    Candidate,
+    Case,
+    Deficiency,
+    Option,
+    Proposal,
+    case_of,
+    company,
+    known_to_swing,
+    refused,
+)
 from pipeline.mitigate.trials import TransmittedMotions, Trial, TrialRunner, checks, passes, passes_at_best, why_not
 from pipeline.models import settled_by_room
 from pipeline.models.unanchored import UNANCHORED
@@ -179,8 +189,11 @@ def _wanted(scene: Scene, findings: Sequence[Finding]) -> bool:
     # Where it is not known whether it swings at all, a look behind it settles more than room.
     room = known_to_swing(scene) and _for_room_alone(findings)
     # Furniture that is known not to be fastened and may fall is better fastened than measured.
-    tips = any(f.model == UNANCHORED.name and f.verdict is not Verdict.PASS for f in findings)
-    return room or tips or any(f.verdict is Verdict.FAIL for f in findings)
+    return room or _may_fall(findings) or any(f.verdict is Verdict.FAIL for f in findings)
+
+
+def _may_fall(findings: Sequence[Finding]) -> bool:
+    return any(f.model == UNANCHORED.name and f.verdict is not Verdict.PASS for f in findings)
 
 
 def _for_room_alone(findings: Sequence[Finding]) -> bool:
@@ -247,6 +260,8 @@ class _Search:
     def _proposed(self, unit: Unit, measure: Measure) -> Proposal:
         if measure.isolator and any(_band_unknown(one.scene) for one in unit):
             return UNKNOWN_FREQUENCY
+        if measure.isolator and any(_may_fall(one.findings) for one in unit):
+            return refused("what it would stand in is not fastened and may fall")
         return measure.propose_shared(unit, self.runner) if measure.shared else measure.propose(unit[0], self.runner)
 
     def settles(self) -> None:
