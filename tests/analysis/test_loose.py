@@ -1,12 +1,10 @@
-"""Furniture that is not fastened: what it passes on where it rests, slides and rocks, and what is said and advised."""
+"""Furniture that is not fastened: what it passes on where it rests, slides and rocks, and what is said."""
 
 from __future__ import annotations
 
-from csv import DictWriter
 from dataclasses import replace
 from datetime import date
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,17 +19,13 @@ from pipeline.analysis.house.questions import rule_questions
 from pipeline.analysis.house.rule import HouseRule
 from pipeline.analysis.loose import IMPACT, movement, passed_on
 from pipeline.analysis.response import respond, trace
-from pipeline.analysis.rules import with_own
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
-from pipeline.mitigate.installed import InstalledMeasure, placed
-from pipeline.mitigate.search import ANCHORED, advise
 from pipeline.motions import read_motion
 from pipeline.quantities import Array, G
 from pipeline.records import Anchorage, Finding, Furniture, Item, Motion, Numerics, Support, Verdict
 from pipeline.resources import resource
-from pipeline.tables import table
-from pipeline.tables.assumed import assumed, assumed_with
+from pipeline.tables.assumed import assumed
 
 HELD = LooseBody(half_width=50.0, cg_height=0.5, friction=50.0, shelf_height=1.0)
 """So wide and so rough that nothing moves it."""
@@ -187,7 +181,7 @@ def test_it_rocks_alike_whichever_way_the_motion_is_turned() -> None:
 
 
 # ----------------------------------------------------------------------------------------------------------------------
-# Whose word it is, what is found, and what is advised
+# Whose word it is, and what is found
 
 
 def rule(**fields: object) -> HouseRules:
@@ -251,41 +245,6 @@ def _itself(finding: Finding) -> bool:
 
 def _notes(item: Item) -> tuple[str, ...]:
     return classify(replace(item, furniture_anchorage=Anchorage.UNANCHORED)).assumptions
-
-
-def test_furniture_that_may_fall_is_advised_to_be_fastened() -> None:
-    """The bowl itself passes in the same case fastened; installed, its furniture is judged no more."""
-    item = replace(CUP, furniture_anchorage=Anchorage.UNANCHORED, friction=5.0)
-    scene, levels = classify(item), [shaking(1.0)]
-    _, findings = assess([scene], levels, Context(Threads(1)))
-    assert {one.verdict for one in findings[0] if _itself(one)} == {Verdict.UNDETERMINED}
-    ((advice,),) = advise([scene], findings, levels, Context(Threads(1)))
-    assert advice.measure == "anchor"
-    after = placed(scene, [InstalledMeasure("anchor", {}, "Ann")]).scene
-    assert after.anchorage is Anchorage.ANCHORED
-    assert filter_of(after) == filter_of(classify(replace(item, furniture_anchorage=None)))
-    assert not [text for text in after.assumptions if "friction on its floor" in text]
-
-
-def test_what_helps_only_in_fastened_furniture_is_advised_with_that(tmp_path: Path) -> None:
-    """A slippery bowl without room in a case of the museum's that falls: held, and its case fastened besides."""
-    row = next(row for row in table("furniture") if row["furniture"] == "showcase")
-    narrow = {"half_width": "0.1", "cg_height": "1", "friction": "0.8"}
-    cells = {f"{name}{end}": value for name, value in narrow.items() for end in ("", "_low", "_high")}
-    file = tmp_path / "narrow.csv"
-    with file.open("w", encoding="utf-8", newline="") as stream:
-        writer = DictWriter(stream, row)
-        writer.writeheader()
-        writer.writerow(row | cells)
-    item = replace(CUP, friction=0.05, clearance_m=0.001, furniture_anchorage=Anchorage.UNANCHORED)
-    scene, levels = classify(item, with_own(None, assumed_with({"furniture": file}))), [shaking(1.0)]
-    _, findings = assess([scene], levels, Context(Threads(1)))
-    (falls,) = (one for one in findings[0] if _itself(one))
-    assert (falls.verdict, falls.outcome) == (Verdict.FAIL, "overturns with its furniture")
-    assert "falls over after" in falls.sentence
-    ((advice,),) = advise([scene], findings, levels, Context(Threads(1)))
-    assert advice.measure not in ("anchor", "remove")
-    assert advice.sentence.startswith(ANCHORED)
 
 
 def test_history_and_auto_say_the_same_in_loose_furniture() -> None:

@@ -22,5 +22,5 @@ class Anchor(Measure):
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:  # noqa: ARG002
         """Propose it where its furniture is known not to be fastened."""
         if not loose(one.scene):
-            return refused("nobody says that what it stands in is not fastened")
+            return refused("what it stands in is fastened, or nobody says that it is not")
         return self.one_trial(one, {}, finish=lambda _: {})
