@@ -128,7 +128,7 @@ def advise(
 def _fastened_too(found: Recommendation, better: Recommendation | None) -> Recommendation:
     if better is None or found.measure not in LAST_RESORTS:
         return found
-    return replace(better, sentence=f"{ANCHORED} {better.sentence}", rejected=found.rejected)
+    return replace(better, sentence=f"{ANCHORED} {better.sentence}")
 
 
 def _advised(

@@ -231,7 +231,9 @@ def test_furniture_that_is_not_fastened_is_judged_itself() -> None:
     assert "on its floor" in finding.sentence or "slides up to" in finding.sentence or "comes back" in finding.sentence
     assert any("friction on its floor: 0.4 (0.25 to 0.6), furniture.csv for a showcase" in t for t in _notes(CUP))
     assert not [one for one in found(CUP) if _itself(one)]
-    # Under a tenth of the shaking its furniture does not even slide.
+    # What nothing can be said of does not look assessed because its furniture is.
+    assert not found(Item("1", "G", object_name="Bowl", furniture_anchorage=Anchorage.UNANCHORED))
+    # Under a twentieth of the shaking its furniture does not even slide.
     (weak,) = (
         one for one in found(replace(CUP, furniture_anchorage=Anchorage.UNANCHORED), shaking(0.05)) if _itself(one)
     )
