@@ -45,7 +45,7 @@ TABLE_WORDS = {
     "friction": "Friction between object and surface (Table 3 of the paper, handbooks and judgement).",
     "generic_models": "The paper's Tables 1 and 2, and the model that answers each row.",
     "hangings": "Ways to hang on a wall: whether a work swings or may be lifted off, its hooks and its hangers.",
-    "furniture": "What objects stand on or in, or hang from: frequency [Hz], damping [-], and degrees off level.",
+    "furniture": "What objects stand on or in, or hang from: frequency [Hz], damping [-], degrees off level, and size.",
     "usual_furniture": "What objects of a class usually stand on or hang from, by height [m]; * is any other class.",
     "usual_hangings": "Ways in which works of a class usually hang, the likeliest first; * is any other class.",
     "isolators": "The isolators that advice may choose from; a museum's own catalogue takes the place of this table.",

@@ -2,14 +2,19 @@
 
 import logging
 from collections.abc import MutableMapping, Sequence
+from dataclasses import replace
 from time import perf_counter
 
 from pipeline.analysis.cases import Effort
 from pipeline.analysis.context import Context
 from pipeline.analysis.findings import findings
+from pipeline.analysis.furnished import best_furnished
+from pipeline.analysis.furniture import filter_of, itself, loose
+from pipeline.analysis.loose import movement
 from pipeline.analysis.plan import Plan, plan
 from pipeline.analysis.refinement import examine
 from pipeline.analysis.verdicts import Judgement, LevelMotions, capacity_of, judge
+from pipeline.models.unanchored import ABOUT
 from pipeline.records import Finding, Numerics, Scene
 from pipeline.records.numerics import AUTO, CHART, VERDICTS
 
@@ -55,7 +60,7 @@ def assess(
     plan : Plan
         What was run, with the reasons for models not run.
     findings : list of list of Finding
-        Of each scene, in their order.
+        Of each scene, in their order; after those of the object that of its furniture, where that is not fastened.
     """
     progress = context.progress
     began = perf_counter()
@@ -84,5 +89,31 @@ def assess(
             )  # fmt: skip
             done += len(level.motions)
             progress.step("analyses", done, total)
+    # Furniture is judged under the motions of its floor, and never makes an object look assessed that is not.
+    stands = [at for at, scene in enumerate(scenes) if loose(scene) and found[at] and not levels[0].passed_on]
+    if stands:
+        _, judged = assess(
+            [itself(scenes[index]) for index in stands],
+            levels,
+            context.silent,
+            numerics,
+            outcomes=outcomes,
+            efforts=efforts,
+            needing=None if needing is None else [needing[index] for index in stands],
+        )
+        for index, some in zip(stands, judged, strict=True):
+            found[index] += [_moving(one, scenes[index], levels) for one in some] if outcomes else some
     logger.info("assessed %d scenes at %d levels in %.2f s", len(scenes), len(levels), perf_counter() - began)
     return todo, found
+
+
+def _moving(finding: Finding, scene: Scene, levels: Sequence[LevelMotions]) -> Finding:
+    """Say how far furniture moves on its floor by the best estimates, where nothing else is said of what it does."""
+    shaken = filter_of(scene)
+    if finding.sentence != ABOUT or shaken is None or shaken.loose is None:
+        return finding
+    level = next(one for one in levels if one.name == finding.level)
+    on_floor = best_furnished(level.motions, replace(shaken, loose=None))
+    far = level.combined([movement(motion, shaken.loose.best) for motion in on_floor])
+    said = f"it moves up to {100.0 * far:.1f} cm on its floor." if far else "it stays where it stands."
+    return replace(finding, sentence=f"{finding.sentence} By the best estimates {said}")

@@ -5,6 +5,9 @@ may be.  Every frequency of a fine grid would make each analysis thirty times de
 at 3 % of damping are as narrow as 6 % of the frequency.  So a motion is passed on at each frequency of the grid, which
 is cheap, and of these are kept some in even steps and those that do most to what stands there by four measures, each of
 which governs another response; and that which does least.  docs/explanation/furniture.md says how much is missed.
+
+Where furniture is not fastened, each of these is what shakes a body that may slide or rock: its mass is taken to move
+as what stands in it, so that it slides where its own shaking exceeds its friction, and not only that of the floor.
 """
 
 from collections.abc import Sequence
@@ -13,7 +16,8 @@ from math import ceil
 
 import numpy as np
 
-from pipeline.analysis.furniture import FurnitureFilter
+from pipeline.analysis.furniture import FurnitureFilter, LooseBody
+from pipeline.analysis.loose import passed_on
 from pipeline.analysis.model_runs import prepare
 from pipeline.analysis.response import trace
 from pipeline.analysis.transmission import transmit
@@ -32,6 +36,9 @@ STEP = 1.06
 
 EVEN = 5
 """Frequencies in even steps of the grid, its ends among them, that are looked at whatever the measures say."""
+
+MEASURES = 4
+"""By how many measures others are chosen."""
 
 SLIPPERY = (0.3, 0.7)
 """Frictions of the bodies that stand for what slides, as shares of what holds one under the motion of the floor."""
@@ -52,7 +59,9 @@ def furnished(level: LevelMotions, furniture: FurnitureFilter | None) -> LevelMo
     LevelMotions
         Its motions are those by the best estimates, level; its others are, off level and least damped, those of some
         frequencies in even steps, of the largest acceleration, of the largest velocity, and of the farthest slips of
-        two bodies, or else of the whole grid; then that of the least acceleration, and the floor's own.
+        two bodies, or else of the whole grid; then that of the least acceleration, and the floor's own.  Where it is
+        not fastened, the first is passed on by its best estimates as a body and the others by what moves last; before
+        the last two come two by what rocks first, and the last is that of what slides first.
     """
     if furniture is None or level.passed_on:
         return level
@@ -83,7 +92,7 @@ def isolating(level: LevelMotions, furniture: FurnitureFilter | None) -> LevelMo
 
 def _for_isolators(motion: Motion, *, furniture: FurnitureFilter) -> tuple[Motion, ...]:
     every = _variants(motion, furniture=furniture)
-    return every[1:2] if not furniture.frequency else every[3 + EVEN : 4 + EVEN]
+    return every[1:2] if not furniture.frequency else every[EVEN + MEASURES - 1 : EVEN + MEASURES]
 
 
 def best_furnished(motions: Sequence[Motion], furniture: FurnitureFilter | None) -> tuple[Motion, ...]:
@@ -97,6 +106,8 @@ def _variants(motion: Motion, *, furniture: FurnitureFilter) -> tuple[Motion, ..
     tilt = G * np.sin(furniture.level_error)
     if not furniture.frequency:
         return motion, _off_level(motion, motion, tilt), motion
+    loose = furniture.loose
+    usually, firm = (None, None) if loose is None else (loose.best, loose.firm)
     _, best, _ = furniture.frequency
     lively, usual, dull = furniture.damping
     grid = _grid(furniture)
@@ -104,12 +115,26 @@ def _variants(motion: Motion, *, furniture: FurnitureFilter) -> tuple[Motion, ..
     sketches = [_off_level(_sketch(motion, frequency, lively), motion, tilt) for frequency in grid]
     measures = np.array([(_acceleration(one), _velocity(one), *_slips(one, motion)) for one in sketches])
     kept = (*even, *measures.argmax(axis=0).tolist())
-    lively_at = {at: _off_level(_passed(motion, grid[at], lively), motion, tilt) for at in dict.fromkeys(kept)}
+    shaken = {at: _passed(motion, grid[at], lively) for at in dict.fromkeys(kept)}
+    lively_at = {at: _off_level(_stood(one, firm), motion, tilt) for at, one in shaken.items()}
     # On what is far softer than the shaking is quick, an object may feel less than on the floor.
     weak = {frequency: _acceleration(_sketch(motion, frequency, dull)) for frequency in (grid[at] for at in even)}
     softest = min(weak, key=lambda frequency: weak[frequency])
     mildest = _passed(motion, softest, dull) if weak[softest] < _acceleration(motion) else motion
-    return (_passed(motion, best, usual), *(lively_at[at] for at in kept), mildest, motion)
+    # What pushes hardest is what makes it rock.
+    hardest = shaken[kept[EVEN]]
+    other = () if loose is None else tuple(passed_on(one, loose.tippy) for one in (hardest, motion))
+    return (
+        _stood(_passed(motion, best, usual), usually),
+        *(lively_at[at] for at in kept),
+        *other,
+        _stood(mildest, firm),
+        motion if loose is None else passed_on(motion, loose.slippery),
+    )
+
+
+def _stood(motion: Motion, body: LooseBody | None) -> Motion:
+    return motion if body is None else passed_on(motion, body)
 
 
 def _grid(furniture: FurnitureFilter) -> list[float]:
@@ -125,8 +150,9 @@ def _whole_grid(motion: Motion, *, furniture: FurnitureFilter) -> tuple[Motion, 
     if not furniture.frequency:
         return best, *others
     tilt = G * np.sin(furniture.level_error)
-    each = (_passed(motion, frequency, furniture.damping[0]) for frequency in _grid(furniture))
-    return best, *(_off_level(one, motion, tilt) for one in each), *others[-2:]
+    firm = None if furniture.loose is None else furniture.loose.firm
+    each = (_stood(_passed(motion, frequency, furniture.damping[0]), firm) for frequency in _grid(furniture))
+    return best, *(_off_level(one, motion, tilt) for one in each), *others[EVEN + MEASURES :]
 
 
 def _passed(motion: Motion, frequency: float, damping: float) -> Motion:

@@ -3,7 +3,7 @@
 Which furniture it is comes from the record, else from a house rule, else from the case that the record names, else from
 what is usual for the class and height of the object (tables/usual_furniture.csv).  Its numbers come from the row of its
 kind (tables/furniture.csv) and are ranges: what they do to the shaking is found for the whole range
-(`pipeline.analysis.furnished`).
+(`pipeline.analysis.furnished`).  Furniture that is not fastened slides or rocks itself (`pipeline.analysis.loose`).
 """
 
 import re
@@ -13,13 +13,21 @@ from functools import cache, lru_cache
 from math import radians
 
 from pipeline.analysis.house.effect import HouseEffect
-from pipeline.records import Estimate, Furniture, Item, Origin, Scene, Support
-from pipeline.tables.assumed import AssumedValues
+from pipeline.models.unanchored import UNANCHORED
+from pipeline.records import Anchorage, Estimate, Furniture, Item, Origin, Scene, Support
+from pipeline.tables.assumed import AssumedValues, assumed
 from pipeline.tables.furniture_rows import ANY, STANDING, FurnitureRow, UsualFurniture, usual_furniture
 
 FREQUENCY, DAMPING, LEVEL_ERROR = "furniture_frequency", "furniture_damping", "level_error"
 
-OF_FURNITURE = (FREQUENCY, DAMPING, LEVEL_ERROR)
+HALF_WIDTH, CG_HEIGHT, FRICTION = "furniture_half_width", "furniture_cg_height", "furniture_friction"
+
+SHELF_HEIGHT = "shelf_height"
+
+OF_LOOSE = (HALF_WIDTH, CG_HEIGHT, FRICTION, SHELF_HEIGHT)
+"""Parameters of a scene that follow from its furniture where that is not fastened."""
+
+OF_FURNITURE = (FREQUENCY, DAMPING, LEVEL_ERROR, *OF_LOOSE)
 """Parameters of a scene that follow from its furniture."""
 
 _CASES = (
@@ -30,6 +38,46 @@ _CASES = (
     (re.compile(r"\b(shelf|shelves|Regal|étagère)\b", re.IGNORECASE), Furniture.SHELF),
 )
 """Words by which the name of a case says that it is none; any other name is that of a showcase."""
+
+
+@dataclass(frozen=True, slots=True)
+class LooseBody:
+    """Furniture that is not fastened, as a rigid body on its floor.
+
+    Attributes
+    ----------
+    half_width, cg_height, friction : float
+        From the middle of its base to the nearest edge [m], height of the centre of gravity [m], friction [-].
+    shelf_height : float
+        At which objects stand in it or on it [m].
+    """
+
+    half_width: float
+    cg_height: float
+    friction: float
+    shelf_height: float
+
+
+@dataclass(frozen=True, slots=True)
+class LooseBodies:
+    """What furniture that is not fastened may be.
+
+    Attributes
+    ----------
+    best : LooseBody
+        By the best estimates.
+    firm : LooseBody
+        That which moves last, and so passes on the most of what shakes it: wide, low and rough.
+    tippy : LooseBody
+        That which rocks first: narrow, high and rough.
+    slippery : LooseBody
+        That which slides first, by the best estimates of its size.
+    """
+
+    best: LooseBody
+    firm: LooseBody
+    tippy: LooseBody
+    slippery: LooseBody
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,12 +92,15 @@ class FurnitureFilter:
         By how much it may be off level, in any direction [rad].
     resonant : bool
         Whether what stands in it has a frequency of its own that is known, so that any of its own may be the worst.
+    loose : LooseBodies or None
+        What it may be as a body on its floor; None where it is fastened.
     """
 
     frequency: tuple[float, ...]
     damping: tuple[float, ...]
     level_error: float
     resonant: bool = False
+    loose: LooseBodies | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,27 +186,40 @@ def in_furniture(scene: Scene, house: HouseEffect, values: AssumedValues) -> Sce
         With its kind, where that comes from, and, where models are run on it, its numbers and what is assumed of them.
     """
     guess = furniture_of(scene.item, scene.object_class, scene.support, house)
-    scene = replace(scene, furniture=guess.furniture, furniture_origin=guess.origin)
+    row = values.furniture[guess.furniture.value]
+    said, words = _anchorage(scene.item, house) if row.frequency is not None else (None, "")
+    scene = replace(scene, furniture=guess.furniture, furniture_origin=guess.origin, anchorage=said)
     if not scene.models:
         return scene
-    known = _numbers(values.furniture[guess.furniture.value], guess)
+    known = _numbers(row, guess, said, words)
     if known:
         notes = tuple(one.note for one in known.values())
     elif guess.origin is Origin.ASSUMED and scene.support not in (Support.HUNG, Support.SUSPENDED):
-        notes = (f"furniture: {values.furniture[guess.furniture.value].title}, {guess.words}",)
+        notes = (f"furniture: {row.title}, {guess.words}",)
     else:
         notes = ()
     return replace(scene, parameters={**scene.parameters, **known}, assumptions=(*scene.assumptions, *notes))
 
 
+def _anchorage(item: Item, house: HouseEffect) -> tuple[Anchorage | None, str]:
+    """Return whether furniture is fastened, None where nobody says it, and who says it in words."""
+    stated = house.stated.get("furniture_anchorage")
+    if stated is not None:
+        return Anchorage(str(stated.value)), stated.origin
+    return item.furniture_anchorage, "" if item.furniture_anchorage is None else "as recorded"
+
+
 @lru_cache(maxsize=4096)
-def _numbers(row: FurnitureRow, guess: FurnitureGuess) -> Mapping[str, Estimate]:
+def _numbers(row: FurnitureRow, guess: FurnitureGuess, said: Anchorage | None, words: str) -> Mapping[str, Estimate]:
     out = {}
+    loose = (said or row.anchorage) is Anchorage.UNANCHORED
+    held = f"{'not ' if loose else ''}fastened, {words}" if words else ""
     frequency, damping = row.range("frequency"), row.range("damping")
     if frequency is not None and damping is not None:
         low, best, high = frequency.low, frequency.value, frequency.high
+        held = held or f"taken as {'not ' if loose else ''}fastened, which nobody says"
         note = f"furniture: {row.title}, {guess.words}; of {best:g} Hz ({low:g} to {high:g}), or stiff"
-        out[FREQUENCY] = Estimate.assumed(best, low, high, "Hz", f"{note}, {row.table}", frequency.source)
+        out[FREQUENCY] = Estimate.assumed(best, low, high, "Hz", f"{note}, {row.table}; {held}", frequency.source)
         low, best, high = damping.low, damping.value, damping.high
         note = f"damping of its furniture: {best:g} ({low:g} to {high:g}), {row.table} for {row.title}"
         out[DAMPING] = Estimate.assumed(best, low, high, "-", note, damping.source)
@@ -163,17 +227,85 @@ def _numbers(row: FurnitureRow, guess: FurnitureGuess) -> Mapping[str, Estimate]
         most = radians(row.level_error)
         note = f"level: off by up to {row.level_error:g}° either way, {row.table} for {row.title}"
         out[LEVEL_ERROR] = Estimate.assumed(0.0, -most, most, "rad", note, f"{row.table} ({row.source})")
+    return out | _body(row) if loose else out
+
+
+def _body(row: FurnitureRow) -> dict[str, Estimate]:
+    """Return what furniture slides or rocks by: of the museum's own row, or else of Kouros's."""
+    row = row if row.shelf_height is not None else assumed().furniture[row.key]
+    out = {}
+    for name, column, unit, what in (
+        (HALF_WIDTH, "half_width", "m", "from the middle of its base to its edge"),
+        (CG_HEIGHT, "cg_height", "m", "height of its centre of gravity"),
+        (FRICTION, "friction", "-", "friction on its floor"),
+    ):
+        span = row.range(column)
+        if span is None:
+            continue
+        low, best, high = span.low, span.value, span.high
+        of = "" if unit == "-" else f" {unit}"
+        note = f"{what}: {best:g} ({low:g} to {high:g}){of}, {row.table} for {row.title}"
+        out[name] = Estimate.assumed(best, low, high, unit, note, span.source)
+    if row.shelf_height is not None:
+        at, note = row.shelf_height, f"it stands {row.shelf_height:g} m above the floor, {row.table} for {row.title}"
+        out[SHELF_HEIGHT] = Estimate.assumed(at, at, at, "m", note, f"{row.table} ({row.source})")
     return out
+
+
+def loose(scene: Scene) -> bool:
+    """Say whether the furniture of a scene is not fastened, and what it slides or rocks by is known."""
+    return all(name in scene.parameters for name in OF_LOOSE)
+
+
+def fastened(scene: Scene) -> Scene:
+    """Return a scene whose furniture is fastened: what was assumed of it as a loose body is forgotten."""
+    gone = {scene.parameters[name].note for name in OF_LOOSE if name in scene.parameters}
+    return replace(
+        scene,
+        anchorage=Anchorage.ANCHORED,
+        parameters={name: one for name, one in scene.parameters.items() if name not in OF_LOOSE},
+        assumptions=tuple(text for text in scene.assumptions if text not in gone),
+    )
+
+
+def itself(scene: Scene) -> Scene:
+    """Return the furniture of a scene that is not fastened, as a standing body under the number of its object.
+
+    What makes it slide and rock is its own shaking: its mass is taken to move as what stands in it would.
+    """
+    known = scene.parameters
+    return Scene(
+        Item(scene.item.object_number, scene.item.gallery),
+        "",
+        "",
+        Support.FREESTANDING,
+        (UNANCHORED.name,),
+        {name: known[name] for name in (FREQUENCY, DAMPING) if name in known}
+        | {"half_width": known[HALF_WIDTH], "cg_height": known[CG_HEIGHT], "friction_static": known[FRICTION]},
+        floor=scene.floor,
+    )
 
 
 def filter_of(scene: Scene) -> FurnitureFilter | None:
     """Return what the furniture of a scene does to the shaking of its floor; None where it does nothing to it."""
     known = scene.parameters
-    frequency, damping, level = (known.get(name) for name in OF_FURNITURE)
+    frequency, damping, level = (known.get(name) for name in (FREQUENCY, DAMPING, LEVEL_ERROR))
     if frequency is None and level is None:
         return None
     ends = [() if one is None else (one.low, one.value, one.high) for one in (frequency, damping)]
     own = known.get("frequency")
     # Of one that is a range the worst is searched for anyway; that of an isolator is not the object's.
     resonant = own is not None and own.low == own.high and scene.support is not Support.ISOLATED
-    return FurnitureFilter(ends[0], ends[1], 0.0 if level is None else max(abs(level.low), abs(level.high)), resonant)
+    off = 0.0 if level is None else max(abs(level.low), abs(level.high))
+    return FurnitureFilter(ends[0], ends[1], off, resonant, _bodies(known) if loose(scene) else None)
+
+
+def _bodies(known: Mapping[str, Estimate]) -> LooseBodies:
+    half, high, rough, shelf = (known[name] for name in OF_LOOSE)
+    at = shelf.value
+    return LooseBodies(
+        best=LooseBody(half.value, high.value, rough.value, at),
+        firm=LooseBody(half.high, high.low, rough.high, at),
+        tippy=LooseBody(half.low, high.high, rough.high, at),
+        slippery=LooseBody(half.value, high.value, rough.low, at),
+    )

@@ -12,11 +12,11 @@ from typing import Any, get_type_hints
 from pydantic import TypeAdapter
 
 from pipeline.quantities import LENGTHS, MASSES
-from pipeline.records import ITEM_FIELDS, Furniture, Hanging, Item, Problem, Provenance, Support
+from pipeline.records import ITEM_FIELDS, Anchorage, Furniture, Hanging, Item, Problem, Provenance, Support
 from pipeline.tables import table
 from pipeline.tables.rows import Number, checked
 
-_CHOICES: Mapping[Any, type[StrEnum]] = {kind | None: kind for kind in (Support, Hanging, Furniture)}
+_CHOICES: Mapping[Any, type[StrEnum]] = {kind | None: kind for kind in (Support, Hanging, Furniture, Anchorage)}
 
 KINDS: Mapping[str, str] = {
     name: {
@@ -68,6 +68,7 @@ _MEANINGS = {
     "isolator": "Name of the isolator it stands on, if any.",
     "hanging": "How it hangs.",
     "furniture": "What it stands on or in, or hangs from.",
+    "furniture_anchorage": "Whether that furniture is fastened to its floor or a wall.",
     "height_m": "Height.",
     "base_width_m": "Width of the footing.",
     "base_depth_m": "Depth of the footing.",

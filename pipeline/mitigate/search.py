@@ -5,17 +5,29 @@ from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
+from pipeline.analysis.assess import assess
 from pipeline.analysis.context import Context
 from pipeline.analysis.figures import chart_key
-from pipeline.analysis.furniture import FurnitureFilter, filter_of
+from pipeline.analysis.furniture import FurnitureFilter, fastened, filter_of, loose
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures import Measure
 from pipeline.mitigate.measures.base import UNKNOWN_FREQUENCY, bends
 from pipeline.mitigate.measures.remove import LAST_RESORTS
-from pipeline.mitigate.proposals import Candidate, Case, Deficiency, Option, Proposal, case_of, company, known_to_swing
+from pipeline.mitigate.proposals import (
+    Candidate,
+    Case,
+    Deficiency,
+    Option,
+    Proposal,
+    case_of,
+    company,
+    known_to_swing,
+    refused,
+)
 from pipeline.mitigate.trials import TransmittedMotions, Trial, TrialRunner, checks, passes, passes_at_best, why_not
 from pipeline.models import settled_by_room
+from pipeline.models.unanchored import UNANCHORED
 from pipeline.records import Check, Finding, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 
@@ -30,6 +42,9 @@ AT_BEST = (
 
 SIZED = "It holds so by the best estimates of weight, base and strength: weigh it and measure its base first."
 """Follows the sentence of a fixing that has its factor of safety by the best estimates, and whose models all pass."""
+
+ANCHORED = "Fasten what it stands in to the floor or a wall, and besides:"
+"""Comes before the sentence of a measure that is enough only where its furniture is fastened too."""
 
 Unit = tuple[Deficiency, ...]
 """Objects that one measure is for: one, or all that share a support."""
@@ -54,7 +69,8 @@ def advise(
     one sought for each level alone, and its sentence says so.  A measure that fastens is also advised where it passes
     by the best estimates only and no other fastening is sure: its sentence says so, and no isolator takes its place.
     Where nothing fails and something else than room is open, nothing is advised: a measurement may settle that
-    (`pipeline.analysis.survey`).
+    (`pipeline.analysis.survey`); only furniture that is not fastened and may fall is better fastened.  Where nothing
+    helps in such furniture, what helps in it once it is fastened is advised together with fastening it.
 
     Parameters
     ----------
@@ -98,7 +114,21 @@ def advise(
         )
         for index, one in zip(members, _advised(some, found, levels, have, runner, unassessed), strict=True):
             out[index] = one
+    still = [at for at, scene in enumerate(scenes) if loose(scene) and any(r.measure in LAST_RESORTS for r in out[at])]
+    if still:
+        firm = [fastened(scenes[at]) for at in still]
+        _, judged = assess(firm, levels, context.silent, numerics)
+        again = advise(firm, judged, levels, context, numerics, catalogue=have, transmitted=transmitted)
+        for at, better in zip(still, again, strict=True):
+            helped = {one.level: one for one in better if one.measure not in LAST_RESORTS}
+            out[at] = [_fastened_too(one, helped.get(one.level)) for one in out[at]]
     return out
+
+
+def _fastened_too(found: Recommendation, better: Recommendation | None) -> Recommendation:
+    if better is None or found.measure not in LAST_RESORTS:
+        return found
+    return replace(better, sentence=f"{ANCHORED} {better.sentence}")
 
 
 def _advised(
@@ -158,7 +188,12 @@ def _deficiencies(
 def _wanted(scene: Scene, findings: Sequence[Finding]) -> bool:
     # Where it is not known whether it swings at all, a look behind it settles more than room.
     room = known_to_swing(scene) and _for_room_alone(findings)
-    return room or any(f.verdict is Verdict.FAIL for f in findings)
+    # Furniture that is known not to be fastened and may fall is better fastened than measured.
+    return room or _may_fall(findings) or any(f.verdict is Verdict.FAIL for f in findings)
+
+
+def _may_fall(findings: Sequence[Finding]) -> bool:
+    return any(f.model == UNANCHORED.name and f.verdict is not Verdict.PASS for f in findings)
 
 
 def _for_room_alone(findings: Sequence[Finding]) -> bool:
@@ -225,6 +260,8 @@ class _Search:
     def _proposed(self, unit: Unit, measure: Measure) -> Proposal:
         if measure.isolator and any(_band_unknown(one.scene) for one in unit):
             return UNKNOWN_FREQUENCY
+        if measure.isolator and any(_may_fall(one.findings) for one in unit):
+            return refused("what it would stand in is not fastened and may fall")
         return measure.propose_shared(unit, self.runner) if measure.shared else measure.propose(unit[0], self.runner)
 
     def settles(self) -> None:

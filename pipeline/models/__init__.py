@@ -14,6 +14,7 @@ from pipeline.models.sliding import SLIDING
 from pipeline.models.standing import STANDING
 from pipeline.models.stress import FLEXIBLE_STRESS, STRESS
 from pipeline.models.swing import SWING, SWING_3D
+from pipeline.models.unanchored import UNANCHORED
 from pipeline.models.unhooking import UNHOOKING
 from pipeline.records import Model
 
@@ -41,6 +42,7 @@ MODELS = Registry(
         SWING_3D,
         UNHOOKING,
         HANGER_LOAD,
+        UNANCHORED,
         FRICTION_ISOLATOR,
         HORIZONTAL_ISOLATOR,
         ROTATIONAL_ISOLATOR,

@@ -192,7 +192,7 @@ def likeness(scene: Scene) -> Hashable | None:
     return (
         *(scene.object_class, scene.rule, scene.support, scene.models, tuple(scene.parameters.items())),
         *(scene.assumptions, scene.missing, scene.floor, scene.hanging, scene.furniture, scene.furniture_origin),
-        scene.statements,
+        *(scene.anchorage, scene.statements),
         *_shared(scene.item),
     )
 

@@ -28,6 +28,7 @@ from pipeline.records.run import RunRecord
 from pipeline.records.scene import (
     ITEM_FIELDS,
     SECTION_SHAPES,
+    Anchorage,
     Estimate,
     Furniture,
     Hanging,
@@ -43,6 +44,7 @@ __all__ = [
     "ITEM_FIELDS",
     "SECTION_SHAPES",
     "Account",
+    "Anchorage",
     "Assessment",
     "Axis",
     "Basis",

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pipeline.records.fragility import Fragility
 from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.result import Assessment, Finding, Recommendation, Spacing
-from pipeline.records.scene import Estimate, Furniture, Hanging, Origin, Support
+from pipeline.records.scene import Anchorage, Estimate, Furniture, Hanging, Origin, Support
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Result:
     ----------
     object_class, rule, support, models, parameters, assumptions, missing, skipped, floor
         See `Scene`.
-    hanging, furniture, statements, furniture_origin
+    hanging, furniture, statements, furniture_origin, anchorage
         See `Scene`.
     findings : tuple of Finding
         One for each demand and level.
@@ -75,6 +75,7 @@ class Result:
     fault: str = ""
     aside: bool = False
     furniture_origin: Origin | None = None
+    anchorage: Anchorage | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,6 +38,13 @@ class Furniture(StrEnum):
     RAIL = "rail"
 
 
+class Anchorage(StrEnum):
+    """Whether furniture is fastened to its floor or a wall."""
+
+    ANCHORED = "anchored"
+    UNANCHORED = "unanchored"
+
+
 class Origin(StrEnum):
     """Origin of a number: in the record of the object, derived from it, stated by a house rule, or assumed."""
 
@@ -113,6 +120,8 @@ class Item:
         How it is held, and by which isolator.
     hanging, furniture : Hanging or None, Furniture or None
         How it hangs, and what it stands on or in or hangs from.
+    furniture_anchorage : Anchorage or None
+        Whether that is fastened to its floor or a wall.
     height_m, base_width_m, base_depth_m, width_m, depth_m, cg_height_m : float or None
         Extents, those of the footing, and the height of the centre of gravity above the base, m.
     contact_polygon, contact_polygon_least : tuple of (float, float)
@@ -160,6 +169,7 @@ class Item:
     isolator: str = ""
     hanging: Hanging | None = None
     furniture: Furniture | None = None
+    furniture_anchorage: Anchorage | None = None
     height_m: float | None = None
     base_width_m: float | None = None
     base_depth_m: float | None = None
@@ -301,6 +311,8 @@ class Scene:
         Where the furniture is known from: the record, a house rule, the case that the record names, or what is usual.
     statements : tuple of str
         What house rules say of it besides its numbers, and where its record overrules them, in words.
+    anchorage : Anchorage or None
+        Whether its furniture is fastened, by its record or else by a house rule; None where neither says.
     """
 
     item: Item
@@ -317,6 +329,7 @@ class Scene:
     furniture: Furniture | None = None
     statements: tuple[str, ...] = ()
     furniture_origin: Origin | None = None
+    anchorage: Anchorage | None = None
 
     @property
     def stands_by(self) -> Origin | None:

@@ -14,7 +14,7 @@ from pipeline.mitigate.measures import MEASURES
 from pipeline.mitigate.measures.horizontal_isolator import GENERIC
 from pipeline.mitigate.proposals import IT
 from pipeline.mitigate.rows import STORED
-from pipeline.mitigate.search import AT_BEST, ONLY_HERE, SIZED
+from pipeline.mitigate.search import ANCHORED, AT_BEST, ONLY_HERE, SIZED
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
 from pipeline.records import Item
@@ -75,7 +75,7 @@ def _of_measures() -> Iterator[str]:
             yield sentence.replace("{what}", IT).replace("{product}", GENERIC).replace(" {how}", "")
         if "{care}" in sentence:
             yield sentence.replace(" {care}", "")
-    yield from (ONLY_HERE, AT_BEST, SIZED, *(row.care for row in fixing_strengths().values()))
+    yield from (ONLY_HERE, AT_BEST, SIZED, ANCHORED, *(row.care for row in fixing_strengths().values()))
 
 
 def _names() -> Iterator[str]:

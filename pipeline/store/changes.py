@@ -202,7 +202,7 @@ def _verdict(text: str | None) -> Verdict | None:
 
 
 _HINTS = get_type_hints(Scene)
-_SCENE = ("support", "hanging", "furniture", "furniture_origin", "object_class", "models", "parameters")
+_SCENE = ("support", "hanging", "furniture", "furniture_origin", "anchorage", "object_class", "models", "parameters")
 """What an object is run with besides its item; the floor has a cause of its own."""
 
 _OTHERWISE = frozenset({"gallery", "provenance"})

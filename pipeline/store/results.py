@@ -108,6 +108,7 @@ def anonymous(assessment: Assessment, needing: dict[str, int], wishes: tuple[Mea
         assessment.fault,
         assessment.aside,
         scene.furniture_origin,
+        scene.anchorage,
     )
 
 
@@ -129,6 +130,7 @@ def of_object(result: Result, item: Item) -> Assessment:
         result.furniture,
         result.statements,
         result.furniture_origin,
+        result.anchorage,
     )
     return Assessment(
         scene,
@@ -339,13 +341,13 @@ def _digests(result: Result) -> Digests:
         key = (finding.model, finding.level)
         if key not in worst or _SEVERITY[finding.verdict] > _SEVERITY[worst[key]]:
             worst[key] = finding.verdict
-    held = (result.support, result.hanging, result.furniture, result.furniture_origin)
+    held = (result.support, result.hanging, result.furniture, result.furniture_origin, result.anchorage)
     run_with = (held, result.object_class, result.models, dict(result.parameters))
     verdicts = tuple((model, level, verdict.value) for (model, level), verdict in worst.items())
     return result.floor, _digest(_RunWith, run_with), verdicts
 
 
-_RunWith = tuple[tuple[Any, Any, Any, Any], str, tuple[str, ...], dict[str, Any]]
+_RunWith = tuple[tuple[Any, Any, Any, Any, Any], str, tuple[str, ...], dict[str, Any]]
 
 
 def _digest(hint: Any, value: Any) -> str:

@@ -3,10 +3,10 @@
 from functools import cache
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field, ValidationInfo, field_validator
+from pydantic import AfterValidator, ConfigDict, Field, ValidationInfo, field_validator
 
 from pipeline.errors import InputError
-from pipeline.records import Furniture, Support
+from pipeline.records import Anchorage, Furniture, Support
 from pipeline.tables import Range, TableError, table
 from pipeline.tables.assumed_rows import AssumedRow
 from pipeline.tables.rows import Number, Optional, TableRow, Text, checked, in_order
@@ -18,6 +18,10 @@ STANDING = "standing"
 """In the column support of usual_furniture.csv: whatever is neither hung nor suspended."""
 
 _STEEPEST = 5.0
+
+_LARGEST = 10.0
+
+_ROUGHEST = 2.0
 
 
 def _shaking(hertz: float | None) -> float | None:
@@ -39,6 +43,31 @@ Damping = Annotated[Optional, AfterValidator(_damped)]
 """A cell that holds a damping ratio, or nothing."""
 
 
+def _long(metres: float | None) -> float | None:
+    if metres is not None and not 0.0 < metres <= _LARGEST:
+        raise InputError(f"must be above 0 and at most {_LARGEST:g} m, not {metres:g}")
+    return metres
+
+
+def _rough(friction: float | None) -> float | None:
+    if friction is not None and not 0.0 < friction <= _ROUGHEST:
+        raise InputError(
+            f"is a coefficient of friction: it must be above 0 and at most {_ROUGHEST:g}, not {friction:g}"
+        )
+    return friction
+
+
+Length = Annotated[Optional, AfterValidator(_long)]
+"""A cell that holds a size of furniture, or nothing."""
+
+FloorFriction = Annotated[Optional, AfterValidator(_rough)]
+"""A cell that holds the friction of furniture on its floor, or nothing."""
+
+_RANGES = ("frequency", "damping", "half_width", "cg_height", "friction")
+
+_BODY = ("half_width", "cg_height", "friction", "shelf_height")
+
+
 class FurnitureRow(AssumedRow):
     """A row of furniture.csv: one kind of furniture.
 
@@ -52,7 +81,17 @@ class FurnitureRow(AssumedRow):
         By how much its top may be off level at most, in any direction [degrees].
     source : str
         Who says so.
+    anchorage : Anchorage
+        Whether it is taken as fastened where nobody says it.
+    half_width, cg_height, friction : float or None, with _low and _high
+        Of one that is not fastened: from the middle of its base to the nearest edge [m], height of its centre of
+        gravity with what stands in it [m], and friction on its floor [-].
+    shelf_height : float or None
+        At which objects stand in it or on it [m].
     """
+
+    # Columns that a museum's own table leaves out are checked as if they were empty.
+    model_config = ConfigDict(validate_default=True)
 
     printed, named = "furniture.csv", "furniture"
 
@@ -66,8 +105,19 @@ class FurnitureRow(AssumedRow):
     damping_high: Damping
     level_error: Annotated[Number, Field(ge=0.0, le=_STEEPEST)]
     source: Text
+    anchorage: Anchorage = Anchorage.ANCHORED
+    half_width: Length = None
+    half_width_low: Length = None
+    half_width_high: Length = None
+    cg_height: Length = None
+    cg_height_low: Length = None
+    cg_height_high: Length = None
+    friction: FloorFriction = None
+    friction_low: FloorFriction = None
+    friction_high: FloorFriction = None
+    shelf_height: Length = None
 
-    @field_validator("frequency_high", "damping_high")
+    @field_validator(*(f"{name}_high" for name in _RANGES))
     @classmethod
     def _in_order(cls, high: float | None, info: ValidationInfo) -> float | None:
         kind = str(info.field_name).removesuffix("_high")
@@ -78,13 +128,32 @@ class FurnitureRow(AssumedRow):
             raise InputError("what shakes has a frequency and a damping: fill both, or neither")
         return in_order(high, info, f"{kind}_low", kind)
 
+    @field_validator("anchorage")
+    @classmethod
+    def _can_be_loose(cls, anchorage: Anchorage, info: ValidationInfo) -> Anchorage:
+        if anchorage is Anchorage.UNANCHORED and info.data.get("frequency") is None:
+            raise InputError("what moves as the floor does is fastened to it: write anchored")
+        return anchorage
+
+    @field_validator("shelf_height")
+    @classmethod
+    def _whole(cls, height: float | None, info: ValidationInfo) -> float | None:
+        cells = {name: info.data.get(name) for name in _BODY[:-1]} | {_BODY[-1]: height}
+        given = [name for name, cell in cells.items() if cell is not None]
+        lost = [name for name in cells if name not in given]
+        if given and lost:
+            raise InputError(f"what is not fastened slides or rocks by {', '.join(_BODY)}: fill {', '.join(lost)} too")
+        if given and info.data.get("frequency") is None:
+            raise InputError(f"what moves as the floor does is fastened to it: leave {', '.join(given)} empty")
+        return height
+
     @property
     def key(self) -> str:
         """Its kind."""
         return self.furniture.value
 
     def range(self, column: str) -> Range | None:
-        """Return value, low and high of ``frequency`` [Hz] or ``damping`` [-]; None where it does not shake."""
+        """Return value, low and high of a column that has them; None where its cells are empty."""
         low, value, high = (getattr(self, name) for name in (f"{column}_low", column, f"{column}_high"))
         return None if value is None else Range(value, low, high, f"{self.table} ({self.source})")
 

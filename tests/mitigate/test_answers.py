@@ -115,7 +115,7 @@ def test_another_surface_is_the_right_answer(motion: Motion) -> None:
     assert advice.sentence.startswith("Stand it on formica")
     assert advice.parameters["friction"] == 0.18
     assert advice.parameters["movement"] >= on_formica
-    assert rejected(advice) == ["Keep clear", "Rubber pads behind it"]
+    assert rejected(advice) == ["Keep clear", "Fasten its furniture", "Rubber pads behind it"]
 
 
 def test_ballast_is_the_right_answer(motion: Motion) -> None:

@@ -7,6 +7,7 @@ VALID: dict[str, dict[str, float]] = {
     "rocking": BLOCK,
     "sliding": {"friction_static": 0.2},
     "standing": {**BLOCK, "friction_static": 0.4},
+    "unanchored": {**BLOCK, "friction_static": 0.4},
     "stress": {"mass": 10.0, "lever": 0.3, "area": 1e-3, "section_modulus": 1e-5},
     "flexible_stress": {
         "mass": 10.0,

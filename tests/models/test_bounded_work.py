@@ -42,6 +42,7 @@ ENDS: dict[str, dict[str, list[float]]] = {
     "oscillator": {"frequency": [1e-3, 1.0, 1e5], "damping": [0.0, 0.05, 50.0]},
 }
 ENDS["swing_3d"] = ENDS["swing"]
+ENDS["unanchored"] = ENDS["standing"]
 ENDS["rotational_isolator"] = {**ENDS["oscillator"], "cg_height": [0.5], "inertia_ratio": [1.3]}
 ENDS["unhooking"] = {
     "hook_height": [1e-6, 0.3, 100.0],

@@ -35,7 +35,7 @@ def drawn(name: str, rng: np.random.Generator, n: int) -> dict[str, Any]:
         if rng.random() < 0.2:
             body["initial_rotation"] = rng.uniform(-0.3, 0.3, n)
         return body
-    if name == "standing":
+    if name in ("standing", "unanchored"):
         h, mu = rng.uniform(0.05, 2.0, n), rng.uniform(0.0, 0.8, n)
         return {"half_width": h * rng.uniform(0.02, 1.0, n), "cg_height": h, "friction_static": mu}
     section = {"mass": rng.uniform(1.0, 50.0, n), "lever": rng.uniform(0.05, 1.0, n)}

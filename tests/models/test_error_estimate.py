@@ -36,7 +36,7 @@ def drawn(name: str, rng: np.random.Generator, n: int) -> dict[str, Array | floa
     if name == "rocking":
         h = log(0.05, 2.0)
         return {"half_width": h * np.tan(flat(0.02, 0.7)), "cg_height": h}
-    if name == "standing":
+    if name in ("standing", "unanchored"):
         h = log(0.05, 2.0)
         return {"half_width": h * np.tan(flat(0.02, 0.7)), "cg_height": h, "friction_static": flat(0.05, 0.8)}
     if name.startswith("sliding"):
@@ -77,6 +77,7 @@ def drawn(name: str, rng: np.random.Generator, n: int) -> dict[str, Array | floa
 CASES = [
     "rocking",
     "standing",
+    "unanchored",
     "sliding 1",
     "sliding 2",
     "stress",

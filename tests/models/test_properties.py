@@ -129,6 +129,7 @@ def test_two_directional_isolator_on_a_line_is_one_directional(
 SPREAD: dict[str, dict[str, tuple[float, float]]] = {
     "rocking": {"half_width": (0.02, 0.5), "cg_height": (0.1, 2.0)},
     "standing": {"half_width": (0.02, 0.5), "cg_height": (0.1, 2.0), "friction_static": (0.1, 0.8)},
+    "unanchored": {"half_width": (0.1, 0.6), "cg_height": (0.3, 1.2), "friction_static": (0.1, 0.8)},
     "sliding": {"friction_static": (0.0, 0.6)},
     "stress": {"mass": (1.0, 50.0), "lever": (0.05, 1.0), "area": (1e-4, 1e-2), "section_modulus": (1e-6, 1e-4)},
     "flexible_stress": {

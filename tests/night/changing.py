@@ -33,7 +33,7 @@ from tests.museum import SILENT, in_common
 COLUMNS = (
     "object_number", "title", "object_name", "gallery", "case", "on_display", "medium", "height_m", "width_m",
     "depth_m", "friction", "mass_kg", "clearance_m", "position_x_m", "position_y_m", "value_class", "support",
-    "furniture",
+    "furniture", "furniture_anchorage",
 )  # fmt: skip
 EXPORTS = ("findings.csv", "objects.csv", "recommendations.csv")
 NAMES = ("Vase", "Vase", "Bowl", "Plate", "Painting", "Figurine")
@@ -300,6 +300,7 @@ class Changing:
         what, states = self.random.choice((
             ('gallery = "A"', "clearance_m = 0.02"), ('class = "vessel"', "friction = 0.3"),
             ('medium = "oil"', "damping = 0.1"), ('number = "00*"', 'furniture = "showcase"'),
+            ('number = "01*"', 'furniture_anchorage = "unanchored"'),
             ('gallery = "Z"', "friction = 0.2"),
         ))  # fmt: skip
         one = f'[[house]]\n{what}\n{states}\nsaid_by = "Ann"\nsaid_on = 2031-05-01\n'

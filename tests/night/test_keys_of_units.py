@@ -142,6 +142,18 @@ def on_a_shelf(museum: Changing) -> None:
     museum.rows[1]["furniture"] = "shelf"
 
 
+def loose_furniture(museum: Changing) -> None:
+    museum.rows[1]["furniture_anchorage"] = "unanchored"
+
+
+def wider_furniture(museum: Changing) -> None:
+    """What furniture that is not fastened slides and rocks by is a part of its table."""
+    header, row = FURNITURE.format(6).splitlines()
+    body = "half_width,half_width_low,half_width_high,cg_height,cg_height_low,cg_height_high,friction,friction_low,"
+    body += "friction_high,shelf_height"
+    museum.tables["furniture.csv"] = f"{header},{body}\n{row},0.4,0.4,0.4,0.8,0.8,0.8,0.3,0.3,0.3,1\n"
+
+
 def another_name(museum: Changing) -> None:
     """The same rows in a file of another name, which reports give as their origin."""
     museum.tables["tilt.csv"] = museum.tables["friction.csv"]
@@ -251,6 +263,7 @@ def accepted(museum: Changing) -> None:
         (isolator, ALL),
         (friction, ALL),
         (stiffer, ALL),
+        (wider_furniture, ALL),
         (another_name, ALL),
         (setting("classes", '"classes.csv"'), ALL),
         # A setting of each group.
@@ -278,6 +291,7 @@ def accepted(museum: Changing) -> None:
         # Records.
         (height, (1, 0, 1)),
         (on_a_shelf, (1, 0, 1)),
+        (loose_furniture, (1, 0, 1)),
         (in_a_case, (1, 0, 1)),
         # Where an object stands is its neighbours' business, and what it is worth that of its page.
         (place, (0, 0, 1)),
@@ -290,6 +304,7 @@ def accepted(museum: Changing) -> None:
         (house_rule('gallery = "B"', "clearance_m = 0.07"), (8, 2, 2)),
         (house_rule('number = "014"', "clearance_m = 0.07"), (1, 0, 1)),
         (house_rule('number = "014"', 'furniture = "pedestal"'), (1, 0, 1)),
+        (house_rule('number = "014"', 'furniture_anchorage = "unanchored"'), (1, 0, 1)),
         (house_rule('gallery = "Nowhere"', "clearance_m = 0.07"), NOTHING),
         (house_rule('medium = "ormolu"', "clearance_m = 0.07"), NOTHING),
         # Decisions.

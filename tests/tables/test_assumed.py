@@ -31,6 +31,9 @@ KEYS = {
 }
 """The row of each table that the museum of these tests has an own one of."""
 
+SHAKES = ("frequency", "frequency_low", "frequency_high", "damping", "damping_low", "damping_high")
+"""The columns of furniture.csv that are empty of what moves as its floor does."""
+
 VALUE = {"friction": ("value", "low", "high"), "damping": ("value", "low", "high")}
 
 
@@ -196,6 +199,13 @@ def test_a_surface_is_proposed_with_the_museums_own_friction(tmp_path: Path) -> 
         ("furniture", {"damping_low": "1.5"}, r"column 'damping_low': is a share of the critical damping: .* not 1.5"),
         ("furniture", {"damping": "", "damping_low": "", "damping_high": ""}, r"what shakes has a frequency and a dam"),
         ("furniture", {"level_error": "7"}, r"column 'level_error': .* less than or equal to 5, not '7'"),
+        ("furniture", {"half_width": "0"}, r"column 'half_width': must be above 0 and at most 10 m, not 0"),
+        ("furniture", {"half_width": "0.7"}, r"column 'half_width_high': half_width_low <= half_width <= half_width_h"),
+        ("furniture", {"cg_height": ""}, r"column 'cg_height_high': cg_height, cg_height_low and cg_height_high go"),
+        ("furniture", {"friction_high": "3"}, r"column 'friction_high': is a coefficient of friction: .* not 3"),
+        ("furniture", {"shelf_height": "-"}, r"column 'shelf_height': what is not fastened .*: fill shelf_height too"),
+        ("furniture", {"anchorage": "maybe"}, r"column 'anchorage': .*'anchored' or 'unanchored', not 'maybe'"),
+        ("furniture", {"furniture": "floor"} | dict.fromkeys(SHAKES, ""), r"'shelf_height': what moves as the"),
         ("furniture", {"title": ""}, r"column 'title': is empty; every row needs it"),
     ],
 )  # fmt: skip

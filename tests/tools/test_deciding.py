@@ -23,6 +23,7 @@ from pipeline.night.run import run
 from pipeline.operations.run_summary import Summary
 from pipeline.operations.workspace import UsageError, Workspace, open_workspace
 from pipeline.records import (
+    Anchorage,
     Assessment,
     Basis,
     Decision,
@@ -229,11 +230,13 @@ def test_each_measure_that_can_be_installed_changes_a_scene() -> None:
     """Whatever measures.csv has, with the least that must be known of it; each changes what is run."""
     standing = Item("1", "G", object_name="vase", height_m=0.4, width_m=0.2, depth_m=0.2, mass_kg=3.0)
     hung = Item("2", "G", object_name="painting", height_m=0.8, width_m=0.6, support=Support.HUNG)
+    loose = replace(standing, furniture_anchorage=Anchorage.UNANCHORED)
+    on_walls = ("rubber_pads", "restrain", "close_hooks")
     known = own_catalogue().installable
     assert set(known) == {row["measure"] for row in table("measures")} - {"remove"}
     for name, measure in known.items():
         parameters = {q.name: 2.0 if q.name == "enlargement" else 0.4 for q in measure.parameters}
-        scene = classify(hung if name in ("rubber_pads", "restrain", "close_hooks") else standing)
+        scene = classify({"anchor": loose}.get(name, hung if name in on_walls else standing))
         stands = placed(scene, [InstalledMeasure(name, parameters, "decided by Ann on 2031-05-01: because")])
         assert stands.scene.parameters != scene.parameters or stands.scene.support is not scene.support, name
         assert not any("not computed" in text for text in stands.scene.assumptions), name

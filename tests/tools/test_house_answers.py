@@ -65,6 +65,7 @@ def test_equal_questions_are_one_and_the_most_useful_comes_first() -> None:
     assert [(q.field, q.object_class, q.objects) for q in unsaid] == [
         ("hanging", "framed", 7),
         ("furniture", "vessel", 6),
+        ("furniture_anchorage", "vessel", 6),
     ]
 
 
@@ -89,10 +90,11 @@ def test_what_is_printed_is_refused_until_somebody_signs_it() -> None:
     framed, vessel = tomllib.loads(text)["house"]
     assert framed["suspension_ratio"] == {"low": 0.25, "best": 0.5, "high": 2.5}
     assert framed["hanging"] == "wire | two_hooks | cleat | security | fixed"
-    assert set(vessel) == {"class", "friction", "furniture", "said_by", "said_on"}
+    assert set(vessel) == {"class", "friction", "furniture", "furniture_anchorage", "said_by", "said_on"}
+    answers = {"furniture": "shelf", "furniture_anchorage": "unanchored"}
     with pytest.raises(ValueError, match="said_by"):
-        HouseRule(**vessel | {"furniture": "shelf"})
-    assert HouseRule(**vessel | {"furniture": "shelf", "said_by": "Ann"}).said_on == WHEN
+        HouseRule(**vessel | answers)
+    assert HouseRule(**vessel | answers | {"said_by": "Ann"}).said_on == WHEN
 
 
 def workbook(path: Path, *filled: dict[str, object], length: str = "cm") -> Path:
@@ -153,9 +155,9 @@ def test_a_workbook_that_nobody_filled_in_has_no_rules(tmp_path: Path) -> None:
         (LENGTH | {"value": "0,3"}, r"row 3, value: '0,3' is no number; write one, as 0\.3"),
         (LENGTH | {"high": 70}, r"row 3, .*suspension_ratio must lie within 0 and 50"),
         (LENGTH | {"low": 0.4}, r"row 3, .*low <= best <= high"),
-        (ROOM | {"unit": "ell"}, r"row 7, unit: 'ell' is no unit of lengths"),
-        (ROOM | {"states": "height"}, r"row 7, states: 'height' is nothing that a rule states"),
-        (ROOM | {"gallery": None}, r"row 7, .*name what it is for"),
+        (ROOM | {"unit": "ell"}, r"row 8, unit: 'ell' is no unit of lengths"),
+        (ROOM | {"states": "height"}, r"row 8, states: 'height' is nothing that a rule states"),
+        (ROOM | {"gallery": None}, r"row 8, .*name what it is for"),
     ],
 )
 def test_a_row_that_cannot_be_meant_is_named(row: dict[str, object], said: str, tmp_path: Path) -> None:

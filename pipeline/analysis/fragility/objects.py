@@ -81,7 +81,8 @@ def fragilities(
     """Scale every motion of every level until each object fails, in each of its ways, and fit fragility curves.
 
     How a level combines its motions plays no part: a curve is about single earthquakes.  Furniture is that of the best
-    estimates, and level: what its range does is not in the dispersion.
+    estimates, and level: what its range does is not in the dispersion.  What stands in furniture that is not fastened
+    has no curve: what that passes on does not grow with the shaking.
 
     Parameters
     ----------
@@ -109,6 +110,7 @@ def fragilities(
     Dynamics 31(3), 491-514.
     """
     numerics = replace(numerics, azimuth_step=max(numerics.azimuth_step, DIRECTIONS))
+    work = [one for one in work if one.furniture is None or one.furniture.loose is None]
     shaking = {furniture: _scaled(stripes, furniture) for furniture in {one.furniture for one in work}}
     out: list[list[Fragility]] = [[] for _ in scenes]
     if not any(motions for motions, _ in shaking.values()):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from pipeline.analysis.house.rule import Span
-from pipeline.records import Estimate, Furniture, Hanging, Item, Origin, Support
+from pipeline.records import Anchorage, Estimate, Furniture, Hanging, Item, Origin, Support
 
 _WORDS: Mapping[StrEnum, str] = {
     Hanging.WIRE: "hangs from a wire or one hook",
@@ -21,6 +21,8 @@ _WORDS: Mapping[StrEnum, str] = {
     Furniture.SHELF: "stands on a shelf",
     Furniture.WALL: "hangs on the wall",
     Furniture.RAIL: "hangs from a rail",
+    Anchorage.ANCHORED: "stands in furniture that is fastened",
+    Anchorage.UNANCHORED: "stands in furniture that is not fastened",
 }
 
 

@@ -132,7 +132,7 @@ class HouseRules:
         if held is not None:
             support = Support(str(held.value))
             matching = self._matching(item, object_class, support)
-        for about in ("hanging", "furniture", *QUANTITIES):
+        for about in ("hanging", "furniture", "furniture_anchorage", *QUANTITIES):
             if about not in SLOTS:
                 out.weigh(matching, about, support)
         return HouseEffect(
@@ -215,6 +215,8 @@ def _applies(name: str, value: Span | StrEnum, support: Support) -> bool:
         return True
     if name == "hanging":
         return support is Support.HUNG
+    if name == "furniture_anchorage":
+        return support in STANDING
     if name == "furniture":
         return support in (ABOVE if value in _ON_WALLS else STANDING)
     return support in QUANTITIES[name][1]

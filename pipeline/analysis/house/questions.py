@@ -9,7 +9,7 @@ from statistics import median
 from typing import Any
 
 from pipeline.analysis.house.rule import QUANTITIES, STANDING
-from pipeline.records import Furniture, Hanging, MeasurementRequest, Origin, Scene, Support
+from pipeline.records import Anchorage, Furniture, Hanging, MeasurementRequest, Origin, Scene, Support
 
 MANY = 5
 """Objects of which the same is asked, from which one rule is asked for first."""
@@ -29,9 +29,12 @@ _STATED = {
 
 _SHARE_OF = {"cg_ratio": "height_m", "suspension_ratio": "height_m", "base_ratio": "width_m"}
 
+_FASTENED_OR_NOT = frozenset({Furniture.SHOWCASE, Furniture.PEDESTAL, Furniture.SHELF})
+
 VOCABULARIES: Mapping[str, Sequence[str]] = {
     "hanging": tuple(Hanging),
     "furniture": tuple(Furniture),
+    "furniture_anchorage": tuple(Anchorage),
     "held": tuple(Support),
 }
 """What a rule may state as a word."""
@@ -96,8 +99,8 @@ def rule_questions(scenes: Iterable[Scene], wishes: Iterable[MeasurementRequest]
     Returns
     -------
     list of RuleQuestion
-        After those that would settle something: how works hang and what things stand on, where neither records nor
-        rules say it.
+        After those that would settle something: how works hang, what things stand on and whether that is fastened,
+        where neither records nor rules say it.
     """
     known = {scene.item.object_number: scene for scene in scenes}
     groups: dict[tuple[str, Support, str], list[MeasurementRequest]] = defaultdict(list)
@@ -150,13 +153,15 @@ def _question(
 
 
 def _unsaid(scenes: Iterable[Scene], supports: Mapping[str, set[Support]]) -> list[RuleQuestion]:
-    """Return the questions how things hang, and what they stand on."""
+    """Return the questions how things hang, what they stand on, and whether that is fastened."""
     numbers: Counter[tuple[str, Support, str]] = Counter()
     for scene in scenes:
         if scene.support is Support.HUNG and scene.hanging is None:
             numbers[scene.object_class, scene.support, "hanging"] += 1
         if scene.support in STANDING and scene.furniture_origin is Origin.ASSUMED and scene.models:
             numbers[scene.object_class, scene.support, "furniture"] += 1
+        if scene.furniture in _FASTENED_OR_NOT and scene.anchorage is None and scene.models:
+            numbers[scene.object_class, scene.support, "furniture_anchorage"] += 1
     return [
         RuleQuestion(kind, held.value if len(supports[kind]) > 1 else "", field, "", None, None, None, number, 0.0, 0)
         for (kind, held, field), number in sorted(numbers.items(), key=lambda entry: (-entry[1], entry[0]))

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, StrictFloat, model_validator
 
 from pipeline.errors import InputError
-from pipeline.records import Furniture, Hanging, Support
+from pipeline.records import Anchorage, Furniture, Hanging, Support
 
 STANDING = frozenset({Support.FREESTANDING, Support.FASTENED, Support.ISOLATED})
 ABOVE = frozenset({Support.HUNG, Support.SUSPENDED})
@@ -29,6 +29,9 @@ QUANTITIES: Mapping[str, tuple[str, frozenset[Support]]] = {
     "frequency_hz": ("Hz", STANDING),
 }
 """What a rule may state as a number: its unit, and of objects that are held how it can be."""
+
+WORDS = ("hanging", "furniture", "furniture_anchorage", "held")
+"""What a rule may state as a word of a vocabulary."""
 
 SLOTS = {"cg_ratio": "cg_height_m", "suspension_ratio": "suspension_length_m"}
 """Two ways to state one thing: the more particular rule decides which of them is taken."""
@@ -106,6 +109,9 @@ class HouseRule(BaseModel):
     )
     hanging: Hanging | None = Field(default=None, description="how they hang")
     furniture: Furniture | None = Field(default=None, description="what they stand on or in, or hang from")
+    furniture_anchorage: Anchorage | None = Field(
+        default=None, description="whether that furniture is fastened to its floor or a wall"
+    )
     held: Support | None = Field(default=None, description="how they are held, where their records do not say it")
     friction: _Quantity = Field(default=None, description="friction between footing and surface")
     clearance_m: _Quantity = Field(default=None, description="room to the nearest neighbour or edge, in m")
@@ -128,7 +134,7 @@ class HouseRule(BaseModel):
         if not any(getattr(self, name) for name in CRITERIA):
             raise InputError('name what it is for: class, gallery, medium, number or support (number = "*" is all)')
         if not self.states:
-            raise InputError(f"states nothing: say one of hanging, furniture, held, {', '.join(QUANTITIES)}")
+            raise InputError(f"states nothing: say one of {', '.join((*WORDS, *QUANTITIES))}")
         for share, length in SLOTS.items():
             if getattr(self, share) is not None and getattr(self, length) is not None:
                 raise InputError(f"states one thing twice: keep {length} or {share}")
@@ -141,7 +147,7 @@ class HouseRule(BaseModel):
     @cached_property
     def states(self) -> Mapping[str, tuple[str, Span | StrEnum]]:
         """What it states, by what it is about: the field, and the value."""
-        given = {name: getattr(self, name) for name in ("hanging", "furniture", "held", *QUANTITIES)}
+        given = {name: getattr(self, name) for name in (*WORDS, *QUANTITIES)}
         return {SLOTS.get(name, name): (name, value) for name, value in given.items() if value is not None}
 
     @cached_property

@@ -8,6 +8,7 @@ from inspect import isabstract
 from pipeline.errors import InputError
 from pipeline.extensions import Registry
 from pipeline.mitigate.measures.adhesives import Putty, Wax
+from pipeline.mitigate.measures.anchor import Anchor
 from pipeline.mitigate.measures.ballast import Ballast
 from pipeline.mitigate.measures.base import Measure
 from pipeline.mitigate.measures.clearance import Clearance
@@ -61,6 +62,7 @@ MEASURES: Registry[type[Measure]] = Registry(
     "kouros.measures",
     (
         Clearance,
+        Anchor,
         RubberPads,
         Surface,
         GripPad,

@@ -54,7 +54,8 @@ class Measure(ABC):
     5. Say in `parameters` what `change` must be told of one that is installed; `numbers` of a candidate have them all.
     6. Where it acts on what several objects stand on, set `shared` and implement `propose_shared`, which proposes for
        all objects of a case at once.  Where it stands between object and floor, name the model of it in `isolator`.
-    7. Where it is worth advising although only the assumed room leaves a verdict open, set `for_room`; where it
+    7. Where it is worth advising although only the assumed room, or furniture that may fall, leaves a verdict open, set
+       `for_room`; where it
        holds an object and may be advised by the best estimates, before any isolator, set `fastens`.
     8. Where running many objects at once is cheaper, do that in `prepare`.
     9. Name the class in `pipeline.mitigate.measures.MEASURES`, and give it a row in tables/measures.csv.  In another
@@ -82,7 +83,7 @@ class Measure(ABC):
     shared : bool
         Whether all objects of a case share it.
     for_room : bool
-        Whether it is worth advising where only the assumed room leaves the verdict open.
+        Whether it is worth advising where only the assumed room, or furniture that may fall, leaves the verdict open.
     fastens : bool
         Whether it holds an object: where nothing else is sure, it is advised if it passes by the best estimates.
     isolator : str

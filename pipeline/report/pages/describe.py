@@ -7,6 +7,7 @@ from functools import lru_cache
 from math import isfinite, isnan
 
 from pipeline.records import (
+    Anchorage,
     Assessment,
     Check,
     Estimate,
@@ -127,7 +128,12 @@ def furniture(scene: Scene) -> str:
         Origin.STATED: _("stated by a house rule"),
         Origin.ASSUMED: _("assumed"),
     }
-    return f"{told[scene.furniture]} ({known[scene.stands_by]})"
+    held = {
+        None: "",
+        Anchorage.ANCHORED: _(", fastened"),
+        Anchorage.UNANCHORED: _(", not fastened"),
+    }[scene.anchorage]
+    return f"{told[scene.furniture]} ({known[scene.stands_by]}){held}"
 
 
 def furniture_known(counts: Mapping[str, int]) -> str:
