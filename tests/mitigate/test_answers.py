@@ -245,10 +245,12 @@ def test_a_mount_holds_a_flexible_object_at_the_low_end_of_its_damping(motion: M
     assert (damping.low, damping.value) == (0.01, 0.02)
     advice = solve(bending, motion)
     assert advice.measure == "fasten"
-    at = respond("oscillator", motion, angle=None, frequency=4.0, damping=[damping.low, damping.value])
+    # Of the worst direction 1 - cos(0.1 deg) is missed.
+    finely = {"angle": None, "azimuth_step": 0.2}
+    at = respond("oscillator", motion, **finely, frequency=4.0, damping=[damping.low, damping.value])
     least_damped, best = at["pseudo_acceleration"]
     assert least_damped > 1.02 * best
-    assert advice.parameters["force"] == pytest.approx(500.0 * least_damped)
+    assert advice.parameters["force"] == pytest.approx(500.0 * least_damped, rel=3e-6)
 
 
 HOOKED = replace(PICTURE, hanging=Hanging.TWO_HOOKS, suspension_length_m=None)
