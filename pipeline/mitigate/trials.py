@@ -32,7 +32,7 @@ TRANSMITTED_ERROR = 0.03
 What stands on it slides at most 0.5 % off then, and is lifted 0.3 % off; 1e-3 would take eight times as long.
 """
 
-TIGHT = 0.05
+TIGHT = 0.1
 """Share of a demand within which a bound of it says as much as the demand."""
 
 SAMPLING_FACTOR = 1.005

@@ -130,7 +130,7 @@ def test_models_and_respond_for_programs(tmp_path: Path) -> None:
     rows = json.loads(kouros("models", "--json", folder=tmp_path).stdout)
     assert {"rocking", "standing", "sliding", "stress", "flexible_stress", "swing", "swing_3d", "friction_isolator",
             "horizontal_isolator", "rotational_isolator", "oscillator", "unhooking",
-            "hanger_load"} == {row["name"] for row in rows}  # fmt: skip
+            "hanger_load", "unanchored"} == {row["name"] for row in rows}  # fmt: skip
     done = kouros("respond", "sliding", "friction_static=0.05,0.1", "--json", folder=tmp_path)
     slides = [row["displacement"] for row in json.loads(done.stdout)]
     assert slides[0] > slides[1] > 0.0

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from lxml import etree
+from selenium.webdriver.support.ui import WebDriverWait
 
 from pipeline.operations.workspace import open_workspace
 from pipeline.records import RunRecord
@@ -74,8 +75,9 @@ def test_it_can_be_used_soon(browser: Chrome, page: Path, record_property: pytes
 
 def test_sorting_and_filtering(browser: Chrome, page: Path) -> None:
     browser.get(page.as_uri())
+    # On a machine that is busy the page is there before its script has run.
+    WebDriverWait(browser, 20.0).until(lambda b: len(b.find_elements("css selector", ".list thead button")) == 5)
     buttons = browser.find_elements("css selector", ".list thead button")
-    assert len(buttons) == 5
     before = browser.execute_script("return [...document.querySelectorAll('.list tbody tr')].map(r => r.dataset.p)")
     buttons[2].click()
     sizes = browser.execute_script(
