@@ -26,7 +26,7 @@ from pipeline.models.common import largest_push
 from pipeline.models.oscillator import OSCILLATOR
 from pipeline.models.sliding import SLIDING
 from pipeline.quantities import Array, G
-from pipeline.records import Excitation, Motion
+from pipeline.records import Excitation, Executor, Motion
 
 PER_PERIOD = 15.0
 """Samples of what furniture passes on in a period of its own, at least."""
@@ -44,7 +44,7 @@ SLIPPERY = (0.3, 0.7)
 """Frictions of the bodies that stand for what slides, as shares of what holds one under the motion of the floor."""
 
 
-def furnished(level: LevelMotions, furniture: FurnitureFilter | None) -> LevelMotions:
+def furnished(level: LevelMotions, furniture: FurnitureFilter | None, executor: Executor | None = None) -> LevelMotions:
     """Return a level as what stands in some furniture feels it.
 
     Parameters
@@ -53,6 +53,8 @@ def furnished(level: LevelMotions, furniture: FurnitureFilter | None) -> LevelMo
         The motions of the floor; those of something that stands on it already come back as they are.
     furniture : FurnitureFilter or None
         None: nothing is between the object and its floor.
+    executor : Executor, optional
+        Where what it passes on is found; None: here.
 
     Returns
     -------
@@ -65,7 +67,7 @@ def furnished(level: LevelMotions, furniture: FurnitureFilter | None) -> LevelMo
     """
     if furniture is None or level.passed_on:
         return level
-    return level.through(partial(_whole_grid if furniture.resonant else _variants, furniture=furniture))
+    return level.through(partial(_whole_grid if furniture.resonant else _variants, furniture=furniture), executor)
 
 
 def isolating(level: LevelMotions, furniture: FurnitureFilter | None) -> LevelMotions:

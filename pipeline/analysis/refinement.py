@@ -8,6 +8,7 @@ sets of analyses that are still open, and of those only the ones that the answer
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,7 +84,9 @@ class FidelitySearch:
                 if places.setdefault(motion.hash, len(every)) == len(every):
                     every.append(motion)
             cells.append(tuple(places[motion.hash] for motion in some))
-        found = [bounded(work, motion, outputs, context.executor, whole=auto) for motion in every]
+        # Of few sets under many motions each motion is worth a core: a searched spectrum is of one motion.
+        each = partial(bounded, work, outputs=outputs, executor=context.executor, whole=auto)
+        found = context.executor.map(each, every)
         effort = Effort(analyses=work.scenes.size, sets=work.size * len(found))
         decided = np.zeros(work.scenes.size, dtype=np.int8)
         return cls(work, level, context, numerics, found, tuple(cells), decided, effort)
@@ -432,7 +435,8 @@ def examine(
     outputs: dict[str, list[int]] = {}
     for at, (output, _) in enumerate(capacities):
         outputs.setdefault(output, []).append(at)
-    search = FidelitySearch.begin(work, furnished(level, work.furniture), tuple(outputs), context, numerics)
+    shaken = furnished(level, work.furniture, context.executor)
+    search = FidelitySearch.begin(work, shaken, tuple(outputs), context, numerics)
     watch(search)
     cases = []
     for output, members in outputs.items():

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.quantities import Array
-from pipeline.records import Estimate, Model, Motion, Origin, Scene, Verdict
+from pipeline.records import Estimate, Executor, Model, Motion, Origin, Scene, Verdict
 
 EAST = 90.0
 """Azimuth of the x axis where a site does not turn it [degrees clockwise from north]."""
@@ -54,12 +54,14 @@ class LevelMotions:
         """The motions under all variants, each once."""
         return tuple({motion.hash: motion for some in self.variants for motion in some}.values())
 
-    def through(self, passed: Callable[[Motion], Sequence[Motion]]) -> LevelMotions:
+    def through(self, passed: Callable[[Motion], Sequence[Motion]], executor: Executor | None = None) -> LevelMotions:
         """Return the level as it is passed on.
 
-        passed : a motion -> the same as each variant passes it on, the best estimates first; always as many
+        passed   : a motion -> the same as each variant passes it on, the best estimates first; always as many
+        executor : where that is found; None: here
         """
-        each = [[passed(motion) for motion in some] for some in self.variants]
+        every = executor.map if executor else lambda work, some: [work(one) for one in some]
+        each = [every(passed, some) for some in self.variants]
         variants = [tuple(made[at] for made in some) for some in each for at in range(len(some[0]))]
         return replace(self, motions=variants[0], others=tuple(variants[1:]), site=self.told)
 
