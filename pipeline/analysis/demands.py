@@ -90,7 +90,9 @@ class Demands:
             exact = self._exact(output)
             if errors is None:
                 if not exact:
-                    low[rows], high[rows] = value, value
+                    # A search is off by as much when it is made again: what it was bounded by goes on to hold.
+                    found = ~self.work.searched[rows]
+                    low[rows[found]] = high[rows[found]] = value[found]
                 continue
             # What is tabulated is never below zero; the bounds go on to hold.
             low[rows] = np.clip(value - errors[output], low[rows], high[rows])

@@ -8,7 +8,7 @@ half width, what stands at a height z [m] above the middle of its base moves by
 
 .. math::
 
-    u + z \sin \theta, \qquad b \left| \sin \theta \right|
+    u + z \sin \theta, \qquad b \left| \sin \theta \right| - z \left(1 - \cos \theta\right)
 
 along and upwards, against the floor.  The latter is of the first direction alone: a body lifts on one edge.
 """
@@ -113,7 +113,7 @@ def _rocked(motion: Motion, body: LooseBody) -> Motion:
         along = np.cos(way) * x + np.sin(way) * y
         felt.append(_felt(along, moved, ground.dt))
         if way == turn:
-            rise = body.half_width * np.abs(np.sin(theta))
+            rise = body.half_width * np.abs(np.sin(theta)) - body.shelf_height * (1.0 - np.cos(theta))
         changes = np.flatnonzero(np.diff(moved))
         moves = max(moves, int(changes[-1]) + 3 if changes.size else 0)
     ends = max(2, min(ends, moves))

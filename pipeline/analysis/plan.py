@@ -99,6 +99,12 @@ class Work:
         first, place = _unique_rows(np.column_stack([*self.values.values(), self.angles]))
         return first[place]
 
+    @cached_property
+    def searched(self) -> NDArray[np.bool_]:
+        """Of which parameter sets the model searches a band, (k,)."""
+        ends = [(self.values[lower], self.values[upper]) for lower, upper in self.model.searched.items()]
+        return np.any([upper > lower for lower, upper in ends], axis=0) if ends else np.zeros(self.size, dtype=bool)
+
     def some(self, rows: Indices) -> dict[str, Array]:
         """Return the parameters of some rows."""
         return {name: column[rows] for name, column in self.values.items()}

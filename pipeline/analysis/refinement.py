@@ -85,7 +85,9 @@ class FidelitySearch:
                     every.append(motion)
             cells.append(tuple(places[motion.hash] for motion in some))
         # Of few sets under many motions each motion is worth a core: a searched spectrum is of one motion.
-        each = partial(bounded, work, outputs=outputs, executor=context.executor, whole=auto)
+        # The bound of a searched band is all that there is to know of it, at any fidelity.
+        whole = auto or bool(work.searched.any())
+        each = partial(bounded, work, outputs=outputs, executor=context.executor, whole=whole)
         found = context.executor.map(each, every)
         effort = Effort(analyses=work.scenes.size, sets=work.size * len(found))
         decided = np.zeros(work.scenes.size, dtype=np.int8)
@@ -314,9 +316,7 @@ class FidelitySearch:
 
     def _banded(self, part: DemandCase) -> Mask:
         """Return of which analyses something is searched for over a band."""
-        upper = [self.work.values[name] for name in self.work.model.searched.values()]
-        searched = np.any([~np.isnan(column) for column in upper], axis=0) if upper else np.zeros(self.work.size, bool)
-        return np.asarray(part.spans.highest(searched.astype(np.float64)) > 0.0)
+        return np.asarray(part.spans.highest(self.work.searched.astype(np.float64)) > 0.0)
 
     def _tell_bests(self, part: DemandCase) -> None:
         """Find the demand of the best estimates alone.

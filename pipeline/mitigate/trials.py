@@ -467,7 +467,8 @@ def why_not(scene: Scene, findings: Sequence[Finding]) -> str:
     if not worst:
         return "none of its models can be run then"
     times, finding = max(worst, key=lambda pair: pair[0])
-    if finding.fidelity == "bound" and (finding.error or 0.0) > TIGHT * (finding.demand or 0.0):
+    error, demand = finding.error or 0.0, finding.demand or 0.0
+    if finding.fidelity == "bound" and error and (isinf(error) or error > TIGHT * demand):
         return f"{finding.title.lower()} may still be more than is allowed"
     if finding.high is not None and isinf(finding.high):
         return f"nothing limits {finding.title.lower()} then"

@@ -6,11 +6,10 @@ that lasts, and closer where it has an extremum.  The grid does not depend on th
 once for all who ask: a piece of it at a time, for each shaking and damping.
 """
 
+from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import lru_cache
 from hashlib import blake2b
-from weakref import WeakValueDictionary
+from threading import Lock
 
 import numpy as np
 
@@ -50,25 +49,33 @@ _GRAIN = 2.0**30
 """Steps to the peak in which shaking is told apart, so that what is only scaled has the same spectrum, scaled."""
 
 _KEPT = 65536
-"""Pieces of spectra that are remembered, of 2 kB as a rule."""
+"""Pieces of spectra that are remembered, of 2 kB as a rule: without what they are spectra of."""
 
 
-@dataclass(frozen=True)
-class _Shaking:
-    """Shaking along one direction or in two with a peak of 1, known by its contents."""
+class _Pieces:
+    """Pieces of spectra by the contents of the shaking, the damping and their place: the latest asked for."""
 
-    key: bytes
-    excitation: Excitation
+    def __init__(self) -> None:
+        self._kept: OrderedDict[tuple[bytes, float, int], tuple[Array, Array]] = OrderedDict()
+        self._lock = Lock()
 
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Shaking) and self.key == other.key
+    def of(self, key: bytes, shaking: Excitation, zeta: float, piece: int) -> tuple[Array, Array]:
+        """Return the natural logarithms of frequencies over a piece and a step beyond, and the spectrum there."""
+        place = key, zeta, piece
+        with self._lock:
+            found = self._kept.get(place)
+            if found is not None:
+                self._kept.move_to_end(place)
+                return found
+        found = _piece(shaking, zeta, piece)
+        with self._lock:
+            self._kept[place] = found
+            if len(self._kept) > _KEPT:
+                self._kept.popitem(last=False)
+        return found
 
-    def __hash__(self) -> int:
-        return hash(self.key)
 
-
-_known: "WeakValueDictionary[bytes, _Shaking]" = WeakValueDictionary()
-"""One of each, however many pieces of its spectrum are remembered."""
+_pieces = _Pieces()
 
 
 def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array) -> tuple[Array, Array]:
@@ -91,7 +98,7 @@ def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array)
     peak = max(float(np.abs(way).max(initial=0.0)) for way in _ways(motion))
     if peak == 0.0 or low.size == 0:
         return np.zeros_like(low), np.zeros_like(low)
-    shaking = _shaking(motion, peak)
+    key, shaking = _unit_shaking(motion, peak)
     # Parameter sets differ in more than these: each band is searched once.
     order = np.lexsort((zeta, high, low))
     rows = np.column_stack([low, high, zeta])[order]
@@ -107,7 +114,7 @@ def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array)
             chosen = np.flatnonzero((bands[:, 2] == damping) & (begin <= top) & (end >= bottom))
             if chosen.size == 0:
                 continue
-            logs, values = _piece(shaking, float(damping), piece)
+            logs, values = _pieces.of(key, shaking, float(damping), piece)
             ends = np.log([np.maximum(begin[chosen], bottom), np.minimum(end[chosen], top)])
             for fold, best in ((np.minimum, least), (np.maximum, most)):
                 best[chosen] = fold(best[chosen], _between(fold, logs, values, ends))
@@ -130,26 +137,24 @@ def _ways(motion: Excitation) -> tuple[Array, ...]:
     return (motion.x,) if motion.y is None else (motion.x, motion.y)
 
 
-def _shaking(motion: Excitation, peak: float) -> _Shaking:
+def _unit_shaking(motion: Excitation, peak: float) -> tuple[bytes, Excitation]:
+    """Return shaking with a peak of 1, and a digest of its contents before it."""
     grains = [np.rint(way / peak * _GRAIN) for way in _ways(motion)]
     digest = blake2b(np.array([motion.dt, -1.0 if motion.tail is None else motion.tail]).tobytes(), digest_size=16)
     for one in grains:
         digest.update(one.tobytes())
-    key = digest.digest()
     x, y = grains[0] / _GRAIN, grains[1] / _GRAIN if len(grains) > 1 else None
-    return _known.setdefault(key, _Shaking(key, Excitation(motion.dt, x, y, np.zeros_like(x), motion.tail)))
+    return digest.digest(), Excitation(motion.dt, x, y, np.zeros_like(x), motion.tail)
 
 
-@lru_cache(maxsize=_KEPT)
-def _piece(shaking: _Shaking, zeta: float, piece: int) -> tuple[Array, Array]:
-    """Return the natural logarithms of frequencies over a piece and a step beyond, and the spectrum there."""
+def _piece(shaking: Excitation, zeta: float, piece: int) -> tuple[Array, Array]:
     whole = np.log(10.0) / PIECES
     steps = int(np.ceil(whole / min(WIDEST, 2.0 * max(zeta, LEAST_DAMPING) / PER_WIDTH)))
     logs = piece * whole + np.arange(-1, steps + 2) * (whole / steps)
 
     def spectrum(at: Array) -> Array:
         w = 2.0 * np.pi * np.exp(at)
-        return np.asarray(w**2 * oscillate_any(shaking.excitation, w, np.full_like(w, zeta)))
+        return np.asarray(w**2 * oscillate_any(shaking, w, np.full_like(w, zeta)))
 
     return _refined(spectrum, logs, spectrum(logs))
 

@@ -106,7 +106,8 @@ def _pushes(motion: Excitation, parameters: Mapping[str, Array]) -> tuple[Array,
     In two directions those of the worst of all.
     """
     low, high, zeta = (parameters[name] for name in ("frequency", "frequency_high", "damping"))
-    banded = ~np.isnan(high)
+    # What is known as one frequency, if only as the best estimate of a range, is run at that.
+    banded = high > low
     least, most = np.empty_like(low), np.empty_like(low)
     # Parameter sets differ in more than these: each oscillator is run once.
     oscillators, place = np.unique(np.column_stack([low, zeta])[~banded], axis=0, return_inverse=True)
@@ -126,7 +127,7 @@ def _run_flexible(
     least, push = _pushes(motion, parameters)
     out = section_stresses(push, parameters)
     error, note = out.pop("error"), out.pop("note")
-    error += np.where(np.isnan(parameters["frequency_high"]), 0.0, MISSED * out["compression"])
+    error += np.where(parameters["frequency_high"] > parameters["frequency"], OVER * out["compression"], 0.0)
     lowest = section_stresses(least, parameters)["tension"]
     return {**out, "pseudo_acceleration": push, "tension_least": lowest, "error": error, "note": note}
 
@@ -146,7 +147,7 @@ def _bound(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
 
 def _bound_flexible(motion: Excitation, parameters: Mapping[str, Array]) -> Bounds:
     # Along one direction the bound is the stress itself, and of all directions it is the worst of them.
-    single = np.isnan(parameters["frequency_high"])
+    single = ~(parameters["frequency_high"] > parameters["frequency"])
     sides = 1.0 - np.where(single, PROMISED, OVER), 1.0 + np.where(single, PROMISED, MISSED)
     least, most = _pushes(motion, parameters)
     low, high = (section_stresses(side * most, parameters) for side in sides)

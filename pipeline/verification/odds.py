@@ -151,7 +151,7 @@ def friction_of(body: BodyTable) -> Range:
     values = assumed()
     material = values.material_in(what)
     found = span(values.friction_of("" if material is None else material.friction_as, on))
-    return replace(found, source=f"table of frictions, {said or 'of any pair'}")
+    return replace(found, source=f"{found.source}; for {said or 'any pair'}")
 
 
 def shape_of(experiment: Experiment, body: BodyTable) -> Shape:
