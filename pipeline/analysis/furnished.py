@@ -22,7 +22,6 @@ from pipeline.analysis.model_runs import prepare
 from pipeline.analysis.response import trace
 from pipeline.analysis.transmission import transmit
 from pipeline.analysis.verdicts import LevelMotions
-from pipeline.models.common import largest_push
 from pipeline.models.oscillator import OSCILLATOR
 from pipeline.models.sliding import SLIDING
 from pipeline.quantities import Array, G
@@ -172,7 +171,8 @@ def _sketch(motion: Motion, frequency: float, damping: float) -> Motion:
 
 
 def _acceleration(motion: Motion) -> float:
-    return largest_push(motion.excitation(None))
+    # Not `largest_push`, which would remember sketches that nobody asks for again.
+    return float(np.hypot(*motion.acceleration[:2]).max())
 
 
 def _velocity(motion: Motion) -> float:

@@ -67,11 +67,11 @@ def respond(
     pandas.DataFrame
         One row a parameter set: the model's outputs, ``error`` (estimated, in the unit of the first output),
         ``fidelity``, ``note``, and ``angle`` (degrees, the direction of the row; empty for two directions, and for a
-        worst direction from a chart or of dynamic stress, which looks for no angle).  Where a chart was asked for, ``fidelity`` says of each row whether it came from
-        one: what lies outside of it, or where it is not good enough, is integrated.  At fidelity "bound" ``low`` and
-        ``high`` follow, between which the first output lies for certain (in any direction where the angle is None).
-        Each output holds its upper bound then, or is empty where it has none; a yes, or a count, is only what is
-        certain, and ``error`` is high - low.
+        worst direction from a chart or of dynamic stress, which looks for no angle). Where a chart was asked for,
+        ``fidelity`` says of each row whether it came from one: what lies outside of it, or where it is not good enough,
+        is integrated. At fidelity "bound" ``low`` and ``high`` follow, between which the first output lies for certain
+        (in any direction where the angle is None). Each output holds its upper bound then, or is empty where it has
+        none; a yes, or a count, is only what is certain, and ``error`` is high - low.
 
     Raises
     ------
