@@ -39,6 +39,9 @@ _CASES = (
 )
 """Words by which the name of a case says that it is none; any other name is that of a showcase."""
 
+_NOT_FASTENED = re.compile(r"; (?:taken as )?not fastened, .*$", re.DOTALL)
+"""The end of a note of furniture that is not fastened, with who says so."""
+
 
 @dataclass(frozen=True, slots=True)
 class LooseBody:
@@ -260,11 +263,17 @@ def loose(scene: Scene) -> bool:
 def fastened(scene: Scene) -> Scene:
     """Return a scene whose furniture is fastened: what was assumed of it as a loose body is forgotten."""
     gone = {scene.parameters[name].note for name in OF_LOOSE if name in scene.parameters}
+    kept = {name: one for name, one in scene.parameters.items() if name not in OF_LOOSE}
+    said = {}
+    if FREQUENCY in kept:
+        before = kept[FREQUENCY].note
+        said[before] = _NOT_FASTENED.sub("; fastened", before)
+        kept[FREQUENCY] = replace(kept[FREQUENCY], note=said[before])
     return replace(
         scene,
         anchorage=Anchorage.ANCHORED,
-        parameters={name: one for name, one in scene.parameters.items() if name not in OF_LOOSE},
-        assumptions=tuple(text for text in scene.assumptions if text not in gone),
+        parameters=kept,
+        assumptions=tuple(said.get(text, text) for text in scene.assumptions if text not in gone),
     )
 
 

@@ -43,7 +43,7 @@ AT_BEST = (
 SIZED = "It holds so by the best estimates of weight, base and strength: weigh it and measure its base first."
 """Follows the sentence of a fixing that has its factor of safety by the best estimates, and whose models all pass."""
 
-ANCHORED = "Fasten what it stands in to the floor or a wall, and besides:"
+ANCHORED = "Fasten what it stands in to the floor or a wall first."
 """Comes before the sentence of a measure that is enough only where its furniture is fastened too."""
 
 Unit = tuple[Deficiency, ...]
@@ -116,12 +116,15 @@ def advise(
             out[index] = one
     still = [at for at, scene in enumerate(scenes) if loose(scene) and any(r.measure in LAST_RESORTS for r in out[at])]
     if still:
-        firm = [fastened(scenes[at]) for at in still]
+        # What is advised for a case is for all that stand in it.
+        cases = {case_of(scenes[at]) for at in still} - {None}
+        all_in = [at for at, scene in enumerate(scenes) if at in still or case_of(scene) in cases]
+        firm = [fastened(scenes[at]) if loose(scenes[at]) else scenes[at] for at in all_in]
         _, judged = assess(firm, levels, context.silent, numerics)
         again = advise(firm, judged, levels, context, numerics, catalogue=have, transmitted=transmitted)
-        for at, better in zip(still, again, strict=True):
+        for at, better in zip(all_in, again, strict=True):
             helped = {one.level: one for one in better if one.measure not in LAST_RESORTS}
-            out[at] = [_fastened_too(one, helped.get(one.level)) for one in out[at]]
+            out[at] = [_fastened_too(one, helped.get(one.level)) for one in out[at]] if at in still else out[at]
     return out
 
 

@@ -15,10 +15,12 @@ from pipeline.execute import Threads
 from pipeline.mitigate.installed import InstalledMeasure, placed
 from pipeline.mitigate.search import ANCHORED, advise
 from pipeline.motions import read_motion
-from pipeline.records import Anchorage, Finding, Furniture, Item, Motion, Support, Verdict
+from pipeline.records import Anchorage, Finding, Furniture, Item, Motion, Scene, Support, Verdict
 from pipeline.resources import resource
 from pipeline.tables import table
 from pipeline.tables.assumed import assumed_with
+
+from .scenes import TOWER
 
 CUP = Item("1", "G", title="Bowl", object_name="Bowl", support=Support.FREESTANDING, height_m=0.06, width_m=0.3,
            depth_m=0.3, base_width_m=0.3, base_depth_m=0.3, cg_height_m=0.03, mass_kg=1.0, friction=5.0,
@@ -33,6 +35,10 @@ def shaking() -> LevelMotions:
     demo = read_motion(resource("site_motions", "demo"))[0]
     part = demo.acceleration[:, round(15.0 / demo.dt) : round(30.0 / demo.dt)]
     return LevelMotions("design", "max", (Motion(demo.dt, part, "strong"),))
+
+
+def notes(scene: Scene) -> list[str]:
+    return [one.note for one in scene.parameters.values()]
 
 
 def _itself(finding: Finding) -> bool:
@@ -50,20 +56,27 @@ def test_furniture_that_may_fall_is_advised_to_be_fastened() -> None:
     assert after.anchorage is Anchorage.ANCHORED
     assert filter_of(after) == filter_of(classify(replace(CUP, furniture_anchorage=None)))
     assert not [text for text in after.assumptions if "friction on its floor" in text]
+    assert [text for text in scene.assumptions if text.endswith("; not fastened, as recorded")]
+    assert not [text for text in (*after.assumptions, *notes(after)) if "not fastened" in text]
 
 
-def test_what_helps_only_in_fastened_furniture_is_advised_with_that(tmp_path: Path) -> None:
-    """A slippery bowl without room in a case of the museum's that falls: held, and its case fastened besides."""
+def _placed_in_a_narrow_case(item: Item, folder: Path) -> Scene:
+    """Return it in a case of the museum's that falls unless it is fastened."""
     row = next(row for row in table("furniture") if row["furniture"] == "showcase")
     narrow = {"half_width": "0.1", "cg_height": "1", "friction": "0.8"}
     cells = {f"{name}{end}": value for name, value in narrow.items() for end in ("", "_low", "_high")}
-    file = tmp_path / "narrow.csv"
+    file = folder / "narrow.csv"
     with file.open("w", encoding="utf-8", newline="") as stream:
         writer = DictWriter(stream, row)
         writer.writeheader()
         writer.writerow(row | cells)
-    item = replace(CUP, friction=0.05, clearance_m=0.001)
-    scene, levels = classify(item, with_own(None, assumed_with({"furniture": file}))), [shaking()]
+    return classify(item, with_own(None, assumed_with({"furniture": file})))
+
+
+def test_what_helps_only_in_fastened_furniture_is_advised_with_that(tmp_path: Path) -> None:
+    """A slippery bowl without room in a case of the museum's that falls: held, and its case fastened besides."""
+    scene = _placed_in_a_narrow_case(replace(CUP, friction=0.05, clearance_m=0.001), tmp_path)
+    levels = [shaking()]
     _, findings = assess([scene], levels, Context(Threads(1)))
     (falls,) = (one for one in findings[0] if _itself(one))
     assert (falls.verdict, falls.outcome) == (Verdict.FAIL, "overturns with its furniture")
@@ -71,3 +84,17 @@ def test_what_helps_only_in_fastened_furniture_is_advised_with_that(tmp_path: Pa
     ((advice,),) = advise([scene], findings, levels, Context(Threads(1)))
     assert advice.measure not in ("anchor", "remove")
     assert advice.sentence.startswith(ANCHORED)
+
+
+def test_an_isolator_for_fastened_furniture_is_for_all_that_stand_in_it(tmp_path: Path) -> None:
+    """The bowl only wants its case fastened: it is a part of the tower's load all the same, 20 kg and 1 kg."""
+    tower = replace(TOWER, object_number="A", allowable_stress_pa=2e5, case="X", furniture=CUP.furniture,
+                    furniture_anchorage=CUP.furniture_anchorage)  # fmt: skip
+    bowl = replace(CUP, object_number="C", case="X", frequency_hz=tower.frequency_hz)
+    scenes, levels = [_placed_in_a_narrow_case(one, tmp_path) for one in (tower, bowl)], [shaking()]
+    _, findings = assess(scenes, levels, Context(Threads(1)))
+    (of_tower,), (of_bowl,) = advise(scenes, findings, levels, Context(Threads(1)))
+    assert of_tower.measure == "horizontal_isolator"
+    assert of_tower.sentence.startswith(f"{ANCHORED} Put case X, with C in it, on a horizontal isolator")
+    assert of_tower.parameters["load"] == tower.mass_kg + bowl.mass_kg
+    assert of_bowl.measure == "anchor"
