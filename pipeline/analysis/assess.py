@@ -102,13 +102,28 @@ def assess(
             needing=None if needing is None else [needing[index] for index in stands],
         )
         for index, some in zip(stands, judged, strict=True):
-            found[index] += [_moving(one, scenes[index], levels) for one in some] if outcomes else some
+            found[index] += [moving(one, scenes[index], levels) for one in some] if outcomes else some
     logger.info("assessed %d scenes at %d levels in %.2f s", len(scenes), len(levels), perf_counter() - began)
     return todo, found
 
 
-def _moving(finding: Finding, scene: Scene, levels: Sequence[LevelMotions]) -> Finding:
-    """Say how far furniture moves on its floor by the best estimates, where nothing else is said of what it does."""
+def moving(finding: Finding, scene: Scene, levels: Sequence[LevelMotions]) -> Finding:
+    """Say how far furniture moves on its floor by the best estimates, where nothing else is said of what it does.
+
+    Parameters
+    ----------
+    finding : Finding
+        Of the furniture.
+    scene : Scene
+        The object in it.
+    levels : sequence of LevelMotions
+        Those of the floor.
+
+    Returns
+    -------
+    Finding
+        With that in its sentence.
+    """
     shaken = filter_of(scene)
     if finding.sentence != ABOUT or shaken is None or shaken.loose is None:
         return finding

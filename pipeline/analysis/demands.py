@@ -15,7 +15,7 @@ from pipeline.analysis.response_charts import ChartCache
 from pipeline.cache import key_of
 from pipeline.quantities import Array
 from pipeline.records import Columns, Executor, Model, Motion, Numerics
-from pipeline.records.numerics import AUTO
+from pipeline.records.numerics import AUTO, CHART
 
 CHUNK = 96
 """Parameter sets in one task: small enough to share between workers, large enough to make the task worth its call."""
@@ -52,7 +52,7 @@ class Demands:
     step      : (k,) how far each row was taken
     low, high : by output that counts, (k,): between these lies what a history gives; it is both once it was run
     note      : (k,) bits, of the bounds
-    trail     : where it is a list, every step is kept there: which rows, and what was found
+    trail     : where it is a list, every step is kept there: the fidelity that it ran at, which rows, what was found
     """
 
     work: Work
@@ -62,11 +62,11 @@ class Demands:
     high: Columns
     note: Array
     _slot: NDArray[np.int32]
-    trail: list[tuple[Step, Indices, Columns]] | None = None
+    trail: list[tuple[str, Indices, Columns]] | None = None
     _kept: dict[str, list[Array]] = field(default_factory=dict)
     _count: int = 0
 
-    def settle(self, rows: Indices, columns: Columns, step: Step, errors: Columns | None = None) -> None:
+    def settle(self, rows: Indices, columns: Columns, step: Step, ran: str, errors: Columns | None = None) -> None:
         """Fill in what a chart or histories give for some rows.
 
         Parameters
@@ -77,6 +77,8 @@ class Demands:
             All outputs, "error" and "note", (n,) each, in the units of the model.
         step
             What gave them.
+        ran
+            The fidelity that it ran at.
         errors
             By output, (n,): how far off it may be; None: not at all.
         """
@@ -84,7 +86,7 @@ class Demands:
             return
         self.step[rows] = step
         if self.trail is not None:
-            self.trail.append((step, rows, columns))
+            self.trail.append((ran, rows, columns))
         for output, low in self.low.items():
             value, high = columns[output], self.high[output]
             exact = self._exact(output)
@@ -299,7 +301,8 @@ def integrate(found: Demands, rows: Indices, context: Context, numerics: Numeric
             if histories is not None:
                 histories.note(one.key, work.some(one.each[~one.there]), fresh)
             columns = {name: _merged(one.there, one.known.get(name), column) for name, column in fresh.items()}
-        found.settle(one.rows, {name: column[one.place] for name, column in columns.items()}, Step.HISTORY)
+        each = {name: column[one.place] for name, column in columns.items()}
+        found.settle(one.rows, each, Step.HISTORY, numerics.fidelity)
     return int(rows.size)
 
 
@@ -356,4 +359,4 @@ def chart(found: Demands, rows: Indices, charts: ChartCache, numerics: Numerics)
             output: CHART_SAFETY * looked.bounds[output][there] + HISTORY_ERROR * columns[output]
             for output in found.low
         }
-        found.settle(group[there], columns, Step.CHART, errors)
+        found.settle(group[there], columns, Step.CHART, CHART, errors)

@@ -94,8 +94,10 @@ def _taken(taken: "Taken") -> str:
 def _advice(advice: "Recommendation") -> Iterator[str]:
     values = ", ".join(f"{name} {_number(v)} {advice.units[name]}" for name, v in advice.parameters.items())
     yield f"  advice, {advice.level}: {advice.title}" + (f" ({values})" if values else "")
-    from pipeline.mitigate.search import ONLY_HERE
+    from pipeline.mitigate.search import ANCHORED, ONLY_HERE
 
+    if advice.sentence.startswith(ANCHORED):
+        yield f"    {ANCHORED}"
     if advice.sentence.endswith(ONLY_HERE):
         yield f"    {ONLY_HERE}"
     for check in advice.checks:

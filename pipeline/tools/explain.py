@@ -4,9 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isnan
 
-from pipeline.analysis.assess import assess
+from pipeline.analysis.assess import assess, moving
 from pipeline.analysis.context import Context
 from pipeline.analysis.findings import findings
+from pipeline.analysis.furniture import itself, loose
 from pipeline.analysis.plan import Work, plan
 from pipeline.analysis.refinement import FidelitySearch, examine
 from pipeline.analysis.verdicts import LevelMotions, capacity_of
@@ -22,7 +23,7 @@ from pipeline.night.run import named
 from pipeline.operations.workspace import Workspace, charts_of
 from pipeline.quantities import Array
 from pipeline.records import Estimate, Finding, Item, Numerics, Progress, Recommendation, Scene
-from pipeline.records.numerics import AUTO
+from pipeline.records.numerics import AUTO, CHART, SCAN
 from pipeline.store.decisions import InForce, decisions_in_force
 
 
@@ -37,12 +38,12 @@ class Taken:
     inputs : str
         Which of the uncertain inputs is at an end of its range, and the direction where it is known.
     step : str
-        Bound, chart, or the fidelity that was integrated at.
+        Bound, chart, or the fidelity that was integrated at: a scan only of the ends of a range.
     low, high : float
         Between these the demand lies, in the capacity's unit; of a chart its value less and plus its error, of a
         history the same.
     error : float or None
-        As the chart or the history states it; None of a bound.
+        As the chart or the history states it; None of a bound, and of a scan.
     told : str
         What the object does then, where the history tells.
     """
@@ -151,6 +152,11 @@ def _explain(
     numerics = workspace.settings.analysis.numerics
     todo = plan([one.scene], levels[0].x_azimuth)
     reasonings = [_reason(work, one.scene, level, context, numerics) for level in levels for work in todo.work]
+    if loose(one.scene) and reasonings:
+        body = itself(one.scene)
+        its = plan([body], levels[0].x_azimuth)
+        of_it = [_reason(work, body, level, context, numerics) for level in levels for work in its.work]
+        reasonings += [replace(r, finding=moving(r.finding, one.scene, levels)) for r in of_it]
     on_top = [assess_above([each], levels, context, numerics.integrated)[0] for each in (one, *others)]
     if one.above is not None:
         above = one.above
@@ -189,16 +195,16 @@ def _reason(work: Work, scene: Scene, level: LevelMotions, context: Context, num
             # Only `auto` asks for bounds besides certificates.
             if numerics.fidelity == AUTO or low[row] == high[row]:
                 taken.append(Taken(found.motion.name, names[row], "bound", float(low[row]), float(high[row])))
-        for step, rows, columns in found.trail or ():
-            fidelity = "chart" if step.name == "CHART" else numerics.integrated.fidelity
+        for fidelity, rows, columns in found.trail or ():
             for at, row in enumerate(rows.tolist()):
                 # Where the certificate is the demand, a history only tells what happens after.
                 value = float(low[row]) if exact else float(columns[case.output][at])
                 error = 0.0 if no_error else float(columns[work.model.error_of(case.output)][at])
-                off = error if fidelity == "chart" else 0.0
+                off = error if fidelity == CHART else 0.0
                 one = {name: float(column[at]) for name, column in columns.items()}
                 told = work.model.outcome(one, {name: float(v[row]) for name, v in work.values.items()})[1]
-                taken.append(Taken(found.motion.name, names[row], fidelity, value - off, value + off, error, told))
+                stated = None if fidelity == SCAN else error
+                taken.append(Taken(found.motion.name, names[row], fidelity, value - off, value + off, stated, told))
     return Reasoning(finding, case.estimates[0], tuple(taken))
 
 

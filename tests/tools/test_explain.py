@@ -1,6 +1,7 @@
 """`kouros run --explain`: what it prints is what a night finds, step by step, and nothing is stored."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,14 +9,17 @@ from click.testing import CliRunner, Result
 
 from pipeline.cli.commands import run as command
 from pipeline.cli.console import Console
+from pipeline.cli.explaining import explanation_lines
 from pipeline.cli.options import Options
 from pipeline.collection.database import open_database
+from pipeline.mitigate.search import ANCHORED
 from pipeline.night.run import run
 from pipeline.operations.workspace import open_workspace
 from pipeline.records import DecisionKind
-from pipeline.settings import Settings
+from pipeline.settings import Settings, load_settings
 from pipeline.store.runs import list_runs, load_run
 from pipeline.tools.decisions import Wish, decide
+from pipeline.tools.explain import explain
 from tests.museum import workspace
 
 ROWS = [
@@ -108,3 +112,33 @@ def test_what_stands_on_an_installed_isolator_is_explained_as_the_night_judged_i
     assert spoken.exit_code == 0
     assert "\x1b" not in spoken.stdout
     assert "isolator passes on" in spoken.stdout
+
+
+def test_furniture_that_is_not_fastened_is_explained_as_the_night_judged_it(tmp_path: Path) -> None:
+    """Whether its furniture falls is reasoned too, and that it is fastened first; a scan states no error."""
+    settings = workspace(tmp_path, ROWS)
+    file = tmp_path / "kouros.toml"
+    rule = 'furniture = "showcase"\nfurniture_anchorage = "unanchored"\nsaid_by = "a test"\nsaid_on = 2026-01-01\n'
+    rule = f'\n[[house]]\nsupport = "freestanding"\n{rule}'
+    file.write_text(file.read_text(encoding="utf-8") + rule, encoding="utf-8")
+    settings = load_settings(file)
+    run(settings, Console(quiet=True))
+    (night,) = [a for a in load_run(open_database(settings.database)).assessments if a.scene.item.object_number == "1"]
+    assert [f.model for f in night.findings].count("unanchored") == 1
+    (one,) = json.loads(explained(settings, "1", "--json").stdout)
+    assert [(r["finding"]["model"], r["finding"]["verdict"], r["finding"]["sentence"]) for r in one["reasonings"]] == [
+        (f.model, f.verdict.value, f.sentence) for f in night.findings
+    ]
+    assert one["scene"]["skipped"] == dict(night.scene.skipped)
+    assert [(a["measure"], a["sentence"]) for a in one["advice"]] == [
+        (r.measure, r.sentence) for r in night.recommendations
+    ]
+    taken = [t for r in one["reasonings"] for t in r["taken"]]
+    assert {t["error"] for t in taken if t["step"] == "scan"} == {None}
+    spoken = explained(settings, "1").stdout
+    assert "scan " in spoken
+    assert "nan" not in spoken
+    (reasoned,) = explain(open_workspace(settings), "1", Console(quiet=True))
+    (advice,) = reasoned.advice
+    too = replace(reasoned, advice=(replace(advice, sentence=f"{ANCHORED} {advice.sentence}"),))
+    assert set(explanation_lines(too)) - set(explanation_lines(reasoned)) == {f"    {ANCHORED}"}
