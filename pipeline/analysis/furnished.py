@@ -75,6 +75,7 @@ def isolating(level: LevelMotions, furniture: FurnitureFilter | None) -> LevelMo
     What an isolator passes on is dear to find and to keep, so that of the variants there is one alone: that of the
     farthest slip of a body of little friction, which an isolator is.  Four kinds of isolators moved at most a seventh
     further under any other one, under three motions.  Their own movement is found under all of them (`furnished`).
+    Of furniture that is not fastened that variant is of what moves last, and two of what rocks first come with it.
 
     Parameters
     ----------
@@ -84,7 +85,7 @@ def isolating(level: LevelMotions, furniture: FurnitureFilter | None) -> LevelMo
     Returns
     -------
     LevelMotions
-        With that variant, where the furniture shakes.
+        With that variant, or those, where the furniture shakes.
     """
     if furniture is None or level.passed_on:
         return level
@@ -93,7 +94,10 @@ def isolating(level: LevelMotions, furniture: FurnitureFilter | None) -> LevelMo
 
 def _for_isolators(motion: Motion, *, furniture: FurnitureFilter) -> tuple[Motion, ...]:
     every = _variants(motion, furniture=furniture)
-    return every[1:2] if not furniture.frequency else every[EVEN + MEASURES - 1 : EVEN + MEASURES]
+    if not furniture.frequency:
+        return every[1:2]
+    rocking = () if furniture.loose is None else every[EVEN + MEASURES + 1 : EVEN + MEASURES + 3]
+    return every[EVEN + MEASURES - 1], *rocking
 
 
 def best_furnished(motions: Sequence[Motion], furniture: FurnitureFilter | None) -> tuple[Motion, ...]:

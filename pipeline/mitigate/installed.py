@@ -17,6 +17,7 @@ from pipeline.mitigate.measures.base import held
 from pipeline.models import model_named, tips
 from pipeline.models.rocking import ROCKING
 from pipeline.models.sliding import SLIDING
+from pipeline.models.unanchored import UNANCHORED
 from pipeline.records import Finding, Numerics, Scene
 
 ON_TOP = "Under the motion that its isolator passes on"
@@ -150,7 +151,9 @@ def assess_above(
             skipped: dict[str, str] = {}
             for scene, under in _shaken(above, transfer[0], levels, passed):
                 plan, judged = assess([scene], under, context, numerics)
-                found += judged[0] if under is levels else [_told_above(finding) for finding in judged[0]]
+                # Its furniture is judged with the isolator, which stands in it.
+                own = [finding for finding in judged[0] if finding.model != UNANCHORED.name]
+                found += own if under is levels else [_told_above(finding) for finding in own]
                 skipped |= plan.skipped[0]
             out[index] = found, skipped
     return out

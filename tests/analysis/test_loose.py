@@ -12,7 +12,7 @@ import pytest
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
-from pipeline.analysis.furnished import EVEN, _variants
+from pipeline.analysis.furnished import EVEN, _variants, isolating
 from pipeline.analysis.furniture import FurnitureFilter, LooseBodies, LooseBody, filter_of
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.house.questions import rule_questions
@@ -74,6 +74,19 @@ def test_what_neither_slides_nor_rocks_passes_on_what_shakes_it() -> None:
     # Two variants more, of what would rock first: under the hardest push, and under the floor's own.
     before, after = [motion.hash for motion in fast], [motion.hash for motion in loose]
     assert after == [*before[:-2], before[1 + EVEN], before[-1], *before[-2:]]
+
+
+def test_isolators_are_tried_on_what_rocks_first_too() -> None:
+    """What moves last may rest where a narrower case of the same kind rocks: its shaking comes with the one variant."""
+    level, firm = LevelMotions("design", "max", (strong(),)), bodies(HELD)
+    alone = isolating(level, FurnitureFilter(*_plain(firm)))
+    tippy = isolating(level, replace(firm, loose=LooseBodies(HELD, HELD, ROCKS, HELD)))
+    assert len(alone.variants) == 1
+    assert [motion.hash for motion in tippy.variants[0]] == [motion.hash for motion in alone.motions]
+    rocked = passed_on(strong(), ROCKS)
+    assert rocked.hash != strong().hash
+    assert rocked.hash in {motion.hash for some in tippy.others for motion in some}
+    assert len(tippy.variants) == 3
 
 
 def _plain(furniture: FurnitureFilter) -> tuple[tuple[float, ...], tuple[float, ...], float]:
