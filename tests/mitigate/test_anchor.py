@@ -12,15 +12,17 @@ from pipeline.analysis.furniture import filter_of
 from pipeline.analysis.rules import with_own
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
-from pipeline.mitigate.installed import InstalledMeasure, placed
+from pipeline.mitigate.catalogue import own_catalogue
+from pipeline.mitigate.installed import InstalledMeasure, assess_above, placed
 from pipeline.mitigate.search import ANCHORED, advise
 from pipeline.motions import read_motion
 from pipeline.records import Anchorage, Finding, Furniture, Item, Motion, Scene, Support, Verdict
+from pipeline.records.numerics import HISTORIES
 from pipeline.resources import resource
 from pipeline.tables import table
 from pipeline.tables.assumed import assumed_with
 
-from .scenes import TOWER
+from .scenes import BLOCK, TOWER
 
 CUP = Item("1", "G", title="Bowl", object_name="Bowl", support=Support.FREESTANDING, height_m=0.06, width_m=0.3,
            depth_m=0.3, base_width_m=0.3, base_depth_m=0.3, cg_height_m=0.03, mass_kg=1.0, friction=5.0,
@@ -98,3 +100,21 @@ def test_an_isolator_for_fastened_furniture_is_for_all_that_stand_in_it(tmp_path
     assert of_tower.sentence.startswith(f"{ANCHORED} Put case X, with C in it, on a horizontal isolator")
     assert of_tower.parameters["load"] == tower.mass_kg + bowl.mass_kg
     assert of_bowl.measure == "anchor"
+
+
+def test_furniture_under_a_pad_is_judged_once() -> None:
+    """A pad is tried on the floor twice, and installed run with what stands on it: its furniture is one and the same."""
+    weak = LevelMotions("design", "max", (shaking().motions[0].scaled(0.35, "weak"),))
+    item = replace(BLOCK, clearance_m=0.0005, furniture=CUP.furniture, furniture_anchorage=CUP.furniture_anchorage)
+    scene, own = classify(item), own_catalogue()
+    pads = replace(
+        own, measures=tuple(one for one in own.measures if one.name == "friction_isolator" or one.last_resort)
+    )
+    _, findings = assess([scene], [weak], Context(Threads(1)))
+    ((advice,),) = advise([scene], findings, [weak], Context(Threads(1)), catalogue=pads)
+    assert advice.measure == "friction_isolator"
+    assert [check.model for check in advice.checks] == ["rocking", "unanchored", "friction_isolator", "stress"]
+    pad = placed(scene, [InstalledMeasure(advice.measure, advice.parameters, "Ann")])
+    _, below = assess([pad.scene], [weak], Context(Threads(1)))
+    ((above, _),) = assess_above([pad], [weak], Context(Threads(1)), HISTORIES)
+    assert [finding.model for finding in (*below[0], *above)].count("unanchored") == 1
