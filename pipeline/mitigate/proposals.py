@@ -156,6 +156,10 @@ class Proposal:
     reason: str = ""
 
 
+UNCONCERNED = Proposal()
+"""Where a measure has nothing to do with an object: nothing is said of it."""
+
+
 def refused(reason: str) -> Proposal:
     """Return that a measure does not suit, and why."""
     return Proposal((), reason)

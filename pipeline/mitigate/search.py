@@ -12,9 +12,11 @@ from pipeline.analysis.furniture import FurnitureFilter, fastened, filter_of, lo
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures import Measure
+from pipeline.mitigate.measures.anchor import Anchor
 from pipeline.mitigate.measures.base import UNKNOWN_FREQUENCY, bends
 from pipeline.mitigate.measures.remove import LAST_RESORTS
 from pipeline.mitigate.proposals import (
+    UNCONCERNED,
     Candidate,
     Case,
     Deficiency,
@@ -122,16 +124,33 @@ def advise(
         firm = [fastened(scenes[at]) if loose(scenes[at]) else scenes[at] for at in all_in]
         _, judged = assess(firm, levels, context.silent, numerics)
         again = advise(firm, judged, levels, context, numerics, catalogue=have, transmitted=transmitted)
+        starts = tuple(f"{measure.row.title}: " for measure in have.measures if isinstance(measure, Anchor))
         for at, better in zip(all_in, again, strict=True):
-            helped = {one.level: one for one in better if one.measure not in LAST_RESORTS}
-            out[at] = [_fastened_too(one, helped.get(one.level)) for one in out[at]] if at in still else out[at]
+            if at in still:
+                helped = {one.level: one for one in better if one.measure not in LAST_RESORTS}
+                out[at] = [_fastened_too(one, helped.get(one.level), findings[at], starts) for one in out[at]]
     return out
 
 
-def _fastened_too(found: Recommendation, better: Recommendation | None) -> Recommendation:
+def _fastened_too(
+    found: Recommendation, better: Recommendation | None, before: Sequence[Finding], starts: tuple[str, ...]
+) -> Recommendation:
+    """Return what helps in fastened furniture, beside what was found of the object as it stands.
+
+    starts : with what the words begin why fastening its furniture alone is not enough
+    """
     if better is None or found.measure not in LAST_RESORTS:
         return found
-    return replace(better, sentence=f"{ANCHORED} {better.sentence}")
+    demands = {finding.model: finding.demand for finding in before if finding.level == found.level}
+    return replace(
+        better,
+        sentence=f"{ANCHORED} {better.sentence}",
+        checks=tuple(
+            check if check.before is None else replace(check, before=demands.get(check.model))
+            for check in better.checks
+        ),
+        rejected=(*(text for text in found.rejected if text.startswith(starts)), *better.rejected),
+    )
 
 
 def _advised(
@@ -289,9 +308,9 @@ class _Search:
         asked = []
         for unit, proposal, candidates in units:
             candidate = next(candidates, None)
-            if candidate is None:
+            if candidate is None and proposal is not UNCONCERNED:
                 self._reject(unit, measure, proposal.reason or last.get(unit, "not enough"))
-            else:
+            elif candidate is not None:
                 asked.append((unit, proposal, candidates, candidate))
         found = iter(self.runner.run([trial for *_, candidate in asked for trial in candidate.every]))
         still = []

@@ -103,7 +103,7 @@ def test_an_isolator_for_fastened_furniture_is_for_all_that_stand_in_it(tmp_path
 
 
 def test_furniture_under_a_pad_is_judged_once() -> None:
-    """A pad is tried on the floor twice, and installed run with what stands on it: its furniture is one and the same."""
+    """A pad is tried on the floor twice, and installed run with what stands on it: its furniture is the same."""
     weak = LevelMotions("design", "max", (shaking().motions[0].scaled(0.35, "weak"),))
     item = replace(BLOCK, clearance_m=0.0005, furniture=CUP.furniture, furniture_anchorage=CUP.furniture_anchorage)
     scene, own = classify(item), own_catalogue()
@@ -118,3 +118,18 @@ def test_furniture_under_a_pad_is_judged_once() -> None:
     _, below = assess([pad.scene], [weak], Context(Threads(1)))
     ((above, _),) = assess_above([pad], [weak], Context(Threads(1)), HISTORIES)
     assert [finding.model for finding in (*below[0], *above)].count("unanchored") == 1
+
+
+def test_what_helps_in_fastened_furniture_stands_beside_what_is_found_now(tmp_path: Path) -> None:
+    """A bowl that rests in its loose case slides in the fastened one: it did not before, and fastening is not enough."""
+    scene, levels = _placed_in_a_narrow_case(replace(CUP, friction=0.5, clearance_m=0.003), tmp_path), [shaking()]
+    _, findings = assess([scene], levels, Context(Threads(1)))
+    ((advice,),) = advise([scene], findings, levels, Context(Threads(1)))
+    assert advice.measure == "clearance"
+    assert advice.sentence.startswith(ANCHORED)
+    (now,) = (one for one in findings[0] if one.model == "sliding")
+    (check,) = (check for check in advice.checks if check.model == "sliding")
+    assert check.before == now.demand == 0.0
+    assert check.demand > 0.0
+    assert [text.partition(":")[0] for text in advice.rejected] == ["Fasten its furniture"]
+    assert "sliding" in advice.rejected[0]

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from pipeline.analysis.furniture import fastened, loose
+from pipeline.analysis.furniture import FREQUENCY, fastened, loose
 from pipeline.mitigate.measures.base import Measure
-from pipeline.mitigate.proposals import Deficiency, Proposal, refused
+from pipeline.mitigate.proposals import UNCONCERNED, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import TrialRunner
 from pipeline.records import Scene
 
@@ -22,5 +22,6 @@ class Anchor(Measure):
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:  # noqa: ARG002
         """Propose it where its furniture is known not to be fastened."""
         if not loose(one.scene):
-            return refused("what it stands in is fastened, or nobody says that it is not")
+            unsaid = one.scene.anchorage is None and FREQUENCY in one.scene.parameters
+            return refused("nobody says that what it stands in is not fastened") if unsaid else UNCONCERNED
         return self.one_trial(one, {}, finish=lambda _: {})
