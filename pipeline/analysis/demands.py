@@ -301,8 +301,8 @@ def integrate(found: Demands, rows: Indices, context: Context, numerics: Numeric
             if histories is not None:
                 histories.note(one.key, work.some(one.each[~one.there]), fresh)
             columns = {name: _merged(one.there, one.known.get(name), column) for name, column in fresh.items()}
-        each = {name: column[one.place] for name, column in columns.items()}
-        found.settle(one.rows, each, Step.HISTORY, numerics.fidelity)
+        of_rows = {name: column[one.place] for name, column in columns.items()}
+        found.settle(one.rows, of_rows, Step.HISTORY, numerics.fidelity)
     return int(rows.size)
 
 

@@ -121,7 +121,7 @@ def test_furniture_under_a_pad_is_judged_once() -> None:
 
 
 def test_what_helps_in_fastened_furniture_stands_beside_what_is_found_now(tmp_path: Path) -> None:
-    """A bowl that rests in its loose case slides in the fastened one: it did not before, and fastening is not enough."""
+    """A bowl that rests in its loose case slides in the fastened one: fastening it is not enough."""
     scene, levels = _placed_in_a_narrow_case(replace(CUP, friction=0.5, clearance_m=0.003), tmp_path), [shaking()]
     _, findings = assess([scene], levels, Context(Threads(1)))
     ((advice,),) = advise([scene], findings, levels, Context(Threads(1)))
