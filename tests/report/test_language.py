@@ -24,6 +24,7 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import advise
+from pipeline.mitigate.search import ANCHORED
 from pipeline.models import MODELS
 from pipeline.models.common import NOTES
 from pipeline.records import (
@@ -265,6 +266,10 @@ def test_a_catalogue_is_read_from_its_folder(tmp_path: Path) -> None:
         assert said("freestanding") == pseudo("freestanding")
         # A text of the run that no catalogue knows as a whole is looked up sentence by sentence.
         assert said("freestanding. hung") == "freestanding. " + pseudo("hung")
+        # What comes before the sentence of a measure is a sentence of its own, though that has a colon.
+        (measure,) = (row["sentence"] for row in table("measures") if row["measure"] == "anchor")
+        assert ": " in measure
+        assert said(f"{ANCHORED} {measure}") == f"{pseudo(ANCHORED)} {pseudo(measure)}"
     assert said("freestanding") == "freestanding"
 
 
