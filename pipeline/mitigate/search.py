@@ -100,8 +100,8 @@ def advise(
     transmitted = transmitted or TransmittedMotions()
     unassessed = _unassessed(scenes, findings)
     groups: dict[FurnitureFilter | None, list[int]] = {}
-    for index, scene in enumerate(scenes):
-        groups.setdefault(filter_of(scene), []).append(index)
+    for index, furniture in enumerate(_furniture(scenes)):
+        groups.setdefault(furniture, []).append(index)
     out: list[list[Recommendation]] = [[] for _ in scenes]
     for furniture, members in groups.items():
         some, found = [scenes[index] for index in members], [findings[index] for index in members]
@@ -130,6 +130,20 @@ def advise(
                 helped = {one.level: one for one in better if one.measure not in LAST_RESORTS}
                 out[at] = [_fastened_too(one, helped.get(one.level), findings[at], starts) for one in out[at]]
     return out
+
+
+def _furniture(scenes: Sequence[Scene]) -> list[FurnitureFilter | None]:
+    """Return the furniture that measures for each scene are tried in: of all in one case alike.
+
+    If one of them meets its own frequency among those that the case may have, they all are shaken by it at each.
+    """
+    each = [filter_of(scene) for scene in scenes]
+    meeting = {case_of(scene) for scene, one in zip(scenes, each, strict=True) if one is not None and one.resonant}
+    meeting -= {None}
+    return [
+        replace(one, resonant=True) if one is not None and case_of(scene) in meeting else one
+        for scene, one in zip(scenes, each, strict=True)
+    ]
 
 
 def _fastened_too(

@@ -11,7 +11,7 @@ from pipeline.analysis.response import respond
 from pipeline.analysis.transmission import transmit
 from pipeline.mitigate.proposals import listed
 from pipeline.quantities import G
-from pipeline.records import Motion
+from pipeline.records import Furniture, Motion
 from pipeline.report.units import Units
 
 from .scenes import BLOCK, TOWER, demo_motion, solve_all
@@ -63,6 +63,16 @@ def test_the_shared_isolator_is_right_for_each(motion: Motion) -> None:
     slides = float(respond("sliding", carried, friction_static=0.1)["displacement"].iloc[0])
     assert d[0].sentence.endswith("It may stand free on it." if slides <= 0.02 else "It must be fastened to it.")
     assert 20.0 * push * 0.1 / (0.3**3 / 6.0) - 20.0 * G / 0.09 <= 5e6
+
+
+def test_one_whose_frequency_is_known_shares_the_isolator_of_its_case(motion: Motion) -> None:
+    """It meets its own frequency among those of the case, and its neighbour is carried all the same: 20 and 10 kg."""
+    there = {"furniture": Furniture.PEDESTAL}
+    a, b = solve_all([replace(A, frequency_hz=40.0, **there), replace(B, frequency_hz=None, **there)], [motion])
+    assert [one.measure for one in (a[0], b[0])] == ["horizontal_isolator"] * 2
+    assert a[0].parameters == b[0].parameters
+    assert a[0].parameters["load"] == 30.0
+    assert "with B in it" in said(a[0])
 
 
 def test_one_object_that_no_isolator_saves_refuses_it_for_all(motion: Motion) -> None:
