@@ -29,9 +29,6 @@ PHASE = 0.25
 HALVINGS = 40
 """How often the bracket of the time of a longest resultant is halved: to 1e-12 of its span."""
 
-PERIODS = 1.0
-"""Periods of free decay that are looked at: from one to the next every resultant becomes shorter."""
-
 # How many rows there are of coefficients and of the lanes' state.
 FACTORS, STATES = np.int64(15), np.int64(7)
 # Rows of the coefficients: the new u by u, v and both ends of a; the same for v; w^2, 2 zeta w, w, zeta, 2 zeta,
@@ -247,8 +244,9 @@ def _coast(ux: float, vx: float, uy: float, vy: float, factor: Array, k: int, ta
     w, zeta = factor[W, k], factor[ZETA, k]
     if math.sqrt(ux * ux + uy * uy + (vx * vx + vy * vy) / (w * w)) <= known[SIZE]:
         return
+    # From one period of it to the next every resultant becomes shorter.
     if zeta < 1.0:
-        stop = PERIODS * 2.0 * math.pi / (w * math.sqrt((1.0 - zeta) * (1.0 + zeta)))
+        stop = 2.0 * math.pi / (w * math.sqrt((1.0 - zeta) * (1.0 + zeta)))
         stop = min(stop, 60.0 / (w * max(zeta, 1e-300)))
     else:
         stop = 60.0 * (1.0 + zeta) / w
