@@ -96,7 +96,7 @@ class Work:
     @cached_property
     def first(self) -> Indices:
         """Of each parameter set the first that is the same, (k,): what is run is run for that one."""
-        first, place = _unique_rows(np.column_stack([*self.values.values(), self.angles]))
+        first, place = unique_rows(np.column_stack([*self.values.values(), self.angles]))
         return first[place]
 
     @cached_property
@@ -228,7 +228,7 @@ def _gather(model: Model, scenes: Sequence[Scene], chosen: Sequence[int], x_azim
         along.append(np.column_stack([one, angle]))
     asked = _questions(model, scenes, chosen, analysis, along)[analysis]
     every = np.concatenate([np.column_stack([one, asked]) for one in along])
-    first, where = _unique_rows(every)
+    first, where = unique_rows(every)
     unique = every[first]
     return Work(
         model,
@@ -358,7 +358,7 @@ def corners(
     return np.concatenate(sets)[order], analysis[order]
 
 
-def _unique_rows(matrix: Array) -> tuple[Indices, Indices]:
+def unique_rows(matrix: Array) -> tuple[Indices, Indices]:
     """Return where each different row is first, (k,), and which of them each row is, (n,)."""
     # Bit for bit, so that NaN (not given) equals NaN.
     bits = np.ascontiguousarray(matrix).view(np.uint64)

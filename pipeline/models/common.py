@@ -50,6 +50,10 @@ _FEW = 16
 """The same where most are those of a direction, which nobody asks for twice: each holds 0.2 MB."""
 
 
+SHIFT = 1e-3
+"""m, from which on an object is said to have shifted: what a curator would see."""
+
+
 def words(bits: float) -> str:
     """Return the note of a result in words."""
     return "; ".join(text for bit, text in NOTES.items() if int(bits) & bit)

@@ -26,7 +26,7 @@ import numpy as np
 
 from pipeline.models.common import NO_VERTICAL, ROUNDING, needs
 from pipeline.quantities import Array, G, Quantity
-from pipeline.records import Columns, Excitation, Model, Motion, Scene, Support, Trials
+from pipeline.records import Columns, Excitation, Harm, Model, Motion, Scene, Support, Trials
 
 
 @lru_cache(maxsize=256)
@@ -92,6 +92,7 @@ HANGER_LOAD = Model(
         "Its hangers are pulled by up to {demand} times its weight ({low} to {high}); they bear {capacity} times."
     ),
     fails="tears out",
+    states=(Harm.FALLS,),
     trials=Trials(ranges={"amplification": (1.0, 2.0)}),
     supports=(Support.HUNG,),
     needs_size=False,

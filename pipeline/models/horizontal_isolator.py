@@ -20,7 +20,7 @@ from pipeline.models.common import grid, needs
 from pipeline.models.friction import stick_slip, stick_slip_trace
 from pipeline.models.sliding import DIRECTIONS
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Axis, ChartAxis, ChartFigure, Columns, Excitation, Model, Scene, Support, Trials
+from pipeline.records import Axis, ChartAxis, ChartFigure, Columns, Excitation, Harm, Model, Scene, Support, Trials
 
 
 def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:
@@ -70,6 +70,7 @@ HORIZONTAL_ISOLATOR = Model(
     applies=_applies,
     sentence="Its isolator moves {demand}; its stroke is {capacity}.",
     fails="exceeds the stroke of its isolator",
+    states=(Harm.LEAVES,),
     trials=Trials(
         ranges={"frequency": (0.3, 2.0), "damping": (0.02, 0.2), "friction": (0.0, 0.15)},
         extremes=grid(frequency=[0.02, 1.0, 500.0], damping=[0.0, 1.0, 2.0], friction=[0.0, 1e-6, 5.0]),

@@ -6,11 +6,12 @@ Parameters and their axes, what the kernels need of a body, outputs, the paper's
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.models.common import NO_HISTORY, largest_push, largest_speed
 from pipeline.models.flips import FELL, FELL_AT, IMPACTS, LAST_NEAR, LIFTED_AT, RATIO
 from pipeline.quantities import Array, G, Quantity
-from pipeline.records import Columns, Excitation, Scene
+from pipeline.records import Columns, Excitation, Harm, Scene
 
 HALF_WIDTH = Quantity("half_width", "m", "from the centre of gravity to the edge towards +axis", 0.0, exclusive=True)
 HALF_WIDTH_OTHER = Quantity(
@@ -136,6 +137,22 @@ def found_again(columns: Columns, width: int) -> Array:
         np.nan_to_num(columns[name], nan=-1.0) for name in ("overturning_time", "uplift_time")
     )
     return found
+
+
+def tipping(columns: Columns) -> dict[Harm, NDArray[np.bool_]]:
+    """Return which bodies rock, and which of them fall over.
+
+    Parameters
+    ----------
+    columns : mapping of str to ndarray, shape (n,)
+        What the model gives.
+
+    Returns
+    -------
+    dict of Harm to ndarray of bool, shape (n,)
+        For `Model.reaches`.
+    """
+    return {Harm.FALLS: columns["overturned"] > 0.0, Harm.ROCKS: columns["rotation_ratio"] > 0.0}
 
 
 def one_width(parameters: Mapping[str, Array]) -> bool:

@@ -76,6 +76,7 @@ from pipeline.models.rigid_body import (
     say_screen,
     screen,
     tipped,
+    tipping,
 )
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import (
@@ -85,6 +86,7 @@ from pipeline.records import (
     Columns,
     Excitation,
     Figure,
+    Harm,
     Model,
     Motion,
     Scene,
@@ -286,6 +288,8 @@ ROCKING = Model(
         "it rocks."
     ),
     fails=ROCKS,
+    states=(Harm.FALLS, Harm.ROCKS),
+    reaches=lambda columns, _exceeded, _room: tipping(columns),
     trials=Trials(
         ranges={"half_width": (0.02, 0.4), "cg_height": (0.05, 1.0)},
         extremes=_EXTREMES,

@@ -22,7 +22,7 @@ from pipeline.models.common import ROUNDING, after_record, needs
 from pipeline.models.horizontal_isolator import DAMPING
 from pipeline.models.oscillator import EXTREMES, OSCILLATES, oscillate, oscillate_bounds
 from pipeline.quantities import Array, Quantity
-from pipeline.records import Bounds, Columns, Excitation, Model, Scene, Support, Trials
+from pipeline.records import Bounds, Columns, Excitation, Harm, Model, Scene, Support, Trials
 
 
 def _run(
@@ -94,6 +94,7 @@ ROTATIONAL_ISOLATOR = Model(
     sentence="Its pad lets it turn by {demand}; {capacity} is allowed.",
     at_most="Its pad lets it turn by at most {demand}; {capacity} is allowed.",
     fails="turns too far on its pad",
+    states=(Harm.FALLS,),
     trials=Trials(
         ranges={
             "frequency": (1.0, 8.0),

@@ -16,8 +16,9 @@ Newmark, N. M. (1965). Effects of earthquakes on dams and embankments. Geotechni
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pipeline.models.common import curve, lift_ratios, needs, unless_free
+from pipeline.models.common import SHIFT, curve, lift_ratios, needs, unless_free
 from pipeline.models.friction import kinetic, slip_bounds, stick_slip, stick_slip_trace
 from pipeline.quantities import Array, Quantity
 from pipeline.records import (
@@ -29,6 +30,7 @@ from pipeline.records import (
     Columns,
     Excitation,
     Figure,
+    Harm,
     Model,
     Motion,
     Scene,
@@ -111,6 +113,10 @@ def _path(key: str, motion: Motion) -> Chart:
     )
 
 
+def _reaches(columns: Columns, exceeded: NDArray[np.bool_], _room: Array) -> Mapping[Harm, NDArray[np.bool_]]:
+    return {Harm.LEAVES: exceeded, Harm.SHIFTS: columns["displacement"] > SHIFT}
+
+
 SLIDING = Model(
     name="sliding",
     title="Sliding",
@@ -140,6 +146,8 @@ SLIDING = Model(
         "for {capacity}."
     ),
     fails="slides",
+    states=(Harm.LEAVES, Harm.SHIFTS),
+    reaches=_reaches,
     trials=Trials(
         ranges={"friction_static": (0.1, 0.6)},
         extremes=FRICTION_EXTREMES,

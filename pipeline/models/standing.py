@@ -49,7 +49,7 @@ from pipeline.kernels import standing_body as kernel
 from pipeline.kernels.flags import UNRESOLVED
 from pipeline.kernels.rocking import OVERTURNED, REST
 from pipeline.kernels.standing import standing_batch
-from pipeline.models.common import ROUNDING, SENSITIVE, Quiet, lift_ratios, needs, unless_free
+from pipeline.models.common import ROUNDING, SENSITIVE, SHIFT, Quiet, lift_ratios, needs, unless_free
 from pipeline.models.doubt import APART, apart, doubt
 from pipeline.models.flips import (
     ALL,
@@ -84,10 +84,11 @@ from pipeline.models.rigid_body import (
     screen,
     sides,
     tipped,
+    tipping,
 )
 from pipeline.models.sliding import FRICTION_KINETIC, FRICTION_STATIC
 from pipeline.quantities import Array, G, Quantity
-from pipeline.records import Bounds, Columns, Estimate, Excitation, Model, Origin, Scene, Support, Trials
+from pipeline.records import Bounds, Columns, Estimate, Excitation, Harm, Model, Origin, Scene, Support, Trials
 
 SLIDES = "slides"
 
@@ -359,6 +360,12 @@ def _outcome(row: Mapping[str, float], _parameters: Mapping[str, float]) -> tupl
     return "", ""
 
 
+def _reaches(columns: Columns, _exceeded: NDArray[np.bool_], room: Array) -> Mapping[Harm, NDArray[np.bool_]]:
+    # What tips over has left its place by falling, which is the worse.
+    away, fell = columns["displacement"], columns["overturned"] > 0.0
+    return tipping(columns) | {Harm.LEAVES: (away > room) & ~fell, Harm.SHIFTS: away > SHIFT}
+
+
 _ALPHAS, _FRICTIONS = np.meshgrid([0.02, 0.2, 1.2], [0.0, 0.05, 0.4, 5.0])
 _EXTREMES = {
     "half_width": (0.3 * np.tan(_ALPHAS)).ravel().tolist(),
@@ -418,6 +425,8 @@ STANDING = Model(
         "object; from 1 on it rocks."
     ),
     fails=ROCKS,
+    states=(Harm.FALLS, Harm.ROCKS, Harm.LEAVES, Harm.SHIFTS),
+    reaches=_reaches,
     trials=Trials(
         ranges={"half_width": (0.02, 0.4), "cg_height": (0.05, 1.0), "friction_static": (0.1, 0.6)},
         extremes=_EXTREMES,

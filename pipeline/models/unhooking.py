@@ -48,7 +48,7 @@ from pipeline.kernels.flags import SENSITIVE
 from pipeline.kernels.hung_plate import hung_plate_batch
 from pipeline.models.common import NO_VERTICAL, broadcast, grid, lift_ratios, needs, shaken
 from pipeline.quantities import Array, G, Quantity
-from pipeline.records import Columns, Excitation, Hanging, Model, Scene, Support, Trials
+from pipeline.records import Columns, Excitation, Hanging, Harm, Model, Scene, Support, Trials
 
 DOUBT = 0.01
 """Share of the lift from which the difference of two steps says that it hangs on the integration."""
@@ -195,6 +195,7 @@ UNHOOKING = Model(
     outcome=_outcome,
     sentence="Its hangers rise up to {demand} ({low} to {high}) above its hooks, which are {capacity} deep.",
     fails="comes off its hooks",
+    states=(Harm.FALLS,),
     trials=Trials(
         ranges={
             "hook_height": (0.05, 0.5),

@@ -15,6 +15,7 @@ from pipeline.records.change import (
 from pipeline.records.contact_polygon import ContactPolygon
 from pipeline.records.decision import Basis, Decision, DecisionKind, DecisionStatus, in_force
 from pipeline.records.fragility import Fragility
+from pipeline.records.likelihood import Band, Harm, Likelihood, Sampling
 from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.model import Bounds, ChartAxis, ChartFigure, Columns, Figure, Model, Trials
 from pipeline.records.motion import Excitation, Motion, MotionSummary
@@ -47,6 +48,7 @@ __all__ = [
     "Anchorage",
     "Assessment",
     "Axis",
+    "Band",
     "Basis",
     "Bounds",
     "Cause",
@@ -74,8 +76,10 @@ __all__ = [
     "Fragility",
     "Furniture",
     "Hanging",
+    "Harm",
     "InputChange",
     "Item",
+    "Likelihood",
     "Mark",
     "MeasurementRequest",
     "Model",
@@ -95,6 +99,7 @@ __all__ = [
     "Result",
     "RunChanges",
     "RunRecord",
+    "Sampling",
     "Scene",
     "Silent",
     "Spacing",

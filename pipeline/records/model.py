@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from pipeline.errors import InputError
 from pipeline.quantities import Array, Quantity
+from pipeline.records.likelihood import Harm
 from pipeline.records.motion import Excitation, Motion
 from pipeline.records.picture import Axis, Chart
 from pipeline.records.scene import Estimate, Item, Scene, Support
@@ -288,6 +289,11 @@ class Model:
         What else its findings may say that holds no number, for the catalogue of a translation.
     mark : callable
         (one set of parameters, demand) -> (kind of picture, x, y), or None.
+    states : tuple of Harm
+        What an object may come to by it; empty: it leaves its place where room settles its failure, else it breaks.
+    reaches : callable, optional
+        (columns of `run`, whether the demand exceeds the capacity, room around the object [m]), (n,) each -> by state
+        whether it is reached, (n,); None: its only state, where the demand exceeds the capacity.
 
     Raises
     ------
@@ -344,6 +350,8 @@ class Model:
     uncharted: str = ""
     says: tuple[str, ...] = ()
     mark: Callable[[Mapping[str, float], float], tuple[str, float, float] | None] = lambda _parameters, _demand: None
+    states: tuple[Harm, ...] = ()
+    reaches: Callable[[Columns, NDArray[np.bool_], Array], Mapping[Harm, NDArray[np.bool_]]] | None = None
 
     def __post_init__(self) -> None:
         """Refuse a row whose names do not fit together."""
@@ -380,6 +388,32 @@ class Model:
         """All parameters of a scene that it may be run with."""
         own = (other for axis in self.axes for other in axis.values())
         return (*(q.name for q in self.needs), *own)
+
+    @property
+    def reachable(self) -> tuple[Harm, ...]:
+        """The states that an object may come to by it."""
+        return self.states or ((Harm.LEAVES,) if self.room_settles else (Harm.BREAKS,))
+
+    def reached(self, columns: Columns, exceeded: NDArray[np.bool_], room: Array) -> Mapping[Harm, NDArray[np.bool_]]:
+        """Return which states are reached.
+
+        Parameters
+        ----------
+        columns : mapping of str to ndarray, shape (n,)
+            What `run` returned.
+        exceeded : ndarray of bool, shape (n,)
+            Whether the demand exceeds the capacity.
+        room : ndarray, shape (n,)
+            Around the object, m; infinite where nobody says it.
+
+        Returns
+        -------
+        mapping of Harm to ndarray of bool, shape (n,)
+            Of each state that is reachable.
+        """
+        if self.reaches is not None:
+            return self.reaches(columns, exceeded, room)
+        return {self.reachable[0]: exceeded}
 
     def error_of(self, output: str) -> str:
         """Return the name of the column that holds the error of an output.

@@ -1,0 +1,181 @@
+r"""Joint samples of what is uncertain: one matrix of shares for all objects, and the distributions that they are of.
+
+Each row is a sample of everything at once: of the motion, the direction, the furniture, and of every parameter by its
+name.  All objects are drawn from the same rows, so that what stands in the same kind of furniture shares the shaking of
+each sample, the ranking of two objects does not hang on luck, and the digits are the same whoever samples and with whom.
+The rows are those of a scrambled Sobol' sequence, of which every first 2^k are balanced.
+
+Of a number with a best estimate and a range nothing is taken to be known but these three: the distribution with the
+largest entropy between the ends whose median is the best estimate is even on either side of it, in the logarithm for
+what is a scale.  So nothing ever lies outside of a range, and what holds for the whole range holds for all samples.
+
+References
+----------
+Sobol', I. M. (1967). On the distribution of points in a cube. USSR Computational Mathematics and Mathematical Physics 7.
+Jaynes, E. T. (1968). Prior probabilities. IEEE Transactions on Systems Science and Cybernetics 4.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from math import exp
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.models import MODELS
+from pipeline.quantities import Array
+from pipeline.records import Estimate
+
+MOTION, DIRECTION, SCATTER = "motion", "direction", "scatter"
+FREQUENCY, DAMPING, LEAN, UPHILL = "furniture frequency", "furniture damping", "lean", "uphill"
+WIDE, HIGH, ROUGH = "furniture half width", "furniture centre of gravity", "furniture friction"
+
+ROLES = (MOTION, DIRECTION, SCATTER, FREQUENCY, DAMPING, LEAN, UPHILL, WIDE, HIGH, ROUGH)
+"""What the samples of all objects share besides the numbers of the objects themselves."""
+
+SEED = 1991
+"""Of the scrambling; any other one is as good."""
+
+ONE_CAUSE: Mapping[str, str] = {
+    **dict.fromkeys(
+        ("half_width_other", "half_base_width", "half_base_width_other", "half_base_depth", "half_base_depth_other"),
+        "half_width",
+    ),
+    **dict.fromkeys(("section_modulus_width", "section_modulus_depth"), "section_modulus"),
+    # The height of the centre of gravity is what the lever of its weight is.
+    "lever": "cg_height",
+    # How a work hangs: on a wire it swings and lifts off, on security hardware neither.
+    "hooks_open": "freedom",
+}
+"""Parameters that one cause drives with another one: they go up and down together."""
+
+SWITCHES = ("freedom", "hooks_open")
+"""Parameters that are either 0 or 1."""
+
+OTHERWISE = 0.25
+"""Probability that a switch of which nobody says how it stands is not as is usual: judgement, 0.1 to 0.5."""
+
+
+@cache
+def _names() -> tuple[str, ...]:
+    inputs = (name for model in MODELS for name in (*model.inputs, model.capacity) if isinstance(name, str))
+    return (*ROLES, *dict.fromkeys(ONE_CAUSE.get(name, name) for name in inputs))
+
+
+@cache
+def _shares(samples: int) -> Array:
+    from scipy.stats import qmc
+
+    drawn = qmc.Sobol(len(_names()), scramble=True, rng=SEED).random(samples)
+    return np.asarray(drawn, dtype=float)
+
+
+@dataclass(frozen=True)
+class Draw:
+    """One joint sample.
+
+    Attributes
+    ----------
+    number : int
+        Which, from 0.
+    most : int
+        Of how many at most.
+    """
+
+    number: int
+    most: int
+
+    def share(self, name: str) -> float:
+        """Return the share of a distribution below which the sample lies: of a role, or of a parameter."""
+        return float(_shares(self.most)[self.number, _names().index(ONE_CAUSE.get(name, name))])
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """A parameter of some objects.
+
+    Attributes
+    ----------
+    name : str
+        Which.
+    low, best, high : ndarray, shape (m,)
+        Of each object, in the unit of the parameter; the same three times where it is measured, NaN where not given.
+    """
+
+    name: str
+    low: Array
+    best: Array
+    high: Array
+
+    @classmethod
+    def of(cls, name: str, estimates: Sequence[Estimate | None], default: float) -> "Ranges":
+        """Return the ranges of what is known of some objects, a default where nothing is."""
+        told = [(default,) * 3 if one is None else (one.low, one.value, one.high) for one in estimates]
+        low, best, high = np.array(told, dtype=float).reshape(-1, 3).T
+        return cls(name, low, best, high)
+
+    @cached_property
+    def _certain(self) -> bool:
+        return not np.any(self.low < self.high)
+
+    @cached_property
+    def _lines(self) -> tuple[Array, Array]:
+        return _lines(self.low, self.best, self.high)
+
+    def at(self, draw: Draw, chosen: NDArray[np.intp]) -> Array:
+        """Return the values of a joint sample, of some of the objects, (n,)."""
+        if self._certain:
+            return self.best[chosen]
+        share = draw.share(self.name)
+        low, best, high = self.low[chosen], self.best[chosen], self.high[chosen]
+        if self.name in SWITCHES:
+            return switched(share, low, best, high)
+        lower, upper = self._lines
+        start, end, log = (lower if share < 0.5 else upper)[:, chosen]
+        drawn = start + (end - start) * share
+        return np.clip(np.where(log > 0.0, np.exp(np.where(log > 0.0, drawn, 0.0)), drawn), low, high)
+
+
+def value_at(share: float, low: float, best: float, high: float) -> float:
+    """Return the value below which a share of a distribution lies.
+
+    Parameters
+    ----------
+    share : float
+        From 0 to 1.
+    low, best, high : float
+        Ends and median; where the best estimate is an end, the whole range is one piece.
+
+    Returns
+    -------
+    float
+        Within the ends.
+    """
+    ends = (np.array([end]) for end in (low, best, high))
+    lower, upper = _lines(*ends)
+    start, end, log = (lower if share < 0.5 else upper)[:, 0].tolist()
+    drawn = start + (end - start) * share
+    return min(max(exp(drawn) if log else drawn, low), high)
+
+
+def _lines(low: Array, best: Array, high: Array) -> tuple[Array, Array]:
+    """Return below and above the median the values at shares 0 and 1 of a straight line, and whether it is of logarithms.
+
+    Each is of shape (3, m).
+    """
+    certain = ~((low < high) & np.isfinite(low) & np.isfinite(high))
+    log = (low > 0.0) & ~certain
+    first, middle, last = (np.where(log, np.log(np.where(log, one, 1.0)), one) for one in (low, best, high))
+    first, last = np.where(certain, middle, first), np.where(certain, middle, last)
+    # A range on one side alone has no median: all of it is even.
+    even = (best <= low) | (best >= high)
+    lower = np.stack([first, np.where(even, last, 2.0 * middle - first), log])
+    upper = np.stack([np.where(even, first, 2.0 * middle - last), last, log])
+    return lower, upper
+
+
+def switched(share: float, low: Array, best: Array, high: Array) -> Array:
+    """Return switches: each as is usual, but for `OTHERWISE` of the samples where it may be the other way."""
+    other = np.where(best <= low, share >= 1.0 - OTHERWISE, share < OTHERWISE)
+    return np.where((low < high) & other, np.where(best <= low, high, low), best)

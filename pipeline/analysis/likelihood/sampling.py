@@ -1,0 +1,328 @@
+"""Probabilities of harm, by joint sampling: as many samples of each object as its word takes, and no more.
+
+A sample is a motion of the level, scaled by the scatter of the models, through furniture that is drawn, on a body that
+is drawn.  All models that an object requires are run on the same sample, so that their states come together as they
+would in one earthquake, and an object is harmed where any of them harms it.  Objects in the same kind of furniture
+share the shaking of a sample, which is found once for all of them.
+
+Where nobody says how an object is turned, the direction is drawn too, and a body is shaken along both of its axes at
+once: a round one tips in any direction, and one plane alone would miss a third of its falls (of 150 bodies in six
+degrees of freedom 37 % fell where one plane through the same motion said 25 %).
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import log2
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.analysis.furniture import FurnitureFilter
+from pipeline.analysis.likelihood.draws import Draw, Ranges
+from pipeline.analysis.likelihood.shaking import direction, drawn_motion, through
+from pipeline.analysis.plan import Indices, own_angle, plan, unique_rows
+from pipeline.analysis.transmission import transmit
+from pipeline.analysis.verdicts import LevelMotions, capacity_of, exceeds
+from pipeline.models import model_named
+from pipeline.quantities import Array
+from pipeline.records import Columns, Excitation, Harm, Likelihood, Model, Motion, Sampling, Scene
+
+FIRST = 64
+"""Samples that are taken of every object."""
+
+STATES = tuple(Harm)
+
+HARMFUL = (Harm.LEAVES, Harm.FALLS, Harm.BREAKS)
+"""States that harm whatever reaches them; rocking does where the museum says so."""
+
+Transfer = tuple[str, tuple[tuple[str, float], ...]]
+"""An isolator that passes the motion on: its model, and its parameters by name."""
+
+
+@dataclass(frozen=True)
+class Stood:
+    """A scene as it is shaken.
+
+    Attributes
+    ----------
+    of : int
+        Which object it belongs to.
+    scene : Scene
+        What is run.
+    isolator : Transfer or None
+        What passes the motion of its furniture on to it.
+    """
+
+    of: int
+    scene: Scene
+    isolator: Transfer | None = None
+
+
+def likelihoods(
+    stood: Sequence[Stood], count: int, levels: Sequence[LevelMotions], sampling: Sampling
+) -> list[tuple[Likelihood, ...]]:
+    """Return how likely objects come to harm at each level.
+
+    Parameters
+    ----------
+    stood
+        Their scenes; those on an isolator, and others of which a part feels something else, several for an object.
+    count
+        How many objects there are.
+    levels
+        The motions of their floor.
+    sampling
+        How many samples, and the words.
+
+    Returns
+    -------
+    list of tuple of Likelihood
+        Of each object one for each level; none of one for which no model is run.
+    """
+    todo = plan([one.scene for one in stood], levels[0].x_azimuth)
+    groups: dict[tuple[FurnitureFilter | None, Transfer | None], list[_Analyses]] = {}
+    for work in todo.work:
+        by_isolator: dict[Transfer | None, list[int]] = {}
+        for at in work.scenes.tolist():
+            by_isolator.setdefault(stood[at].isolator, []).append(at)
+        for isolator, members in by_isolator.items():
+            for angle, alike in _turned(work.model, [stood[at] for at in members], levels[0].x_azimuth):
+                groups.setdefault((work.furniture, isolator), []).append(_analyses(work.model, alike, angle))
+    harmful = np.zeros((len(STATES), count), dtype=bool)
+    for one in stood:
+        harms = (*HARMFUL, Harm.ROCKS) if one.scene.item.susceptible else HARMFUL
+        harmful[:, one.of] = [state in harms for state in STATES]
+    out: list[tuple[Likelihood, ...]] = [() for _ in range(count)]
+    asked = sorted({at for those in groups.values() for one in those for at in one.of.tolist()})
+    for level in levels:
+        counted = _counted(groups, count, np.array(asked, dtype=np.intp), harmful, level, sampling)
+        for at in asked:
+            out[at] = (*out[at], counted.told(at, level.name, harmful[:, at], sampling))
+    return out
+
+
+@dataclass
+class _Counted:
+    """Samples so far: of each object how many were taken (m,), harmed it (m,), and reached each state (s, m)."""
+
+    taken: Indices
+    harmed: Indices
+    reached: NDArray[np.intp]
+    possible: NDArray[np.bool_]
+
+    def told(self, at: int, level: str, harmful: NDArray[np.bool_], sampling: Sampling) -> Likelihood:
+        taken, harmed = int(self.taken[at]), int(self.harmed[at])
+        share = harmed / taken
+        # Jeffreys's: a probability is not known to be nothing because nothing was seen.
+        a, b = harmed + 0.5, taken - harmed + 0.5
+        error = float(np.sqrt(a * b / (a + b) ** 2 / (a + b + 1.0)))
+        reached = self.reached[:, at]
+        # Of states that come together the worse one names it.
+        worst = max((n, i) for i, n in enumerate(np.where(harmful, reached, 0).tolist()))
+        states = {
+            s.value: int(n) / taken for s, n, may in zip(STATES, reached, self.possible[:, at], strict=True) if may
+        }
+        named = STATES[worst[1]].value if worst[0] else ""
+        return Likelihood(level, share, error, taken, sampling.band(share), named, states)
+
+
+def _counted(
+    groups: Mapping[tuple[FurnitureFilter | None, Transfer | None], Sequence["_Analyses"]],
+    count: int,
+    asked: Indices,
+    harmful: NDArray[np.bool_],
+    level: LevelMotions,
+    sampling: Sampling,
+) -> _Counted:
+    done = _Counted(
+        np.zeros(count, dtype=np.intp),
+        np.zeros(count, dtype=np.intp),
+        np.zeros((len(STATES), count), dtype=np.intp),
+        np.zeros((len(STATES), count), dtype=bool),
+    )
+    for those in groups.values():
+        for one in those:
+            for state in one.model.reachable:
+                done.possible[STATES.index(state), one.of] = True
+    wanted = np.zeros(count, dtype=bool)
+    wanted[asked] = True
+    for start, end in pairwise(_stages(sampling.samples)):
+        for number in range(start, end):
+            draw = Draw(number, sampling.samples)
+            reached = np.zeros((len(STATES), count), dtype=bool)
+            floor = drawn_motion(level, draw)
+            for (furniture, isolator), those in groups.items():
+                some = [one for one in those if wanted[one.of].any()]
+                if not some:
+                    continue
+                felt, falls = through(floor, furniture, draw)
+                if isolator is not None:
+                    felt = transmit(isolator[0], felt, refine=1, **dict(isolator[1]))
+                for one in some:
+                    one.run(felt, draw, wanted, reached)
+                    if falls:
+                        reached[STATES.index(Harm.FALLS), one.of[wanted[one.of]]] = True
+            done.taken += wanted
+            done.reached += reached
+            done.harmed += (reached & harmful).any(axis=0)
+        wanted &= ~_certain(done, sampling)
+        if not wanted.any():
+            break
+    return done
+
+
+def _stages(samples: int) -> list[int]:
+    first = min(FIRST, samples)
+    return [0, *(first * 2**k for k in range(round(log2(samples / first)) + 1))]
+
+
+def _certain(done: _Counted, sampling: Sampling) -> NDArray[np.bool_]:
+    """Say of which objects the word is as certain as is asked, by Jeffreys's interval."""
+    from scipy.special import betainc
+
+    taken = np.maximum(done.taken, 1)
+    ends = np.array([sampling.ends(share) for share in (done.harmed / taken).tolist()]).T
+    a, b = done.harmed + 0.5, done.taken - done.harmed + 0.5
+    inside = betainc(a, b, ends[1]) - betainc(a, b, ends[0])
+    return np.asarray(inside >= sampling.certainty)
+
+
+def _turned(model: Model, stood: Sequence[Stood], x_azimuth: float) -> Iterator[tuple[float | None, list[Stood]]]:
+    """Yield those that are turned alike, by the angle of their width; None: nobody says it."""
+    by_angle: dict[float | None, list[Stood]] = {}
+    for one in stood:
+        angle = own_angle(model, one.scene, x_azimuth)
+        by_angle.setdefault(None if np.isnan(angle) else angle, []).append(one)
+    yield from by_angle.items()
+
+
+@dataclass(frozen=True)
+class _Analyses:
+    """Analyses of one model on scenes that are turned alike.
+
+    Attributes
+    ----------
+    of : (m,) the object of each
+    angle : of their width, degrees from x towards y; None: drawn
+    ways : by direction, the parameters that a body has along it
+    tied : parameters that go up and down with another one: by name the other one's, and how many times it, (m,)
+    """
+
+    model: Model
+    of: Indices
+    angle: float | None
+    ways: tuple[tuple[Ranges, ...], ...]
+    tied: Mapping[str, tuple[str, Array]]
+    wider: Array
+    output: tuple[str, ...]
+    capacity: Ranges
+    room: Ranges
+
+    def run(self, felt: Motion, draw: Draw, wanted: NDArray[np.bool_], reached: NDArray[np.bool_]) -> None:
+        """Add what is reached in a sample, (s, objects), by the objects that are wanted."""
+        model, chosen = self.model, np.flatnonzero(wanted[self.of])
+        if chosen.size == 0:
+            return
+        turned = direction(draw) + (90.0 if model.across else 0.0) if self.angle is None else self.angle
+        for at, way in enumerate(self.ways):
+            values = self._values(way, draw, chosen, wide=bool(at) and self.angle is None)
+            along = None if model.directions != 1 or (model.resultant and self.angle is None) else turned + 90.0 * at
+            excitation = felt.excitation(along)
+            # What it shows to rest need not be integrated: of all hung works it leaves one of six.
+            moves = _moving(model, excitation, values)
+            if not moves.any():
+                continue
+            some = chosen[moves]
+            # Of those that are the same one is run.
+            first, of_each = unique_rows(np.column_stack([one[moves] for one in values.values()]))
+            ran = model.run(excitation, {name: one[moves][first] for name, one in values.items()}, 1, False)
+            columns = {name: column[of_each] for name, column in ran.items()}
+            capacity, room = (one.at(draw, some) for one in (self.capacity, self.room))
+            for state, mask in model.reached(columns, self._exceeded(columns, some, capacity), room).items():
+                reached[STATES.index(state), self.of[some]] |= mask
+
+    def _values(self, way: Sequence[Ranges], draw: Draw, chosen: Indices, *, wide: bool) -> dict[str, Array]:
+        values = {one.name: one.at(draw, chosen) for one in way}
+        for name, (other, times) in self.tied.items():
+            mine = times[chosen]
+            values[name] = np.where(np.isnan(mine), values[name], mine * values[other])
+        for name in _HALVES if wide else ():
+            if name in values:
+                values[name] = self.wider[chosen] * values[name]
+        return {name: np.ascontiguousarray(one) for name, one in values.items()}
+
+    def _exceeded(self, columns: Columns, chosen: Indices, capacity: Array) -> NDArray[np.bool_]:
+        demand = np.empty(chosen.size)
+        for output in set(self.output):
+            mine = np.array([self.output[at] == output for at in chosen])
+            demand[mine] = columns[output][mine]
+        return exceeds(demand, capacity)
+
+
+_HALVES = ("half_width", "half_width_other")
+
+
+def _moving(model: Model, excitation: Excitation, values: Mapping[str, Array]) -> NDArray[np.bool_]:
+    if model.certificate is None or model.rests is None:
+        return np.ones(next(iter(values.values())).size, dtype=bool)
+    return np.asarray(model.certificate(excitation, values) > model.rests)
+
+
+def _analyses(model: Model, stood: Sequence[Stood], angle: float | None) -> _Analyses:
+    scenes = [one.scene for one in stood]
+    names = [q.name for q in model.needs]
+    defaults = {q.name: np.nan if q.default is None else q.default for q in model.needs}
+    axes = model.axes if model.directions == 1 and not (model.resultant and angle is None) else ({},)
+    ways = []
+    for axis in axes:
+        own = {name: axis.get(name, name) if angle is not None else name for name in names}
+        ways.append(
+            tuple(
+                Ranges.of(name, [s.parameters.get(own[name]) or s.parameters.get(name) for s in scenes], defaults[name])
+                for name in names
+            )
+        )
+    capacities = [capacity_of(model, scene) for scene in scenes]
+    named = model.capacity if isinstance(model.capacity, str) else ""
+    return _Analyses(
+        model,
+        np.array([one.of for one in stood], dtype=np.intp),
+        angle,
+        tuple(ways),
+        _ties(scenes, names),
+        np.array([_aspect(scene) for scene in scenes]),
+        tuple(output for output, _ in capacities),
+        Ranges.of(named or "clearance", [estimate for _, estimate in capacities], np.nan),
+        Ranges.of("clearance", [scene.parameters.get("clearance") for scene in scenes], np.inf),
+    )
+
+
+def _ties(scenes: Sequence[Scene], names: Sequence[str]) -> dict[str, tuple[str, Array]]:
+    """Return of parameters that are in proportion to another one which, and how many times that, (m,); NaN: not."""
+    out: dict[str, tuple[str, Array]] = {}
+    for at, scene in enumerate(scenes):
+        for name in names:
+            estimate = scene.parameters.get(name)
+            if estimate is None or not estimate.per or estimate.per not in names:
+                continue
+            other = scene.parameters.get(estimate.per)
+            if other is not None and other.value:
+                times = out.setdefault(name, (estimate.per, np.full(len(scenes), np.nan)))[1]
+                times[at] = estimate.value / other.value
+    return out
+
+
+def _aspect(scene: Scene) -> float:
+    """Return how much wider an object is across its narrow side than along it, 1 where nobody says it."""
+    item = scene.item
+    for width, depth in ((item.base_width_m, item.base_depth_m), (item.width_m, item.depth_m)):
+        if width and depth:
+            return max(width, depth) / min(width, depth)
+    return 1.0
+
+
+def isolator_of(model: str, scene: Scene) -> Transfer:
+    """Return what an isolator passes the motion on by, at its best estimates."""
+    known = scene.parameters
+    return model, tuple((q.name, known[q.name].value) for q in model_named(model).needs if q.name in known)

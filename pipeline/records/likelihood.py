@@ -1,0 +1,89 @@
+"""How likely an object comes to harm at a level of shaking: probabilities of states, and the words for them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+
+class Harm(StrEnum):
+    """State that an object may reach: it shifts, leaves its place or hits something, rocks, falls, breaks."""
+
+    SHIFTS = "shifts"
+    LEAVES = "leaves"
+    ROCKS = "rocks"
+    FALLS = "falls"
+    BREAKS = "breaks"
+
+
+class Band(StrEnum):
+    """Word for a probability."""
+
+    ALMOST_CERTAIN = "almost certain"
+    LIKELY = "likely"
+    POSSIBLE = "possible"
+    UNLIKELY = "unlikely"
+    VERY_UNLIKELY = "very unlikely"
+
+
+@dataclass(frozen=True, slots=True)
+class Sampling:
+    """How probabilities are found, and which words are used for them.
+
+    Attributes
+    ----------
+    samples : int
+        Joint samples of everything that is uncertain, at most; a power of two.
+    certainty : float
+        Probability that the word for a probability is the right one, from which on no more samples are taken.
+    edges : tuple of float
+        Probabilities from which on something is almost certain, likely, possible and unlikely, falling.
+    """
+
+    samples: int = 512
+    certainty: float = 0.9
+    edges: tuple[float, float, float, float] = (0.9, 0.5, 0.1, 0.01)
+
+    def band(self, probability: float) -> Band:
+        """Return the word for a probability."""
+        return next(
+            (word for word, edge in zip(Band, self.edges, strict=False) if probability >= edge), tuple(Band)[-1]
+        )
+
+    def ends(self, probability: float) -> tuple[float, float]:
+        """Return the probabilities between which the same word is used."""
+        all_edges = (1.0, *self.edges, 0.0)
+        at = tuple(Band).index(self.band(probability))
+        return all_edges[at + 1], all_edges[at]
+
+
+@dataclass(frozen=True, slots=True)
+class Likelihood:
+    """How likely an object comes to harm at a level of shaking, its measures and the motions of the level being drawn.
+
+    Attributes
+    ----------
+    level : str
+        Name of the level.
+    probability : float
+        Of being harmed in any way.
+    error : float
+        Standard error of it, by the number of samples; that of having these motions and no others is not in it.
+    samples : int
+        How many were taken.
+    band : Band
+        The word for the probability.
+    harm : str
+        The state of harm that is likeliest; "" where no sample came to any.
+    states : mapping of str to float
+        By `Harm`, the probability of each state that it can reach; those that do it no harm as well.
+    """
+
+    level: str
+    probability: float
+    error: float
+    samples: int
+    band: Band
+    harm: str = ""
+    states: Mapping[str, float] = field(default_factory=dict)
