@@ -11,6 +11,7 @@ from pipeline.analysis.assess import LevelMotions, assess
 from pipeline.analysis.context import Context
 from pipeline.analysis.furnished import furnished
 from pipeline.analysis.furniture import FurnitureFilter, filter_of
+from pipeline.analysis.likelihood.sampling import Stood, Transfer, likelihoods
 from pipeline.analysis.transmission import transmit
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures.base import held
@@ -18,7 +19,7 @@ from pipeline.models import model_named, tips
 from pipeline.models.rocking import ROCKING
 from pipeline.models.sliding import SLIDING
 from pipeline.models.unanchored import UNANCHORED
-from pipeline.records import Finding, Numerics, Scene
+from pipeline.records import Finding, Likelihood, Numerics, Sampling, Scene
 
 ON_TOP = "Under the motion that its isolator passes on"
 
@@ -30,10 +31,6 @@ class InstalledMeasure:
     name: str
     parameters: Mapping[str, float]
     words: str
-
-
-Transfer = tuple[str, tuple[tuple[str, float], ...]]
-"""A kind of isolator with its parameters: equal ones pass the same motion on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,14 +146,42 @@ def assess_above(
         for index, above in members:
             found: list[Finding] = []
             skipped: dict[str, str] = {}
-            for scene, under in _shaken(above, transfer[0], levels, passed):
+            for scene, on_top in _shaken(above, transfer[0]):
+                under = passed if on_top else levels
                 plan, judged = assess([scene], under, context, numerics)
                 # Its furniture is judged with the isolator, which stands in it.
                 own = [finding for finding in judged[0] if finding.model != UNANCHORED.name]
-                found += own if under is levels else [_told_above(finding) for finding in own]
+                found += [_told_above(finding) for finding in own] if on_top else own
                 skipped |= plan.skipped[0]
             out[index] = found, skipped
     return out
+
+
+def likely(
+    objects: Sequence[Placed], levels: Sequence[LevelMotions], sampling: Sampling
+) -> list[tuple[Likelihood, ...]]:
+    """Return how likely objects come to harm as they stand, those on isolators by what these do and pass on.
+
+    Parameters
+    ----------
+    objects : sequence of Placed
+    levels : sequence of LevelMotions
+        The shaking of the floor.
+    sampling : Sampling
+        How many samples, and the words.
+
+    Returns
+    -------
+    list of tuple of Likelihood
+        Of each object one for each level.
+    """
+    stood = []
+    for at, one in enumerate(objects):
+        stood.append(Stood(at, one.scene))
+        if one.above is not None:
+            passed = one.passing()
+            stood += [Stood(at, scene, passed if on_top else None) for scene, on_top in _shaken(one.above, passed[0])]
+    return likelihoods(stood, len(objects), levels, sampling)
 
 
 def _passed(level: LevelMotions, transfer: Transfer) -> LevelMotions:
@@ -165,17 +190,16 @@ def _passed(level: LevelMotions, transfer: Transfer) -> LevelMotions:
     return level.through(lambda motion: (transmit(kind, motion, **given),))
 
 
-def _shaken(
-    above: Scene, kind: str, ground: Sequence[LevelMotions], passed: Sequence[LevelMotions]
-) -> list[tuple[Scene, Sequence[LevelMotions]]]:
+def _shaken(above: Scene, kind: str) -> list[tuple[Scene, bool]]:
+    """Return what of an object is run, and whether under what its isolator passes on, or else as its floor shakes."""
     if kind != "friction_isolator":
-        return [(above, passed)]
+        return [(above, True)]
     # On a low-friction pad it slides with the pad, and a low friction never excuses rocking (paper, 2.6): it is asked
     # for by the model that lets nothing slide.
     rocks = (ROCKING.name,) if any(tips(name) for name in above.models) else ()
     rest = tuple(name for name in above.models if not tips(name) and name != SLIDING.name)
-    both = [(replace(above, models=rocks), ground), (replace(above, models=rest), passed)]
-    return [(scene, under) for scene, under in both if scene.models]
+    both = [(replace(above, models=rocks), False), (replace(above, models=rest), True)]
+    return [(scene, on_top) for scene, on_top in both if scene.models]
 
 
 def _told_above(finding: Finding) -> Finding:

@@ -20,7 +20,7 @@ from pipeline.analysis.rules import RuleTable
 from pipeline.analysis.survey import measurement_requests
 from pipeline.collection.record import INDIVIDUAL
 from pipeline.mitigate import MeasureCatalogue, advise
-from pipeline.mitigate.installed import InstalledMeasure, Placed, assess_above, placed
+from pipeline.mitigate.installed import InstalledMeasure, Placed, assess_above, likely, placed
 from pipeline.mitigate.proposals import case_of
 from pipeline.models import model_named
 from pipeline.night.floors import Floor
@@ -211,6 +211,7 @@ def _as_own(scene: Scene, twin: Assessed) -> Assessed:
             tuple(replace(one, object_number=number, gallery=gallery) for one in found.recommendations),
             tuple(replace(one, object_number=number) for one in found.fragilities),
             found.fault,
+            likelihoods=found.likelihoods,
         ),
     )
 
@@ -299,10 +300,13 @@ def _assessed(
     if context.fragile:
         shown = [s.item.on_display and _has_a_curve(s) for s in scenes]
         curves = fragilities(scenes, plan.work, floor.stripes, Context(working.executor), chosen=shown)
+    chances = likely(objects, levels, context.sampling) if context.sampling.samples else [()] * len(scenes)
     scenes = [_needing(scene, those) for scene, those in zip(scenes, findings, strict=True)]
     return [
-        (Assessment(scene, tuple(those), tuple(advised), curve), counts)
-        for scene, those, advised, curve, counts in zip(scenes, findings, advice, curves, needing, strict=True)
+        (Assessment(scene, tuple(those), tuple(advised), curve, likelihoods=chance), counts)
+        for scene, those, advised, curve, counts, chance in zip(
+            scenes, findings, advice, curves, needing, chances, strict=True
+        )
     ]
 
 

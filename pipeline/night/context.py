@@ -20,6 +20,7 @@ from pipeline.night.floors import Floor
 from pipeline.records import (
     Motion,
     RunRecord,
+    Sampling,
 )
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.language import language
@@ -33,6 +34,7 @@ class RunContext:
 
     head      : the run without its objects: its motions and its charts, what pages say of it
     floors   : the floors by name
+    sampling  : how probabilities are found; no samples: they are not
     surveyed, fragile : whether to find out what is worth measuring, and from what shaking objects fail
     house     : the museum's house rules
     stores    : whether what is not on display is assessed too
@@ -44,6 +46,7 @@ class RunContext:
     head: RunRecord
     floors: Mapping[str, Floor]
     analysis: Analysis
+    sampling: Sampling
     rules: RuleTable | None
     measures: MeasureCatalogue
     surveyed: bool

@@ -104,6 +104,7 @@ def run_context(
         head=head,
         floors=floors,
         analysis=settings.analysis,
+        sampling=settings.likelihood.sampling,
         rules=rules,
         measures=measures,
         surveyed=surveyed,

@@ -74,7 +74,7 @@ class UnitKeys:
         measures = repr(context.measures)
         charts = None if context.admitted is None else sorted(context.admitted)
         told = (rules, sorted(tables.items()), measures)
-        asked = (sorted(analysis.items()), told, context.surveyed, context.fragile, charts)
+        asked = (sorted(analysis.items()), context.sampling, told, context.surveyed, context.fragile, charts)
         self._shaken = {
             name: seal(code_version(), repr((asked, _shaking(floor)))) for name, floor in context.floors.items()
         }

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from pipeline.records.fragility import Fragility
+from pipeline.records.likelihood import Likelihood
 from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.result import Assessment, Finding, Recommendation, Spacing
 from pipeline.records.scene import Anchorage, Estimate, Furniture, Hanging, Origin, Support
@@ -47,7 +48,7 @@ class Result:
         One for each demand and level.
     recommendations : tuple of Recommendation
         What would help.
-    fragilities, fault, aside
+    fragilities, fault, aside, likelihoods
         See `Assessment`.
     needing : mapping of str to int
         By name of the model, for how many of its analyses any history was run.
@@ -76,6 +77,7 @@ class Result:
     aside: bool = False
     furniture_origin: Origin | None = None
     anchorage: Anchorage | None = None
+    likelihoods: tuple[Likelihood, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

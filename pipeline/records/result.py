@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from pipeline.records.fragility import Fragility
+from pipeline.records.likelihood import Likelihood
 from pipeline.records.picture import Mark
 from pipeline.records.scene import Origin, Scene
 
@@ -197,6 +198,8 @@ class Assessment:
         Where Kouros itself failed on the object, what went wrong and where; "" where it did not.
     aside : bool
         Whether it was left aside, because it is not on display: nothing of it was computed.
+    likelihoods : tuple of Likelihood
+        How likely it comes to harm, one for each level; none where that was not asked for.
     """
 
     scene: Scene
@@ -205,6 +208,12 @@ class Assessment:
     fragilities: tuple[Fragility, ...] = ()
     fault: str = ""
     aside: bool = False
+    likelihoods: tuple[Likelihood, ...] = ()
+
+    @property
+    def likelihood(self) -> Likelihood | None:
+        """How likely it comes to harm at the level that decides: where that is likeliest; None where nobody knows."""
+        return max(self.likelihoods, key=lambda one: one.probability, default=None)
 
     @property
     def assessed(self) -> bool:

@@ -11,7 +11,7 @@ from pydantic import ConfigDict, Field, RootModel, ValidationError, field_valida
 
 from pipeline.analysis.house.rule import HouseRule
 from pipeline.errors import InputError
-from pipeline.records import Numerics
+from pipeline.records import Numerics, Sampling
 from pipeline.resources import small_text
 from pipeline.settings.operations import Hooks, LimitSettings, Logs, Retention
 from pipeline.settings.operations import SettingsPart as _Part
@@ -146,6 +146,49 @@ class Analysis(_Part):
         return Numerics(self.fidelity, self.azimuth_step)
 
 
+class LikelihoodSettings(_Part):
+    """How likely each object comes to harm: everything that is uncertain about it is drawn together, again and again.
+
+    The words for a probability begin at the values given here.
+    """
+
+    samples: int = Field(
+        default=512,
+        ge=0,
+        le=8192,
+        description="joint samples at most, a power of two from 64 on; 0: no probabilities are found",
+    )
+    band_certainty: float = Field(
+        default=0.9,
+        ge=0.5,
+        lt=1.0,
+        description="probability that the word for a probability is the right one, from which on no more are drawn",
+    )
+    almost_certain: float = Field(default=0.9, gt=0.0, lt=1.0, description="almost certain from here on")
+    likely: float = Field(default=0.5, gt=0.0, lt=1.0, description="likely from here on")
+    possible: float = Field(default=0.1, gt=0.0, lt=1.0, description="possible from here on")
+    unlikely: float = Field(default=0.01, gt=0.0, lt=1.0, description="unlikely from here on, and very unlikely below")
+
+    @field_validator("samples")
+    @classmethod
+    def _power_of_two(cls, value: int) -> int:
+        if value and (value < 64 or value & (value - 1)):
+            raise InputError(f"{value} samples are not balanced: write 0, or a power of two such as 64, 256, 512, 1024")
+        return value
+
+    @model_validator(mode="after")
+    def _falling(self) -> "LikelihoodSettings":
+        if not self.almost_certain > self.likely > self.possible > self.unlikely:
+            raise InputError("the words do not follow each other: almost_certain > likely > possible > unlikely")
+        return self
+
+    @property
+    def sampling(self) -> Sampling:
+        """How probabilities are found."""
+        edges = (self.almost_certain, self.likely, self.possible, self.unlikely)
+        return Sampling(self.samples, self.band_certainty, edges)
+
+
 class DisplaySettings(_Part):
     """What of the collection is assessed: what is on display.
 
@@ -267,6 +310,7 @@ class Settings(_Part):
     )
     display: DisplaySettings = DisplaySettings()
     analysis: Analysis = Analysis()
+    likelihood: LikelihoodSettings = LikelihoodSettings()
     execution: Execution = Execution()
     tables: OwnTables = OwnTables()
     mitigation: Mitigation = Mitigation()

@@ -109,6 +109,7 @@ def anonymous(assessment: Assessment, needing: dict[str, int], wishes: tuple[Mea
         assessment.aside,
         scene.furniture_origin,
         scene.anchorage,
+        assessment.likelihoods,
     )
 
 
@@ -139,6 +140,7 @@ def of_object(result: Result, item: Item) -> Assessment:
         tuple(replace(one, object_number=number) for one in result.fragilities),
         result.fault,
         result.aside,
+        result.likelihoods,
     )
 
 

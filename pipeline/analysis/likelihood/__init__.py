@@ -1,1 +1,1 @@
-"""Probabilities of harm: joint samples of all that is uncertain (`draws`), as shaking (`shaking`), counted (`sampling`)."""
+"""Probabilities of harm: what is uncertain is drawn together (`draws`, `shaking`), run, and counted (`sampling`)."""

@@ -2,7 +2,7 @@ r"""Joint samples of what is uncertain: one matrix of shares for all objects, an
 
 Each row is a sample of everything at once: of the motion, the direction, the furniture, and of every parameter by its
 name.  All objects are drawn from the same rows, so that what stands in the same kind of furniture shares the shaking of
-each sample, the ranking of two objects does not hang on luck, and the digits are the same whoever samples and with whom.
+each sample, the order of two objects does not hang on luck, and the digits are the same whoever samples and with whom.
 The rows are those of a scrambled Sobol' sequence, of which every first 2^k are balanced.
 
 Of a number with a best estimate and a range nothing is taken to be known but these three: the distribution with the
@@ -11,7 +11,8 @@ what is a scale.  So nothing ever lies outside of a range, and what holds for th
 
 References
 ----------
-Sobol', I. M. (1967). On the distribution of points in a cube. USSR Computational Mathematics and Mathematical Physics 7.
+Sobol', I. M. (1967). On the distribution of points in a cube and the approximate evaluation of integrals. USSR
+Computational Mathematics and Mathematical Physics 7.
 Jaynes, E. T. (1968). Prior probabilities. IEEE Transactions on Systems Science and Cybernetics 4.
 """
 
@@ -160,10 +161,7 @@ def value_at(share: float, low: float, best: float, high: float) -> float:
 
 
 def _lines(low: Array, best: Array, high: Array) -> tuple[Array, Array]:
-    """Return below and above the median the values at shares 0 and 1 of a straight line, and whether it is of logarithms.
-
-    Each is of shape (3, m).
-    """
+    """Return the lines below and above the median, (3, m) each: at shares 0 and 1, and whether they are of logarithms."""
     certain = ~((low < high) & np.isfinite(low) & np.isfinite(high))
     log = (low > 0.0) & ~certain
     first, middle, last = (np.where(log, np.log(np.where(log, one, 1.0)), one) for one in (low, best, high))

@@ -24,7 +24,6 @@ from pipeline.analysis.likelihood.shaking import direction, drawn_motion, throug
 from pipeline.analysis.plan import Indices, own_angle, plan, unique_rows
 from pipeline.analysis.transmission import transmit
 from pipeline.analysis.verdicts import LevelMotions, capacity_of, exceeds
-from pipeline.models import model_named
 from pipeline.quantities import Array
 from pipeline.records import Columns, Excitation, Harm, Likelihood, Model, Motion, Sampling, Scene
 
@@ -320,9 +319,3 @@ def _aspect(scene: Scene) -> float:
         if width and depth:
             return max(width, depth) / min(width, depth)
     return 1.0
-
-
-def isolator_of(model: str, scene: Scene) -> Transfer:
-    """Return what an isolator passes the motion on by, at its best estimates."""
-    known = scene.parameters
-    return model, tuple((q.name, known[q.name].value) for q in model_named(model).needs if q.name in known)

@@ -1,4 +1,4 @@
-"""The shaking of a joint sample: one motion of the level, scaled by the scatter of the models, through one furniture."""
+"""The shaking of a joint sample: a motion of the level, scaled by the scatter of the models, through its furniture."""
 
 from dataclasses import replace
 

@@ -10,8 +10,9 @@ from math import isfinite, isnan
 from pathlib import Path
 from typing import Any
 
-from pipeline.records import Assessment, Finding, Recommendation, RunRecord
+from pipeline.records import Assessment, Finding, Harm, Recommendation, RunRecord
 from pipeline.report.files.workbook import write_workbook
+from pipeline.report.pages.chances import chance_columns
 from pipeline.report.pages.judging import first_failure
 from pipeline.report.pages.ranking import state_of
 from pipeline.report.text import encodable, safe_cell
@@ -19,6 +20,7 @@ from pipeline.report.units import Units
 
 _NUMBERS = (
     "demand", "low", "high", "capacity", "utilisation", "error", "median_g", "dispersion", "annual_rate",
+    "probability", "probability_error", *(f"p_{state.value}" for state in Harm),
 )  # fmt: skip
 _LISTS = ("assumptions", "parameters", "checks", "rejected")
 FINDING_COLUMNS = (
@@ -32,7 +34,9 @@ RECOMMENDATION_COLUMNS = (
 )  # fmt: skip
 OBJECT_COLUMNS = (
     "run", "object_number", "title", "gallery", "on_display", "state", "object_class", "furniture", "furniture_origin",
-    "missing", "median_g", "median_is", "dispersion", "annual_rate", "page",
+    "missing", "probability", "probability_error", "band", "harm", "harm_level",
+    *(f"p_{state.value}" for state in Harm),
+    "median_g", "median_is", "dispersion", "annual_rate", "page",
 )  # fmt: skip
 
 
@@ -188,6 +192,7 @@ def _object(run: str, a: Assessment, page: str) -> dict[str, Any]:
         "furniture": a.scene.furniture,
         "furniture_origin": a.scene.furniture_origin,
         "missing": "" if a.aside else "; ".join(a.scene.missing),
+        **chance_columns(a),
         **first_failure(a),
         "page": page,
     }

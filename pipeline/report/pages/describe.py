@@ -25,6 +25,7 @@ from pipeline.records import (
 from pipeline.records.result import BOUNDS
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
+from pipeline.report.pages.chances import chance_view
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import fragility_views, most, spanned
 from pipeline.report.pages.ranking import finding_order, finding_state, grave, state_of
@@ -227,6 +228,7 @@ class Describer:
             problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
             wishes=wish_views(self.wishes.get(item.object_number, ()), self._units),
             grave=any(grave(f) for f in assessment.findings),
+            chance=chance_view(assessment),
             fragilities=fragility_views(assessment, drawn=state is State.ACT),
             skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
             decisions=self.decided.of(assessment),

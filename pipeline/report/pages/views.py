@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from itertools import groupby
 
+from pipeline.report.pages.chances import ChanceView
 from pipeline.report.pages.judging import FragilityView
 from pipeline.report.plots.chart import Spot
 
@@ -194,6 +195,7 @@ class ObjectView:
     wishes: tuple[WishView, ...] = ()
     grave: bool = False
     fragilities: tuple[FragilityView, ...] = ()
+    chance: ChanceView | None = None
     decisions: tuple[DecisionView, ...] = ()
     settled: bool = False
 
