@@ -158,7 +158,7 @@ def assess_above(
 
 
 def likely(
-    objects: Sequence[Placed], levels: Sequence[LevelMotions], sampling: Sampling
+    objects: Sequence[Placed], levels: Sequence[LevelMotions], sampling: Sampling, context: Context
 ) -> list[tuple[Likelihood, ...]]:
     """Return how likely objects come to harm as they stand, those on isolators by what these do and pass on.
 
@@ -169,6 +169,8 @@ def likely(
         The shaking of the floor.
     sampling : Sampling
         How many samples, and the words.
+    context : Context
+        Where they are run.
 
     Returns
     -------
@@ -181,7 +183,7 @@ def likely(
         if one.above is not None:
             passed = one.passing()
             stood += [Stood(at, scene, passed if on_top else None) for scene, on_top in _shaken(one.above, passed[0])]
-    return likelihoods(stood, len(objects), levels, sampling)
+    return likelihoods(stood, len(objects), levels, sampling, context.executor)
 
 
 def _passed(level: LevelMotions, transfer: Transfer) -> LevelMotions:

@@ -300,7 +300,7 @@ def _assessed(
     if context.fragile:
         shown = [s.item.on_display and _has_a_curve(s) for s in scenes]
         curves = fragilities(scenes, plan.work, floor.stripes, Context(working.executor), chosen=shown)
-    chances = likely(objects, levels, context.sampling) if context.sampling.samples else [()] * len(scenes)
+    chances = likely(objects, levels, context.sampling, working) if context.sampling.samples else [()] * len(scenes)
     scenes = [_needing(scene, those) for scene, those in zip(scenes, findings, strict=True)]
     return [
         (Assessment(scene, tuple(those), tuple(advised), curve, likelihoods=chance), counts)

@@ -49,9 +49,12 @@ def level(*motions: Motion) -> LevelMotions:
     return LevelMotions("design", "max", motions)
 
 
+def standing(scenes: Sequence[Scene]) -> list[Stood]:
+    return [Stood(at, scene) for at, scene in enumerate(scenes)]
+
+
 def found(scenes: Sequence[Scene], shaking: LevelMotions, sampling: Sampling = MANY) -> list[Likelihood]:
-    every = likelihoods([Stood(at, scene) for at, scene in enumerate(scenes)], len(scenes), [shaking], sampling)
-    return [one for (one,) in every]
+    return [one for (one,) in likelihoods(standing(scenes), len(scenes), [shaking], sampling, Threads(1))]
 
 
 def slider(low: float, best: float, high: float, room: float) -> Scene:
@@ -135,10 +138,10 @@ def test_fifty_objects_agree_with_plain_monte_carlo() -> None:
     of chance: their root mean square in standard errors is 1 at most for balanced samples beside independent ones, and
     of 50 none is beyond 4.
     """
-    standing = [
+    upright = [
         s for s in scenes_on_display() if {"standing", "sliding"} <= set(s.models) and "half_width" in s.parameters
     ]
-    chosen = standing[:: len(standing) // 50][:50]
+    chosen = upright[:: len(upright) // 50][:50]
     shaking = strong()
     draws = 160
     mine = found(chosen, level(shaking), Sampling(1024, 2.0))
@@ -204,9 +207,11 @@ def test_neither_order_nor_company_changes_a_digit() -> None:
     usual = Sampling()
     shaking = level(strong(), strong(6))
     stood = [Stood(at, scene) for at, scene in enumerate(scenes)]
-    whole = likelihoods(stood, len(scenes), [shaking], usual)
-    turned = likelihoods([Stood(at, s) for at, s in enumerate(reversed(scenes))], len(scenes), [shaking], usual)
-    alone = [likelihoods([Stood(0, scene)], 1, [shaking], usual)[0] for scene in scenes[:12]]
+    whole = likelihoods(stood, len(scenes), [shaking], usual, Threads(2))
+    turned = likelihoods(
+        [Stood(at, s) for at, s in enumerate(reversed(scenes))], len(scenes), [shaking], usual, Threads(2)
+    )
+    alone = [likelihoods([Stood(0, scene)], 1, [shaking], usual, Threads(2))[0] for scene in scenes[:12]]
     assert list(reversed(turned)) == whole
     assert alone == whole[:12]
     assert len({one[0].samples for one in whole if one}) > 2, "how many samples each takes is its own matter"
@@ -219,10 +224,11 @@ def test_what_grows_with_the_shaking_is_never_less_likely_under_more_of_it() -> 
     before: list[dict[str, float]] = [{} for _ in scenes]
     for times in (0.2, 0.5, 1.0, 1.6):
         every = likelihoods(
-            [Stood(at, s) for at, s in enumerate(scenes)],
+            standing(scenes),
             len(scenes),
             [level(strong().scaled(times, "test"))],
             Sampling(128, 2.0),
+            Threads(2),
         )
         for at, those in enumerate(every):
             for one in those:
@@ -342,7 +348,8 @@ def test_what_stands_on_an_isolator_is_shaken_by_what_that_passes_on() -> None:
         0.01, np.vstack([wave * np.sin(6.0 * np.pi * t), 0.5 * wave * np.sin(6.0 * np.pi * t + 1.0), 0.0 * t])
     )
     (bare,), (isolated,) = (
-        likely([placed(vase, there)], [level(fast)], Sampling(128, 2.0))[0] for there in ((), (isolator,))
+        likely([placed(vase, there)], [level(fast)], Sampling(128, 2.0), Context(Threads(1)))[0]
+        for there in ((), (isolator,))
     )
     # Six times as fast as the isolator, whose displacement stays below its stroke: it passes on a tenth.
     assert bare.states["falls"] > 0.2

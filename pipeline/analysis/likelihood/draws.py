@@ -161,7 +161,7 @@ def value_at(share: float, low: float, best: float, high: float) -> float:
 
 
 def _lines(low: Array, best: Array, high: Array) -> tuple[Array, Array]:
-    """Return the lines below and above the median, (3, m) each: at shares 0 and 1, and whether they are of logarithms."""
+    """Return the lines below and above the median, (3, m) each: at shares 0 and 1, and whether of logarithms."""
     certain = ~((low < high) & np.isfinite(low) & np.isfinite(high))
     log = (low > 0.0) & ~certain
     first, middle, last = (np.where(log, np.log(np.where(log, one, 1.0)), one) for one in (low, best, high))

@@ -12,6 +12,7 @@ degrees of freedom 37 % fell where one plane through the same motion said 25 %).
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from math import log2
 
@@ -25,7 +26,7 @@ from pipeline.analysis.plan import Indices, own_angle, plan, unique_rows
 from pipeline.analysis.transmission import transmit
 from pipeline.analysis.verdicts import LevelMotions, capacity_of, exceeds
 from pipeline.quantities import Array
-from pipeline.records import Columns, Excitation, Harm, Likelihood, Model, Motion, Sampling, Scene
+from pipeline.records import Columns, Excitation, Executor, Harm, Likelihood, Model, Motion, Sampling, Scene
 
 FIRST = 64
 """Samples that are taken of every object."""
@@ -37,6 +38,12 @@ HARMFUL = (Harm.LEAVES, Harm.FALLS, Harm.BREAKS)
 
 Transfer = tuple[str, tuple[tuple[str, float], ...]]
 """An isolator that passes the motion on: its model, and its parameters by name."""
+
+
+PART = 8
+"""Samples that one who works runs in one go."""
+
+_Groups = Mapping[tuple[FurnitureFilter | None, Transfer | None], Sequence["_Analyses"]]
 
 
 @dataclass(frozen=True)
@@ -59,7 +66,7 @@ class Stood:
 
 
 def likelihoods(
-    stood: Sequence[Stood], count: int, levels: Sequence[LevelMotions], sampling: Sampling
+    stood: Sequence[Stood], count: int, levels: Sequence[LevelMotions], sampling: Sampling, executor: Executor
 ) -> list[tuple[Likelihood, ...]]:
     """Return how likely objects come to harm at each level.
 
@@ -73,6 +80,8 @@ def likelihoods(
         The motions of their floor.
     sampling
         How many samples, and the words.
+    executor
+        Where the samples are run.
 
     Returns
     -------
@@ -95,7 +104,7 @@ def likelihoods(
     out: list[tuple[Likelihood, ...]] = [() for _ in range(count)]
     asked = sorted({at for those in groups.values() for one in those for at in one.of.tolist()})
     for level in levels:
-        counted = _counted(groups, count, np.array(asked, dtype=np.intp), harmful, level, sampling)
+        counted = _counted(groups, count, np.array(asked, dtype=np.intp), harmful, level, sampling, executor)
         for at in asked:
             out[at] = (*out[at], counted.told(at, level.name, harmful[:, at], sampling))
     return out
@@ -127,12 +136,13 @@ class _Counted:
 
 
 def _counted(
-    groups: Mapping[tuple[FurnitureFilter | None, Transfer | None], Sequence["_Analyses"]],
+    groups: _Groups,
     count: int,
     asked: Indices,
     harmful: NDArray[np.bool_],
     level: LevelMotions,
     sampling: Sampling,
+    executor: Executor,
 ) -> _Counted:
     done = _Counted(
         np.zeros(count, dtype=np.intp),
@@ -147,28 +157,47 @@ def _counted(
     wanted = np.zeros(count, dtype=bool)
     wanted[asked] = True
     for start, end in pairwise(_stages(sampling.samples)):
-        for number in range(start, end):
-            draw = Draw(number, sampling.samples)
-            reached = np.zeros((len(STATES), count), dtype=bool)
-            floor = drawn_motion(level, draw)
-            for (furniture, isolator), those in groups.items():
-                some = [one for one in those if wanted[one.of].any()]
-                if not some:
-                    continue
-                felt, falls = through(floor, furniture, draw)
-                if isolator is not None:
-                    felt = transmit(isolator[0], felt, refine=1, **dict(isolator[1]))
-                for one in some:
-                    one.run(felt, draw, wanted, reached)
-                    if falls:
-                        reached[STATES.index(Harm.FALLS), one.of[wanted[one.of]]] = True
-            done.taken += wanted
+        parts = [range(at, min(at + PART, end)) for at in range(start, end, PART)]
+        work = partial(_sampled, groups=groups, wanted=wanted, harmful=harmful, level=level, most=sampling.samples)
+        for reached, harmed in executor.map(work, parts):
             done.reached += reached
-            done.harmed += (reached & harmful).any(axis=0)
-        wanted &= ~_certain(done, sampling)
+            done.harmed += harmed
+        done.taken += (end - start) * wanted
+        wanted = wanted & ~_certain(done, sampling)
         if not wanted.any():
             break
     return done
+
+
+def _sampled(
+    numbers: range,
+    *,
+    groups: _Groups,
+    wanted: NDArray[np.bool_],
+    harmful: NDArray[np.bool_],
+    level: LevelMotions,
+    most: int,
+) -> tuple[Indices, Indices]:
+    """Return how often some samples reach each state, (s, m), and harm each object, (m,), of those wanted."""
+    total, harmed = np.zeros(harmful.shape, dtype=np.intp), np.zeros(wanted.size, dtype=np.intp)
+    for number in numbers:
+        draw = Draw(number, most)
+        reached = np.zeros_like(harmful)
+        floor = drawn_motion(level, draw)
+        for (furniture, isolator), those in groups.items():
+            some = [one for one in those if wanted[one.of].any()]
+            if not some:
+                continue
+            felt, falls = through(floor, furniture, draw)
+            if isolator is not None:
+                felt = transmit(isolator[0], felt, refine=1, **dict(isolator[1]))
+            for one in some:
+                one.run(felt, draw, wanted, reached)
+                if falls:
+                    reached[STATES.index(Harm.FALLS), one.of[wanted[one.of]]] = True
+        total += reached
+        harmed += (reached & harmful).any(axis=0)
+    return total, harmed
 
 
 def _stages(samples: int) -> list[int]:

@@ -78,7 +78,8 @@ def through(motion: Motion, furniture: FurnitureFilter | None, draw: Draw) -> tu
         if furniture.loose is not None:
             body = _body(furniture.loose, draw)
             falls = overturns(shaken, body, direction(draw))
-            shaken = passed_on(shaken, body)
+            # Nobody asks for it again: it is not to be remembered.
+            shaken = passed_on.__wrapped__(shaken, body)
     tilt = G * float(np.sin(furniture.level_error * draw.share(LEAN)))
     if tilt == 0.0:
         return shaken, falls
