@@ -27,10 +27,19 @@ from pipeline.mitigate.proposals import (
     known_to_swing,
     refused,
 )
-from pipeline.mitigate.trials import TransmittedMotions, Trial, TrialRunner, checks, passes, passes_at_best, why_not
+from pipeline.mitigate.trials import (
+    Aim,
+    TransmittedMotions,
+    Trial,
+    TrialRunner,
+    checks,
+    passes,
+    passes_at_best,
+    why_not,
+)
 from pipeline.models import settled_by_room
 from pipeline.models.unanchored import UNANCHORED
-from pipeline.records import Check, Finding, Mark, Numerics, Recommendation, Scene, Verdict
+from pipeline.records import Check, Finding, Likelihood, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 
 ONLY_HERE = "At another level of shaking it is not enough, and nothing that was tried is enough at all of them."
@@ -61,6 +70,8 @@ def advise(
     *,
     catalogue: MeasureCatalogue | None = None,
     transmitted: TransmittedMotions | None = None,
+    chances: Sequence[Sequence[Likelihood]] | None = None,
+    aim: Aim | None = None,
 ) -> list[list[Recommendation]]:
     """Recommend a measure for each object and level at which something fails, or is open for want of room alone.
 
@@ -73,6 +84,10 @@ def advise(
     Where nothing fails and something else than room is open, nothing is advised: a measurement may settle that
     (`pipeline.analysis.survey`); only furniture that is not fastened and may fall is better fastened.  Where nothing
     helps in such furniture, what helps in it once it is fastened is advised together with fastening it.
+
+    Where it is known how likely harm is, and an aim is given, it is likelihood that asks for a measure: where harm is
+    the aim at least.  A measure that passes by the best estimates is enough then if it brings harm below the aim,
+    everything that is uncertain being drawn together; what remains is told.
 
     Parameters
     ----------
@@ -90,6 +105,10 @@ def advise(
         The measures and isolators that there are; Kouros's own where it is left out.
     transmitted : TransmittedMotions, optional
         What isolators pass on, kept from one call to the next.
+    chances : sequence of sequence of Likelihood, optional
+        Of each scene, how likely it comes to harm at each level.
+    aim : Aim, optional
+        How unlikely harm has to become.
 
     Returns
     -------
@@ -113,8 +132,10 @@ def advise(
             transmitted=transmitted,
             values=have.values,
             furniture=furniture,
+            aim=aim,
         )
-        for index, one in zip(members, _advised(some, found, levels, have, runner, unassessed), strict=True):
+        likely = None if chances is None or aim is None else [_asked(chances[index], aim) for index in members]
+        for index, one in zip(members, _advised(some, found, levels, have, runner, unassessed, likely), strict=True):
             out[index] = one
     still = [at for at, scene in enumerate(scenes) if loose(scene) and any(r.measure in LAST_RESORTS for r in out[at])]
     if still:
@@ -123,13 +144,21 @@ def advise(
         all_in = [at for at, scene in enumerate(scenes) if at in still or case_of(scene) in cases]
         firm = [fastened(scenes[at]) if loose(scenes[at]) else scenes[at] for at in all_in]
         _, judged = assess(firm, levels, context.silent, numerics)
-        again = advise(firm, judged, levels, context, numerics, catalogue=have, transmitted=transmitted)
+        mine = None if chances is None else [chances[at] for at in all_in]
+        again = advise(
+            firm, judged, levels, context, numerics, catalogue=have, transmitted=transmitted, chances=mine, aim=aim
+        )
         starts = tuple(f"{measure.row.title}: " for measure in have.measures if isinstance(measure, Anchor))
         for at, better in zip(all_in, again, strict=True):
             if at in still:
                 helped = {one.level: one for one in better if one.measure not in LAST_RESORTS}
                 out[at] = [_fastened_too(one, helped.get(one.level), findings[at], starts) for one in out[at]]
     return out
+
+
+def _asked(chances: Sequence[Likelihood], aim: Aim) -> frozenset[str]:
+    """Return the levels at which harm is too likely."""
+    return frozenset(one.level for one in chances if one.probability >= aim.target)
 
 
 def _furniture(scenes: Sequence[Scene]) -> list[FurnitureFilter | None]:
@@ -174,15 +203,19 @@ def _advised(
     have: MeasureCatalogue,
     runner_of: Callable[[Sequence[LevelMotions]], TrialRunner],
     unassessed: Mapping[Case, tuple[str, ...]],
+    likely: Sequence[frozenset[str]] | None,
 ) -> list[list[Recommendation]]:
-    """Return what is recommended for scenes that all stand in the same furniture."""
+    """Return what is recommended for scenes that all stand in the same furniture.
+
+    likely : of each the levels at which harm is too likely; None: verdicts ask for measures
+    """
     rounds = [tuple(levels), *((level,) for level in levels if len(levels) > 1)]
     advised: dict[tuple[int, str], Recommendation] = {}
     for at, some in enumerate(rounds):
         # What holds at all levels stands; the others are looked at level by level.
         stands = {key for key, found in advised.items() if found.measure not in LAST_RESORTS}
         runner = runner_of(some)
-        search = _Search(runner, _deficiencies(scenes, findings, some, stands), unassessed)
+        search = _Search(runner, _deficiencies(scenes, findings, some, stands, likely), unassessed)
         for done, measure in enumerate(have.measures, start=1):
             if measure.isolator or measure.last_resort:
                 search.settles()
@@ -205,17 +238,20 @@ def _deficiencies(
     findings: Sequence[Sequence[Finding]],
     levels: Sequence[LevelMotions],
     stands: Container[tuple[int, str]],
+    likely: Sequence[frozenset[str]] | None,
 ) -> list[Deficiency]:
     """Return the objects with findings at these levels; for those that stand already nothing more is wanted."""
     names = [level.name for level in levels]
     out = []
     for index, (scene, found) in enumerate(zip(scenes, findings, strict=True)):
         here = tuple(f for f in found if f.level in names)
-        wanted = (
-            [name for name in names if _wanted(scene, [f for f in here if f.level == name])]
-            if _wanted(scene, here)
-            else []
-        )
+        if likely is not None:
+            falls = {f.level for f in here if _may_fall([f])}
+            wanted = [name for name in names if name in likely[index] or name in falls]
+        elif _wanted(scene, here):
+            wanted = [name for name in names if _wanted(scene, [f for f in here if f.level == name])]
+        else:
+            wanted = []
         if here:
             out.append(Deficiency(index, scene, here, tuple(name for name in wanted if (index, name) not in stands)))
     return out
@@ -282,8 +318,11 @@ class _Search:
     def tries(self, measure: Measure) -> None:
         """Try a measure on everything that still needs one: all first candidates together, then all second ones."""
         pending = [one for one in self.objects if one.wanted and one.index not in self.helped]
-        # What is only open for want of room is no reason to take it off display.
-        pending = [one for one in pending if measure.for_room or any(f.verdict is Verdict.FAIL for f in one.findings)]
+        if not self.runner.aims:
+            # What is only open for want of room is no reason to take it off display.
+            pending = [
+                one for one in pending if measure.for_room or any(f.verdict is Verdict.FAIL for f in one.findings)
+            ]
         measure.prepare(pending, self.runner)
         open_: list[tuple[Unit, Proposal, Iterator[Candidate]]] = []
         for unit in self._units(pending, measure):
@@ -305,7 +344,7 @@ class _Search:
         for index, found in self.at_best.items():
             if index not in self.helped:
                 self.rejected[index] = list(found.rejected)
-                self._recommend(found.unit, found.measure, found.candidate, (), found.results, at_best=True)
+                self._recommend(found.unit, found.measure, found.candidate, (), found.results, {}, at_best=True)
         self.at_best.clear()
 
     def _units(self, pending: Sequence[Deficiency], measure: Measure) -> list[Unit]:
@@ -326,15 +365,23 @@ class _Search:
                 self._reject(unit, measure, proposal.reason or last.get(unit, "not enough"))
             elif candidate is not None:
                 asked.append((unit, proposal, candidates, candidate))
-        found = iter(self.runner.run([trial for *_, candidate in asked for trial in candidate.every]))
+        every = [trial for *_, candidate in asked for trial in candidate.every]
+        results = {id(trial): found for trial, found in zip(every, self.runner.run(every), strict=True)}
+        # What passes by the best estimates and not for sure is worth drawing.
+        doubtful = [t for t in every if not passes(results[id(t)]) and passes_at_best(results[id(t)])]
+        left = {id(trial): left for trial, left in zip(doubtful, self.runner.remaining(doubtful), strict=True)}
+
+        def holds(trials: Sequence[Trial]) -> bool:
+            unsure = [trial for trial in trials if not passes(results[id(trial)])]
+            return self.runner.reaches_aim([left.get(id(trial), {}) for trial in unsure])
+
         still = []
         for unit, proposal, candidates, candidate in asked:
-            results = {id(trial): next(found) for trial in candidate.every}
-            options = [next((o for o in some if passes(results[id(o.trial)])), None) for _, some in candidate.options]
-            failing = [trial for trial in candidate.trials if not passes(results[id(trial)])]
+            options = [next((o for o in some if holds([o.trial])), None) for _, some in candidate.options]
+            failing = [trial for trial in candidate.trials if not holds([trial])]
             held = all(check.passes for _, check in candidate.checks)
-            if not failing and held and all(option is not None for option in options):
-                self._recommend(unit, measure, candidate, [one for one in options if one is not None], results)
+            if holds(candidate.trials) and held and all(option is not None for option in options):
+                self._recommend(unit, measure, candidate, [one for one in options if one is not None], results, left)
                 continue
             if candidate.at_best and held and all(passes_at_best(results[id(t)]) for t in candidate.trials):
                 self._keep(unit, measure, candidate, results)
@@ -361,6 +408,7 @@ class _Search:
         candidate: Candidate,
         options: Sequence[Option],
         results: Mapping[int, Sequence[Finding]],
+        left: Mapping[int, Mapping[str, Likelihood]],
         *,
         at_best: bool = False,
     ) -> None:
@@ -371,10 +419,11 @@ class _Search:
         for at, one in enumerate(unit):
             if not one.wanted or (measure.isolator and one.index in self.fastened):
                 continue
-            ran = [f for trial in candidate.trials for f in results[id(trial)]]
+            trials = [*candidate.trials, *([options[at].trial] if options else [])]
+            ran = [f for trial in trials for f in results[id(trial)]]
+            drawn = [left[id(trial)] for trial in trials if not passes(results[id(trial)]) and id(trial) in left]
             words = dict(candidate.words)
             if options:
-                ran += results[id(options[at].trial)]
                 case = case_of(one.scene)
                 unknown = self.unassessed.get(case, ()) if case is not None else ()
                 words |= {"what": company(unit, one, unknown), "how": options[at].said}
@@ -398,11 +447,12 @@ class _Search:
                     units={key: unit_ for key, (_, unit_) in numbers.items()},
                     checks=(
                         *(check for of, check in candidate.checks if of in ("", level)),
-                        *checks(here, before, at_best=at_best),
+                        *checks(here, before, at_best=at_best or bool(drawn)),
                     ),
                     rejected=tuple(self.rejected.get(one.index, ())),
                     mark=self._mark(candidate, here, measure.row.title, level),
                     source=measure.row.source,
+                    remaining=sum(one[level].probability for one in drawn) if drawn else None,
                 )
 
     def _mark(self, candidate: Candidate, ran: Sequence[Finding], title: str, level: str) -> Mark | None:

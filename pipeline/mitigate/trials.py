@@ -13,6 +13,7 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.fragility.curve import ENOUGH, stated
 from pipeline.analysis.furnished import furnished, isolating
 from pipeline.analysis.furniture import FurnitureFilter
+from pipeline.analysis.likelihood.sampling import Stood, Transfer, likelihoods
 from pipeline.analysis.model_runs import prepare
 from pipeline.analysis.response import answer
 from pipeline.analysis.transmission import transmit
@@ -22,7 +23,7 @@ from pipeline.mitigate.rows import Isolator
 from pipeline.models import model_named
 from pipeline.models.common import largest_push, lift_ratios
 from pipeline.quantities import Array, G
-from pipeline.records import Check, Finding, Motion, Numerics, Progress, Scene, Verdict
+from pipeline.records import Check, Finding, Likelihood, Motion, Numerics, Progress, Sampling, Scene, Verdict
 from pipeline.records.numerics import CHART
 from pipeline.tables.assumed import AssumedValues, assumed
 
@@ -72,9 +73,30 @@ class IsolatorResponse:
         return max(self.rare_strokes.values())
 
     @property
+    def transfer(self) -> Transfer:
+        """What it passes the motion on by."""
+        return self.isolator.kind, tuple(_given(self.isolator).items())
+
+    @property
     def acceleration(self) -> float:
         """The largest horizontal acceleration that it passes on at any level [m/s2]."""
         return max(self.accelerations.values())
+
+
+@dataclass(frozen=True, slots=True)
+class Aim:
+    """How unlikely a measure has to make harm.
+
+    Attributes
+    ----------
+    target : float
+        Probability below which harm has to be.
+    sampling : Sampling
+        How that is found.
+    """
+
+    target: float
+    sampling: Sampling
 
 
 @dataclass(frozen=True)
@@ -173,6 +195,8 @@ class TrialRunner:
         What is assumed of materials and surfaces; Kouros's own tables where it is left out.
     furniture : FurnitureFilter, optional
         What all objects that measures are tried for stand in: ``levels`` is what it passes on.
+    aim : Aim, optional
+        How unlikely harm has to become; where it is left out, it has to be excluded.
     """
 
     def __init__(
@@ -184,8 +208,10 @@ class TrialRunner:
         transmitted: TransmittedMotions | None = None,
         values: AssumedValues | None = None,
         furniture: FurnitureFilter | None = None,
+        aim: Aim | None = None,
     ) -> None:
         self.values = values or assumed()
+        self._aim = aim
         self._floor, self._isolators = tuple(levels), tuple(isolators)
         self.levels = tuple(furnished(level, furniture) for level in levels)
         self._context, self._numerics = context, numerics
@@ -299,6 +325,48 @@ class TrialRunner:
                 out[at] = findings
         return out
 
+    def remaining(self, trials: Sequence[Trial]) -> list[dict[str, Likelihood]]:
+        """Return how likely harm remains in each trial, by level; nothing where no aim is given.
+
+        Parameters
+        ----------
+        trials : sequence of Trial
+
+        Returns
+        -------
+        list of dict of str to Likelihood
+            Of each trial, as closely as telling on which side of the aim it is takes.
+        """
+        if self._aim is None or not trials:
+            return [{} for _ in trials]
+        stood = []
+        for at, trial in enumerate(trials):
+            stood.append(Stood(at, trial.scene, None if trial.on is None else trial.on.transfer))
+        sampling = self._aim.sampling.deciding(self._aim.target)
+        found = likelihoods(stood, len(trials), self._floor, sampling, self._context.executor)
+        return [{one.level: one for one in those} for those in found]
+
+    @property
+    def aims(self) -> bool:
+        """Whether harm has to become unlikely, and need not be excluded."""
+        return self._aim is not None
+
+    def reaches_aim(self, remaining: Sequence[Mapping[str, Likelihood]]) -> bool:
+        """Say whether harm is unlikely enough at every level, that of several trials together.
+
+        Parameters
+        ----------
+        remaining : sequence of mapping of str to Likelihood
+            Of each trial in which harm is not excluded; of none of them harm is as unlikely as can be.
+        """
+        if self._aim is None:
+            return not remaining
+        names = [level.name for level in self._floor]
+        return all(
+            all(name in one for one in remaining) and sum(one[name].probability for one in remaining) < self._aim.target
+            for name in names
+        )
+
     def isolated(self, kind: str) -> list[IsolatorResponse]:
         """Return the isolators of a kind that stand on the floor, by the length of their stroke."""
         listed = self.catalogue(kind)
@@ -371,10 +439,15 @@ class TrialRunner:
             self._on_pads[pad, one] = (turn, share)
 
 
+def _given(isolator: Isolator) -> dict[str, float]:
+    if isolator.kind == "friction_isolator":
+        return {"friction_static": isolator.friction}
+    return {"frequency": isolator.frequency, "damping": isolator.damping, "friction": isolator.friction}
+
+
 def _run_isolator(task: tuple[SharedLevel, Isolator]) -> LevelResponse:
     level, isolator = task[0].level, task[1]
-    names = {"frequency": isolator.frequency, "damping": isolator.damping, "friction": isolator.friction}
-    given: dict[str, Any] = {"friction_static": isolator.friction} if isolator.kind == "friction_isolator" else names
+    given: dict[str, Any] = _given(isolator)
     model = model_named(isolator.kind)
     strokes, accelerations, passed_on = {}, {}, {}
     for motion in level.every:

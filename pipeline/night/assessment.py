@@ -22,6 +22,7 @@ from pipeline.collection.record import INDIVIDUAL
 from pipeline.mitigate import MeasureCatalogue, advise
 from pipeline.mitigate.installed import InstalledMeasure, Placed, assess_above, likely, placed
 from pipeline.mitigate.proposals import case_of
+from pipeline.mitigate.trials import Aim
 from pipeline.models import model_named
 from pipeline.night.floors import Floor
 from pipeline.records import (
@@ -293,14 +294,23 @@ def _assessed(
         done = {finding.title for finding in findings[at]}
         skipped = {title: why for title, why in {**plan.skipped[at], **left_out}.items() if title not in done}
         scenes[at] = replace(scenes[at], skipped=skipped)
+    sampling = context.sampling
+    chances = likely(objects, levels, sampling, working) if sampling.samples else [()] * len(scenes)
     advice = advise(
-        scenes, findings, levels, working, numerics, catalogue=context.measures, transmitted=context.transmitted
+        scenes,
+        findings,
+        levels,
+        working,
+        numerics,
+        catalogue=context.measures,
+        transmitted=context.transmitted,
+        chances=chances if sampling.samples else None,
+        aim=Aim(sampling.edges[2], sampling) if sampling.samples else None,
     )
     curves: Sequence[tuple[Fragility, ...]] = [()] * len(scenes)
     if context.fragile:
         shown = [s.item.on_display and _has_a_curve(s) for s in scenes]
         curves = fragilities(scenes, plan.work, floor.stripes, Context(working.executor), chosen=shown)
-    chances = likely(objects, levels, context.sampling, working) if context.sampling.samples else [()] * len(scenes)
     scenes = [_needing(scene, those) for scene, those in zip(scenes, findings, strict=True)]
     return [
         (Assessment(scene, tuple(those), tuple(advised), curve, likelihoods=chance), counts)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 
@@ -51,9 +51,13 @@ class Sampling:
             (word for word, edge in zip(Band, self.edges, strict=False) if probability >= edge), tuple(Band)[-1]
         )
 
+    def deciding(self, target: float) -> Sampling:
+        """Return the same for one question alone: whether a probability is a target at least."""
+        return replace(self, edges=(4.0, 3.0, 2.0, target))
+
     def ends(self, probability: float) -> tuple[float, float]:
         """Return the probabilities between which the same word is used."""
-        all_edges = (1.0, *self.edges, 0.0)
+        all_edges = (max(1.0, *self.edges), *self.edges, 0.0)
         at = tuple(Band).index(self.band(probability))
         return all_edges[at + 1], all_edges[at]
 

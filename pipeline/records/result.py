@@ -164,6 +164,9 @@ class Recommendation:
         Its place on a chart.
     source : str
         Who says so.
+    remaining : float or None
+        Probability of harm that remains with it; None where its checks exclude harm within all that is uncertain, and
+        where nobody drew it.
     """
 
     object_number: str
@@ -178,6 +181,7 @@ class Recommendation:
     rejected: tuple[str, ...] = ()
     mark: Mark | None = None
     source: str = ""
+    remaining: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
