@@ -82,6 +82,10 @@ class Likelihood:
         The state of harm that is likeliest; "" where no sample came to any.
     states : mapping of str to float
         By `Harm`, the probability of each state that it can reach; those that do it no harm as well.
+    open_for : str
+        The parameter whose measurement alone may change what is decided about it; "" for none.
+    worth : float
+        By how much that measurement lowers the expected loss, in units of the loss by harm.
     """
 
     level: str
@@ -91,3 +95,5 @@ class Likelihood:
     band: Band
     harm: str = ""
     states: Mapping[str, float] = field(default_factory=dict)
+    open_for: str = ""
+    worth: float = 0.0

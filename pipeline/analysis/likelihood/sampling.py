@@ -10,7 +10,7 @@ once: a round one tips in any direction, and one plane alone would miss a third 
 degrees of freedom 37 % fell where one plane through the same motion said 25 %).
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
@@ -20,8 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeline.analysis.furniture import FurnitureFilter
-from pipeline.analysis.likelihood.draws import Draw, Ranges
+from pipeline.analysis.likelihood.draws import ONE_CAUSE, Draw, Ranges
 from pipeline.analysis.likelihood.shaking import direction, drawn_motion, through
+from pipeline.analysis.likelihood.worth import most_telling
 from pipeline.analysis.plan import Indices, own_angle, plan, unique_rows
 from pipeline.analysis.transmission import transmit
 from pipeline.analysis.verdicts import LevelMotions, capacity_of, exceeds
@@ -39,6 +40,9 @@ HARMFUL = (Harm.LEAVES, Harm.FALLS, Harm.BREAKS)
 Transfer = tuple[str, tuple[tuple[str, float], ...]]
 """An isolator that passes the motion on: its model, and its parameters by name."""
 
+
+ACTS = 2
+"""Which of the edges between words is that from which on something is done: "possible"."""
 
 PART = 8
 """Samples that one who works runs in one go."""
@@ -101,25 +105,35 @@ def likelihoods(
     for one in stood:
         harms = (*HARMFUL, Harm.ROCKS) if one.scene.item.susceptible else HARMFUL
         harmful[:, one.of] = [state in harms for state in STATES]
+    uncertain = _uncertain((one for those in groups.values() for one in those), count)
     out: list[tuple[Likelihood, ...]] = [() for _ in range(count)]
     asked = sorted({at for those in groups.values() for one in those for at in one.of.tolist()})
     for level in levels:
         counted = _counted(groups, count, np.array(asked, dtype=np.intp), harmful, level, sampling, executor)
+        bits = np.concatenate(counted.bits) if counted.bits else np.zeros((0, count), dtype=bool)
+        names, worth = most_telling(bits, counted.taken, uncertain, sampling.edges[ACTS], sampling)
         for at in asked:
-            out[at] = (*out[at], counted.told(at, level.name, harmful[:, at], sampling))
+            telling = names[at], float(worth[at])
+            out[at] = (*out[at], counted.told(at, level.name, harmful[:, at], sampling, telling))
     return out
 
 
 @dataclass
 class _Counted:
-    """Samples so far: of each object how many were taken (m,), harmed it (m,), and reached each state (s, m)."""
+    """Samples so far: of each object how many were taken (m,), harmed it (m,), and reached each state (s, m).
+
+    possible : whether it can reach each state, (s, m);  bits : by part of the samples, which harmed it, (n, m)
+    """
 
     taken: Indices
     harmed: Indices
     reached: NDArray[np.intp]
     possible: NDArray[np.bool_]
+    bits: list[NDArray[np.bool_]]
 
-    def told(self, at: int, level: str, harmful: NDArray[np.bool_], sampling: Sampling) -> Likelihood:
+    def told(
+        self, at: int, level: str, harmful: NDArray[np.bool_], sampling: Sampling, telling: tuple[str, float]
+    ) -> Likelihood:
         taken, harmed = int(self.taken[at]), int(self.harmed[at])
         share = harmed / taken
         # Jeffreys's: a probability is not known to be nothing because nothing was seen.
@@ -132,7 +146,7 @@ class _Counted:
             s.value: int(n) / taken for s, n, may in zip(STATES, reached, self.possible[:, at], strict=True) if may
         }
         named = STATES[worst[1]].value if worst[0] else ""
-        return Likelihood(level, share, error, taken, sampling.band(share), named, states)
+        return Likelihood(level, share, error, taken, sampling.band(share), named, states, *telling)
 
 
 def _counted(
@@ -149,6 +163,7 @@ def _counted(
         np.zeros(count, dtype=np.intp),
         np.zeros((len(STATES), count), dtype=np.intp),
         np.zeros((len(STATES), count), dtype=bool),
+        [],
     )
     for those in groups.values():
         for one in those:
@@ -161,7 +176,8 @@ def _counted(
         work = partial(_sampled, groups=groups, wanted=wanted, harmful=harmful, level=level, most=sampling.samples)
         for reached, harmed in executor.map(work, parts):
             done.reached += reached
-            done.harmed += harmed
+            done.bits.append(harmed)
+            done.harmed += harmed.sum(axis=0)
         done.taken += (end - start) * wanted
         wanted = wanted & ~_certain(done, sampling)
         if not wanted.any():
@@ -177,10 +193,10 @@ def _sampled(
     harmful: NDArray[np.bool_],
     level: LevelMotions,
     most: int,
-) -> tuple[Indices, Indices]:
-    """Return how often some samples reach each state, (s, m), and harm each object, (m,), of those wanted."""
-    total, harmed = np.zeros(harmful.shape, dtype=np.intp), np.zeros(wanted.size, dtype=np.intp)
-    for number in numbers:
+) -> tuple[Indices, NDArray[np.bool_]]:
+    """Return of those wanted how often some samples reach each state, (s, m), and which harm each object, (n, m)."""
+    total, harmed = np.zeros(harmful.shape, dtype=np.intp), np.zeros((len(numbers), wanted.size), dtype=bool)
+    for at, number in enumerate(numbers):
         draw = Draw(number, most)
         reached = np.zeros_like(harmful)
         floor = drawn_motion(level, draw)
@@ -196,8 +212,19 @@ def _sampled(
                 if falls:
                     reached[STATES.index(Harm.FALLS), one.of[wanted[one.of]]] = True
         total += reached
-        harmed += (reached & harmful).any(axis=0)
+        harmed[at] = (reached & harmful).any(axis=0)
     return total, harmed
+
+
+def _uncertain(analyses: Iterable["_Analyses"], count: int) -> dict[str, NDArray[np.bool_]]:
+    """Return by parameter of which objects it is a range that a measurement would settle, (m,)."""
+    out: dict[str, NDArray[np.bool_]] = {}
+    for one in analyses:
+        for ranges in (*one.ways[0], one.capacity, one.room):
+            name = ONE_CAUSE.get(ranges.name, ranges.name)
+            mine = out.setdefault(name, np.zeros(count, dtype=bool))
+            mine[one.of[ranges.low < ranges.high]] = True
+    return out
 
 
 def _stages(samples: int) -> list[int]:
