@@ -7,12 +7,14 @@ once for all who ask: a piece of it at a time, for each shaking and damping.
 """
 
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from hashlib import blake2b
 from threading import Lock
 
 import numpy as np
 
+from pipeline.cache import SPECTRA, Cache, CacheEntry, key_of
 from pipeline.models.oscillator import oscillate_any
 from pipeline.quantities import Array
 from pipeline.records import Excitation
@@ -52,30 +54,68 @@ _KEPT = 65536
 """Pieces of spectra that are remembered, of 2 kB as a rule: without what they are spectra of."""
 
 
+_Place = tuple[bytes, float, int]
+"""Of a piece: a digest of the shaking that it is a spectrum of, the damping, and which piece it is."""
+
+_Piece = tuple[Array, Array]
+
+
 class _Pieces:
-    """Pieces of spectra by the contents of the shaking, the damping and their place: the latest asked for."""
+    """Pieces of spectra by their places: the latest asked for, and where a cache is lent all that were found."""
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[tuple[bytes, float, int], tuple[Array, Array]] = OrderedDict()
+        self._found: OrderedDict[_Place, _Piece] = OrderedDict()
         self._lock = Lock()
+        self._cache: Cache | None = None
 
-    def of(self, key: bytes, shaking: Excitation, zeta: float, piece: int) -> tuple[Array, Array]:
-        """Return the natural logarithms of frequencies over a piece and a step beyond, and the spectrum there."""
-        place = key, zeta, piece
+    @contextmanager
+    def shared(self, cache: Cache) -> Iterator[None]:
+        """Find in a cache what others who work found, and keep there what is found, until the end of the block."""
+        before, self._cache = self._cache, cache
+        try:
+            yield
+        finally:
+            self._cache = before
+
+    def of(self, shaking: Excitation, places: Sequence[_Place]) -> list[_Piece]:
+        """Return the natural logarithms of frequencies over pieces and a step beyond, and the spectrum there."""
         with self._lock:
-            found = self._kept.get(place)
-            if found is not None:
-                self._kept.move_to_end(place)
-                return found
-        found = _piece(shaking, zeta, piece)
-        with self._lock:
-            self._kept[place] = found
-            if len(self._kept) > _KEPT:
-                self._kept.popitem(last=False)
-        return found
+            there = {place: self._found[place] for place in places if place in self._found}
+            for place in there:
+                self._found.move_to_end(place)
+        missing = [place for place in places if place not in there]
+        # Others who work want the same at the same time: each begins with other ones.
+        for at in np.random.default_rng().permutation(len(missing)).tolist():
+            place = missing[at]
+            there[place] = self._had(shaking, place)
+            with self._lock:
+                self._found[place] = there[place]
+                if len(self._found) > _KEPT:
+                    self._found.popitem(last=False)
+        return [there[place] for place in places]
+
+    def _had(self, shaking: Excitation, place: _Place) -> _Piece:
+        cache = self._cache
+        if cache is None:
+            return _piece(shaking, *place[1:])
+        key = key_of(place[0].hex(), *place[1:])
+        kept = cache.get(SPECTRA, key)
+        if kept is not None:
+            return kept.arrays["logs"], kept.arrays["values"]
+        logs, values = _piece(shaking, *place[1:])
+        cache.put(SPECTRA, key, CacheEntry(arrays={"logs": logs, "values": values}))
+        return logs, values
 
 
 _pieces = _Pieces()
+
+
+def sharing_spectra(cache: Cache | None) -> AbstractContextManager[None]:
+    """Share the pieces of spectra with all who work with the same cache, within the block; None: with nobody.
+
+    What is found is the same either way.
+    """
+    return nullcontext() if cache is None else _pieces.shared(cache)
 
 
 def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array) -> tuple[Array, Array]:
@@ -109,12 +149,14 @@ def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array)
     least, most = np.full(bands.shape[0], np.inf), np.zeros(bands.shape[0])
     begin, end = (np.clip(side, 10.0**LOWEST, 10.0**HIGHEST) for side in bands.T[:2])
     for damping in np.unique(bands[:, 2]):
+        touched = []
         for piece in range(LOWEST * PIECES, HIGHEST * PIECES):
             bottom, top = 10.0 ** (piece / PIECES), 10.0 ** ((piece + 1) / PIECES)
             chosen = np.flatnonzero((bands[:, 2] == damping) & (begin <= top) & (end >= bottom))
-            if chosen.size == 0:
-                continue
-            logs, values = _pieces.of(key, shaking, float(damping), piece)
+            if chosen.size:
+                touched.append((piece, bottom, top, chosen))
+        found = _pieces.of(shaking, [(key, float(damping), piece) for piece, *_ in touched])
+        for (_, bottom, top, chosen), (logs, values) in zip(touched, found, strict=True):
             ends = np.log([np.maximum(begin[chosen], bottom), np.minimum(end[chosen], top)])
             for fold, best in ((np.minimum, least), (np.maximum, most)):
                 best[chosen] = fold(best[chosen], _between(fold, logs, values, ends))

@@ -9,7 +9,7 @@ from pipeline.records import Assessment, Page, Recommendation, RunRecord, Tally,
 from pipeline.report.errors import ReportError
 from pipeline.report.language import ngettext, said
 from pipeline.report.pages.decided import Decided, decisions_view, merged
-from pipeline.report.pages.describe import Describer, furniture_known, percent
+from pipeline.report.pages.describe import Describer, Sayings, furniture_known, percent
 from pipeline.report.pages.floor_plan import plan_view
 from pipeline.report.pages.ground import motion_view
 from pipeline.report.pages.judging import room_views, shaking_view, spacing_views
@@ -88,14 +88,17 @@ class Composed:
     anchor: Callable[[Assessment], str]
 
 
-def compose(record: RunRecord, page: Page, units: Units, *, several: bool) -> Composed:
+def compose(
+    record: RunRecord, page: Page, units: Units, sayings: Sayings | None = None, *, several: bool
+) -> Composed:
     """Return everything that a page shows, in the order in which it shows it.
 
     record  : the run with the objects, wishes, spacings and decisions of this page only
+    sayings : what was put into words on other pages of the run, in this language and these units
     several : whether the run has several levels of shaking
     raises  : ReportError for a sentence with an unknown placeholder or a mark on a chart that the run does not hold
     """
-    describer = Describer(record, units)
+    describer = Describer(record, units, sayings or Sayings(record.motions, units))
     members = sorted(record.assessments, key=urgency)
     file = page_name(page.gallery, page.number, on_display=page.on_display)
     spacings = spacing_views(record.spacings, units) if page.on_display else ()
