@@ -9,10 +9,12 @@ once for all who ask: a piece of it at a time, for each shaking and damping.
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from functools import cache, lru_cache, partial
 from hashlib import blake2b
 from threading import Lock
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.cache import SPECTRA, Cache, CacheEntry, key_of
 from pipeline.models.oscillator import oscillate_any
@@ -54,6 +56,12 @@ _KEPT = 65536
 """Pieces of spectra that are remembered, of 2 kB as a rule: without what they are spectra of."""
 
 
+_KNOWN = 256
+"""Shakings of which a digest, and what single oscillators do, are remembered."""
+
+_SINGLE = 4096
+"""Oscillators that are remembered of each: those of what is worked on together, for which measures ask again."""
+
 _Place = tuple[bytes, float, int]
 """Of a piece: a digest of the shaking that it is a spectrum of, the damping, and which piece it is."""
 
@@ -77,8 +85,11 @@ class _Pieces:
         finally:
             self._cache = before
 
-    def of(self, shaking: Excitation, places: Sequence[_Place]) -> list[_Piece]:
-        """Return the natural logarithms of frequencies over pieces and a step beyond, and the spectrum there."""
+    def of(self, shaking: Callable[[], Excitation], places: Sequence[_Place]) -> list[_Piece]:
+        """Return the natural logarithms of frequencies over pieces and a step beyond, and the spectrum there.
+
+        shaking : gives what they are spectra of, where one is not known yet
+        """
         with self._lock:
             there = {place: self._found[place] for place in places if place in self._found}
             for place in there:
@@ -94,16 +105,16 @@ class _Pieces:
                     self._found.popitem(last=False)
         return [there[place] for place in places]
 
-    def _had(self, shaking: Excitation, place: _Place) -> _Piece:
-        cache = self._cache
-        if cache is None:
-            return _piece(shaking, *place[1:])
+    def _had(self, shaking: Callable[[], Excitation], place: _Place) -> _Piece:
+        lent = self._cache
+        if lent is None:
+            return _piece(shaking(), *place[1:])
         key = key_of(place[0].hex(), *place[1:])
-        kept = cache.get(SPECTRA, key)
+        kept = lent.get(SPECTRA, key)
         if kept is not None:
             return kept.arrays["logs"], kept.arrays["values"]
-        logs, values = _piece(shaking, *place[1:])
-        cache.put(SPECTRA, key, CacheEntry(arrays={"logs": logs, "values": values}))
+        logs, values = _piece(shaking(), *place[1:])
+        lent.put(SPECTRA, key, CacheEntry(arrays={"logs": logs, "values": values}))
         return logs, values
 
 
@@ -135,10 +146,10 @@ def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array)
     least, most : ndarray, shape (n,)
         [m/s2].
     """
-    peak = max(float(np.abs(way).max(initial=0.0)) for way in _ways(motion))
+    peak, key = _identity(motion)
     if peak == 0.0 or low.size == 0:
         return np.zeros_like(low), np.zeros_like(low)
-    key, shaking = _unit_shaking(motion, peak)
+    shaking = cache(partial(_unit_shaking, motion, peak))
     # Parameter sets differ in more than these: each band is searched once.
     order = np.lexsort((zeta, high, low))
     rows = np.column_stack([low, high, zeta])[order]
@@ -163,6 +174,56 @@ def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array)
     return peak * least[place], peak * most[place]
 
 
+def pseudo_accelerations(motion: Excitation, frequency: Array, zeta: Array) -> Array:
+    """Return the largest pseudo-acceleration of single oscillators, each of which is run once.
+
+    Parameters
+    ----------
+    motion : Excitation
+        As of `band_accelerations`.
+    frequency, zeta : ndarray, shape (n,)
+        Natural frequency [Hz] and damping ratio [-].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [m/s2].
+    """
+    # Parameter sets differ in more than these.
+    asked, place = np.unique(frequency + 1j * zeta, return_inverse=True)
+    return np.asarray(_singles(motion).of(motion, asked)[place.reshape(-1)])
+
+
+class _Singles:
+    """What single oscillators do under one shaking: those that were asked for lately, as frequency + i damping."""
+
+    def __init__(self) -> None:
+        self._kept: tuple[NDArray[np.complex128], Array] = np.empty(0, np.complex128), np.empty(0)
+
+    def of(self, motion: Excitation, asked: NDArray[np.complex128]) -> Array:
+        """Return the pseudo-acceleration of oscillators that are sorted, each there once."""
+        known, told = self._kept
+        place = np.searchsorted(known, asked)
+        there = np.zeros(asked.size, dtype=bool)
+        inside = place < known.size
+        there[inside] = known[place[inside]] == asked[inside]
+        push = np.empty(asked.size)
+        push[there] = told[place[there]]
+        fresh = asked[~there]
+        if fresh.size:
+            w = 2.0 * np.pi * fresh.real
+            push[~there] = w**2 * oscillate_any(motion, w, fresh.imag)
+            every = np.concatenate([known, fresh]), np.concatenate([told, push[~there]])
+            order = np.argsort(every[0])
+            self._kept = (every[0][order], every[1][order]) if order.size <= _SINGLE else (asked, push)
+        return push
+
+
+@lru_cache(maxsize=_KNOWN)
+def _singles(_motion: Excitation) -> _Singles:
+    return _Singles()
+
+
 def _between(fold: np.ufunc, logs: Array, values: Array, ends: Array) -> Array:
     """Return the largest (or least) of a curve between pairs of ends (2, n), themselves included."""
     out = fold(*np.interp(ends, logs, values))
@@ -179,14 +240,24 @@ def _ways(motion: Excitation) -> tuple[Array, ...]:
     return (motion.x,) if motion.y is None else (motion.x, motion.y)
 
 
-def _unit_shaking(motion: Excitation, peak: float) -> tuple[bytes, Excitation]:
-    """Return shaking with a peak of 1, and a digest of its contents before it."""
-    grains = [np.rint(way / peak * _GRAIN) for way in _ways(motion)]
+@lru_cache(maxsize=_KNOWN)
+def _identity(motion: Excitation) -> tuple[float, bytes]:
+    """Return the peak of shaking, and a digest of what it is beside that."""
+    peak = max(float(np.abs(way).max(initial=0.0)) for way in _ways(motion))
     digest = blake2b(np.array([motion.dt, -1.0 if motion.tail is None else motion.tail]).tobytes(), digest_size=16)
-    for one in grains:
+    for one in _grains(motion, peak) if peak else ():
         digest.update(one.tobytes())
-    x, y = grains[0] / _GRAIN, grains[1] / _GRAIN if len(grains) > 1 else None
-    return digest.digest(), Excitation(motion.dt, x, y, np.zeros_like(x), motion.tail)
+    return peak, digest.digest()
+
+
+def _grains(motion: Excitation, peak: float) -> list[Array]:
+    return [np.rint(way / peak * _GRAIN) for way in _ways(motion)]
+
+
+def _unit_shaking(motion: Excitation, peak: float) -> Excitation:
+    """Return shaking with a peak of 1."""
+    x, *others = (one / _GRAIN for one in _grains(motion, peak))
+    return Excitation(motion.dt, x, others[0] if others else None, np.zeros_like(x), motion.tail)
 
 
 def _piece(shaking: Excitation, zeta: float, piece: int) -> tuple[Array, Array]:

@@ -81,7 +81,9 @@ class PageRenderer:
             decisions=tuple(decisions),
         )
         with speaking(self.language):
-            made = compose(record, page, self.units, self._sayings, several=len({m.level for m in self.head.motions}) > 1)
+            made = compose(
+                record, page, self.units, self._sayings, several=len({m.level for m in self.head.motions}) > 1
+            )
             gallery = made.gallery
             context: dict[str, Any] = {"museum": page_head(self.head, page), "units": self.units, "State": State}
             context |= {"here": "gallery", "gallery": gallery}

@@ -88,9 +88,7 @@ class Composed:
     anchor: Callable[[Assessment], str]
 
 
-def compose(
-    record: RunRecord, page: Page, units: Units, sayings: Sayings | None = None, *, several: bool
-) -> Composed:
+def compose(record: RunRecord, page: Page, units: Units, sayings: Sayings | None = None, *, several: bool) -> Composed:
     """Return everything that a page shows, in the order in which it shows it.
 
     record  : the run with the objects, wishes, spacings and decisions of this page only
