@@ -56,7 +56,7 @@ WORKBOOK_ROWS = 10_000
 
 
 @dataclass(frozen=True, slots=True)
-class _Said:
+class _RowRest:
     """What a row says of a finding, whichever object it is of: cells, and the rest of a line of CSV and of JSON."""
 
     cells: Mapping[str, Any]
@@ -68,7 +68,7 @@ class FindingRows:
     """Findings as rows of the exports: what does not name the object is written once for all that share it."""
 
     def __init__(self) -> None:
-        self._said: Memory[_Said] = Memory()
+        self._said: Memory[_RowRest] = Memory()
 
     def of(self, run: str, findings: Iterable[Finding]) -> tuple[list[dict[str, Any]], str, str]:
         """Return findings as rows, as lines of CSV and as lines of JSON.
@@ -90,14 +90,14 @@ class FindingRows:
         return rows, "".join(lines), "".join(objects)
 
 
-def _said(f: Finding) -> _Said:
+def _said(f: Finding) -> _RowRest:
     cells: dict[str, Any] = {name: getattr(f, name) for name in _SHARED}
     cells["unit"] = exported_unit(f.unit)
     cells["verdict"] = f.verdict.value
     cells["capacity_origin"] = f.capacity_origin.value if f.capacity_origin else None
     cells["assumptions"] = list(f.assumptions)
     told = json.dumps({name: _json(cells[name]) for name in _SHARED}, allow_nan=False)
-    return _Said(cells, _csv(_SHARED, [cells]), told[1:] + "\n")
+    return _RowRest(cells, _csv(_SHARED, [cells]), told[1:] + "\n")
 
 
 def page_exports(
