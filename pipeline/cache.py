@@ -24,9 +24,9 @@ from numpy.typing import NDArray
 
 from pipeline.resources import code_version, replacing
 
-MOTIONS, CHARTS, PICTURES, HISTORIES = "motions", "charts", "pictures", "histories"
+MOTIONS, CHARTS, PICTURES, HISTORIES, SPECTRA = "motions", "charts", "pictures", "histories", "spectra"
 SELF_TESTS, TRADEOFFS, HOUSE = "selftests", "tradeoffs", "house"
-KINDS = (MOTIONS, CHARTS, PICTURES, HISTORIES, SELF_TESTS, TRADEOFFS, HOUSE)
+KINDS = (MOTIONS, CHARTS, PICTURES, HISTORIES, SPECTRA, SELF_TESTS, TRADEOFFS, HOUSE)
 """What is kept: each kind is a folder."""
 
 LARGEST = 1 << 28

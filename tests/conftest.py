@@ -8,6 +8,7 @@ import tempfile
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 from shutil import rmtree
 from typing import Any
@@ -15,6 +16,8 @@ from typing import Any
 import pytest
 from filelock import FileLock
 from hypothesis import settings as examples
+
+from tests.warm import NIGHTLY
 
 # Machines that others share are slow at times: no example fails for that.
 examples.register_profile("kouros", deadline=None)
@@ -35,11 +38,26 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    # What takes long comes first, so that at the end no core waits for another.
-    items.sort(key=lambda item: item.get_closest_marker("slow_file") is None)
+    # What looks at the demonstration, but for the file that runs it, comes when it is there: nobody waits for it.
+    after = list(dict.fromkeys(item.path for item in items if "demo_folder" in getattr(item, "fixturenames", ())))
+
+    def rank(item: pytest.Item) -> int:
+        if item.path in after:
+            return 0 if item.path == after[0] else 2
+        # What takes long comes first, so that at the end no core waits for another.
+        return 1 if item.get_closest_marker("slow_file") else 3
+
+    items.sort(key=rank)
 
 
-def pytest_collection_finish() -> None:
+def pytest_collection_finish(session: pytest.Session) -> None:
+    if hasattr(session.config, "workerinput"):
+        # It runs all tests: what nights import is imported in any case, and here need not be looked through either.
+        with warnings.catch_warnings():
+            # obspy looks up its plugins in a deprecated way on some versions of Python.
+            warnings.simplefilter("ignore")
+            for name in NIGHTLY:
+                import_module(name)
     # A night collects what it dropped; what is there before the first test need not be looked through each time.
     gc.collect()
     gc.freeze()

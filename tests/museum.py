@@ -4,7 +4,9 @@ import csv
 import os
 import shutil
 import subprocess
+import tempfile
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 from pipeline.cache import CHARTS
@@ -15,10 +17,12 @@ from pipeline.operations.run_summary import Summary
 from pipeline.records import Furniture, Item, RunRecord
 from pipeline.resources import resource
 from pipeline.settings import KEPT, Settings, load_settings, template
+from pipeline.store.migrate import upgrade
 from pipeline.store.runs import load_run
 from tests.conftest import SHARED
 from tests.warm import kouros_process
 
+DATABASE = "kouros.sqlite"
 SILENT = Console(quiet=True)
 VASE = Item("1", "G", title="Covered vase", classification="Ceramics", medium="porcelain",
             height_m=0.4, width_m=0.2, depth_m=0.2, furniture=Furniture.FLOOR)  # fmt: skip
@@ -63,9 +67,24 @@ def in_common(folder: Path) -> None:
         charts.symlink_to(common, target_is_directory=True)
 
 
+@cache
+def _tables() -> Path:
+    """The file of a database in which all tables are, and no row."""
+    file = Path(tempfile.mkdtemp(dir=os.environ[SHARED])) / DATABASE
+    upgrade(open_database(file))
+    return file
+
+
+def with_tables(file: Path) -> None:
+    """Put a database with all tables where there is none: copied, which is faster than made by each migration."""
+    if not file.exists():
+        shutil.copyfile(_tables(), file)
+
+
 def workspace(folder: Path, rows: list[str] | None = None, site: str = "demo") -> Settings:
     """A small museum of its own in a folder; only the charts, which take most of a first night, it has in common."""
     in_common(folder)
+    with_tables(folder / DATABASE)
     (folder / "export.csv").write_text("\n".join([COLUMNS, *(ROWS if rows is None else rows)]) + "\n", encoding="utf-8")
     (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
     file = folder / "kouros.toml"
@@ -131,6 +150,7 @@ def write_collection(folder: Path, objects: list[dict[str, str]]) -> None:
 def museum_of(folder: Path, objects: list[dict[str, str]], *, own_charts: bool = False) -> Settings:
     """A museum of rows such as those of `vases`, with a copy of the bundled site."""
     folder.mkdir(parents=True)
+    with_tables(folder / DATABASE)
     if not own_charts:
         in_common(folder)
     write_collection(folder, objects)

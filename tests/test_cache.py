@@ -23,6 +23,7 @@ from pipeline.cache import (
     MOTIONS,
     PICTURES,
     SELF_TESTS,
+    SPECTRA,
     TRADEOFFS,
     Cache,
     CacheEntry,
@@ -30,8 +31,9 @@ from pipeline.cache import (
     key_of,
 )
 from pipeline.models import model_named
+from pipeline.models.band import band_accelerations, sharing_spectra
 from pipeline.motions import read_site
-from pipeline.records import Axis, Chart
+from pipeline.records import Axis, Chart, Excitation
 from pipeline.resources import resource
 from pipeline.store import codec
 from pipeline.verification import selftest, tradeoff
@@ -74,6 +76,12 @@ def put_histories(folder: Path) -> None:
     histories.keep()
 
 
+def put_spectra(folder: Path) -> None:
+    motion = Excitation(0.01, np.sin(np.arange(200.0)), None, np.zeros(200), None)
+    with sharing_spectra(Cache(folder)):
+        band_accelerations(motion, np.array([2.0]), np.array([2.1]), np.array([0.05]))
+
+
 def put_self_test(folder: Path) -> None:
     outcome = Outcome("a case", "its truth", None, 1e-9, False, 0.1, "ValueError: no")
     selftest.keep(selftest.SelfTest("2026-01-01T00:00:00+00:00", "0.1.0", "kernels", "a machine", [outcome]), folder)
@@ -95,6 +103,7 @@ PUT: dict[str, Callable[[Path], None]] = {
     CHARTS: put_chart,
     PICTURES: put_pictures,
     HISTORIES: put_histories,
+    SPECTRA: put_spectra,
     SELF_TESTS: put_self_test,
     TRADEOFFS: put_tradeoff,
     HOUSE: put_house,

@@ -5,6 +5,7 @@ fast, is for `tests/test_package.py` and for the tests that start the interprete
 """
 
 import atexit
+import gc
 import json
 import os
 import signal
@@ -91,17 +92,47 @@ def become(asked: dict[str, Any]) -> None:
     os.environ.clear()
     os.environ.update(asked["environment"])
     os.chdir(asked["folder"])
+    # A package that is installed for this process only.
+    paths = filter(None, asked["environment"].get("PYTHONPATH", "").split(os.pathsep))
+    sys.path[:0] = [path for path in paths if path not in sys.path]
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.argv = ["kouros", *asked["words"]]
 
 
-if __name__ == "__main__":
+NIGHTLY = ("alembic.command", "obspy.signal", "openpyxl", "pandas", "psycopg", "pyarrow.parquet", "pywt")
+"""What a night imports when it comes to it."""
+
+OWN_TIME = ("pipeline.execute.cluster", "pipeline.verification.self_measurement")
+"""Left to each process: the latter asks at once which models other packages have installed, maybe for that one only."""
+
+
+def prepare() -> None:
+    """Do what every process of the command would do for itself: import, read a record, compile the templates."""
     import pipeline
-    from pipeline.cli import main
+    from pipeline.motions import read_motion
+    from pipeline.report.pages.environment import environment
+    from pipeline.report.plots.svg import thin
+    from pipeline.resources import resource
 
     for module in walk_packages(pipeline.__path__, "pipeline."):
-        if module.name != "pipeline.execute.cluster":
+        if module.name not in OWN_TIME:
             import_module(module.name)
-    import_module("obspy.signal")
+    for name in NIGHTLY:
+        import_module(name)
+    read_motion(resource("site_motions", "demo"))
+    # The first kernel brings numba's own tables.
+    thin([(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)])
+    templates = environment()
+    for name in templates.list_templates():
+        templates.get_template(name)
+    # A night looks for garbage: not among what was here before it, all of which it would copy by that.
+    gc.collect()
+    gc.freeze()
+
+
+if __name__ == "__main__":
+    from pipeline.cli import main
+
+    prepare()
     become(serve())
     main()

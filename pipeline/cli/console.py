@@ -90,14 +90,16 @@ def summary_lines(summary: "Summary") -> list[str]:
     def count(number: int, words: str) -> str:
         return f"  {number:>{width},}  {words}"
 
+    open_ = sum(summary.open_for.values())
     lines = [
         printable(f"{summary.museum or 'Collection'} under {summary.site}"),
         "",
         count(summary.on_display, f"objects on display, in {summary.galleries:,} galleries"),
         count(summary.assessed, f"assessed ({summary.findings:,} findings), of which"),
-        count(summary.act, "  need action: something fails"),
-        count(summary.open, "  are open: a measure would settle it"),
-        count(summary.safe, "  are safe as they stand"),
+        count(summary.act, "  to act on: harm is possible or likelier"),
+        count(summary.watch, "  to watch: harm is unlikely"),
+        count(summary.fine, "  are fine: harm is very unlikely, or excluded"),
+        *([count(open_, "  of these, one measurement may change what is decided")] if open_ else []),
         count(summary.cannot, "cannot be assessed, because this is not recorded:"),
     ]
     reasons = list(summary.missing.items())
@@ -152,7 +154,9 @@ def _stored_lines(summary: "Summary") -> list[str]:
         return []
     if found is None:
         return ["", f"  not on display: {counted(stored, 'object')}, not assessed (set [display] stores = true)"]
-    told = f"{found.act:,} need action, {found.open:,} open, {found.safe:,} safe, {found.cannot:,} cannot be assessed"
+    told = (
+        f"{found.act:,} to act on, {found.watch:,} to watch, {found.fine:,} fine, {found.cannot:,} cannot be assessed"
+    )
     return ["", f"  not on display, counted apart: {stored:,} objects: {told}"]
 
 

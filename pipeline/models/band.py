@@ -7,12 +7,16 @@ once for all who ask: a piece of it at a time, for each shaking and damping.
 """
 
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from functools import cache, lru_cache, partial
 from hashlib import blake2b
 from threading import Lock
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pipeline.cache import SPECTRA, Cache, CacheEntry, key_of
 from pipeline.models.oscillator import oscillate_any
 from pipeline.quantities import Array
 from pipeline.records import Excitation
@@ -52,30 +56,77 @@ _KEPT = 65536
 """Pieces of spectra that are remembered, of 2 kB as a rule: without what they are spectra of."""
 
 
+_KNOWN = 256
+"""Shakings of which a digest, and what single oscillators do, are remembered."""
+
+_SINGLE = 4096
+"""Oscillators that are remembered of each: those of what is worked on together, for which measures ask again."""
+
+_Place = tuple[bytes, float, int]
+"""Of a piece: a digest of the shaking that it is a spectrum of, the damping, and which piece it is."""
+
+_Piece = tuple[Array, Array]
+
+
 class _Pieces:
-    """Pieces of spectra by the contents of the shaking, the damping and their place: the latest asked for."""
+    """Pieces of spectra by their places: the latest asked for, and where a cache is lent all that were found."""
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[tuple[bytes, float, int], tuple[Array, Array]] = OrderedDict()
+        self._found: OrderedDict[_Place, _Piece] = OrderedDict()
         self._lock = Lock()
+        self._cache: Cache | None = None
 
-    def of(self, key: bytes, shaking: Excitation, zeta: float, piece: int) -> tuple[Array, Array]:
-        """Return the natural logarithms of frequencies over a piece and a step beyond, and the spectrum there."""
-        place = key, zeta, piece
+    @contextmanager
+    def shared(self, cache: Cache) -> Iterator[None]:
+        """Find in a cache what others who work found, and keep there what is found, until the end of the block."""
+        before, self._cache = self._cache, cache
+        try:
+            yield
+        finally:
+            self._cache = before
+
+    def of(self, shaking: Callable[[], Excitation], places: Sequence[_Place]) -> list[_Piece]:
+        """Return the natural logarithms of frequencies over pieces and a step beyond, and the spectrum there.
+
+        shaking : gives what they are spectra of, where one is not known yet
+        """
         with self._lock:
-            found = self._kept.get(place)
-            if found is not None:
-                self._kept.move_to_end(place)
-                return found
-        found = _piece(shaking, zeta, piece)
-        with self._lock:
-            self._kept[place] = found
-            if len(self._kept) > _KEPT:
-                self._kept.popitem(last=False)
-        return found
+            there = {place: self._found[place] for place in places if place in self._found}
+            for place in there:
+                self._found.move_to_end(place)
+        missing = [place for place in places if place not in there]
+        # Others who work want the same at the same time: each begins with other ones.
+        for at in np.random.default_rng().permutation(len(missing)).tolist():
+            place = missing[at]
+            there[place] = self._had(shaking, place)
+            with self._lock:
+                self._found[place] = there[place]
+                if len(self._found) > _KEPT:
+                    self._found.popitem(last=False)
+        return [there[place] for place in places]
+
+    def _had(self, shaking: Callable[[], Excitation], place: _Place) -> _Piece:
+        lent = self._cache
+        if lent is None:
+            return _piece(shaking(), *place[1:])
+        key = key_of(place[0].hex(), *place[1:])
+        kept = lent.get(SPECTRA, key)
+        if kept is not None:
+            return kept.arrays["logs"], kept.arrays["values"]
+        logs, values = _piece(shaking(), *place[1:])
+        lent.put(SPECTRA, key, CacheEntry(arrays={"logs": logs, "values": values}))
+        return logs, values
 
 
 _pieces = _Pieces()
+
+
+def sharing_spectra(cache: Cache | None) -> AbstractContextManager[None]:
+    """Share the pieces of spectra with all who work with the same cache, within the block; None: with nobody.
+
+    What is found is the same either way.
+    """
+    return nullcontext() if cache is None else _pieces.shared(cache)
 
 
 def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array) -> tuple[Array, Array]:
@@ -95,10 +146,10 @@ def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array)
     least, most : ndarray, shape (n,)
         [m/s2].
     """
-    peak = max(float(np.abs(way).max(initial=0.0)) for way in _ways(motion))
+    peak, key = _identity(motion)
     if peak == 0.0 or low.size == 0:
         return np.zeros_like(low), np.zeros_like(low)
-    key, shaking = _unit_shaking(motion, peak)
+    shaking = cache(partial(_unit_shaking, motion, peak))
     # Parameter sets differ in more than these: each band is searched once.
     order = np.lexsort((zeta, high, low))
     rows = np.column_stack([low, high, zeta])[order]
@@ -109,16 +160,68 @@ def band_accelerations(motion: Excitation, low: Array, high: Array, zeta: Array)
     least, most = np.full(bands.shape[0], np.inf), np.zeros(bands.shape[0])
     begin, end = (np.clip(side, 10.0**LOWEST, 10.0**HIGHEST) for side in bands.T[:2])
     for damping in np.unique(bands[:, 2]):
+        touched = []
         for piece in range(LOWEST * PIECES, HIGHEST * PIECES):
             bottom, top = 10.0 ** (piece / PIECES), 10.0 ** ((piece + 1) / PIECES)
             chosen = np.flatnonzero((bands[:, 2] == damping) & (begin <= top) & (end >= bottom))
-            if chosen.size == 0:
-                continue
-            logs, values = _pieces.of(key, shaking, float(damping), piece)
+            if chosen.size:
+                touched.append((piece, bottom, top, chosen))
+        found = _pieces.of(shaking, [(key, float(damping), piece) for piece, *_ in touched])
+        for (_, bottom, top, chosen), (logs, values) in zip(touched, found, strict=True):
             ends = np.log([np.maximum(begin[chosen], bottom), np.minimum(end[chosen], top)])
             for fold, best in ((np.minimum, least), (np.maximum, most)):
                 best[chosen] = fold(best[chosen], _between(fold, logs, values, ends))
     return peak * least[place], peak * most[place]
+
+
+def pseudo_accelerations(motion: Excitation, frequency: Array, zeta: Array) -> Array:
+    """Return the largest pseudo-acceleration of single oscillators, each of which is run once.
+
+    Parameters
+    ----------
+    motion : Excitation
+        As of `band_accelerations`.
+    frequency, zeta : ndarray, shape (n,)
+        Natural frequency [Hz] and damping ratio [-].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [m/s2].
+    """
+    # Parameter sets differ in more than these.
+    asked, place = np.unique(frequency + 1j * zeta, return_inverse=True)
+    return np.asarray(_singles(motion).of(motion, asked)[place.reshape(-1)])
+
+
+class _Singles:
+    """What single oscillators do under one shaking: those that were asked for lately, as frequency + i damping."""
+
+    def __init__(self) -> None:
+        self._kept: tuple[NDArray[np.complex128], Array] = np.empty(0, np.complex128), np.empty(0)
+
+    def of(self, motion: Excitation, asked: NDArray[np.complex128]) -> Array:
+        """Return the pseudo-acceleration of oscillators that are sorted, each there once."""
+        known, told = self._kept
+        place = np.searchsorted(known, asked)
+        there = np.zeros(asked.size, dtype=bool)
+        inside = place < known.size
+        there[inside] = known[place[inside]] == asked[inside]
+        push = np.empty(asked.size)
+        push[there] = told[place[there]]
+        fresh = asked[~there]
+        if fresh.size:
+            w = 2.0 * np.pi * fresh.real
+            push[~there] = w**2 * oscillate_any(motion, w, fresh.imag)
+            every = np.concatenate([known, fresh]), np.concatenate([told, push[~there]])
+            order = np.argsort(every[0])
+            self._kept = (every[0][order], every[1][order]) if order.size <= _SINGLE else (asked, push)
+        return push
+
+
+@lru_cache(maxsize=_KNOWN)
+def _singles(_motion: Excitation) -> _Singles:
+    return _Singles()
 
 
 def _between(fold: np.ufunc, logs: Array, values: Array, ends: Array) -> Array:
@@ -137,14 +240,24 @@ def _ways(motion: Excitation) -> tuple[Array, ...]:
     return (motion.x,) if motion.y is None else (motion.x, motion.y)
 
 
-def _unit_shaking(motion: Excitation, peak: float) -> tuple[bytes, Excitation]:
-    """Return shaking with a peak of 1, and a digest of its contents before it."""
-    grains = [np.rint(way / peak * _GRAIN) for way in _ways(motion)]
+@lru_cache(maxsize=_KNOWN)
+def _identity(motion: Excitation) -> tuple[float, bytes]:
+    """Return the peak of shaking, and a digest of what it is beside that."""
+    peak = max(float(np.abs(way).max(initial=0.0)) for way in _ways(motion))
     digest = blake2b(np.array([motion.dt, -1.0 if motion.tail is None else motion.tail]).tobytes(), digest_size=16)
-    for one in grains:
+    for one in _grains(motion, peak) if peak else ():
         digest.update(one.tobytes())
-    x, y = grains[0] / _GRAIN, grains[1] / _GRAIN if len(grains) > 1 else None
-    return digest.digest(), Excitation(motion.dt, x, y, np.zeros_like(x), motion.tail)
+    return peak, digest.digest()
+
+
+def _grains(motion: Excitation, peak: float) -> list[Array]:
+    return [np.rint(way / peak * _GRAIN) for way in _ways(motion)]
+
+
+def _unit_shaking(motion: Excitation, peak: float) -> Excitation:
+    """Return shaking with a peak of 1."""
+    x, *others = (one / _GRAIN for one in _grains(motion, peak))
+    return Excitation(motion.dt, x, others[0] if others else None, np.zeros_like(x), motion.tail)
 
 
 def _piece(shaking: Excitation, zeta: float, piece: int) -> tuple[Array, Array]:

@@ -92,12 +92,19 @@ class Quiet:
         self.y = np.zeros_like(self.x) if motion.y is None else samples(motion.y)
         self.z = samples(motion.z)
         self.dt = motion.dt
-        self.push = np.hypot(self.x, self.y)
+        # Along one direction no root is needed, for the same numbers: histories ask for each of many directions.
+        self.push = np.abs(self.x) if motion.y is None else np.hypot(self.x, self.y)
         self.peak = float(self.push.max())
         self.pushes = block_maxima(self.push)
-        self.ratio = demand_ratio(self.x, self.y, self.z)
+        self.ratio = demand_ratio(self.x, self.y, self.z) if motion.y is not None else _grip(self.push, self.z)
         self.maxima = block_maxima(self.ratio)
         self.tail = -1.0 if motion.tail is None else float(motion.tail)
+
+
+def _grip(push: Array, z: Array) -> Array:
+    """Return what `demand_ratio` gives along one direction."""
+    normal = G + z
+    return np.divide(push, normal, out=np.full_like(push, np.inf), where=normal > 0.0)
 
 
 def shaken(motion: Excitation) -> float:

@@ -20,10 +20,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from pipeline.models.band import MISSED, OVER, band_accelerations
+from pipeline.models.band import MISSED, OVER, band_accelerations, pseudo_accelerations
 from pipeline.models.common import NO_TILT, ROUNDING, largest_push, needs, smallest_push
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
-from pipeline.models.oscillator import OSCILLATES, PROMISED, oscillate_any
+from pipeline.models.oscillator import OSCILLATES, PROMISED
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Bounds, Columns, Excitation, Item, Model, Scene, Support, Trials
 
@@ -109,11 +109,7 @@ def _pushes(motion: Excitation, parameters: Mapping[str, Array]) -> tuple[Array,
     # What is known as one frequency, if only as the best estimate of a range, is run at that.
     banded = high > low
     least, most = np.empty_like(low), np.empty_like(low)
-    # Parameter sets differ in more than these: each oscillator is run once.
-    oscillators, place = np.unique(np.column_stack([low, zeta])[~banded], axis=0, return_inverse=True)
-    w = 2.0 * np.pi * oscillators[:, 0]
-    push = w**2 * oscillate_any(motion, w, oscillators[:, 1])
-    least[~banded] = most[~banded] = push[place.reshape(-1)]
+    least[~banded] = most[~banded] = pseudo_accelerations(motion, low[~banded], zeta[~banded])
     least[banded], most[banded] = band_accelerations(motion, low[banded], high[banded], zeta[banded])
     return least, most
 

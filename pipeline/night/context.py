@@ -16,6 +16,7 @@ from pipeline.cache import Cache, key_of
 from pipeline.execute import Threads
 from pipeline.mitigate import MeasureCatalogue
 from pipeline.mitigate.trials import TransmittedMotions
+from pipeline.models.band import sharing_spectra
 from pipeline.night.floors import Floor
 from pipeline.records import (
     Motion,
@@ -84,8 +85,9 @@ class RunContext:
         batch
             What the histories of what is worked on together are kept under from night to night; None: they are not.
         """
-        kept = None if self.kept is None or batch is None else Cache(self.kept)
-        with remembered(kept, key_of(*batch or ()), self.common) as histories:
+        cache = None if self.kept is None else Cache(self.kept)
+        kept = None if batch is None else cache
+        with sharing_spectra(cache), remembered(kept, key_of(*batch or ()), self.common) as histories:
             yield Context(self.executor, charts=self.charts, histories=histories)
 
     @cached_property

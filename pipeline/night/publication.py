@@ -125,6 +125,7 @@ class Publication:
         """Put every page into the report, and return the totals."""
         context = self._scheduler.context
         keys = [page_key(context.renderer, one.page, one.standing) for one in self._pages]
+        writer.look(keys)
         reused = [writer.has(key) for key in keys]
         left = [page for page, there in zip(self._pages, reused, strict=True) if not there]
         tallies = []

@@ -282,7 +282,7 @@ def _read_site(workspace: Workspace, progress: Progress) -> Site:
 
 
 def summarise(head: RunRecord, pages: Sequence[Page], found: Tally) -> Summary:
-    """Put what a run found on one screen: every object on display is in exactly one of act, open, safe and cannot.
+    """Put what a run found on one screen: every object on display is in exactly one of act, watch, fine and cannot.
 
     head  : the run without its objects
     pages : of the run
@@ -307,8 +307,9 @@ def summarise(head: RunRecord, pages: Sequence[Page], found: Tally) -> Summary:
         assessed=shown - states["unknown"],
         cannot=states["unknown"],
         act=states["act"],
-        open=states["open"],
-        safe=states["safe"],
+        watch=states["watch"],
+        fine=states["fine"],
+        open_for=found.open_for,
         findings=found.findings,
         measures=found.measures,
         missing=found.missing,
@@ -330,7 +331,7 @@ def summarise(head: RunRecord, pages: Sequence[Page], found: Tally) -> Summary:
     )
 
 
-_COUNTED = {"act": State.ACT, "open": State.OPEN, "safe": State.SAFE, "cannot": State.UNKNOWN}
+_COUNTED = {"act": State.ACT, "watch": State.WATCH, "fine": State.FINE, "cannot": State.UNKNOWN}
 
 
 def _unsettled(head: RunRecord, found: Tally, most: int = 5) -> list[Urgent]:

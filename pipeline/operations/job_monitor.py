@@ -100,7 +100,7 @@ def _failed(
 
 def _finished(settings: Settings, summary: Summary, hide: Callable[[str], str], *, whole: bool, seconds: float) -> None:
     changes = summary.changes
-    counts = {name: getattr(summary, name) for name in ("objects", "assessed", "cannot", "act", "open", "safe")}
+    counts = {name: getattr(summary, name) for name in ("objects", "assessed", "cannot", "act", "watch", "fine")}
     note(
         "run.finished",
         run=summary.run_id,

@@ -26,11 +26,11 @@ _KINDS = ("added", "removed", "moved", "inputs", "verdicts", "motions", "decisio
 
 @dataclass(frozen=True)
 class Stores:
-    """Objects that are not on display and were assessed all the same: act + open + safe + cannot are all of them."""
+    """Objects that are not on display and were assessed all the same: act + watch + fine + cannot are all of them."""
 
     act: int
-    open: int
-    safe: int
+    watch: int
+    fine: int
     cannot: int
     findings: int
     measures: Mapping[str, int]
@@ -51,8 +51,8 @@ class Summary:
     museum, site : str
         Their names.
     objects : int
-        Of the run; those on display are act + open + safe + cannot, and the numbers besides are theirs.
-    on_display, galleries, assessed, cannot, act, open, safe, findings : int
+        Of the run; those on display are act + watch + fine + cannot, and the numbers besides are theirs.
+    on_display, galleries, assessed, cannot, act, watch, fine, findings : int
         How many of each.
     measures : mapping of str to int
         How many of each measure.
@@ -62,6 +62,8 @@ class Summary:
         Lines of the first objects that are not settled.
     stands_by : mapping of str to int
         How many by where it is known from what they stand on: an `Origin`.
+    open_for : mapping of str to int
+        About how many one measurement may change what is decided, by the parameter that is to be measured.
     faults : int
         How many objects Kouros itself failed on; the log has the tracebacks.
     fresh : int
@@ -102,13 +104,14 @@ class Summary:
     assessed: int
     cannot: int
     act: int
-    open: int
-    safe: int
+    watch: int
+    fine: int
     findings: int
     measures: Mapping[str, int]
     missing: Mapping[str, int]
     first: Sequence[str]
     stands_by: Mapping[str, int]
+    open_for: Mapping[str, int] = field(default_factory=dict)
     faults: int = 0
     fresh: int = 0
     stores: "Stores | None" = None

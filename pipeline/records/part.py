@@ -94,7 +94,7 @@ class Urgent:
         Model and level of each of its findings that does not pass.
     """
 
-    order: tuple[int, bool, bool, str, float, str, str]
+    order: tuple[int, bool, float, float, str, str]
     object_number: str
     title: str
     gallery: str
@@ -128,7 +128,7 @@ class Tally:
     Attributes
     ----------
     states : mapping of str to int
-        Objects on display by state: act, open, unknown (cannot be assessed), safe.
+        Objects on display by state: act, watch, unknown (cannot be assessed), fine.
     measures : mapping of str to int
         Recommendations for them by title.
     missing : mapping of str to int
@@ -157,6 +157,8 @@ class Tally:
         Of all objects, by what they are.
     stands_by : mapping of str to int
         Objects on display by where it is known from what they stand on, see `Scene.stands_by`.
+    open_for : mapping of str to int
+        Objects on display about which one measurement may change what is decided, by what is to be measured.
     """
 
     states: Mapping[str, int]
@@ -177,6 +179,7 @@ class Tally:
     stored_findings: int = 0
     verdicts: Mapping[str, int] = field(default_factory=dict)
     stands_by: Mapping[str, int] = field(default_factory=dict)
+    open_for: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

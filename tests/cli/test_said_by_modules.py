@@ -2,24 +2,21 @@
 
 import logging
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-import pipeline
 from pipeline.motions import read_motion
 from pipeline.resources import resource
+from tests.warm import kouros_process
 
 RESPOND = ("respond", "sliding", "friction_static=0.1", "--json")
 
 
 def kouros(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    root = str(Path(pipeline.__file__).parents[1])
-    code = f"import sys; sys.path.insert(0, {root!r}); from pipeline.cli import main; main()"
-    return subprocess.run(
-        [sys.executable, "-c", code, *words], cwd=folder, capture_output=True, text=True, check=True, timeout=300
-    )
+    done = kouros_process(words, folder)
+    done.check_returncode()
+    return done
 
 
 def test_a_motion_that_is_processed_is_told_and_nobody_hears_who_does_not_ask(

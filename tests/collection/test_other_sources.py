@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -15,6 +13,7 @@ from pipeline.collection.opening import open_source
 from pipeline.collection.sources.base import Source
 from pipeline.collection.sources.registry import SOURCES, _source
 from pipeline.errors import InputError
+from tests.warm import kouros_process
 
 PLUGIN = '''
 """Records as JSON lines: one object of JSON a line, the keys of the first are the columns."""
@@ -105,10 +104,7 @@ def outside(tmp_path: Path) -> Path:
 
 def kouros(outside: Path, folder: Path, *words: str) -> str:
     paths = os.pathsep.join([str(outside), *filter(None, [os.environ.get("PYTHONPATH")])])
-    command = [sys.executable, "-c", "from pipeline.cli import main; main()", *words]
-    done = subprocess.run(
-        command, cwd=folder, env=os.environ | {"PYTHONPATH": paths}, capture_output=True, text=True, check=False
-    )
+    done = kouros_process(words, folder, os.environ | {"PYTHONPATH": paths})
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout + done.stderr
 

@@ -8,7 +8,9 @@ import pytest
 
 from pipeline.kernels.linear import advance, peak_inside, transition
 from pipeline.kernels.quiet import BLOCK, block_maxima, demand_ratio, largest, next_above
+from pipeline.models.common import Quiet
 from pipeline.quantities import G
+from pipeline.records import Excitation
 
 
 def exact(w: float, zeta: float, t: float) -> tuple[mpmath.mpf, ...]:
@@ -92,7 +94,10 @@ def test_two_turns_inside_a_step(turns: tuple[float, float], zeta: float) -> Non
 
 @pytest.mark.parametrize("n", [1, 2, BLOCK - 1, BLOCK, BLOCK + 1, 5 * BLOCK + 3])
 def test_rest_is_skipped_exactly(n: int) -> None:
-    """The blocks' maxima find the same sample as a scan, from any start and for any limit; so does the largest |x|."""
+    """The blocks' maxima find the same sample as a scan, from any start and for any limit; so does the largest |x|.
+
+    Along one direction the friction that would hold an object is found without the kernel: bit for bit the same.
+    """
     rng = np.random.default_rng(n)
     x, y, z = rng.normal(size=(3, n))
     z *= 8.0
@@ -100,7 +105,10 @@ def test_rest_is_skipped_exactly(n: int) -> None:
     with np.errstate(divide="ignore"):
         want = np.where(G + z > 0.0, np.hypot(x, y) / np.maximum(0.0, G + z), np.inf)
     np.testing.assert_allclose(ratio, want, rtol=1e-14)
+    along = Quiet(Excitation(0.01, x, None, z, None))
+    np.testing.assert_array_equal(along.ratio, demand_ratio(x, np.zeros(n), z))
     maxima, pushes = block_maxima(ratio), block_maxima(np.abs(x))
+    np.testing.assert_array_equal(along.pushes, pushes)
     for start in range(0, n, 7):
         for limit in (0.0, 0.1, 0.3, np.inf):
             above = np.flatnonzero(ratio[start:] > limit)

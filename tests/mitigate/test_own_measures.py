@@ -18,6 +18,7 @@ from pipeline.motions import read_motion
 from pipeline.settings import template
 from pipeline.tables import TableError
 from tests.packages import install
+from tests.warm import kouros_process
 
 COLLECTION = """\
 object_number,gallery,title,object_name,medium,support,hanging,height_m,width_m,depth_m,mass_kg,friction,furniture
@@ -85,9 +86,7 @@ def kouros(folder: Path, *words: str, packages: Path | None = None) -> subproces
     """The command, as another process with packages of others beside Kouros."""
     there = [str(packages), *sys.path] if packages else sys.path
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, there))}
-    code = "from pipeline.cli import main; main()"
-    words = (sys.executable, "-c", code, *words)
-    return subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    return kouros_process(words, folder, environment)
 
 
 def ran(folder: Path, packages: Path | None = None) -> dict[str, dict[str, str]]:

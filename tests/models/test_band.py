@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 from shaking import along_x, random_motion
 
 from pipeline import respond
-from pipeline.models.band import MISSED, band_accelerations
-from pipeline.models.oscillator import oscillate
+from pipeline.cache import SPECTRA, Cache
+from pipeline.models import band
+from pipeline.models.band import MISSED, band_accelerations, pseudo_accelerations, sharing_spectra
+from pipeline.models.oscillator import oscillate, oscillate_any
 from pipeline.motions import read_motion
 from pipeline.quantities import Array
 from pipeline.records import Excitation, Motion
@@ -146,3 +149,45 @@ def test_concentration_multiplies_the_bending_alone(model: str) -> None:
     more = {"frequency": 3.0, "damping": 0.02} if model == "flexible_stress" else {}
     plain, twice = respond(model, motion, concentration=[1.0, 2.0], **SECTION, **more)["tension"]
     assert twice == pytest.approx(2.0 * (plain + 98066.5) - 98066.5, rel=1e-12)
+
+
+def test_who_shares_spectra_finds_the_same(record: Motion, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found alone, found and kept, and taken over: bit for bit, and what is there is not found again.
+
+    What was put away by the one who found it is read by another, who remembers nothing and wants more besides.
+    """
+    rng = np.random.default_rng(7)
+    motion = record.excitation(None)
+    low, high = bands(rng, 40)
+    zeta = rng.choice([0.01, 0.05], low.size)
+
+    def anew(some: slice) -> tuple[Array, Array]:
+        band._pieces._found.clear()
+        return band_accelerations(motion, low[some], high[some], zeta[some])
+
+    alone = anew(slice(None))
+    with sharing_spectra(Cache(tmp_path)):
+        first = anew(slice(20))
+        files = {file: file.read_bytes() for file in (tmp_path / SPECTRA).iterdir()}
+        second = anew(slice(None))
+    assert files
+    assert all(file.read_bytes() == content for file, content in files.items())
+    for mine, both, part in zip(alone, second, first, strict=True):
+        np.testing.assert_array_equal(both, mine)
+        np.testing.assert_array_equal(part, mine[:20])
+    with sharing_spectra(Cache(tmp_path)):
+        monkeypatch.setattr(band, "_piece", lambda *_: pytest.fail("what is kept was found again"))
+        np.testing.assert_array_equal(anew(slice(None)), alone)
+
+
+@pytest.mark.parametrize("angle", [None, 30.0])
+def test_single_oscillators_do_not_hang_on_what_was_asked_before(record: Motion, angle: float | None) -> None:
+    """Bit for bit those of all oscillators run at once: alone, again in another order, and more than are remembered."""
+    rng = np.random.default_rng(3)
+    motion = record.excitation(angle)
+    frequency = np.round(np.exp(rng.uniform(np.log(0.3), np.log(30.0), 6000)), 2)
+    zeta = rng.choice([0.01, 0.02, 0.05], frequency.size)
+    w = 2.0 * np.pi * frequency
+    want = w**2 * oscillate_any(motion, w, zeta)
+    for some in (slice(1), slice(0, 300), rng.permutation(400), slice(None), slice(5500, 6000)):
+        np.testing.assert_array_equal(pseudo_accelerations(motion, frequency[some], zeta[some]), want[some])

@@ -61,7 +61,9 @@ def work(name: str, directions: int | None, answers: Queue[Any]) -> None:
 
 @pytest.mark.parametrize(("name", "directions"), [(model.name, directions) for model, directions in pushed()])
 def test_nothing_hangs_or_is_nan_in_silence(name: str, directions: int | None) -> None:
-    context = mp.get_context("spawn")
+    # Forked from a server that has imported the models once for all of them.
+    context = mp.get_context("forkserver")
+    context.set_forkserver_preload(["pipeline.verification.extremes", "pipeline.verification.self_measurement"])
     answers: Queue[Any] = context.Queue()
     worker = context.Process(target=work, args=(name, directions, answers), daemon=True)
     worker.start()

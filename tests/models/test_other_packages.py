@@ -21,6 +21,7 @@ from pipeline.records import Item
 from pipeline.resources import resource
 from pipeline.settings import load_settings, template
 from tests.packages import install
+from tests.warm import kouros_process
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -94,13 +95,17 @@ def packages(tmp_path: Path) -> Path:
 
 def python(code: str, *words: str, packages: Path, folder: Path) -> subprocess.CompletedProcess[str]:
     """Run code with the interpreter of the tests, in a folder, with the packages of another installed."""
-    there = {**os.environ, "PYTHONPATH": os.pathsep.join((str(ROOT), str(packages)))}
     command = [sys.executable, "-c", code, *words]
-    return subprocess.run(command, cwd=folder, env=there, capture_output=True, text=True, check=False)
+    return subprocess.run(command, cwd=folder, env=beside(packages), capture_output=True, text=True, check=False)
+
+
+def beside(packages: Path) -> dict[str, str]:
+    """The environment with the packages of another installed."""
+    return {**os.environ, "PYTHONPATH": os.pathsep.join((str(ROOT), str(packages)))}
 
 
 def kouros(*words: str, packages: Path, folder: Path) -> str:
-    done = python("from pipeline.cli import main; main()", *words, packages=packages, folder=folder)
+    done = kouros_process(words, folder, beside(packages))
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
     return done.stdout
@@ -223,8 +228,7 @@ UNFIT = TOPPLING.replace('demand="push"', 'demand="pull"')
 )
 def test_a_broken_one_is_said_and_left_out(packages: Path, tmp_path: Path, source: str, wrong: str) -> None:
     install(packages, "kouros_toppling", source, POINTS, "0.3")
-    program = "from pipeline.cli import main; main()"
-    done = python(program, "models", "--json", packages=packages, folder=tmp_path)
+    done = kouros_process(("models", "--json"), tmp_path, beside(packages))
     assert done.returncode == 0
     assert [one["name"] for one in json.loads(done.stdout)] == [model.name for model in MODELS]
     said = "kouros: kouros_toppling 0.3 offers 'toppling' (kouros.models: kouros_toppling:TOPPLING), "
@@ -235,11 +239,11 @@ def test_a_broken_one_is_said_and_left_out(packages: Path, tmp_path: Path, sourc
 def test_a_broken_one_stops_no_night(packages: Path, tmp_path: Path) -> None:
     museum(tmp_path, "1,A,Vase,0.4,0.2")
     install(packages, "kouros_toppling", BROKEN, POINTS)
-    done = python("from pipeline.cli import main; main()", "-q", "run", packages=packages, folder=tmp_path)
+    done = kouros_process(("-q", "run"), tmp_path, beside(packages))
     assert done.returncode == 0, done.stderr
     assert "left out: RuntimeError: no licence" in done.stderr
     assert {row["model"] for row in found(tmp_path, "findings.csv")} == {"standing", "sliding"}
-    checked = python("from pipeline.cli import main; main()", "check", packages=packages, folder=tmp_path).stdout
+    checked = kouros_process(("check",), tmp_path, beside(packages)).stdout
     assert "no licence" in checked
 
 

@@ -28,7 +28,7 @@ from pipeline.store.decisions import decisions_in_force
 from pipeline.store.tables import DECISION
 from pipeline.tools.decisions import Wish, decide
 from pipeline.tools.survey import take_sheet
-from tests.museum import SILENT, in_common
+from tests.museum import DATABASE, SILENT, in_common, with_tables
 
 COLUMNS = (
     "object_number", "title", "object_name", "gallery", "case", "on_display", "medium", "height_m", "width_m",
@@ -172,6 +172,7 @@ class Changing:
     def night(self, **how: bool) -> Path:
         """Run a night, and return the folder of its report."""
         in_common(self.home)
+        with_tables(self.home / DATABASE)
         self.write()
         if self.held is not None and self.export != self.imports[-1][1]:
             self.held = None
@@ -189,6 +190,7 @@ class Changing:
         left = shutil.ignore_patterns("kouros.sqlite*", "reports", ".kouros*", "imports")
         shutil.copytree(self.home, folder, ignore=left)
         in_common(folder)
+        with_tables(folder / DATABASE)
         if self.held is not None:
             (folder / "collection.csv").write_bytes(self.held)
         settings = load_settings(folder / "kouros.toml")

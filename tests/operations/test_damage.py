@@ -31,6 +31,8 @@ from pipeline.store.verifying import tables, verify_table
 from pipeline.tools.deep_check import examine
 from pipeline.tools.synthetic import synthesise
 
+pytestmark = pytest.mark.slow_file
+
 SILENT = Console(quiet=True)
 DAMAGES = int(os.environ.get("KOUROS_DAMAGES", "110"))
 SEED = 17

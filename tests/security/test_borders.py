@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import re
-import subprocess
 import unicodedata
 import zipfile
 from collections.abc import Callable, Iterator
@@ -27,10 +26,11 @@ from pipeline.report.pages.landing import landing_page
 from pipeline.report.text import slug
 from pipeline.resources import SMALL, small_text
 from pipeline.settings import SettingsError, load_settings
-from tests.operations.conftest import command, environment
+from tests.operations.conftest import environment
 from tests.operations.conftest import museum as museum  # noqa: PLC0414 - fixtures
 from tests.operations.conftest import shaking as shaking  # noqa: PLC0414
 from tests.report.conftest import report as report  # noqa: PLC0414
+from tests.warm import kouros_process
 
 pytestmark = pytest.mark.slow_file
 
@@ -186,9 +186,7 @@ def test_a_password_stands_nowhere(museum: Callable[..., Path], postgresql_url: 
         (secret | {"KOUROS_DATABASE": f"nonsense://u:{SECRET}@host/x"}, ["check"], 2),
     ]
     for known, words, code in attempts:
-        done = subprocess.run(
-            command(*words), cwd=folder, env=environment(known), capture_output=True, text=True, check=False
-        )
+        done = kouros_process(tuple(words), folder, environment(known))
         assert done.returncode == code, (words, done.stderr)
         assert SECRET not in done.stdout + done.stderr, words
     searched = list(everything(folder))

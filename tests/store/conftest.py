@@ -9,6 +9,7 @@ from sqlalchemy import URL, Engine, create_engine, make_url, text
 
 from pipeline.collection.database import database_url, open_database
 from pipeline.store.migrate import upgrade
+from tests.museum import with_tables
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])
@@ -37,5 +38,7 @@ def empty(empty_url: URL) -> Iterator[Engine]:
 
 @pytest.fixture
 def engine(empty: Engine) -> Engine:
+    if empty.dialect.name == "sqlite":
+        with_tables(Path(str(empty.url.database)))
     upgrade(empty)
     return empty

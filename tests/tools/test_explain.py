@@ -22,6 +22,8 @@ from pipeline.tools.decisions import Wish, decide
 from pipeline.tools.explain import explain
 from tests.museum import workspace
 
+pytestmark = pytest.mark.slow_file
+
 ROWS = [
     "1,A,Vase \x1b[31mred,1.2,0.2,0.2",
     "2,B,Plate,0.03,0.3,0.3",

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
 from math import isfinite, isnan
@@ -12,6 +13,7 @@ from typing import Any
 
 from pipeline.records import Assessment, Finding, Harm, Recommendation, RunRecord
 from pipeline.report.files.workbook import write_workbook
+from pipeline.report.pages.alike import Memory, finding_key
 from pipeline.report.pages.chances import chance_columns
 from pipeline.report.pages.judging import first_failure
 from pipeline.report.pages.ranking import state_of
@@ -20,7 +22,7 @@ from pipeline.report.units import Units
 
 _NUMBERS = (
     "demand", "low", "high", "capacity", "utilisation", "error", "median_g", "dispersion", "annual_rate",
-    "probability", "probability_error", *(f"p_{state.value}" for state in Harm),
+    "probability", "probability_error", *(f"p_{state.value}" for state in Harm), "worth", "expected_loss", "remaining",
 )  # fmt: skip
 _LISTS = ("assumptions", "parameters", "checks", "rejected")
 FINDING_COLUMNS = (
@@ -28,14 +30,15 @@ FINDING_COLUMNS = (
     "range_is", "capacity", "capacity_origin", "utilisation", "verdict", "outcome", "fidelity", "error", "decided_by",
     "motion", "motion_hash", "screen", "note", "assumptions", "version",
 )  # fmt: skip
+_OWN, _SHARED = FINDING_COLUMNS[:3], FINDING_COLUMNS[3:]
 RECOMMENDATION_COLUMNS = (
     "run", "object_number", "gallery", "level", "measure", "title", "sentence", "parameters", "checks", "rejected",
-    "source",
+    "remaining", "source",
 )  # fmt: skip
 OBJECT_COLUMNS = (
     "run", "object_number", "title", "gallery", "on_display", "state", "object_class", "furniture", "furniture_origin",
     "missing", "probability", "probability_error", "band", "harm", "harm_level",
-    *(f"p_{state.value}" for state in Harm),
+    *(f"p_{state.value}" for state in Harm), "open_for", "worth", "expected_loss",
     "median_g", "median_is", "dispersion", "annual_rate", "page",
 )  # fmt: skip
 
@@ -56,8 +59,58 @@ WORKBOOK_ROWS = 10_000
 """Rows of a table up to which there is a workbook; a spreadsheet holds more, but writing them takes minutes."""
 
 
+@dataclass(frozen=True, slots=True)
+class _RowRest:
+    """What a row says of a finding, whichever object it is of: cells, and the rest of a line of CSV and of JSON."""
+
+    cells: Mapping[str, Any]
+    csv: str
+    json: str
+
+
+class FindingRows:
+    """Findings as rows of the exports: what does not name the object is written once for all that share it."""
+
+    def __init__(self) -> None:
+        self._said: Memory[_RowRest] = Memory()
+
+    def of(self, run: str, findings: Iterable[Finding]) -> tuple[list[dict[str, Any]], str, str]:
+        """Return findings as rows, as lines of CSV and as lines of JSON.
+
+        run : identity of the run that found them
+        """
+        rows, lines, objects = [], [], []
+        begun: dict[tuple[str, str], tuple[dict[str, Any], str, str]] = {}
+        for f in findings:
+            said = self._said.had(finding_key(f), lambda f=f: _said(f))  # type: ignore[misc]
+            own = f.object_number, f.gallery
+            if own not in begun:
+                names = dict(zip(_OWN, (run, *own), strict=True))
+                begun[own] = names, _csv(_OWN, [names])[:-1] + ",", json.dumps(names)[:-1] + ", "
+            names, line, one = begun[own]
+            rows.append({**names, **said.cells})
+            lines.append(line + said.csv)
+            objects.append(one + said.json)
+        return rows, "".join(lines), "".join(objects)
+
+
+def _said(f: Finding) -> _RowRest:
+    cells: dict[str, Any] = {name: getattr(f, name) for name in _SHARED}
+    cells["unit"] = exported_unit(f.unit)
+    cells["verdict"] = f.verdict.value
+    cells["capacity_origin"] = f.capacity_origin.value if f.capacity_origin else None
+    cells["assumptions"] = list(f.assumptions)
+    told = json.dumps({name: _json(cells[name]) for name in _SHARED}, allow_nan=False)
+    return _RowRest(cells, _csv(_SHARED, [cells]), told[1:] + "\n")
+
+
 def page_exports(
-    record: RunRecord, run: str, page: str, anchors: Callable[[Assessment], str], units: Units
+    record: RunRecord,
+    run: str,
+    page: str,
+    anchors: Callable[[Assessment], str],
+    units: Units,
+    findings: FindingRows,
 ) -> dict[str, bytes]:
     """Return the part of every export that holds the objects of one page.
 
@@ -81,20 +134,23 @@ def page_exports(
         Gives the id of an object on it.
     units : Units
         The reader's, for sentences.
+    findings : FindingRows
+        Those of other pages of the run.
 
     Returns
     -------
     dict of str to bytes
         By name of the export, see `EXPORTS`.
     """
+    found, lines, objects = findings.of(run, (f for a in record.assessments for f in a.findings))
     rows: dict[str, Sequence[Mapping[str, Any]]] = {
-        "findings": [_finding(run, f) for a in record.assessments for f in a.findings],
+        "findings": found,
         "recommendations": [_recommendation(run, r, units) for a in record.assessments for r in a.recommendations],
         "objects": [_object(run, a, f"{page}#{anchors(a)}") for a in record.assessments],
     }
-    lines = (json.dumps({k: _json(row[k]) for k in FINDING_COLUMNS}, allow_nan=False) for row in rows["findings"])
-    parts = {f"{name}.csv": HEADERS[f"{name}.csv"] + _csv(TABLES[name], rows[name]) for name in TABLES}
-    parts["findings.jsonl"] = "".join(line + "\n" for line in lines).encode()
+    told = {name: _csv(TABLES[name], rows[name]) for name in ("recommendations", "objects")} | {"findings": lines}
+    parts = {f"{name}.csv": HEADERS[f"{name}.csv"] + told[name].encode() for name in TABLES}
+    parts["findings.jsonl"] = objects.encode()
     return parts | {f"{name}.parquet": _parquet(name, rows[name]) for name in TABLES}
 
 
@@ -143,16 +199,6 @@ def exported_unit(unit: str) -> str:
     return ONE if unit == "-" else unit
 
 
-def _finding(run: str, f: Finding) -> dict[str, Any]:
-    row: dict[str, Any] = {name: getattr(f, name) for name in FINDING_COLUMNS if name != "run"}
-    row["run"] = run
-    row["unit"] = exported_unit(f.unit)
-    row["verdict"] = f.verdict.value
-    row["capacity_origin"] = f.capacity_origin.value if f.capacity_origin else None
-    row["assumptions"] = list(f.assumptions)
-    return row
-
-
 def _recommendation(run: str, r: Recommendation, units: Units) -> dict[str, Any]:
     values: dict[str, tuple[float | None, str]] = {k: (v, r.units.get(k, "")) for k, v in r.parameters.items()}
     return {
@@ -170,6 +216,7 @@ def _recommendation(run: str, r: Recommendation, units: Units) -> dict[str, Any]
             for c in r.checks
         ],
         "rejected": list(r.rejected),
+        "remaining": r.remaining,
         "source": r.source,
     }
 
@@ -198,11 +245,11 @@ def _object(run: str, a: Assessment, page: str) -> dict[str, Any]:
     }
 
 
-def _csv(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> bytes:
+def _csv(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
     stream = io.StringIO(newline="")
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerows([_cell(row[name]) for name in columns] for row in rows)
-    return stream.getvalue().encode()
+    return stream.getvalue()
 
 
 def _cell(value: object) -> str:

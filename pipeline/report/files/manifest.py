@@ -6,7 +6,8 @@ it was written is used again; `verify_report` looks at all of it.
 
 import hashlib
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -160,14 +161,28 @@ class PreviousReport:
         sound = [self._is_sound(name) for name in names]
         return all(sound)
 
+    def look(self, keys: Iterable[str]) -> None:
+        """Compare all files of some pages with what was written, on all cores: of a large report that takes seconds."""
+        pages = (self._by_key[key] for key in keys if key in self._by_key)
+        names = [name for page in pages for name in page.files if name not in self._sound]
+        with ThreadPoolExecutor() as pool:
+            for name, why in zip(names, pool.map(self._damage, names), strict=True):
+                self._note(name, why)
+
     def _is_sound(self, name: str) -> bool:
         if name not in self._sound:
-            written = self.manifest.files.get(name)
-            why = "" if written is None else _damage(self.folder / name, written)
-            if why:
-                _say(self.folder / name, why)
-            self._sound[name] = written is not None and not why
+            self._note(name, self._damage(name))
         return self._sound[name]
+
+    def _damage(self, name: str) -> str | None:
+        """Say what is wrong with a file, "" for nothing; None for a file that the report never had."""
+        written = self.manifest.files.get(name)
+        return None if written is None else _damage(self.folder / name, written)
+
+    def _note(self, name: str, why: str | None) -> None:
+        if why:
+            _say(self.folder / name, why)
+        self._sound[name] = why == ""
 
 
 def _say(file: Path, why: str) -> None:

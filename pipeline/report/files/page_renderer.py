@@ -11,9 +11,10 @@ from jinja2 import Environment
 from markupsafe import Markup
 
 from pipeline.records import DecisionStatus, Found, Page, RunRecord, Tally
-from pipeline.report.files.exports import page_exports
+from pipeline.report.files.exports import FindingRows, page_exports
 from pipeline.report.language import Language, speaking
 from pipeline.report.pages.compose import compose, page_head
+from pipeline.report.pages.describe import Sayings
 from pipeline.report.pages.environment import environment, fill
 from pipeline.report.pages.notes import page_notes
 from pipeline.report.pages.tallies import tally
@@ -80,7 +81,9 @@ class PageRenderer:
             decisions=tuple(decisions),
         )
         with speaking(self.language):
-            made = compose(record, page, self.units, several=len({m.level for m in self.head.motions}) > 1)
+            made = compose(
+                record, page, self.units, self._sayings, several=len({m.level for m in self.head.motions}) > 1
+            )
             gallery = made.gallery
             context: dict[str, Any] = {"museum": page_head(self.head, page), "units": self.units, "State": State}
             context |= {"here": "gallery", "gallery": gallery}
@@ -89,7 +92,7 @@ class PageRenderer:
             else:
                 context |= drawn(gallery.charts, self.drawings) | self._script
                 text = fill(self._environment, "gallery.html", context | {"notes": page_notes(gallery.objects)})
-            parts = page_exports(record, page.run, gallery.page.file, made.anchor, self.units)
+            parts = page_exports(record, page.run, gallery.page.file, made.anchor, self.units, self._rows)
         return RenderedPage(text.encode(), made.entry, tally(found), parts)
 
     @cached_property
@@ -114,6 +117,14 @@ class PageRenderer:
                 key: Drawing(chart, self.units, f"{'c' if any(m in key for m in motions) else 'm'}{i}")
                 for i, (key, chart) in enumerate(self.head.charts.items())
             }
+
+    @cached_property
+    def _sayings(self) -> Sayings:
+        return Sayings(self.head.motions, self.units)
+
+    @cached_property
+    def _rows(self) -> FindingRows:
+        return FindingRows()
 
     @cached_property
     def _environment(self) -> Environment:

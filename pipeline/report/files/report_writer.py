@@ -101,6 +101,10 @@ class ReportWriter:
     ) -> None:
         self._stack.__exit__(kind, error, trace)
 
+    def look(self, keys: Sequence[str]) -> None:
+        """See at once which of some pages the earlier report has, before `has` is asked of each."""
+        self._previous.look(keys)
+
     def has(self, key: str) -> bool:
         """Say whether the earlier report has a page, all its files as they were written."""
         return self._previous.get(key) is not None

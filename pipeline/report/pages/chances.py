@@ -1,23 +1,29 @@
 """How likely an object comes to harm, in words, and as columns of an export."""
 
 from dataclasses import dataclass
+from functools import cache
 
-from pipeline.records import Assessment, Band, Harm, Likelihood
-from pipeline.report.language import _
-from pipeline.report.text import clean
+from pipeline.analysis.stakes import doubtful, expected_loss
+from pipeline.analysis.survey import measurables
+from pipeline.records import Assessment, Band, Harm, Likelihood, Recommendation
+from pipeline.report.language import _, said
+from pipeline.report.text import clean, words
 
 
 @dataclass(frozen=True, slots=True)
 class ChanceView:
     """How likely an object comes to harm: the word for it, what it is likeliest to do, and the numbers behind that.
 
-    level : of shaking, at which that is likeliest
+    level : of shaking, at which that is likeliest;  check : why its record is to be looked at first, "" for no reason;
+    measure : what one would measure to decide otherwise
     """
 
     band: str
     sentence: str
     numbers: str
     level: str
+    check: str = ""
+    measure: str = ""
 
 
 def chance_view(assessment: Assessment) -> ChanceView | None:
@@ -33,7 +39,29 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
     }
     others = [f"{_STATES[Harm(name)]()} {p:.0%}" for name, p in found.states.items() if p >= _LEAST]
     more = f": {', '.join(others)}" if others else ""
-    return ChanceView(_BANDS[found.band](), _sentence(found), f"{numbers}{more}.", clean(found.level))
+    slender = doubtful(assessment.scene)
+    check = ""
+    if slender:
+        check = _("Check its record first: it is %(times)s times as high as it is deep, and hardly stands by itself.")
+        check %= {"times": f"{slender:.1f}"}
+    return ChanceView(
+        _BANDS[found.band](), _sentence(found), f"{numbers}{more}.", clean(found.level), check, name_of(found.open_for)
+    )
+
+
+def left_over(advice: Recommendation) -> str:
+    """Say how likely harm is that a measure leaves; "" where its checks exclude it, and where nobody drew it."""
+    if advice.remaining is None:
+        return ""
+    left = advice.remaining
+    share = f"{left:.0%}" if left >= _LEAST else _("below 1 %")
+    return " " + _("Of what is uncertain %(share)s remains in which it still comes to harm.") % {"share": share}
+
+
+def open_for(assessment: Assessment) -> str:
+    """Return the parameter whose measurement alone may change what is decided about an object; "" for none."""
+    found = assessment.likelihood
+    return "" if found is None else found.open_for
 
 
 def chance_columns(assessment: Assessment) -> dict[str, str | float | None]:
@@ -47,7 +75,27 @@ def chance_columns(assessment: Assessment) -> dict[str, str | float | None]:
         "harm": "" if found is None else found.harm,
         "harm_level": "" if found is None else found.level,
         **{f"p_{state.value}": states.get(state.value) for state in Harm},
+        "open_for": open_for(assessment),
+        "worth": found.worth if found is not None and found.open_for else None,
+        "expected_loss": None if found is None else expected_loss(assessment),
     }
+
+
+@cache
+def _measured() -> dict[str, str]:
+    """Return what one would measure, by parameter: of several fields that tell it the first."""
+    out: dict[str, str] = {}
+    for row in measurables():
+        for name in row.parameters:
+            out.setdefault(name, row.label)
+    return out
+
+
+def name_of(parameter: str) -> str:
+    """Say what one would measure to know a parameter; "" for none."""
+    if not parameter:
+        return ""
+    return said(_measured()[parameter]) if parameter in _measured() else words(parameter)
 
 
 _LEAST = 0.01

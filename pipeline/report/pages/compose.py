@@ -9,7 +9,7 @@ from pipeline.records import Assessment, Page, Recommendation, RunRecord, Tally,
 from pipeline.report.errors import ReportError
 from pipeline.report.language import ngettext, said
 from pipeline.report.pages.decided import Decided, decisions_view, merged
-from pipeline.report.pages.describe import Describer, furniture_known, percent
+from pipeline.report.pages.describe import Describer, Sayings, furniture_known, percent
 from pipeline.report.pages.floor_plan import plan_view
 from pipeline.report.pages.ground import motion_view
 from pipeline.report.pages.judging import room_views, shaking_view, spacing_views
@@ -44,7 +44,7 @@ SELECTION = "selection"
 LEADERS = 8
 """Objects that the index names as the most urgent."""
 
-_LAST = (len(State), True, True, "", inf, "", "")
+_LAST = (len(State), True, inf, inf, "", "")
 """Sorts after every object."""
 
 _HELPLESS = "\0"
@@ -88,26 +88,28 @@ class Composed:
     anchor: Callable[[Assessment], str]
 
 
-def compose(record: RunRecord, page: Page, units: Units, *, several: bool) -> Composed:
+def compose(record: RunRecord, page: Page, units: Units, sayings: Sayings | None = None, *, several: bool) -> Composed:
     """Return everything that a page shows, in the order in which it shows it.
 
     record  : the run with the objects, wishes, spacings and decisions of this page only
+    sayings : what was put into words on other pages of the run, in this language and these units
     several : whether the run has several levels of shaking
     raises  : ReportError for a sentence with an unknown placeholder or a mark on a chart that the run does not hold
     """
-    describer = Describer(record, units)
+    describer = Describer(record, units, sayings or Sayings(record.motions, units))
     members = sorted(record.assessments, key=urgency)
     file = page_name(page.gallery, page.number, on_display=page.on_display)
     spacings = spacing_views(record.spacings, units) if page.on_display else ()
     views = [describer.object(a, file) for a in members]
     pairs = list(zip(members, views, strict=True))
     by_state = Counter(v.state for v in views)
+    unsettled = sum(bool(v.open_for) for v in views)
     numbers = sorted(v.number for v in views)
     gallery = GalleryView(
         name=clean(page.gallery) if page.on_display else "",
         page=PageView(file, page.number, page.of, *(numbers[:1] + numbers[-1:])),
         on_display=page.on_display,
-        counts=StateCounts(**{state.value: by_state[state] for state in State}),
+        counts=StateCounts(**{state.value: by_state[state] for state in State}, open=unsettled),
         tasks=_tasks(pairs, describer, units),
         objects=tuple(views),
         charts=tuple(dict.fromkeys(f.chart for v in views for f in v.figures)),
@@ -227,7 +229,7 @@ def _rows(entries: Sequence[Entry]) -> tuple[GalleryRow, ...]:
         rows.append(
             GalleryRow(name, on_display, tuple(e.page for e in members), _total(e.counts for e in members), task)
         )
-    return tuple(sorted(rows, key=lambda g: (-g.counts.act, -g.counts.open, -g.counts.unknown, g.name)))
+    return tuple(sorted(rows, key=lambda g: (-g.counts.act, -g.counts.watch, -g.counts.unknown, g.name)))
 
 
 def page_name(gallery: str, number: int = 1, *, on_display: bool = True) -> str:

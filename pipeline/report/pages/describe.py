@@ -1,7 +1,7 @@
 """One object in words and in the reader's units."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from math import isfinite, isnan
@@ -21,11 +21,13 @@ from pipeline.records import (
     RunRecord,
     Scene,
     Support,
+    Verdict,
 )
 from pipeline.records.result import BOUNDS
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
-from pipeline.report.pages.chances import chance_view
+from pipeline.report.pages.alike import Memory, finding_key
+from pipeline.report.pages.chances import chance_view, left_over, open_for
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import fragility_views, most, spanned
 from pipeline.report.pages.ranking import finding_order, finding_state, grave, state_of
@@ -35,6 +37,7 @@ from pipeline.report.pages.views import (
     CheckView,
     FigureView,
     FindingView,
+    Judged,
     MeasureView,
     MotionLink,
     NumberView,
@@ -174,66 +177,33 @@ def _together(views: Sequence[MeasureView]) -> MeasureView:
     )
 
 
-class Describer:
-    """Turns assessments of one run into views."""
+class Sayings:
+    """Findings and numbers in words, each once for all objects of a run that share it.
 
-    def __init__(self, record: RunRecord, units: Units) -> None:
-        self._record, self._units = record, units
-        self.decided = Decided(record.decisions, units)
-        self._motions = {m.hash: m for m in record.motions}
+    motions : of the run
+    """
+
+    def __init__(self, motions: Iterable[MotionSummary], units: Units) -> None:
+        self._motions, self._units = {m.hash: m for m in motions}, units
         self._links: dict[tuple[str, str], MotionLink] = {}
-        self.surveyed = record.wishes is not None
-        self.wishes: dict[str, list[MeasurementRequest]] = {}
-        for request in record.wishes or ():
-            self.wishes.setdefault(request.object_number, []).append(request)
+        self._findings: Memory[FindingView] = Memory()
+        self._numbers: Memory[NumberView] = Memory()
+        self._origins: Memory[str] = Memory()
 
-    def anchor(self, assessment: Assessment) -> str:
-        """Return the id of the object on its page; it stays the same from run to run."""
-        return f"o{digest(assessment.scene.item.object_number, 10)}"
+    def finding(self, f: Finding) -> FindingView:
+        """Return a finding in words.
 
-    def object(self, assessment: Assessment, page: str) -> ObjectView:
-        """Return everything that the report says about one object.
-
-        raises : ReportError naming the object, for a bad sentence or a mark on a chart that the run does not hold
+        raises : ReportError naming the object, for a bad sentence
         """
-        scene, item = assessment.scene, assessment.scene.item
-        ordered = sorted(assessment.findings, key=finding_order)
-        findings = tuple(self._finding(f) for f in ordered)
-        state = state_of(assessment)
-        named = [*scene.assumptions, *(text for f in assessment.findings for text in f.assumptions)]
-        estimates = sorted(scene.parameters.items(), key=lambda pair: (_ORIGIN_ORDER[pair[1].origin], pair[0]))
-        title = clean(item.title or item.object_name)
-        return ObjectView(
-            number=clean(item.object_number),
-            title=title,
-            short=short(title, 80),
-            anchor=self.anchor(assessment),
-            gallery=clean(item.gallery),
-            page=page,
-            state=state,
-            value_class=clean(item.value_class),
-            object_class=words(clean(scene.object_class)),
-            rule=said(clean(scene.rule)),
-            support=support(scene.support),
-            place=clean(item.case),
-            furniture=furniture(scene),
-            lead=findings[0] if findings else None,
-            findings=findings,
-            measures=self._measures(assessment),
-            figures=self._figures(ordered, assessment.recommendations) if state is State.ACT else (),
-            numbers=tuple(self._number(name, estimate) for name, estimate in estimates),
-            assumptions=tuple(dict.fromkeys(said(clean(text)) for text in named)),
-            statements=tuple(said(clean(text)) for text in scene.statements),
-            missing=tuple(words(clean(m)) for m in scene.missing),
-            problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
-            wishes=wish_views(self.wishes.get(item.object_number, ()), self._units),
-            grave=any(grave(f) for f in assessment.findings),
-            chance=chance_view(assessment),
-            fragilities=fragility_views(assessment, drawn=state is State.ACT),
-            skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
-            decisions=self.decided.of(assessment),
-            settled=self.decided.covered(assessment),
-        )
+        return self._findings.had(finding_key(f), lambda: self._finding(f))
+
+    def number(self, name: str, estimate: Estimate) -> NumberView:
+        """Return a number that a model was run with in words."""
+        return self._numbers.had((name, estimate), lambda: self._number(name, estimate))
+
+    def origin(self, of: Origin) -> str:
+        """Say in words where a number comes from."""
+        return self._origins.had(of, lambda: origin(of))
 
     def _finding(self, f: Finding) -> FindingView:
         values: dict[str, tuple[float | None, str]] = {
@@ -266,7 +236,7 @@ class Describer:
         by = {"means": decided(f.decided_by), "error": error}
         means = (_("Decided by %(means)s, error %(error)s.") if error else _("Decided by %(means)s.")) % by
         capacity = self._units.text(f.capacity, f.unit)
-        of = origin(f.capacity_origin) if f.capacity_origin else ""
+        of = self.origin(f.capacity_origin) if f.capacity_origin else ""
         # What the sentence has said is not said again.
         asked = _asked(f.sentence)
         ranged = not span or {"low", "high"} <= asked
@@ -313,6 +283,72 @@ class Describer:
             return _("less than 0.1 %")
         return self._units.text(f.error, f.unit)
 
+    def _number(self, name: str, e: Estimate) -> NumberView:
+        span = f" ({self._units.bare(e.low, e.high, e.unit)})" if self._span(e.low, e.high, e.unit) else ""
+        text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{span}"
+        return NumberView(text, self.origin(e.origin), clean(e.note), clean(e.source))
+
+
+class Describer:
+    """Turns assessments of one run into views."""
+
+    def __init__(self, record: RunRecord, units: Units, sayings: Sayings) -> None:
+        self._record, self._units, self._sayings = record, units, sayings
+        self.decided = Decided(record.decisions, units)
+        self.surveyed = record.wishes is not None
+        self.wishes: dict[str, list[MeasurementRequest]] = {}
+        for request in record.wishes or ():
+            self.wishes.setdefault(request.object_number, []).append(request)
+
+    def anchor(self, assessment: Assessment) -> str:
+        """Return the id of the object on its page; it stays the same from run to run."""
+        return f"o{digest(assessment.scene.item.object_number, 10)}"
+
+    def object(self, assessment: Assessment, page: str) -> ObjectView:
+        """Return everything that the report says about one object.
+
+        raises : ReportError naming the object, for a bad sentence or a mark on a chart that the run does not hold
+        """
+        scene, item = assessment.scene, assessment.scene.item
+        ordered = sorted(assessment.findings, key=finding_order)
+        findings = tuple(self._sayings.finding(f) for f in ordered)
+        state, fails = state_of(assessment), any(f.verdict is Verdict.FAIL for f in assessment.findings)
+        named = [*scene.assumptions, *(text for f in assessment.findings for text in f.assumptions)]
+        estimates = sorted(scene.parameters.items(), key=lambda pair: (_ORIGIN_ORDER[pair[1].origin], pair[0]))
+        title = clean(item.title or item.object_name)
+        return ObjectView(
+            number=clean(item.object_number),
+            title=title,
+            short=short(title, 80),
+            anchor=self.anchor(assessment),
+            gallery=clean(item.gallery),
+            page=page,
+            state=state,
+            value_class=clean(item.value_class),
+            object_class=words(clean(scene.object_class)),
+            rule=said(clean(scene.rule)),
+            support=support(scene.support),
+            place=clean(item.case),
+            furniture=furniture(scene),
+            lead=findings[0] if findings else None,
+            findings=findings,
+            measures=self._measures(assessment),
+            figures=self._figures(ordered, assessment.recommendations) if state is State.ACT and fails else (),
+            numbers=tuple(self._sayings.number(name, estimate) for name, estimate in estimates),
+            assumptions=tuple(dict.fromkeys(said(clean(text)) for text in named)),
+            statements=tuple(said(clean(text)) for text in scene.statements),
+            missing=tuple(words(clean(m)) for m in scene.missing),
+            problems=tuple((words(clean(p.field)), clean(p.message), clean(p.remedy)) for p in item.problems),
+            wishes=wish_views(self.wishes.get(item.object_number, ()), self._units),
+            grave=any(grave(f) for f in assessment.findings),
+            chance=chance_view(assessment),
+            open_for=open_for(assessment),
+            fragilities=fragility_views(assessment, drawn=state is State.ACT and fails),
+            skipped=tuple(f"{words(clean(model))}: {clean(why)}" for model, why in scene.skipped.items()),
+            decisions=self.decided.of(assessment),
+            settled=self.decided.covered(assessment),
+        )
+
     def _measures(self, assessment: Assessment) -> tuple[MeasureView, ...]:
         """Return the measures; what is advised alike for several levels is one, with the evidence of each."""
         alike: dict[tuple[object, ...], list[MeasureView]] = {}
@@ -332,7 +368,7 @@ class Describer:
             measure=clean(r.measure),
             title=said(clean(r.title)),
             level=clean(r.level),
-            sentence=clean(self._units.fill(said(r.sentence), values, where)),
+            sentence=clean(self._units.fill(said(r.sentence), values, where)) + left_over(r),
             checks=tuple(self._check(c, before.get(c.model)) for c in r.checks),
             ended=self._ended(r, before),
             rejected=tuple(clean(text) for text in r.rejected),
@@ -344,7 +380,7 @@ class Describer:
         if not r.checks:
             return ()
         left = {c.model for c in r.checks}
-        gone = [f for name, f in before.items() if name not in left and finding_state(f) is State.ACT]
+        gone = [f for name, f in before.items() if name not in left and finding_state(f) is Judged.FAILS]
         return tuple(
             CheckView(
                 title=said(clean(f.title)),
@@ -375,17 +411,12 @@ class Describer:
             passes=c.passes,
         )
 
-    def _number(self, name: str, e: Estimate) -> NumberView:
-        span = f" ({self._units.bare(e.low, e.high, e.unit)})" if self._span(e.low, e.high, e.unit) else ""
-        text = f"{words(clean(name))} {self._units.text(e.value, e.unit)}{span}"
-        return NumberView(text, origin(e.origin), clean(e.note), clean(e.source))
-
     def _figures(
         self, findings: Sequence[Finding], recommendations: Sequence[Recommendation]
     ) -> tuple[FigureView, ...]:
         spots: dict[str, list[Spot]] = {}
         for finding in findings:
-            if finding_state(finding) is not State.SAFE:
+            if finding_state(finding) is not Judged.PASSES:
                 self._add(spots, finding.mark, finding.object_number, after=False)
         for recommendation in recommendations:
             self._add(spots, recommendation.mark, recommendation.object_number, after=True)

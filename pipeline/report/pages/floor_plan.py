@@ -12,7 +12,7 @@ from pipeline.records import Assessment, Item
 from pipeline.report.language import _, ngettext
 from pipeline.report.pages.judging import SpacingView
 from pipeline.report.pages.plan_views import PlaceView, PlanView
-from pipeline.report.pages.views import STATES, ObjectView, State
+from pipeline.report.pages.views import STATES, Judged, ObjectView, State
 from pipeline.report.plots import svg
 from pipeline.report.plots.panel import Panel
 from pipeline.report.plots.scales import Scale, nice_step
@@ -140,7 +140,7 @@ def _row(place: _Place, assessment: Assessment, units: Units) -> PlaceView:
 
 def _tight(spacings: Sequence[SpacingView]) -> list[SpacingView]:
     """Return the neighbours that may meet, each pair as it stands at its worst level, the worst first."""
-    return list({(s.first, s.second): s for s in reversed(spacings) if s.state != State.SAFE}.values())[::-1]
+    return list({(s.first, s.second): s for s in reversed(spacings) if s.state != Judged.PASSES}.values())[::-1]
 
 
 def _draw(places: Sequence[_Place], tight: Sequence[SpacingView], units: Units) -> Markup:
@@ -177,7 +177,7 @@ def _told(places: Sequence[_Place], across: str, up: str) -> str:
         len(places),
     )
     size = {"count": count(len(places)), "width": across, "depth": up}
-    states = _("%(act)s to act on, %(open)s open, %(unknown)s cannot be assessed, %(safe)s safe.")
+    states = _("%(act)s to act on, %(watch)s to watch, %(unknown)s cannot be assessed, %(fine)s fine.")
     verdicts = states % {state.value: count(number) for state, number in tally.items()}
     return " ".join((phrase % size, verdicts, _("The table below says the same.")))
 
@@ -195,13 +195,15 @@ def _turned(place: _Place, x: float, y: float) -> str | None:
 
 
 def _gap(spacing: SpacingView, ends: Sequence[Point]) -> Element:
-    meet = _("their gap is too small") if spacing.state == State.ACT else _("whether their gap is wide enough is open")
+    meet = (
+        _("their gap is too small") if spacing.state == Judged.FAILS else _("whether their gap is wide enough is open")
+    )
     told = f"{plain(spacing.first)}, {plain(spacing.second)}: {meet} ({spacing.gap})"
     return svg.path(f"gap {spacing.state}", svg.through(ends), svg.element("title", told), role="img")
 
 
 def _shape(place: _Place, x: float, y: float, scale: float) -> Element:
-    kind = {State.ACT: "pa", State.OPEN: "po", State.UNKNOWN: "pu", State.SAFE: "ps"}[place.view.state]
+    kind = {State.ACT: "pa", State.WATCH: "po", State.UNKNOWN: "pu", State.FINE: "ps"}[place.view.state]
     half = place.half or (_POINT, _POINT)
     if place.half is None:
         r = _POINT * scale

@@ -44,7 +44,11 @@ class Notes:
         )
         self._headed = headed
         self._places = {note.text: at for at, note in enumerate(self.listed)}
-        self._tags = {n.text: Markup(" ") + _link(n.label, n.label) for n in self.listed}
+        self._tags = {
+            (n.text, cited): Markup(f" {escape(n.label) if cited else _link(n.label, n.label)}")  # noqa: S704
+            for n in self.listed
+            for cited in (False, True)
+        }
         self._cited: dict[tuple[str, ...], Markup] = {}
 
     def cite(self, texts: Iterable[str]) -> Markup:
@@ -84,7 +88,7 @@ class Notes:
         cited : whether a link to it stands beside
         """
         if text in self._places:
-            return Markup(" {}").format(self.listed[self._places[text]].label) if cited else self._tags[text]
+            return self._tags[text, cited]
         told = "; ".join(part for part in (text, source) if part)
         return escape(f" ({told})") if told else Markup()
 
@@ -105,7 +109,9 @@ class PageNotes:
         """
         groups = (
             f"{escape(origin[:1].upper() + origin[1:])}: "
-            + "; ".join([escape(n.text) + self.assumed.tag(n.note, n.source, cited=n.note in cited) for n in members])
+            + "; ".join(
+                [f"{escape(n.text)}{self.assumed.tag(n.note, n.source, cited=n.note in cited)}" for n in members]
+            )
             for origin, members in groupby(numbers, key=lambda n: n.origin)
         )
         return Markup(". ".join(groups) + "." if numbers else "")  # noqa: S704 - each part is escaped above
@@ -144,4 +150,4 @@ def _head(text: str) -> str:
 
 
 def _link(label: str, shown: str) -> Markup:
-    return Markup('<a href="#{}">{}</a>').format(label, shown)
+    return Markup(f'<a href="#{escape(label)}">{escape(shown)}</a>')  # noqa: S704 - both parts are escaped

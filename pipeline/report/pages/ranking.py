@@ -2,30 +2,43 @@
 
 from math import inf, isnan
 
-from pipeline.records import Assessment, Finding, Verdict
-from pipeline.report.pages.views import State
+from pipeline.analysis.stakes import doubtful, expected_loss
+from pipeline.records import Assessment, Band, Finding, Verdict
+from pipeline.report.pages.views import Judged, State
 from pipeline.report.text import encodable
 
 _GRAVE = ("overturn", "break")
 _ORDER = tuple(State)
-_VERDICTS = {Verdict.FAIL: State.ACT, Verdict.UNDETERMINED: State.OPEN, Verdict.PASS: State.SAFE}
+_JUDGED = {Verdict.FAIL: Judged.FAILS, Verdict.UNDETERMINED: Judged.OPEN, Verdict.PASS: Judged.PASSES}
+_SIZES = tuple(Judged)
+_STATES = {Band.VERY_UNLIKELY: State.FINE, Band.UNLIKELY: State.WATCH}
 
 
 def state_of(assessment: Assessment) -> State:
-    """Return where an object stands: a failure outranks all else, and no verdict at all is never called safe."""
+    """Return where an object stands: by how likely harm is, or where that was not asked for by its verdicts.
+
+    A proof beats a probability: what passes in all its models, whatever its uncertain inputs are, is fine.  What has no
+    verdict at all never is.
+    """
     if assessment.aside:
         return State.ASIDE
     verdicts = {f.verdict for f in assessment.findings}
-    if Verdict.FAIL in verdicts:
-        return State.ACT
-    if Verdict.UNDETERMINED in verdicts:
-        return State.OPEN
-    return State.SAFE if assessment.assessed else State.UNKNOWN
+    if assessment.assessed and verdicts == {Verdict.PASS}:
+        return State.FINE
+    found = assessment.likelihood
+    if found is not None:
+        state = _STATES.get(found.band, State.ACT)
+    elif Verdict.FAIL in verdicts:
+        state = State.ACT
+    else:
+        state = State.WATCH
+    # Where some of it could not be run, only what is bad is known.
+    return state if assessment.assessed or (verdicts and state is State.ACT) else State.UNKNOWN
 
 
-def finding_state(finding: Finding) -> State:
-    """Return the state that belongs to one finding's verdict."""
-    return _VERDICTS[finding.verdict]
+def finding_state(finding: Finding) -> Judged:
+    """Return what one finding's verdict says."""
+    return _JUDGED[finding.verdict]
 
 
 def grave(finding: Finding) -> bool:
@@ -36,7 +49,7 @@ def grave(finding: Finding) -> bool:
 def finding_order(finding: Finding) -> tuple[int, bool, float, str, str]:
     """Sort key of an object's findings: the most urgent first."""
     return (
-        _ORDER.index(finding_state(finding)),
+        _SIZES.index(finding_state(finding)),
         not grave(finding),
         -_size(finding.utilisation),
         finding.title,
@@ -44,19 +57,18 @@ def finding_order(finding: Finding) -> tuple[int, bool, float, str, str]:
     )
 
 
-def urgency(assessment: Assessment) -> tuple[int, bool, bool, str, float, str, str]:
-    """Sort key of objects: state; overturns or breaks; value class where given (A before B); largest utilisation.
+def urgency(assessment: Assessment) -> tuple[int, bool, float, float, str, str]:
+    """Sort key of objects: state; records to be checked last; expected loss; how likely harm is.
 
     Ties are settled by object number and gallery, so that the same run always gives the same page.
     """
-    item = assessment.scene.item
-    decisive = [f for f in assessment.findings if finding_state(f) is state_of(assessment)]
+    item, found = assessment.scene.item, assessment.likelihood
+    used = max((_size(f.utilisation) for f in assessment.findings), default=0.0)
     return (
         _ORDER.index(state_of(assessment)),
-        not any(grave(f) for f in decisive),
-        not item.value_class,
-        encodable(item.value_class),
-        -max((_size(f.utilisation) for f in decisive), default=0.0),
+        bool(doubtful(assessment.scene)),
+        -expected_loss(assessment),
+        -(used if found is None else found.probability),
         encodable(item.object_number),
         encodable(item.gallery),
     )

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 from math import isfinite
 
 from pipeline.records import Assessment, Errors, Finding, Found, Tally, Urgent, Verdict
+from pipeline.report.pages.chances import open_for
 from pipeline.report.pages.ranking import finding_order, state_of, urgency
 from pipeline.report.pages.views import STATES, State
 from pipeline.report.text import encodable
@@ -40,6 +41,7 @@ def tally(found: Found) -> Tally:
         stored_findings=sum(len(a.findings) for a in stored),
         verdicts=dict(Counter(f.verdict.value for f in findings)),
         stands_by=dict(Counter(a.scene.stands_by.value for a in shown if a.scene.stands_by is not None)),
+        open_for=dict(Counter(open_for(a) for a in shown if open_for(a))),
     )
 
 
@@ -65,6 +67,7 @@ def total(tallies: Iterable[Tally]) -> Tally:
         stored_findings=sum(t.stored_findings for t in listed),
         verdicts=_sum(t.verdicts for t in listed),
         stands_by=_sum(t.stands_by for t in listed),
+        open_for=_sum(t.open_for for t in listed),
     )
 
 
@@ -84,10 +87,11 @@ def counts(found: Tally) -> dict[str, int]:
 
 
 def _urgent(assessment: Assessment) -> Urgent:
-    item = assessment.scene.item
-    worst = min((f for f in assessment.findings if f.verdict is Verdict.FAIL), key=finding_order)
+    item, found = assessment.scene.item, assessment.likelihood
+    worst = min(assessment.findings, key=finding_order)
+    outcome = worst.outcome if found is None else f"{found.harm}, {found.band.value}"
     bad = dict.fromkeys((f.model, f.level) for f in assessment.findings if f.verdict is not Verdict.PASS)
-    number, title, gallery, outcome = map(encodable, (item.object_number, item.title, item.gallery, worst.outcome))
+    number, title, gallery, outcome = map(encodable, (item.object_number, item.title, item.gallery, outcome))
     return Urgent(urgency(assessment), number, title, gallery, outcome, tuple(bad))
 
 

@@ -10,33 +10,46 @@ from pipeline.report.plots.chart import Spot
 
 
 class State(StrEnum):
-    """Where an object stands, in the order in which the report lists it; aside: not on display, and not assessed."""
+    """Where an object stands, in the order in which the report lists it.
+
+    act: harm is possible or likelier; watch: it is unlikely; unknown: nobody can say; fine: harm is very unlikely, or
+    excluded; aside: not on display, and not assessed.
+    """
 
     ACT = "act"
-    OPEN = "open"
+    WATCH = "watch"
     UNKNOWN = "unknown"
-    SAFE = "safe"
+    FINE = "fine"
     ASIDE = "aside"
 
 
-STATES = (State.ACT, State.OPEN, State.UNKNOWN, State.SAFE)
+STATES = (State.ACT, State.WATCH, State.UNKNOWN, State.FINE)
 """Those of what is assessed."""
+
+
+class Judged(StrEnum):
+    """What a verdict says of one demand, in the order in which the report lists them."""
+
+    FAILS = "act"
+    OPEN = "open"
+    PASSES = "safe"
 
 
 @dataclass(frozen=True, slots=True)
 class StateCounts:
-    """How many objects are in each state; the five add up to all."""
+    """How many objects are in each state; the five add up to all.  ``open``: of them, one measurement would decide."""
 
     act: int = 0
-    open: int = 0
+    watch: int = 0
     unknown: int = 0
-    safe: int = 0
+    fine: int = 0
     aside: int = 0
+    open: int = 0
 
     @property
     def total(self) -> int:
         """All objects counted."""
-        return self.act + self.open + self.unknown + self.safe + self.aside
+        return self.act + self.watch + self.unknown + self.fine + self.aside
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,14 +73,14 @@ class MotionLink:
 
 @dataclass(frozen=True, slots=True)
 class FindingView:
-    """One finding in words; ``state`` is act, open or safe, ``numbers`` the sums behind the sentence in one line.
+    """One finding in words; ``numbers`` the sums behind the sentence in one line.
 
     size : the utilisation for sorting, "" where it is not known
     """
 
     title: str
     level: str
-    state: State
+    state: Judged
     outcome: str
     sentence: str
     numbers: str
@@ -196,6 +209,7 @@ class ObjectView:
     grave: bool = False
     fragilities: tuple[FragilityView, ...] = ()
     chance: ChanceView | None = None
+    open_for: str = ""
     decisions: tuple[DecisionView, ...] = ()
     settled: bool = False
 
@@ -207,12 +221,12 @@ class ObjectView:
     @property
     def failing(self) -> tuple[FindingView, ...]:
         """The findings that the entry explains at length: those that fail or are open."""
-        return tuple(f for f in self.findings if f.state is not State.SAFE)
+        return tuple(f for f in self.findings if f.state is not Judged.PASSES)
 
     @property
     def passing(self) -> tuple[FindingView, ...]:
         """The findings that pass."""
-        return tuple(f for f in self.findings if f.state is State.SAFE)
+        return tuple(f for f in self.findings if f.state is Judged.PASSES)
 
     @property
     def worthwhile(self) -> str:
@@ -227,12 +241,12 @@ class ObjectView:
     @property
     def unsettled(self) -> tuple[str, ...]:
         """What the open findings assume: measuring it settles them."""
-        return tuple(dict.fromkeys(text for f in self.findings if f.state is State.OPEN for text in f.assumptions))
+        return tuple(dict.fromkeys(text for f in self.findings if f.state is Judged.OPEN for text in f.assumptions))
 
     @property
     def assumed_besides(self) -> tuple[str, ...]:
         """What is assumed besides what the entry asks to be measured."""
-        named = self.unsettled if self.state is State.OPEN else ()
+        named = self.unsettled if self.open_for else ()
         return tuple(text for text in self.assumptions if text not in named)
 
 
@@ -371,7 +385,7 @@ class Entry:
     page: PageView
     counts: StateCounts
     task: str
-    leaders: tuple[tuple[tuple[int, bool, bool, str, float, str, str], Pointer], ...] = ()
+    leaders: tuple[tuple[tuple[int, bool, float, float, str, str], Pointer], ...] = ()
     decisions: DecisionsView = DecisionsView()
 
 
