@@ -64,7 +64,7 @@ def found(folder: Path) -> dict[str, Assessment]:
 def test_what_is_not_on_display_is_counted_and_named_and_nothing_else(tmp_path: Path) -> None:
     summary = run(museum(tmp_path), SILENT)
     assert (summary.objects, summary.on_display, summary.stores) == (4, 1, None)
-    assert (summary.act, summary.open, summary.safe, summary.cannot, summary.fresh) == (1, 0, 0, 0, 1)
+    assert (summary.act, summary.watch, summary.fine, summary.cannot, summary.fresh) == (1, 0, 0, 0, 1)
     assert sum(summary.measures.values()) == 1
     assert summary.missing == {}
     assert [text.split()[0] for text in summary.first] == ["1"]
@@ -101,7 +101,7 @@ def test_stores_are_a_section_of_their_own_and_never_mixed_in(tmp_path: Path) ->
     assert "1 object needs action" in first
     assert "Cellar" not in first
     assert "no model of shelves" in words(summary)
-    assert "counted apart: 3 objects: 2 need action" in "\n".join(summary_lines(summary))
+    assert "counted apart: 3 objects: 2 to act on" in "\n".join(summary_lines(summary))
 
 
 def test_with_setting_or_flag_changed_a_night_is_as_one_from_scratch(tmp_path: Path) -> None:
@@ -136,7 +136,7 @@ def test_a_decision_about_a_stored_object_is_not_about_a_lost_one(tmp_path: Path
 
 def test_where_nothing_is_on_display_nothing_is_called_safe(tmp_path: Path) -> None:
     summary = run(museum(tmp_path, ROWS[1:]), SILENT)
-    assert (summary.objects, summary.on_display, summary.safe, summary.fresh) == (3, 0, 0, 0)
+    assert (summary.objects, summary.on_display, summary.fine, summary.fresh) == (3, 0, 0, 0)
     assert words(summary).startswith("No object on display was assessed")
     alone = run(museum(tmp_path), SILENT, Selection(objects=("2",)))
     assert (alone.objects, alone.on_display, alone.act) == (1, 0, 0)

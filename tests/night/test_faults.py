@@ -118,7 +118,7 @@ def test_every_class_is_assessed_however_it_is_held_and_whatever_is_missing_extr
     summary = night(museum(tmp_path, rows))
     assert summary.objects == len(rows)
     assert summary.faults == 0
-    assert min(summary.act, summary.open, summary.safe, summary.cannot) > 0
+    assert min(summary.act, summary.watch, summary.fine, summary.cannot) > 0
     for assessment in load_run(open_database(tmp_path / "kouros.sqlite")).assessments:
         # Each has an answer, or the reason why there is none.
         assert bool(assessment.findings) is not bool(assessment.scene.missing), assessment.scene

@@ -19,16 +19,16 @@ def test_the_four_counts_add_up_to_all_objects() -> None:
     record = builder.record()
     museum = shown(record, Units())
     # 4 + 1 fail among the antiquities, 2 + 5 in the salon; one open; one unknown; 1 + 4 pass.  In store: 1 and 1.
-    assert museum.counts == StateCounts(act=12, open=1, unknown=1, safe=5)
+    assert museum.counts == StateCounts(act=12, watch=1, unknown=1, fine=5)
     assert museum.museum.stores is not None
-    assert museum.museum.stores.counts == StateCounts(act=1, safe=1)
+    assert museum.museum.stores.counts == StateCounts(act=1, fine=1)
     assert museum.counts.total + museum.museum.stores.counts.total == len(record.assessments)
     assert sum(g.counts.total for g in museum.galleries) == len(record.assessments)
     listed = [o.number for g in museum.galleries for o in g.objects]
     assert len(listed) == len(set(listed)) == len(record.assessments)
 
 
-def test_urgency_overturning_and_breaking_then_value_class_then_utilisation_then_open_unknown_safe() -> None:
+def test_urgency_overturning_and_breaking_then_value_class_then_utilisation_then_watch_unknown_fine() -> None:
     museum = shown(builder.record(), Units())
     gallery = next(g for g in museum.galleries if g.name == builder.GREEK)
     assert [o.number for o in gallery.objects] == [
@@ -41,7 +41,7 @@ def test_urgency_overturning_and_breaking_then_value_class_then_utilisation_then
         "96.AC.77",
         "71.AB.9",
     ]
-    assert [o.state for o in gallery.objects][-3:] == [State.OPEN, State.UNKNOWN, State.SAFE]
+    assert [o.state for o in gallery.objects][-3:] == [State.WATCH, State.UNKNOWN, State.FINE]
 
 
 @pytest.mark.parametrize("value", [None, float("nan"), float("inf")])

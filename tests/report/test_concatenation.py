@@ -17,10 +17,15 @@ SIZES = (0, 1, *range(44), 0, 53)
 """Rows of the parts: a thousand together."""
 
 
+def _cell(field: pa.Field, n: int) -> object:
+    if pa.types.is_list(field.type):
+        return [str(n)] * (n % 3)
+    return float(n) if pa.types.is_floating(field.type) else f"<{n}>"
+
+
 def table(first: int, count: int) -> pa.Table:
     rows = [
-        {field.name: [str(n)] * (n % 3) if pa.types.is_list(field.type) else f"<{n}>" for field in SCHEMA}
-        | {"source": None if n % 5 == 0 else "table"}
+        {field.name: _cell(field, n) for field in SCHEMA} | {"source": None if n % 5 == 0 else "table"}
         for n in range(first, first + count)
     ]
     return pa.Table.from_pylist(rows, schema=SCHEMA)

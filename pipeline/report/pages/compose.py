@@ -150,6 +150,7 @@ def pointer(view: ObjectView) -> Pointer:
         state=view.state,
         lead=None if view.lead is None else Lead(view.lead.title, view.lead.outcome),
         measure=view.measures[0].sentence if view.measures else "",
+        chance=view.chance,
     )
 
 

@@ -2,12 +2,15 @@
 
 from math import inf, isnan
 
-from pipeline.analysis.stakes import doubtful, expected_loss
+from pipeline.analysis.stakes import doubtful, expected_loss, value_of
 from pipeline.records import Assessment, Band, Finding, Verdict
 from pipeline.report.pages.views import Judged, State
 from pipeline.report.text import encodable
 
 _GRAVE = ("overturn", "break")
+_GRAVER = 1e3
+"""More than any class of value counts."""
+
 _ORDER = tuple(State)
 _JUDGED = {Verdict.FAIL: Judged.FAILS, Verdict.UNDETERMINED: Judged.OPEN, Verdict.PASS: Judged.PASSES}
 _SIZES = tuple(Judged)
@@ -63,12 +66,17 @@ def urgency(assessment: Assessment) -> tuple[int, bool, float, float, str, str]:
     Ties are settled by object number and gallery, so that the same run always gives the same page.
     """
     item, found = assessment.scene.item, assessment.likelihood
-    used = max((_size(f.utilisation) for f in assessment.findings), default=0.0)
+    loss, size = expected_loss(assessment), 0.0 if found is None else found.probability
+    if found is None:
+        # Where no probabilities are asked for, what overturns or breaks, then what is worth most, then what fails most.
+        failing = [f for f in assessment.findings if f.verdict is Verdict.FAIL]
+        loss = value_of(assessment.scene) + _GRAVER * any(map(grave, failing))
+        size = max((_size(f.utilisation) for f in failing or assessment.findings), default=0.0)
     return (
         _ORDER.index(state_of(assessment)),
-        bool(doubtful(assessment.scene)),
-        -expected_loss(assessment),
-        -(used if found is None else found.probability),
+        found is not None and doubtful(assessment.scene) > 0.0,
+        -loss,
+        -size,
         encodable(item.object_number),
         encodable(item.gallery),
     )

@@ -263,6 +263,7 @@ class Pointer:
     """An object as a page other than its own names it: what it is, where its entry is, what happens, what to do.
 
     measure : the first recommendation in a sentence, "" where there is none
+    chance  : how likely it comes to harm, None where nobody knows
     """
 
     number: str
@@ -273,6 +274,7 @@ class Pointer:
     state: State
     lead: Lead | None = None
     measure: str = ""
+    chance: ChanceView | None = None
 
 
 @dataclass(frozen=True, slots=True)
