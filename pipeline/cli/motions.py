@@ -1,4 +1,4 @@
-"""The seismologist's verbs: kouros motions list, show, process, compare, synthesise."""
+"""The seismologist's verbs: kouros motions list, show, process, compare, synthesise, select."""
 
 import json
 from collections.abc import Sequence
@@ -10,6 +10,7 @@ import click
 
 from pipeline.cli.console import aligned
 from pipeline.cli.options import Options, as_json, dry_run, say_dry
+from pipeline.cli.selecting import select
 
 if TYPE_CHECKING:
     from pipeline.settings import Settings
@@ -268,3 +269,6 @@ def synthesise(kind: str, parameters: tuple[str, ...], out: Path | None, dry_run
         say_dry(wanted_json=False)
         return
     click.echo(f"wrote {file}; try: kouros respond sliding friction_static=0.1,0.2 --site {out}")
+
+
+motions.add_command(select)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -15,7 +16,7 @@ from pipeline.motions.errors import Judgement, refusal
 from pipeline.motions.intensity import measures
 from pipeline.motions.manifest import MANIFEST, SiteTable, load_manifest, manifest_file
 from pipeline.motions.processing import EAST
-from pipeline.motions.record import NO_VERTICAL
+from pipeline.motions.record import NO_VERTICAL, Record
 from pipeline.records import Motion
 from pipeline.resources import replacing
 
@@ -61,9 +62,7 @@ def write_site(
     Every sample is written with 17 digits and read back bit for bit; the time step to its last digit.  A velocity that
     a record starts with has no place in the files: its PGV is kept as `v_max_cm_s`.
     """
-    if (folder / MANIFEST).exists():
-        remedy = "choose another folder, or remove it"
-        raise refusal(folder, MANIFEST, "is there already, and nothing is overwritten", remedy)
+    _unwritten(folder)
     if dry_run:
         with TemporaryDirectory(prefix="kouros-dry-run-") as name:
             write_site(Path(name), motions, site, licence=licence, why=why)
@@ -88,6 +87,90 @@ def write_site(
     file.write_text(tomlkit.dumps(document), encoding="utf-8")
     load_manifest(file)
     return file
+
+
+def write_records(
+    folder: Path,
+    site: SiteTable,
+    level: Mapping[str, Any],
+    records: Sequence[tuple[Record, str]],
+    files_from: Path,
+    *,
+    why: Sequence[str],
+    beside: Mapping[str, str],
+    dry_run: bool = False,
+) -> Path:
+    """Write records as they are, their files copied, with a manifest beside them.
+
+    Parameters
+    ----------
+    folder : Path
+        Where to; it is made where there is none.
+    site : SiteTable
+        Where they belong.
+    level : mapping
+        The table of the one level, without its records.
+    records : sequence of (Record, str)
+        Each with the reason why it is here, a comment above it.
+    files_from : Path
+        The folder that the records' files lie in.
+    why : sequence of str
+        Comments at the top of the manifest.
+    beside : mapping of str to str
+        Texts that are written beside it, by the names of their files.
+    dry_run : bool
+        Write the same to a folder that goes at once, and return where the manifest would be.
+
+    Returns
+    -------
+    Path
+        The manifest.
+
+    Raises
+    ------
+    MotionError
+        Where the folder has a manifest already, or a file of a record has the name of one that is written.
+    """
+    _unwritten(folder)
+    if dry_run:
+        with TemporaryDirectory(prefix="kouros-dry-run-") as name:
+            write_records(Path(name), site, level, records, files_from, why=why, beside=beside)
+        return folder / MANIFEST
+    files = dict.fromkeys(file for record, _ in records for file in record.all_files)
+    for name in (MANIFEST, *beside):
+        if name in files:
+            raise refusal(files_from, name, "a record's file has the name of one that is written", "rename it")
+    document = tomlkit.document()
+    for line in why:
+        document.add(tomlkit.comment(line))
+    document.add("site", tomlkit.item(site.model_dump(exclude_none=True)))
+    table = tomlkit.table()
+    table.update(level)
+    tables = tomlkit.aot()
+    for record, reason in records:
+        one = tomlkit.table()
+        one.add(tomlkit.comment(reason))
+        one.update(record.model_dump(mode="json", exclude_defaults=True))
+        tables.append(one)
+    table.add("record", tables)
+    levels = tomlkit.aot()
+    levels.append(table)
+    document.add("level", levels)
+    for name in files:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(files_from / name, folder / name)
+    for name, text in beside.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    file = folder / MANIFEST
+    file.write_text(tomlkit.dumps(document), encoding="utf-8")
+    load_manifest(file)
+    return file
+
+
+def _unwritten(folder: Path) -> None:
+    if (folder / MANIFEST).exists():
+        remedy = "choose another folder, or remove it"
+        raise refusal(folder, MANIFEST, "is there already, and nothing is overwritten", remedy)
 
 
 def _record(folder: Path, file: str, motion: Motion, azimuth: float, licence: str) -> dict[str, Any]:
