@@ -18,7 +18,7 @@ _FOLDER = click.Path(file_okay=False, path_type=Path)
 
 
 @click.command()
-@click.argument("folder", type=_FOLDER)
+@click.argument("folders", type=_FOLDER, nargs=-1, required=True, metavar="FOLDER...")
 @click.option(
     "--target",
     required=True,
@@ -57,7 +57,7 @@ _FOLDER = click.Path(file_okay=False, path_type=Path)
 @dry_run("Choose, and say what would be written")
 @as_json
 def select(
-    folder: Path,
+    folders: tuple[Path, ...],
     target: Path,
     spectrum: Literal["design", "mcer"],
     component: Literal["rotd50", "rotd100"] | None,
@@ -91,15 +91,15 @@ def select(
 
     wish = Wish(_range(periods), count, max_scale, per_event, per_station, seed)
     place = job.Place(name, level, latitude, longitude, return_period, combine)
-    suite = job.select(folder, target, wish, choice=spectrum, component=component)
+    suite = job.select(folders, target, wish, choice=spectrum, component=component)
     if as_json:
         click.echo(json.dumps(job.described(suite), indent=2, allow_nan=False))
     else:
         click.echo("\n".join(_lines(suite, job.combined(suite, place))))
     if suite.lacking and not (best and suite.motions):
-        raise job.refused(suite, folder)
+        raise job.refused(suite, folders)
     if out is not None:
-        _write(suite, folder, target, out, place, dry=dry_run, quiet=as_json)
+        _write(suite, target, out, place, dry=dry_run, quiet=as_json)
     if dry_run:
         say_dry(as_json)
 
@@ -112,10 +112,10 @@ def _range(text: str) -> tuple[float, float]:
     return low, high
 
 
-def _write(suite: "Suite", folder: Path, target: Path, out: Path, place: "Place", *, dry: bool, quiet: bool) -> None:
+def _write(suite: "Suite", target: Path, out: Path, place: "Place", *, dry: bool, quiet: bool) -> None:
     from pipeline.tools.selecting import write
 
-    file = write(suite, folder, target, out, place, dry_run=dry)
+    file = write(suite, target, out, place, dry_run=dry)
     click.echo(f"{'would write' if dry else 'wrote'} {file}", err=quiet)
 
 
@@ -127,11 +127,11 @@ def _lines(suite: "Suite", combined: str) -> list[str]:
         f"target: {target.name}",
         f"  {target.component.replace('rotd', 'RotD')} ({target.why_component}), 5 % damping, compared from "
         f"{wish.periods[0]:g} to {wish.periods[1]:g} s",
-        f"records: {len(suite.folder.candidates)} can be used, {len(suite.folder.unusable)} cannot",
+        f"records: {len(suite.found.candidates)} can be used, {len(suite.found.unusable)} cannot",
         # Most reasons name the file themselves.
         *(
             f"  not used: {'' if one.name in one.reason else f'{one.name}: '}{one.reason}"
-            for one in suite.folder.unusable
+            for one in suite.found.unusable
         ),
     ]
     if not suite.motions:

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from pipeline.motions.errors import MotionError, refusal
-from pipeline.motions.grouping import Found, channels, grouped
+from pipeline.motions.grouping import FileTrace, channels, grouped
 from pipeline.motions.intensity import measures
 from pipeline.motions.manifest import MANIFEST, NO_RECORDS, SiteTable, load_manifest
 from pipeline.motions.processing import EAST, Processed
@@ -40,8 +40,10 @@ class Candidate:
 
     Attributes
     ----------
+    folder : Path
+        Where it was found.
     record : Record
-        The manifest's table of it, without a scale; its files lie inside the folder that was looked at.
+        The manifest's table of it, without a scale; its files lie inside that folder.
     motion : Motion
         What was made of it.
     pga : float
@@ -54,6 +56,7 @@ class Candidate:
         Which of the folder's earthquakes it is of, by the time; None where its files do not say the time.
     """
 
+    folder: Path
     record: Record
     motion: Motion
     pga: float
@@ -84,8 +87,8 @@ class Unusable:
 
 
 @dataclass(frozen=True, eq=False)
-class Folder:
-    """What a folder holds.
+class Found:
+    """What folders hold.
 
     Attributes
     ----------
@@ -94,7 +97,7 @@ class Folder:
     unusable : tuple of Unusable
         What else there is, but for words and responses.
     site : SiteTable or None
-        The site of its manifest, where it has one.
+        The site of the first manifest, where there is one.
     """
 
     candidates: tuple[Candidate, ...]
@@ -102,8 +105,17 @@ class Folder:
     site: SiteTable | None
 
 
-def read_candidates(folder: Path, longest_period: float, leave: Sequence[Path] = ()) -> Folder:
-    """Read every record of a folder that a suite may be chosen from; what cannot be used never stops the rest.
+@dataclass(frozen=True, eq=False)
+class _Read:
+    folder: Path
+    record: Record
+    done: Processed
+    station: str | None
+    start: float | None
+
+
+def read_candidates(folders: Sequence[Path], longest_period: float, leave: Sequence[Path] = ()) -> Found:
+    """Read every record of folders that a suite may be chosen from; what cannot be used never stops the rest.
 
     A folder with a manifest has the records that it names, as it says; their scales are left out.  In any other one,
     files of one station and time are a record, with counts brought to an acceleration by the StationXML that knows
@@ -111,8 +123,8 @@ def read_candidates(folder: Path, longest_period: float, leave: Sequence[Path] =
 
     Parameters
     ----------
-    folder : Path
-        The folder, with what is below it.
+    folders : sequence of Path
+        The folders, with what is below them.
     longest_period : float
         In s; a record whose high-pass takes that away is not used.
     leave : sequence of Path
@@ -120,65 +132,69 @@ def read_candidates(folder: Path, longest_period: float, leave: Sequence[Path] =
 
     Returns
     -------
-    Folder
+    Found
 
     Raises
     ------
     MotionError
-        For a folder that is none, or whose manifest cannot be used.
+        For a folder that is none, or whose manifest cannot be used, or two sites whose axes differ.
     """
-    if not folder.is_dir():
-        raise refusal(folder, "folder", "there is no such folder", "name a folder of record files, or a site's")
-    file = folder / MANIFEST
-    site: SiteTable | None = None
+    sites: list[SiteTable] = []
     unusable: list[Unusable] = []
-    named: list[tuple[str, Record]] = []
-    if file.is_file():
-        manifest = load_manifest(file)
-        site = manifest.site
-        named = [(f"level[{i}].record[{j}]", r) for i, v in enumerate(manifest.level) for j, r in enumerate(v.record)]
-    else:
-        named = _found(folder, {path.resolve() for path in leave}, unusable)
-    read: list[tuple[Record, Processed, str | None, float | None]] = []
-    azimuth = EAST if site is None else site.x_azimuth
-    for place, record in named:
-        try:
-            read.append(_read(file, place, record, azimuth, longest_period))
-        except MotionError as problem:
-            unusable.append(Unusable(record.name, str(problem)))
-    events = _events([start for *_, start in read])
-    candidates = (_candidate(*one[:3], event) for one, event in zip(read, events, strict=True))
-    return Folder(tuple(candidates), tuple(unusable), site)
+    read: list[_Read] = []
+    for folder in folders:
+        if not folder.is_dir():
+            raise refusal(folder, "folder", "there is no such folder", "name a folder of record files, or a site's")
+        file = folder / MANIFEST
+        if file.is_file():
+            manifest = load_manifest(file)
+            sites.append(manifest.site)
+            named = [
+                (f"level[{i}].record[{j}]", r) for i, v in enumerate(manifest.level) for j, r in enumerate(v.record)
+            ]
+        else:
+            named = _unnamed(folder, {path.resolve() for path in leave}, unusable)
+        for place, record in named:
+            try:
+                if any(record.name == one.record.name for one in read):
+                    raise refusal(folder, f"record {record.name!r}", "there is another of this name", "rename one")
+                azimuth = sites[0].x_azimuth if sites else EAST
+                read.append(_read(folder, place, record, azimuth, longest_period))
+            except MotionError as problem:
+                unusable.append(Unusable(record.name, str(problem)))
+    if len({one.x_azimuth for one in sites} | ({EAST} if len(sites) < len(folders) else set())) > 1:
+        raise refusal(folders[0], "site.x_azimuth", "the folders' axes differ", "give sites of one x_azimuth")
+    events = _events([one.start for one in read])
+    candidates = (_candidate(one, event) for one, event in zip(read, events, strict=True))
+    return Found(tuple(candidates), tuple(unusable), sites[0] if sites else None)
 
 
-def _candidate(record: Record, done: Processed, station: str | None, event: int | None) -> Candidate:
-    found = measures(done.motion)
-    pgv = found["pgv"] if done.velocity is None else float(np.abs(done.velocity[:2]).max())
-    return Candidate(record, done.motion, found["pga"], pgv, station, event)
+def _candidate(one: _Read, event: int | None) -> Candidate:
+    found, velocity = measures(one.done.motion), one.done.velocity
+    pgv = found["pgv"] if velocity is None else float(np.abs(velocity[:2]).max())
+    return Candidate(one.folder, one.record, one.done.motion, found["pga"], pgv, one.station, event)
 
 
-def _read(
-    file: Path, place: str, record: Record, azimuth: float, longest: float
-) -> tuple[Record, Processed, str | None, float | None]:
+def _read(folder: Path, place: str, record: Record, azimuth: float, longest: float) -> _Read:
     where = f"record {record.name!r}"
     if record.vertical == "absent":
         wrong = "has no vertical component, and three are asked for"
-        raise refusal(file.parent, where, wrong, "give the vertical's file")
+        raise refusal(folder, where, wrong, "give the vertical's file")
     if record.v_max_cm_s is not None:
         wrong = "its v_max_cm_s belongs to the scale that it has"
-        raise refusal(file, f"{where}, v_max_cm_s", wrong, "leave it out: the PGV takes its place")
+        raise refusal(folder, f"{where}, v_max_cm_s", wrong, "leave it out: the PGV takes its place")
     unscaled = record.model_copy(update=_UNSCALED)
-    done = prepare(file, place, unscaled, None, azimuth)
+    done = prepare(folder / MANIFEST, place, unscaled, None, azimuth)
     corner = done.corners[0]
     if corner is not None and USABLE * corner * longest > 1.0:
         wrong = f"its high-pass at {corner:.3g} Hz leaves periods up to {1.0 / (USABLE * corner):.2g} s"
-        raise refusal(file.parent, where, wrong, f"give a longer record, or choose up to less than {longest:g} s")
+        raise refusal(folder, where, wrong, f"give a longer record, or choose up to less than {longest:g} s")
     if not done.motion.acceleration[:2].any():
-        raise refusal(file.parent, where, "has no horizontal shaking", "take another")
-    stats = open_traces(file.parent / record.files[0], [])[0].stats
+        raise refusal(folder, where, "has no horizontal shaking", "take another")
+    stats = open_traces(folder / record.files[0], [])[0].stats
     station = f"{stats.network}.{stats.station}" if stats.station else None
     unknown = stats.get("kouros", {}).get("start", "record") == "unknown" or stats.starttime.timestamp == 0.0
-    return unscaled, done, station, None if unknown else float(stats.starttime.timestamp)
+    return _Read(folder, unscaled, done, station, None if unknown else float(stats.starttime.timestamp))
 
 
 def _events(starts: Sequence[float | None]) -> list[int | None]:
@@ -190,7 +206,7 @@ def _events(starts: Sequence[float | None]) -> list[int | None]:
     return [None if s is None else sum(begin <= s for begin in first) for s in starts]
 
 
-def _found(folder: Path, leave: set[Path], unusable: list[Unusable]) -> list[tuple[str, Record]]:
+def _unnamed(folder: Path, leave: set[Path], unusable: list[Unusable]) -> list[tuple[str, Record]]:
     """Records of files that no manifest names, with the names that they are given."""
     paths = sorted(path for path in folder.rglob("*") if path.is_file() and not path.is_symlink())
     names = [path.relative_to(folder).as_posix() for path in paths[:MOST] if path.resolve() not in leave]
@@ -225,7 +241,7 @@ def _found(folder: Path, leave: set[Path], unusable: list[Unusable]) -> list[tup
     return records
 
 
-def _called(of: str, found: Sequence[Found], taken: set[str]) -> str:
+def _called(of: str, found: Sequence[FileTrace], taken: set[str]) -> str:
     start = min(trace.stats.starttime for _, trace in found)
     name = of.strip(".") or found[0][0]
     if start.timestamp and not any(name == file for file, _ in found):
@@ -234,7 +250,7 @@ def _called(of: str, found: Sequence[Found], taken: set[str]) -> str:
     return name if name not in taken else next(one for one in again if one not in taken)
 
 
-def _record(folder: Path, name: str, found: Sequence[Found], responses: dict[str, set[str]]) -> Record:
+def _record(folder: Path, name: str, found: Sequence[FileTrace], responses: dict[str, set[str]]) -> Record:
     traces = [trace for _, trace in found]
     files = tuple(dict.fromkeys(file for file, _ in found))
     silent = [trace for trace in traces if own_unit(trace.stats)[0] in {"", "counts"} and not own_unit(trace.stats)[1]]

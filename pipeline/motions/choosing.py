@@ -1,4 +1,4 @@
-"""A suite of motions chosen and scaled from the records of a folder for a target spectrum, with what it reaches."""
+"""A suite of motions chosen and scaled from the records of folders for a target spectrum, with what it reaches."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from pipeline.errors import InputError
 from pipeline.motions.blas import one_thread
-from pipeline.motions.candidates import Candidate, Folder, read_candidates
+from pipeline.motions.candidates import Candidate, Found, read_candidates
 from pipeline.motions.errors import refusal
 from pipeline.motions.selection import Aim, Chosen, choose, correlation
 from pipeline.motions.spectra import psa
@@ -107,7 +107,7 @@ class Suite:
 
     Attributes
     ----------
-    folder : Folder
+    found : Found
         What it was chosen from.
     target : TargetSpectrum
         What it was chosen for.
@@ -123,7 +123,7 @@ class Suite:
         In words, why it does not meet what was asked for; none where it does.
     """
 
-    folder: Folder
+    found: Found
     target: TargetSpectrum
     wish: Wish
     motions: tuple[SuiteMotion, ...]
@@ -155,19 +155,21 @@ class Suite:
         return None if wanted is None else np.asarray(self.spread - wanted)
 
 
-def choose_suite(folder: Path, target: TargetSpectrum, wish: Wish | None = None, leave: Sequence[Path] = ()) -> Suite:
-    """Choose and scale records of a folder for a target spectrum.
+def choose_suite(
+    folders: Sequence[Path], target: TargetSpectrum, wish: Wish | None = None, leave: Sequence[Path] = ()
+) -> Suite:
+    """Choose and scale records of folders for a target spectrum.
 
     Parameters
     ----------
-    folder : Path
-        Record files, or a site.
+    folders : sequence of Path
+        Each with record files, or a site.
     target : TargetSpectrum
         What the suite is for.
     wish : Wish or None
         What it shall be; None: the defaults.
     leave : sequence of Path
-        Files in the folder that are no records.
+        Files in the folders that are no records.
 
     Returns
     -------
@@ -177,7 +179,7 @@ def choose_suite(folder: Path, target: TargetSpectrum, wish: Wish | None = None,
     Raises
     ------
     MotionError
-        For a folder with no record that can be used.
+        For folders with no record that can be used.
     InputError
         For periods outside of the target.
     """
@@ -189,10 +191,10 @@ def choose_suite(folder: Path, target: TargetSpectrum, wish: Wish | None = None,
         fixed = int(np.argmin(np.abs(np.log(periods / at))))
         periods[fixed] = at
     mean, sd = target.at(periods)
-    found = read_candidates(folder, wish.periods[1], leave)
+    found = read_candidates(folders, wish.periods[1], leave)
     if not found.candidates:
-        told = "; ".join(f"{one.name}: {one.reason}" for one in found.unusable[:3]) or "it holds no files"
-        raise refusal(folder, "records", f"none can be used ({told})", "give records of three components")
+        told = "; ".join(f"{one.name}: {one.reason}" for one in found.unusable[:3]) or "there are no files"
+        raise refusal(folders[0], "records", f"none can be used ({told})", "give records of three components")
     with one_thread():
         logs = np.log(np.array([psa(one.motion, periods, 0.05, target.component) for one in found.candidates]) / G)
     aim = Aim(mean, sd, None if sd is None else correlation(periods, at), fixed)

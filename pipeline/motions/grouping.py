@@ -16,7 +16,7 @@ _BY_WORD: Mapping[str, float | str] = {"EW": 90.0, "NS": 0.0, "UD": "up"}
 _TOGETHER = 60.0
 """s, how far apart the channels of one record may have started."""
 
-Found = tuple[str, Any]
+FileTrace = tuple[str, Any]
 """A file's name inside its folder, and a trace of it."""
 
 
@@ -42,7 +42,7 @@ class Channel:
     by_code: bool
 
 
-def grouped(found: Sequence[tuple[str, Sequence[Any]]]) -> list[tuple[str, list[Found]]]:
+def grouped(found: Sequence[tuple[str, Sequence[Any]]]) -> list[tuple[str, list[FileTrace]]]:
     """Return which traces are one record: a file of several channels, or files of one station and time.
 
     Parameters
@@ -55,8 +55,8 @@ def grouped(found: Sequence[tuple[str, Sequence[Any]]]) -> list[tuple[str, list[
     list of (str, list of (str, obspy.Trace))
         What each record may be called, and its traces with the names of their files.
     """
-    whole: list[tuple[str, list[Found]]] = []
-    single: dict[tuple[Any, ...], list[Found]] = {}
+    whole: list[tuple[str, list[FileTrace]]] = []
+    single: dict[tuple[Any, ...], list[FileTrace]] = {}
     for name, traces in found:
         if len(traces) > 1:
             whole.append((name, [(name, trace) for trace in traces]))
@@ -64,7 +64,7 @@ def grouped(found: Sequence[tuple[str, Sequence[Any]]]) -> list[tuple[str, list[
         for trace in traces:
             single.setdefault(_place(name, trace, trace.id[:-1] or name), []).append((name, trace))
     # Some agencies number the channels of one instrument where others number instruments: what is left is one station.
-    left: dict[tuple[Any, ...], list[Found]] = {}
+    left: dict[tuple[Any, ...], list[FileTrace]] = {}
     for key, traces in single.items():
         if len(traces) >= 3:
             whole += _by_time(key[1], traces)
@@ -84,9 +84,9 @@ def _place(name: str, trace: Any, of: str) -> tuple[Any, ...]:
     return str(PurePosixPath(name).parent), of, trace.stats.get("kouros", {}).get("processed")
 
 
-def _by_time(of: str, traces: list[Found]) -> list[tuple[str, list[Found]]]:
+def _by_time(of: str, traces: list[FileTrace]) -> list[tuple[str, list[FileTrace]]]:
     """Traces of one instrument, parted by when they began: a station records more than one earthquake."""
-    parts: list[list[Found]] = []
+    parts: list[list[FileTrace]] = []
     for one in sorted(traces, key=lambda each: each[1].stats.starttime):
         if parts and one[1].stats.starttime - parts[-1][0][1].stats.starttime <= _TOGETHER:
             parts[-1].append(one)

@@ -1,9 +1,9 @@
-"""Selection of a suite from a folder of records: what is asked, and the site that is written of it."""
+"""Selection of a suite from folders of records: what is asked, and the site that is written of it."""
 
 import csv
 import hashlib
 import io
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -11,6 +11,7 @@ from typing import Any, Literal
 from pipeline.motions.choosing import Suite, Wish, choose_suite
 from pipeline.motions.errors import MotionError
 from pipeline.motions.manifest import LEAST_FOR_MEAN, SiteTable
+from pipeline.motions.record import Record
 from pipeline.motions.targets import Choice, Horizontal, read_target
 from pipeline.motions.writing import write_records
 from pipeline.operations.workspace import UsageError
@@ -47,19 +48,21 @@ class Place:
 
 
 def select(
-    folder: Path,
+    folders: Sequence[Path],
     target: Path,
     wish: Wish,
     *,
     choice: Choice = "design",
     component: Horizontal | None = None,
 ) -> Suite:
-    """Choose and scale records of a folder for a target spectrum, see `motions.choosing`.
+    """Choose and scale records of folders for a target spectrum, see `motions.choosing`.
 
     Parameters
     ----------
-    folder, target : Path
-        The records, and the file of the target.
+    folders : sequence of Path
+        The records.
+    target : Path
+        The file of the target.
     wish : Wish
         What the suite shall be.
     choice : {"design", "mcer"}
@@ -72,13 +75,15 @@ def select(
     Suite
         The best that there is, with what is lacking.
     """
-    return choose_suite(folder, read_target(target, choice, component), wish, leave=(target,))
+    return choose_suite(folders, read_target(target, choice, component), wish, leave=(target,))
 
 
-def refused(suite: Suite, folder: Path) -> MotionError:
+def refused(suite: Suite, folders: Sequence[Path]) -> MotionError:
     """Return the error of a suite that does not meet what was asked for."""
     told = "\n  ".join(suite.lacking)
-    return MotionError(f"{folder}: no suite meets the target:\n  {told}\n--best takes the best that there is")
+    return MotionError(
+        f"{', '.join(map(str, folders))}: no suite meets the target:\n  {told}\n--best takes the best that there is"
+    )
 
 
 def combined(suite: Suite, place: Place) -> str:
@@ -86,15 +91,15 @@ def combined(suite: Suite, place: Place) -> str:
     return place.combine or ("mean" if len(suite.motions) >= LEAST_FOR_MEAN else "max")
 
 
-def write(suite: Suite, folder: Path, target: Path, out: Path, place: Place, *, dry_run: bool = False) -> Path:
+def write(suite: Suite, target: Path, out: Path, place: Place, *, dry_run: bool = False) -> Path:
     """Write a suite as a site: its records' files, a manifest with the scales, and the choice as a table.
 
     Parameters
     ----------
     suite : Suite
         What was chosen.
-    folder, target : Path
-        What it was chosen from and for.
+    target : Path
+        The file of the target that it was chosen for.
     out : Path
         The folder of the new site.
     place : Place
@@ -126,9 +131,14 @@ def write(suite: Suite, folder: Path, target: Path, out: Path, place: Place, *, 
         "component": spectrum.component,
         "source": f"{spectrum.name}; {target.name}, sha256 {digest}"[:500],
     }
-    records = [
-        (one.candidate.record.model_copy(update={"scale": one.scale}), f"chosen: {one.why}") for one in suite.motions
-    ]
+    below = _below(suite)
+    records: list[tuple[Record, str]] = []
+    files: dict[str, Path] = {}
+    for one in suite.motions:
+        record, folder = one.candidate.record, one.candidate.folder
+        placed = record.inside(below[folder]) if below else record
+        files |= {name: folder / file for name, file in zip(placed.all_files, record.all_files, strict=True)}
+        records.append((placed.model_copy(update={"scale": one.scale}), f"chosen: {one.why}"))
     why = [
         f"Chosen by: kouros motions select, for {spectrum.name}",
         f"{len(suite.motions)} motions, periods {suite.wish.periods[0]:g} to {suite.wish.periods[1]:g} s, "
@@ -140,15 +150,21 @@ def write(suite: Suite, folder: Path, target: Path, out: Path, place: Place, *, 
         _site(suite, place),
         level,
         records,
-        folder,
+        files,
         why=why,
         beside={SELECTION: table(suite)},
         dry_run=dry_run,
     )
 
 
+def _below(suite: Suite) -> dict[Path, str]:
+    """Of each folder that a suite was chosen from, where its files go; nothing for a single folder."""
+    folders = list(dict.fromkeys(one.candidate.folder for one in suite.motions))
+    return {f: f"{n}-{f.resolve().name}" for n, f in enumerate(folders, start=1)} if len(folders) > 1 else {}
+
+
 def _site(suite: Suite, place: Place) -> SiteTable:
-    known = suite.folder.site
+    known = suite.found.site
     north, east = suite.target.place or ((known.latitude, known.longitude) if known else (None, None))
     latitude = north if place.latitude is None else place.latitude
     longitude = east if place.longitude is None else place.longitude
@@ -214,5 +230,5 @@ def described(suite: Suite) -> Mapping[str, Any]:
         "meets_target": not suite.lacking,
         "lacking": list(suite.lacking),
         "motions": rows(suite),
-        "unusable": [{"name": one.name, "reason": one.reason} for one in suite.folder.unusable],
+        "unusable": [{"name": one.name, "reason": one.reason} for one in suite.found.unusable],
     }
