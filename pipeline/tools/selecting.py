@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+from pipeline.motions.candidates import Candidate
 from pipeline.motions.choosing import Suite, Wish, choose_suite
 from pipeline.motions.errors import MotionError
 from pipeline.motions.manifest import LEAST_FOR_MEAN, SiteTable
@@ -136,7 +137,7 @@ def write(suite: Suite, target: Path, out: Path, place: Place, *, dry_run: bool 
     files: dict[str, Path] = {}
     for one in suite.motions:
         record, folder = one.candidate.record, one.candidate.folder
-        placed = record.inside(below[folder]) if below else record
+        placed = _placed(one.candidate, below)
         files |= {name: folder / file for name, file in zip(placed.all_files, record.all_files, strict=True)}
         records.append((placed.model_copy(update={"scale": one.scale}), f"chosen: {one.why}"))
     why = [
@@ -163,6 +164,10 @@ def _below(suite: Suite) -> dict[Path, str]:
     return {f: f"{n}-{f.resolve().name}" for n, f in enumerate(folders, start=1)} if len(folders) > 1 else {}
 
 
+def _placed(candidate: Candidate, below: Mapping[Path, str]) -> Record:
+    return candidate.record.inside(below[candidate.folder]) if below else candidate.record
+
+
 def _site(suite: Suite, place: Place) -> SiteTable:
     known = suite.found.site
     north, east = suite.target.place or ((known.latitude, known.longitude) if known else (None, None))
@@ -185,8 +190,10 @@ def rows(suite: Suite) -> list[dict[str, str | float]]:
     Returns
     -------
     list of dict
-        record, scale, pga_g, pgv_cm_s, misfit_ln, station, files, motion_sha256 (of the unscaled samples) and why.
+        record, scale, pga_g, pgv_cm_s, misfit_ln, station, files (as the new site names them), motion_sha256 (of the
+        unscaled samples) and why.
     """
+    below = _below(suite)
     return [
         {
             "record": one.candidate.record.name,
@@ -195,7 +202,7 @@ def rows(suite: Suite) -> list[dict[str, str | float]]:
             "pgv_cm_s": round(100.0 * one.pgv, 2),
             "misfit_ln": round(one.misfit, 4),
             "station": one.candidate.station or "",
-            "files": " ".join(one.candidate.record.all_files),
+            "files": " ".join(_placed(one.candidate, below).all_files),
             "motion_sha256": one.candidate.motion.hash,
             "why": one.why,
         }
