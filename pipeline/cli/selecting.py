@@ -9,6 +9,7 @@ import numpy as np
 
 from pipeline.cli.console import aligned
 from pipeline.cli.options import as_json, dry_run, say_dry
+from pipeline.quantities import G, counted
 
 if TYPE_CHECKING:
     from pipeline.motions.choosing import Suite
@@ -120,8 +121,6 @@ def _write(suite: "Suite", target: Path, out: Path, place: "Place", *, dry: bool
 
 
 def _lines(suite: "Suite", combined: str) -> list[str]:
-    from pipeline.quantities import G
-
     target, wish = suite.target, suite.wish
     lines = [
         f"target: {target.name}",
@@ -164,6 +163,6 @@ def _lines(suite: "Suite", combined: str) -> list[str]:
         told += f", at most {spread_off[at]:+.2f} off the target's, at {suite.periods[at]:.2g} s"
     lines += [
         told,
-        f"together: the {'mean' if combined == 'mean' else 'worst'} of {len(suite.motions)} motions decides",
+        f"together: the {'mean' if combined == 'mean' else 'worst'} of {counted(len(suite.motions), 'motion')} decides",
     ]
     return lines + [f"lacking: {one}" for one in suite.lacking]

@@ -31,7 +31,7 @@ USABLE = 1.25
 _SAME_EVENT = 600.0
 """s, how far apart records of one earthquake may have started."""
 
-_UNSCALED: dict[str, Any] = {"scale": None, "scale_to_pga_g": None, "scale_to_target": None, "v_max_cm_s": None}
+_UNSCALED: dict[str, Any] = {"scale": None, "scale_to_pga_g": None, "scale_to_target": None}
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,10 +180,13 @@ def _read(folder: Path, place: str, record: Record, azimuth: float, longest: flo
     if record.vertical == "absent":
         wrong = "has no vertical component, and three are asked for"
         raise refusal(folder, where, wrong, "give the vertical's file")
-    if record.v_max_cm_s is not None:
-        wrong = "its v_max_cm_s belongs to the scale that it has"
-        raise refusal(folder, f"{where}, v_max_cm_s", wrong, "leave it out: the PGV takes its place")
-    unscaled = record.model_copy(update=_UNSCALED)
+    v_max = record.v_max_cm_s
+    if v_max is not None:
+        if record.scale_to_pga_g is not None or record.scale_to_target:
+            wrong = "belongs to a scale that is not a number"
+            raise refusal(folder, f"{where}, v_max_cm_s", wrong, "leave it out: the PGV takes its place")
+        v_max /= record.scale or 1.0
+    unscaled = record.model_copy(update=_UNSCALED | {"v_max_cm_s": v_max})
     done = prepare(folder / MANIFEST, place, unscaled, None, azimuth)
     corner = done.corners[0]
     if corner is not None and USABLE * corner * longest > 1.0:

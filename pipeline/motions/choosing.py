@@ -15,7 +15,7 @@ from pipeline.motions.errors import refusal
 from pipeline.motions.selection import Aim, Chosen, choose, correlation
 from pipeline.motions.spectra import psa
 from pipeline.motions.targets import TargetSpectrum
-from pipeline.quantities import Array, G
+from pipeline.quantities import Array, G, counted
 
 PERIODS = (0.1, 2.0)
 """s, compared unless the caller says otherwise: the furniture and what bends, up to what slides and rocks."""
@@ -229,7 +229,7 @@ def _lacking(suite: Suite, logs: Array, aim: Aim) -> list[str]:
     if number < wish.count:
         limit = np.log(wish.largest_scale)
         weak = int((np.abs((aim.mean - logs).mean(axis=1)) > limit).sum())
-        told = f"{number} motions can be chosen, and {wish.count} are asked for"
+        told = f"{counted(number, 'motion')} can be chosen, and {wish.count} are asked for"
         if weak:
             told += f"; {weak} more would be scaled beyond {wish.largest_scale:g}: stronger records, or --max-scale"
         found.append(f"{told}; one recording counts once")

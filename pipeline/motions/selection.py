@@ -87,7 +87,7 @@ def correlation(periods: Array, conditioned_at: float | None = None) -> Array:
         return rho
     with_it = _baker_jayaram(periods, np.array(conditioned_at))
     left = np.sqrt(np.maximum(0.0, 1.0 - with_it**2))
-    known = left > 1e-9
+    known = left > 1e-6
     scale = np.where(known, left, 1.0)
     given = (rho - np.outer(with_it, with_it)) / np.outer(scale, scale)
     given *= np.outer(known, known)

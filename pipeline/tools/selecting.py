@@ -139,7 +139,9 @@ def write(suite: Suite, target: Path, out: Path, place: Place, *, dry_run: bool 
         record, folder = one.candidate.record, one.candidate.folder
         placed = _placed(one.candidate, below)
         files |= {name: folder / file for name, file in zip(placed.all_files, record.all_files, strict=True)}
-        records.append((placed.model_copy(update={"scale": one.scale}), f"chosen: {one.why}"))
+        v_max = None if placed.v_max_cm_s is None else one.scale * placed.v_max_cm_s
+        scaled = placed.model_copy(update={"scale": one.scale, "v_max_cm_s": v_max})
+        records.append((scaled, f"chosen: {one.why}"))
     why = [
         f"Chosen by: kouros motions select, for {spectrum.name}",
         f"{len(suite.motions)} motions, periods {suite.wish.periods[0]:g} to {suite.wish.periods[1]:g} s, "
