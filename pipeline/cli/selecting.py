@@ -13,7 +13,7 @@ from pipeline.quantities import G, counted
 
 if TYPE_CHECKING:
     from pipeline.motions.choosing import Suite
-    from pipeline.tools.selecting import Place
+    from pipeline.tools.selecting import SitePlace
 
 _FOLDER = click.Path(file_okay=False, path_type=Path)
 
@@ -87,11 +87,11 @@ def select(
 
     Example: kouros motions select records --target asce7-22.json --out site_motions/design
     """
-    from pipeline.motions.choosing import Wish
+    from pipeline.motions.choosing import SuiteWish
     from pipeline.tools import selecting as job
 
-    wish = Wish(_range(periods), count, max_scale, per_event, per_station, seed)
-    place = job.Place(name, level, latitude, longitude, return_period, combine)
+    wish = SuiteWish(_range(periods), count, max_scale, per_event, per_station, seed)
+    place = job.SitePlace(name, level, latitude, longitude, return_period, combine)
     suite = job.select(folders, target, wish, choice=spectrum, component=component)
     if as_json:
         click.echo(json.dumps(job.described(suite), indent=2, allow_nan=False))
@@ -113,7 +113,7 @@ def _range(text: str) -> tuple[float, float]:
     return low, high
 
 
-def _write(suite: "Suite", target: Path, out: Path, place: "Place", *, dry: bool, quiet: bool) -> None:
+def _write(suite: "Suite", target: Path, out: Path, place: "SitePlace", *, dry: bool, quiet: bool) -> None:
     from pipeline.tools.selecting import write
 
     file = write(suite, target, out, place, dry_run=dry)

@@ -35,7 +35,7 @@ _UNSCALED: dict[str, Any] = {"scale": None, "scale_to_pga_g": None, "scale_to_ta
 
 
 @dataclass(frozen=True, eq=False)
-class Candidate:
+class CandidateRecord:
     """A record of three components that was read and processed, as recorded.
 
     Attributes
@@ -87,12 +87,12 @@ class Unusable:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class FoundRecords:
     """What folders hold.
 
     Attributes
     ----------
-    candidates : tuple of Candidate
+    candidates : tuple of CandidateRecord
         In the order of their files, or of the manifest.
     unusable : tuple of Unusable
         What else there is, but for words and responses.
@@ -100,7 +100,7 @@ class Found:
         The site of the first manifest, where there is one.
     """
 
-    candidates: tuple[Candidate, ...]
+    candidates: tuple[CandidateRecord, ...]
     unusable: tuple[Unusable, ...]
     site: SiteTable | None
 
@@ -114,7 +114,7 @@ class _Read:
     start: float | None
 
 
-def read_candidates(folders: Sequence[Path], longest_period: float, leave: Sequence[Path] = ()) -> Found:
+def read_candidates(folders: Sequence[Path], longest_period: float, leave: Sequence[Path] = ()) -> FoundRecords:
     """Read every record of folders that a suite may be chosen from; what cannot be used never stops the rest.
 
     A folder with a manifest has the records that it names, as it says; their scales are left out.  In any other one,
@@ -132,7 +132,7 @@ def read_candidates(folders: Sequence[Path], longest_period: float, leave: Seque
 
     Returns
     -------
-    Found
+    FoundRecords
 
     Raises
     ------
@@ -166,13 +166,13 @@ def read_candidates(folders: Sequence[Path], longest_period: float, leave: Seque
         raise refusal(folders[0], "site.x_azimuth", "the folders' axes differ", "give sites of one x_azimuth")
     events = _events([one.start for one in read])
     candidates = (_candidate(one, event) for one, event in zip(read, events, strict=True))
-    return Found(tuple(candidates), tuple(unusable), sites[0] if sites else None)
+    return FoundRecords(tuple(candidates), tuple(unusable), sites[0] if sites else None)
 
 
-def _candidate(one: _Read, event: int | None) -> Candidate:
+def _candidate(one: _Read, event: int | None) -> CandidateRecord:
     found, velocity = measures(one.done.motion), one.done.velocity
     pgv = found["pgv"] if velocity is None else float(np.abs(velocity[:2]).max())
-    return Candidate(one.folder, one.record, one.done.motion, found["pga"], pgv, one.station, event)
+    return CandidateRecord(one.folder, one.record, one.done.motion, found["pga"], pgv, one.station, event)
 
 
 def _read(folder: Path, place: str, record: Record, azimuth: float, longest: float) -> _Read:

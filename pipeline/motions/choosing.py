@@ -10,9 +10,9 @@ import numpy as np
 
 from pipeline.errors import InputError
 from pipeline.motions.blas import one_thread
-from pipeline.motions.candidates import Candidate, Found, read_candidates
+from pipeline.motions.candidates import CandidateRecord, FoundRecords, read_candidates
 from pipeline.motions.errors import refusal
-from pipeline.motions.selection import Aim, Chosen, choose, correlation
+from pipeline.motions.selection import Aim, ChosenRows, choose, correlation
 from pipeline.motions.spectra import psa
 from pipeline.motions.targets import TargetSpectrum
 from pipeline.quantities import Array, G, counted
@@ -33,7 +33,7 @@ _POINTS = 40
 
 
 @dataclass(frozen=True, slots=True)
-class Wish:
+class SuiteWish:
     """What a suite shall be.
 
     Attributes
@@ -75,7 +75,7 @@ class SuiteMotion:
 
     Attributes
     ----------
-    candidate : Candidate
+    candidate : CandidateRecord
         The record, as recorded.
     scale : float
         The one factor of its three components.
@@ -85,7 +85,7 @@ class SuiteMotion:
         What speaks for it.
     """
 
-    candidate: Candidate
+    candidate: CandidateRecord
     scale: float
     misfit: float
     why: str
@@ -107,11 +107,11 @@ class Suite:
 
     Attributes
     ----------
-    found : Found
+    found : FoundRecords
         What it was chosen from.
     target : TargetSpectrum
         What it was chosen for.
-    wish : Wish
+    wish : SuiteWish
         What was asked for.
     motions : tuple of SuiteMotion
         The suite.
@@ -123,9 +123,9 @@ class Suite:
         In words, why it does not meet what was asked for; none where it does.
     """
 
-    found: Found
+    found: FoundRecords
     target: TargetSpectrum
-    wish: Wish
+    wish: SuiteWish
     motions: tuple[SuiteMotion, ...]
     periods: Array
     spectra_g: Array
@@ -156,7 +156,7 @@ class Suite:
 
 
 def choose_suite(
-    folders: Sequence[Path], target: TargetSpectrum, wish: Wish | None = None, leave: Sequence[Path] = ()
+    folders: Sequence[Path], target: TargetSpectrum, wish: SuiteWish | None = None, leave: Sequence[Path] = ()
 ) -> Suite:
     """Choose and scale records of folders for a target spectrum.
 
@@ -166,7 +166,7 @@ def choose_suite(
         Each with record files, or a site.
     target : TargetSpectrum
         What the suite is for.
-    wish : Wish or None
+    wish : SuiteWish or None
         What it shall be; None: the defaults.
     leave : sequence of Path
         Files in the folders that are no records.
@@ -183,7 +183,7 @@ def choose_suite(
     InputError
         For periods outside of the target.
     """
-    wish = wish or Wish()
+    wish = wish or SuiteWish()
     periods = np.geomspace(*wish.periods, _POINTS)
     at = target.conditioned_at
     fixed: int | None = None
@@ -210,7 +210,9 @@ def choose_suite(
     return Suite(found, target, wish, motions, periods, suite.spectra_g, tuple(_lacking(suite, logs, aim)))
 
 
-def _motion(candidates: Sequence[Candidate], logs: Array, aim: Aim, chosen: Chosen, place: int) -> SuiteMotion:
+def _motion(
+    candidates: Sequence[CandidateRecord], logs: Array, aim: Aim, chosen: ChosenRows, place: int
+) -> SuiteMotion:
     row, rival = chosen.rows[place], chosen.rivals[place]
     # Digits that a person reads in the manifest; what they leave out is far below what a spectrum is known to.
     scale = float(f"{chosen.factors[place]:.4g}")

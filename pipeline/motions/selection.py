@@ -40,7 +40,7 @@ class Aim:
 
 
 @dataclass(frozen=True, eq=False)
-class Chosen:
+class ChosenRows:
     """A choice of motions.
 
     Attributes
@@ -115,7 +115,7 @@ def choose(
     largest_scale: float,
     groups: Sequence[tuple[Sequence[object], int]] = (),
     seed: int = 0,
-) -> Chosen:
+) -> ChosenRows:
     """Choose and scale motions whose spectra have together the mean and the spread that are wanted.
 
     Spectra are drawn from the target's distribution, the set of draws that shows it best is taken, and to each draw the
@@ -139,7 +139,7 @@ def choose(
 
     Returns
     -------
-    Chosen
+    ChosenRows
         Of fewer motions where the scale or the groups leave no more.
 
     References
@@ -149,7 +149,7 @@ def choose(
     Baker, J. W. and Lee, C. (2018), An improved algorithm for selecting ground motions to match a conditional spectrum,
     Journal of Earthquake Engineering 22(4).
     """
-    search = _Search(spectra, aim, np.log(largest_scale), [_Group(labels, most) for labels, most in groups])
+    search = _SuiteSearch(spectra, aim, np.log(largest_scale), [_LabelLimit(labels, most) for labels, most in groups])
     numbers = np.random.default_rng(seed)
     ends = []
     for start in range(_STARTS):
@@ -161,7 +161,7 @@ def choose(
 
 
 def misfit(logs: Array, aim: Aim) -> float:
-    """Return how far scaled spectra are from what is wanted, see `Chosen.misfit`.
+    """Return how far scaled spectra are from what is wanted, see `ChosenRows.misfit`.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def _drawn(aim: Aim, count: int, numbers: np.random.Generator) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class _Group:
+class _LabelLimit:
     labels: Sequence[object]
     most: int
 
@@ -203,13 +203,13 @@ class _Group:
 
 
 @dataclass(frozen=True, eq=False)
-class _Search:
+class _SuiteSearch:
     spectra: Array
     aim: Aim
     bound: float
-    groups: Sequence[_Group]
+    groups: Sequence[_LabelLimit]
 
-    def run(self, wanted: Array, order: Array | None) -> Chosen:
+    def run(self, wanted: Array, order: Array | None) -> ChosenRows:
         """The choice that exchanges end in, from the closest motion to each draw, or from the first by an order."""
         rows: list[int] = []
         kept: list[int] = []
@@ -272,7 +272,7 @@ class _Search:
         missing = draw - line if self.aim.fixed is None else (self.aim.mean - line)[[self.aim.fixed]]
         return np.asarray(line + missing.mean(), dtype=np.float64)
 
-    def _told(self, rows: Sequence[int], wanted: Array) -> Chosen:
+    def _told(self, rows: Sequence[int], wanted: Array) -> ChosenRows:
         rivals: list[tuple[int, float] | None] = []
         for place, row in enumerate(rows):
             costs = self._costs(rows, wanted, place)
@@ -282,7 +282,7 @@ class _Search:
         logs = np.array([self._one(row, wanted[at]) for at, row in enumerate(rows)])
         factors = [float(np.exp((line - self.spectra[row])[0])) for line, row in zip(logs, rows, strict=True)]
         order = sorted(range(len(rows)), key=rows.__getitem__)
-        return Chosen(
+        return ChosenRows(
             rows=tuple(rows[i] for i in order),
             factors=tuple(factors[i] for i in order),
             misfit=misfit(logs, self.aim) if rows else float("inf"),

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from pipeline.motions.candidates import Candidate
-from pipeline.motions.choosing import Suite, Wish, choose_suite
+from pipeline.motions.candidates import CandidateRecord
+from pipeline.motions.choosing import Suite, SuiteWish, choose_suite
 from pipeline.motions.errors import MotionError
 from pipeline.motions.manifest import LEAST_FOR_MEAN, SiteTable
 from pipeline.motions.record import Record
@@ -23,7 +23,7 @@ SELECTION = "selection.csv"
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class SitePlace:
     """What the new site is called and where it is; what is None follows from the target or the folder.
 
     Attributes
@@ -51,7 +51,7 @@ class Place:
 def select(
     folders: Sequence[Path],
     target: Path,
-    wish: Wish,
+    wish: SuiteWish,
     *,
     choice: Choice = "design",
     component: Horizontal | None = None,
@@ -64,7 +64,7 @@ def select(
         The records.
     target : Path
         The file of the target.
-    wish : Wish
+    wish : SuiteWish
         What the suite shall be.
     choice : {"design", "mcer"}
         Which spectrum of a design service's answer.
@@ -87,12 +87,12 @@ def refused(suite: Suite, folders: Sequence[Path]) -> MotionError:
     )
 
 
-def combined(suite: Suite, place: Place) -> str:
+def combined(suite: Suite, place: SitePlace) -> str:
     """Return how the motions of a suite decide together: "max" or "mean"."""
     return place.combine or ("mean" if len(suite.motions) >= LEAST_FOR_MEAN else "max")
 
 
-def write(suite: Suite, target: Path, out: Path, place: Place, *, dry_run: bool = False) -> Path:
+def write(suite: Suite, target: Path, out: Path, place: SitePlace, *, dry_run: bool = False) -> Path:
     """Write a suite as a site: its records' files, a manifest with the scales, and the choice as a table.
 
     Parameters
@@ -103,7 +103,7 @@ def write(suite: Suite, target: Path, out: Path, place: Place, *, dry_run: bool 
         The file of the target that it was chosen for.
     out : Path
         The folder of the new site.
-    place : Place
+    place : SitePlace
         What it is called and where it is.
     dry_run : bool
         Write nothing.
@@ -166,11 +166,11 @@ def _below(suite: Suite) -> dict[Path, str]:
     return {f: f"{n}-{f.resolve().name}" for n, f in enumerate(folders, start=1)} if len(folders) > 1 else {}
 
 
-def _placed(candidate: Candidate, below: Mapping[Path, str]) -> Record:
+def _placed(candidate: CandidateRecord, below: Mapping[Path, str]) -> Record:
     return candidate.record.inside(below[candidate.folder]) if below else candidate.record
 
 
-def _site(suite: Suite, place: Place) -> SiteTable:
+def _site(suite: Suite, place: SitePlace) -> SiteTable:
     known = suite.found.site
     north, east = suite.target.place or ((known.latitude, known.longitude) if known else (None, None))
     latitude = north if place.latitude is None else place.latitude

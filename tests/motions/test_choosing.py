@@ -11,7 +11,7 @@ import pytest
 
 from pipeline.motions import load_manifest, read_motion, read_site
 from pipeline.motions.candidates import read_candidates
-from pipeline.motions.choosing import ACCEPTED, Wish, choose_suite
+from pipeline.motions.choosing import ACCEPTED, SuiteWish, choose_suite
 from pipeline.motions.errors import MotionError
 from pipeline.motions.matching import spectrum_compatible_record
 from pipeline.motions.spectra import psa
@@ -20,7 +20,7 @@ from pipeline.motions.writing import write_site
 from pipeline.quantities import G
 from pipeline.records import Motion
 from pipeline.resources import resource
-from pipeline.tools.selecting import Place, select, write
+from pipeline.tools.selecting import SitePlace, select, write
 from pipeline.tools.synthetic import synthesise_from
 from tests.motions.conftest import tone
 
@@ -92,7 +92,7 @@ def test_the_suite_has_the_mean_and_its_spectra_are_those_of_every_direction(tmp
     level = [np.exp(np.log(psa(m, periods, 0.05, "rotd50")).mean()) for m in meant]
     # The mean of three of them, scaled alike: a suite that is known to meet it.
     scaled = [m.scaled(level[0] / own, "a test") for m, own in zip(meant, level, strict=True)]
-    wish = Wish(periods=(0.1, 1.0), count=3)
+    wish = SuiteWish(periods=(0.1, 1.0), count=3)
     suite = choose_suite([folder], read_target(target(tmp_path, scaled)), wish)
     assert sorted(one.candidate.record.name for one in suite.motions) == sorted(names)
     assert suite.lacking == ()
@@ -116,7 +116,7 @@ def test_the_suite_has_the_mean_and_its_spectra_are_those_of_every_direction(tmp
 
 def test_one_recording_counts_once_and_what_is_lacking_is_said(tmp_path: Path) -> None:
     folder = unpacked(tmp_path / "pool", REDWOOD, REDWOOD_RAW, WAIPAWA, COALINGA)
-    suite = choose_suite([folder], read_target(target(tmp_path)), Wish(count=3))
+    suite = choose_suite([folder], read_target(target(tmp_path)), SuiteWish(count=3))
     # Two versions of one recording, and one of 0.02 g that no allowed scale brings to 0.3 g.
     assert len(suite.motions) == 2
     assert len({one.candidate.recording for one in suite.motions}) == 2
@@ -136,14 +136,14 @@ def test_the_site_that_is_written_shakes_as_was_said(tmp_path: Path) -> None:
     folder = unpacked(tmp_path / "pool", SHAFTER, MELOLAND, COALINGA)
     demo = resource("site_motions", "demo")
     file = target(tmp_path)
-    suite = select([folder, demo], file, Wish(count=4, largest_scale=8.0))
+    suite = select([folder, demo], file, SuiteWish(count=4, largest_scale=8.0))
     # A site's own scale is left out: what the demonstration scales to 0.7 g is chosen from as recorded.
     clc = next(one for one in suite.motions if "CLC" in one.candidate.record.name)
     assert clc.pga == pytest.approx(clc.scale * 0.53 * G, rel=0.01)
     out = tmp_path / "site"
-    would = write(suite, file, out, Place(name="Two folders", level="475 years"), dry_run=True)
+    would = write(suite, file, out, SitePlace(name="Two folders", level="475 years"), dry_run=True)
     assert not out.exists()
-    assert write(suite, file, out, Place(name="Two folders", level="475 years")) == would
+    assert write(suite, file, out, SitePlace(name="Two folders", level="475 years")) == would
     site = read_site(out)
     (level,) = site.levels
     assert (site.name, level.name, level.combine) == ("Two folders", "475 years", "max")
@@ -158,7 +158,7 @@ def test_the_site_that_is_written_shakes_as_was_said(tmp_path: Path) -> None:
     assert text.count("# chosen: ") == 4
     assert (out / "selection.csv").read_text(encoding="utf-8").count("\n") == 5
     with pytest.raises(MotionError, match="nothing is overwritten"):
-        write(suite, file, out, Place(name="Two folders"))
+        write(suite, file, out, SitePlace(name="Two folders"))
 
 
 def test_compact_files_hold_whole_mm_per_s2_and_do_not_drift(tmp_path: Path) -> None:
