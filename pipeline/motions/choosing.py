@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -207,7 +207,7 @@ def choose_suite(
     motions = tuple(_motion(found.candidates, logs, aim, chosen, place) for place in range(len(chosen.rows)))
     scaled = np.array([logs[row] + np.log(one.scale) for row, one in zip(chosen.rows, motions, strict=True)])
     suite = Suite(found, target, wish, motions, periods, np.exp(scaled.reshape(len(motions), -1)), ())
-    return Suite(found, target, wish, motions, periods, suite.spectra_g, tuple(_lacking(suite, logs, aim)))
+    return replace(suite, lacking=tuple(_lacking(suite, logs, aim)))
 
 
 def _motion(
@@ -246,8 +246,8 @@ def _lacking(suite: Suite, logs: Array, aim: Aim) -> list[str]:
             at = suite.periods[outside]
             worst = float(np.abs(ratio - 1.0)[outside].max())
             found.append(
-                f"the mean is up to {worst:.0%} {word} the target between {at[0]:.2g} and {at[-1]:.2g} s: records with "
-                f"{remedy} shaking at these periods beside the others"
+                f"the mean is up to {worst:.0%} {word} the target at periods from {at[0]:.2g} to {at[-1]:.2g} s: records "
+                f"with {remedy} shaking there beside the others"
             )
     off = suite.spread_off
     if off is not None and (np.abs(off) > np.log(1.0 + ACCEPTED)).any():

@@ -25,6 +25,9 @@ Choice = Literal["design", "mcer"]
 LARGEST = 20.0
 """g, above which a spectral acceleration is in another unit."""
 
+NO_SPREAD = 0.01
+"""Standard deviation of ln sa up to which it is none: programs print 0 with rounding."""
+
 _SERVICE: Mapping[Choice, tuple[str, ...]] = {
     "design": ("multiPeriodDesignSpectrum", "twoPeriodDesignSpectrum", "sdSpectrum"),
     "mcer": ("multiPeriodMCErSpectrum", "twoPeriodMCErSpectrum", "smSpectrum"),
@@ -70,10 +73,10 @@ class TargetSpectrum:
 
     @property
     def conditioned_at(self) -> float | None:
-        """The period [s] that a conditional spectrum is conditioned on: where it has no spread; None without one."""
-        if self.ln_sd is None or not (self.ln_sd == 0.0).any():
+        """The period [s] that a conditional spectrum is conditioned on: where it has next to no spread; else None."""
+        if self.ln_sd is None or self.ln_sd.min() > NO_SPREAD:
             return None
-        return float(self.periods[int(np.argmax(self.ln_sd == 0.0))])
+        return float(self.periods[int(np.argmin(self.ln_sd))])
 
     def at(self, periods: Array) -> tuple[Array, Array | None]:
         """Return ln of the ordinates [g], and their standard deviation, at other periods.
