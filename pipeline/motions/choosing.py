@@ -246,8 +246,8 @@ def _lacking(suite: Suite, logs: Array, aim: Aim) -> list[str]:
             at = suite.periods[outside]
             worst = float(np.abs(ratio - 1.0)[outside].max())
             found.append(
-                f"the mean is up to {worst:.0%} {word} the target at periods from {at[0]:.2g} to {at[-1]:.2g} s: records "
-                f"with {remedy} shaking there beside the others"
+                f"the mean is up to {worst:.0%} {word} the target at periods from {at[0]:.2g} to {at[-1]:.2g} s: "
+                f"records with {remedy} shaking there beside the others"
             )
     off = suite.spread_off
     if off is not None and (np.abs(off) > np.log(1.0 + ACCEPTED)).any():
