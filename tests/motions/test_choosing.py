@@ -161,6 +161,25 @@ def test_the_site_that_is_written_shakes_as_was_said(tmp_path: Path) -> None:
         write(suite, file, out, SitePlace(name="Two folders"))
 
 
+def test_a_velocity_of_the_manifest_goes_with_the_scale(tmp_path: Path) -> None:
+    site = tmp_path / "pool"
+    shutil.copytree(resource("site_motions", "demo"), site)
+    manifest = site / "manifest.toml"
+    text = manifest.read_text(encoding="utf-8")
+    manifest.write_text(text.replace("scale_to_pga_g = 0.7 ", "scale = 2.0\nv_max_cm_s = 90.0 "), encoding="utf-8")
+    file = target(tmp_path)
+    suite = select([site], file, SuiteWish(count=1))
+    write(suite, file, tmp_path / "site", SitePlace())
+    (record,) = load_manifest(tmp_path / "site").level[0].record
+    assert record.scale == suite.motions[0].scale
+    assert record.v_max_cm_s == pytest.approx(45.0 * suite.motions[0].scale, rel=1e-12)
+    manifest.write_text(
+        text.replace("scale_to_pga_g = 0.7 ", "scale_to_pga_g = 0.7\nv_max_cm_s = 90.0 "), encoding="utf-8"
+    )
+    with pytest.raises(MotionError, match="v_max_cm_s: belongs to a scale that is not a number"):
+        select([site], file, SuiteWish(count=1))
+
+
 def test_compact_files_hold_whole_mm_per_s2_and_do_not_drift(tmp_path: Path) -> None:
     numbers = np.random.default_rng(1)
     data = np.vstack([tone(amplitude=3.0), tone(amplitude=2.0, frequency=2.0), 0.01 * numbers.standard_normal(4000)])

@@ -104,6 +104,11 @@ def test_a_conditional_target_is_met_exactly_at_its_period() -> None:
     np.testing.assert_allclose(scaled[:, at], -1.0, atol=1e-12)
     assert np.abs(scaled.mean(axis=0) + 1.0).max() < log(1.1)
     assert np.abs(scaled.std(axis=0, ddof=1) - sd).max() < log(1.1)
+    # The best in the place of the first, by trying each that may be scaled so.
+    others = [row for row in range(100) if row not in found.rows and abs(-1.0 - pool[row, at]) <= log(4.0)]
+    tried = [misfit(np.vstack([scaled[1:], pool[row] - pool[row, at] - 1.0]), aim) for row in others]
+    assert found.rivals[0] is not None
+    assert found.rivals[0] == (others[int(np.argmin(tried))], pytest.approx(min(tried), rel=1e-9))
 
 
 def test_the_limits_hold_and_the_seed_decides() -> None:
