@@ -1,4 +1,4 @@
-"""The seismologist's verbs: kouros motions list, show, process, compare, synthesise."""
+"""The seismologist's verbs: kouros motions list, show, process, compare, synthesise, select."""
 
 import json
 from collections.abc import Sequence
@@ -10,6 +10,7 @@ import click
 
 from pipeline.cli.console import aligned
 from pipeline.cli.options import Options, as_json, dry_run, say_dry
+from pipeline.cli.selecting import select
 
 if TYPE_CHECKING:
     from pipeline.settings import Settings
@@ -237,34 +238,64 @@ def _measure_lines(pair: "Pair") -> list[str]:
 @motions.command(context_settings={"ignore_unknown_options": True})
 @click.argument("kind", default="")
 @click.argument("parameters", nargs=-1, metavar="NAME=VALUE...")
+@click.option(
+    "--from",
+    "records",
+    type=click.Path(file_okay=False, path_type=Path),
+    help="Only spectrum: start from each three-component record of this folder, not from noise; with --target.",
+)
+@click.option("--target", type=click.Path(dir_okay=False, path_type=Path), help="The spectrum, as of motions select.")
+@click.option("--compact", is_flag=True, help="Write what is made of records as small MiniSEED files, to 1 mm/s2.")
 @click.option("--out", type=click.Path(file_okay=False, path_type=Path), help="Folder of the new site.")
 @dry_run("Make the signal, and say what was done")
-def synthesise(kind: str, parameters: tuple[str, ...], out: Path | None, dry_run: bool) -> None:
+def synthesise(
+    kind: str,
+    parameters: tuple[str, ...],
+    records: Path | None,
+    target: Path | None,
+    compact: bool,
+    out: Path | None,
+    dry_run: bool,
+) -> None:
     """Make a test signal for the virtual shake table and write it as a site; SI units.
 
     KIND is sine, swept_sine, random, rectangular, half_sine, ricker, mavroeidis_papageorgiou, or spectrum: an
     accelerogram that matches a response spectrum.  Without parameters it says which there are.  Shake any model by it
     with `kouros respond --site FOLDER`, also through supports.
 
+    With --from, the horizontals of each record are changed until they match; the vertical is scaled.  Each is named
+    spectrum-compatible.
+
     Example: kouros motions synthesise sine amplitude=2 frequency=1.5 cycles=10 --out shake
     """
     from pipeline.operations.workspace import UsageError
-    from pipeline.tools.synthetic import SIGNALS, describe
+    from pipeline.tools.synthetic import SIGNALS, describe, synthesise_from
     from pipeline.tools.synthetic import synthesise as job
 
     if kind and kind not in SIGNALS:
         raise UsageError(f"there is no signal {kind!r}; the signals are {', '.join(SIGNALS)}")
-    if not parameters:
+    if (records is None) != (target is None) or (records is not None and kind != "spectrum"):
+        raise UsageError("--from and --target belong together, and to spectrum")
+    if not parameters and records is None:
         for name in [kind] if kind else SIGNALS:
             click.echo(f"{name:<24}{describe(name)}")
         return
     if out is None:
         raise UsageError("--out FOLDER: say where the new site shall lie")
-    file, motion = job(kind, parameters, out, dry_run=dry_run)
-    for step in motion.steps:
+    if records is not None and target is not None:
+        file, made, left = synthesise_from(records, target, parameters, out, compact=compact, dry_run=dry_run)
+        steps = [f"{motion.name}: {motion.steps[-1]}" for motion in made]
+        steps += [f"not made: {one.name}: {one.reason}" for one in left]
+    else:
+        file, motion = job(kind, parameters, out, dry_run=dry_run)
+        steps = list(motion.steps)
+    for step in steps:
         click.echo(step)
     if dry_run:
         click.echo(f"would write {file}")
         say_dry(wanted_json=False)
         return
     click.echo(f"wrote {file}; try: kouros respond sliding friction_static=0.1,0.2 --site {out}")
+
+
+motions.add_command(select)

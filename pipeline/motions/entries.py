@@ -9,11 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.motions.errors import MotionError
+from pipeline.motions.grouping import channels, grouped
 from pipeline.motions.manifest import load_manifest, manifest_file, unlisted
 from pipeline.motions.reading import open_traces, own_unit
-
-_BY_CODE: dict[str, float | str] = {"E": 90.0, "N": 0.0, "Z": "up"}
-"""How a channel is oriented whose code ends so, by the convention of SEED."""
 
 
 def entries(folder: str | Path) -> list[str]:
@@ -39,19 +37,14 @@ def entries(folder: str | Path) -> list[str]:
     """
     file = manifest_file(folder)
     manifest = load_manifest(file, begun=True)
-    records: dict[str, list[tuple[str, Any]]] = {}
+    found: list[tuple[str, list[Any]]] = []
     others: list[str] = []
     for name in unlisted(file, manifest):
         try:
-            traces = open_traces(file.parent / name, [])
+            found.append((name, open_traces(file.parent / name, [])))
         except MotionError:
             others.append(f"# {json.dumps(name)} = {json.dumps(_digest(file.parent / name))}")
-            continue
-        for trace in traces:
-            # A file of three components is a record; of one, the station and all but the direction tell which.
-            of = name if len(traces) > 1 else trace.id[:-1] or name
-            records.setdefault(of, []).append((name, trace))
-    made = [_entry(file.parent, of, found) for of, found in records.items()]
+    made = [_entry(file.parent, of, traces) for of, traces in grouped(found)]
     if made and not manifest.level:
         made.insert(0, '[[level]]\nname = "design"\ncombine = "max"')
     return (
@@ -92,19 +85,10 @@ def _entry(folder: Path, of: str, found: Sequence[tuple[str, Any]]) -> str:
 
 
 def _components(traces: Sequence[Any]) -> list[str]:
-    free = ["x", "y"]
     lines = []
-    # East before north, as x before y.
-    for trace in sorted(traces, key=lambda one: ("EN".find(one.stats.channel[-1:]) % 3, one.id)):
-        code = trace.stats.channel or trace.id
-        own = trace.stats.get("kouros", {}).get("orientation")
-        meant = own if own is not None else _BY_CODE.get(code[-1:])
-        told = "" if own is not None or meant is None else "  # by its code"
-        if meant in {"up", "down"} or (meant is None and code[-1:].upper() in {"V", "3"}):
-            axis = "z"
-        else:
-            axis = free.pop(0) if free else "?"
-        oriented = f", orientation = {json.dumps(meant)}" if meant is not None else ""
-        told = told or ("" if oriented else '  # add its orientation: degrees from north, or "up"')
-        lines.append(f"{json.dumps(code)} = {{ axis = {json.dumps(axis)}{oriented} }}{told}")
+    for one in channels(traces):
+        oriented = "" if one.orientation is None else f", orientation = {json.dumps(one.orientation)}"
+        told = "" if oriented else '  # add its orientation: degrees from north, or "up"'
+        told = "  # by its code" if one.by_code else told
+        lines.append(f"{json.dumps(one.code)} = {{ axis = {json.dumps(one.axis)}{oriented} }}{told}")
     return lines

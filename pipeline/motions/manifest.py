@@ -22,7 +22,7 @@ MANIFEST = "manifest.toml"
 MOST = 1000
 """Files of a site's folder that are listed at most."""
 
-_WORDS = frozenset({".md", ".toml", ".html", ".pdf", ".jpg", ".png"})
+NO_RECORDS = frozenset({".md", ".toml", ".html", ".pdf", ".jpg", ".png"})
 """Endings of what lies beside records and is none."""
 
 GROUND_FLOOR = "ground"
@@ -332,7 +332,7 @@ def unlisted(file: Path, manifest: Manifest) -> list[str]:
     named = {name for _, record in manifest.records() for name in record.all_files}
     folder = file.parent
     there = (path for path in folder.rglob("*") if path.is_file() and not path.is_symlink() and path != file)
-    names = (path.relative_to(folder).as_posix() for path in there if path.suffix.lower() not in _WORDS)
+    names = (path.relative_to(folder).as_posix() for path in there if path.suffix.lower() not in NO_RECORDS)
     return sorted(n for n in names if n not in named and not any(part.startswith(".") for part in n.split("/")))[:MOST]
 
 

@@ -11,6 +11,7 @@ from pipeline.motions.spectra import response_history, response_spectra
 from pipeline.motions.synthesis import Direction, generator, one_direction, positive
 from pipeline.quantities import Array
 from pipeline.records import Motion
+from pipeline.supports import resampled
 
 BAND = (0.2, 20.0)
 """Frequencies in Hz that are matched unless the caller says otherwise."""
@@ -24,6 +25,13 @@ _ATTEMPTS = 4
 
 # Chosen by trial on plateau, constant and code spectra: larger steps overshoot where another peak takes the lead.
 _SHARE = 0.4
+_RECORDED_SHARE = 0.25
+_RECORDED_CORRECTIONS = 60
+
+# Of the envelope of a record: s over which it is smoothed, and the part of its length at each end that comes to rest.
+_SMOOTHED = 2.0
+_ENDS = 0.05
+
 _SOFTNESS = 0.003
 
 
@@ -95,20 +103,10 @@ def spectrum_compatible(
     numbers = generator(seed)
     best, least = np.zeros(n), np.inf
     for _ in range(_ATTEMPTS):
-        a = _start(n, dt, envelope, band, numbers)
-        for step in range(_SCALINGS + _CORRECTIONS):
-            a = _at_rest(a, envelope, dt)
-            # The dense grid decides; the control frequencies are every second of it.
-            response = _response(a, dt, check, damping)
-            misfit = float(np.abs(response / wanted_there - 1.0).max())
-            if misfit < least:
-                best, least = a, misfit
-            if least <= tolerance:
-                break
-            if step < _SCALINGS:
-                a = _within(_scaled(a, dt, check, wanted_there / response, band), envelope)
-            else:
-                a = a + _correction(a, dt, f, wanted, response[::2], damping, envelope, band)
+        start = _start(n, dt, envelope, band, numbers)
+        a, misfit = _matched(start, dt, envelope, (f, wanted, check, wanted_there), damping, band, tolerance)
+        if misfit < least:
+            best, least = a, misfit
         if least <= ACCEPTED:
             break
     if least > ACCEPTED:
@@ -121,6 +119,127 @@ def spectrum_compatible(
         f"{duration:g} s, seed {seed}"
     )
     return one_direction(best, dt, direction, f"spectrum-compatible, seed {seed}", told)
+
+
+def spectrum_compatible_record(
+    motion: Motion,
+    periods: Sequence[float] | Array,
+    target: Sequence[float] | Array,
+    *,
+    damping: float = 0.05,
+    band: tuple[float, float] = BAND,
+    tolerance: float = 0.07,
+) -> Motion:
+    """Return a recorded motion changed until each horizontal spectrum matches a target.
+
+    As `spectrum_compatible`, from the record's own phases and in the record's own envelope instead of noise in a
+    general one: it shakes when the record did.  The vertical is the record's, scaled by the one factor that brings the
+    record's RotD50 to the target over the band.  What comes of it is no recorded motion, and its name and its steps say
+    so.
+
+    Parameters
+    ----------
+    motion : Motion
+        A processed record.
+    periods, target : array_like, shape (m,)
+        In s, increasing, and in m/s2, as of `spectrum_compatible`.
+    damping, band, tolerance : float, (float, float), float
+        As of `spectrum_compatible`.
+
+    Returns
+    -------
+    Motion
+        With a relative misfit of at most ACCEPTED at every frequency of the band in x and y.
+
+    Raises
+    ------
+    InputError
+        Naming what is wrong, or when the misfit stays above ACCEPTED.
+    """
+    grid = _grid(periods, target, damping, band)
+    positive(tolerance=tolerance)
+    if motion.duration < 3.0 / band[0]:
+        raise InputError(f"motion {motion.name!r}: {motion.duration:g} s are shorter than three periods of the band")
+    pieces = int(np.ceil(motion.dt * 4.0 * band[1] * (1.0 - 1e-9)))
+    fine = motion if pieces <= 1 else resampled(motion, pieces)
+    check, wanted = grid[2:]
+    found = response_spectra(fine, 1.0 / check, damping, ("rotd50",))["rotd50"].pseudo_acceleration[0]
+    if (found == 0.0).any():
+        raise InputError(f"motion {motion.name!r} has no horizontal shaking to match")
+    factor = float(np.exp(np.mean(np.log(wanted / found))))
+    rows, misfits = [], []
+    for row in fine.acceleration[:2]:
+        if not row.any():
+            raise InputError(f"motion {motion.name!r}: a horizontal component is silent, and nothing can be matched")
+        envelope = _recorded_envelope(row, fine.dt)
+        start = _within(factor * row, envelope)
+        a, misfit = _matched(start, fine.dt, envelope, grid, damping, band, tolerance, recorded=True)
+        rows.append(a)
+        misfits.append(misfit)
+    if max(misfits) > ACCEPTED:
+        raise InputError(
+            f"motion {motion.name!r}: the misfit stays at {max(misfits):.0%}; smooth the target, narrow the band, or "
+            f"take another record"
+        )
+    told = (
+        f"not a recorded motion: both horizontals changed to match a target spectrum at {damping:.0%} damping within "
+        f"{max(misfits):.1%} from {band[0]:g} to {band[1]:g} Hz; the vertical scaled by {factor:.4g}"
+    )
+    data = np.vstack([*rows, factor * fine.acceleration[2]])
+    source = f"made by Kouros from a record, and no recorded motion; the record: {motion.source}"
+    return Motion(fine.dt, data, f"{motion.name}, spectrum-compatible", (*motion.steps, told), source)
+
+
+def _matched(
+    a: Array,
+    dt: float,
+    envelope: Array,
+    grid: tuple[Array, Array, Array, Array],
+    damping: float,
+    band: tuple[float, float],
+    tolerance: float,
+    *,
+    recorded: bool = False,
+) -> tuple[Array, float]:
+    """A signal changed until it matches as well as it will, and its largest relative misfit.
+
+    Of a recorded one nothing is left far below the band: its long weak end would carry a little velocity far.  Its own
+    envelope leaves less room than a general one, and takes more and smaller steps.
+    """
+    f, wanted, check, wanted_there = grid
+    best, least = a, np.inf
+    share, corrections = (_RECORDED_SHARE, _RECORDED_CORRECTIONS) if recorded else (_SHARE, _CORRECTIONS)
+    for step in range(_SCALINGS + corrections):
+        a = _at_rest(_steady(a, dt, band) if recorded else a, envelope, dt)
+        # The dense grid decides; the control frequencies are every second of it.
+        response = _response(a, dt, check, damping)
+        misfit = float(np.abs(response / wanted_there - 1.0).max())
+        if misfit < least:
+            best, least = a, misfit
+        if least <= tolerance:
+            break
+        if step < _SCALINGS:
+            a = _within(_scaled(a, dt, check, wanted_there / response, band), envelope)
+        else:
+            a = a + _correction(a, dt, f, wanted, response[::2], damping, envelope, band, share)
+    return best, least
+
+
+def _steady(a: Array, dt: float, band: tuple[float, float]) -> Array:
+    """The signal without what is below a quarter of the band's lowest frequency; all of it from half of that on."""
+    frequency = np.asarray(np.fft.rfftfreq(a.size, dt), dtype=np.float64)
+    kept = np.clip(4.0 * frequency / band[0] - 1.0, 0.0, 1.0)
+    return np.asarray(np.fft.irfft(np.fft.rfft(a) * kept, a.size), dtype=np.float64)
+
+
+def _recorded_envelope(a: Array, dt: float) -> Array:
+    """How strongly a record shakes over time: its running root mean square, at most 1, and at rest at both ends."""
+    width = max(1, round(_SMOOTHED / dt))
+    window = np.hanning(width + 2)[1:-1]
+    strength = np.sqrt(np.convolve(a * a, window / window.sum(), mode="same"))
+    s = np.linspace(0.0, 1.0, a.size)
+    ends = 0.5 - 0.5 * np.cos(np.pi * np.minimum(1.0, np.minimum(s, 1.0 - s) / _ENDS))
+    return np.asarray(ends * strength / strength.max(), dtype=np.float64)
 
 
 def _grid(
@@ -209,6 +328,7 @@ def _correction(
     damping: float,
     envelope: Array,
     band: tuple[float, float],
+    share: float,
 ) -> Array:
     """The least weighted change that moves the peak of each oscillator a good part of the way to its target."""
     motion = one_direction(a, dt, "x", "", "")
@@ -222,7 +342,7 @@ def _correction(
         rows[i, : at + 1] = -np.sign(u[at]) * w * w * dt * np.exp(-damping * w * ago) * np.sin(wd * ago) / wd
     # The weight is the envelope in time and the taper in frequency: without the latter the ground would drift.
     shaped = _shaped(rows * (envelope / wanted[:, None]), dt, band)
-    missing = _SHARE * (1.0 - response / wanted)
+    missing = share * (1.0 - response / wanted)
     # A little damping of the least squares: neighbours whose peaks coincide cannot be moved apart.
     gram = shaped @ shaped.T
     gram[np.diag_indices_from(gram)] += _SOFTNESS * np.trace(gram) / f.size

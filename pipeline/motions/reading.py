@@ -16,6 +16,7 @@ import numpy as np
 from pipeline.motions.errors import Judgement, MotionError, judged, refusal
 from pipeline.motions.quality import clipped
 from pipeline.motions.record import NO_VERTICAL, Component, Record
+from pipeline.motions.responses import load_obspy, read_inventory
 from pipeline.quantities import Array, G
 
 logger = logging.getLogger(__name__)
@@ -111,7 +112,7 @@ def read_record(folder: str | Path, record: Record) -> Recording:
     folder = Path(folder)
     steps: list[str] = []
     traces = [(folder / name, trace) for name in record.files for trace in open_traces(folder / name, steps)]
-    inventory = None if record.response is None else _inventory(folder / record.response, steps)
+    inventory = None if record.response is None else read_inventory(folder / record.response, steps)
     rows: dict[str, tuple[Path, Any, str]] = {}
     azimuths: dict[str, float] = {}
     velocities: dict[str, Array] = {}
@@ -152,15 +153,6 @@ def read_record(folder: str | Path, record: Record) -> Recording:
     return Recording(dt, data, (azimuths["x"], azimuths["y"]), channels, tuple(steps), processed, velocity)
 
 
-def _obspy() -> Any:
-    with warnings.catch_warnings():
-        # How obspy looks up its plugins is deprecated on some versions of Python; that is no news about a record.
-        warnings.simplefilter("ignore")
-        import obspy
-        import obspy.io.mseed
-    return obspy
-
-
 def open_traces(file: Path, steps: list[str]) -> list[Any]:
     """Return the traces of a file of any format that is read, and write down what was read.
 
@@ -180,7 +172,7 @@ def open_traces(file: Path, steps: list[str]) -> list[Any]:
     MotionError
         Naming the file, where it is damaged, incomplete, too large, or of an unknown format.
     """
-    obspy = _obspy()
+    obspy = load_obspy()
 
     size = file.stat().st_size
     if size > LARGEST:
@@ -239,21 +231,6 @@ def _check_complete(file: Path, stream: Any) -> None:
         if found != declared:
             wrong = f"is cut off: it announces {declared} samples and holds {found}"
             raise refusal(file, "file", wrong, "fetch it again")
-
-
-def _inventory(file: Path, steps: list[str]) -> Any:
-    obspy = _obspy()
-    try:
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            inventory = obspy.read_inventory(glob.escape(str(file)), format="STATIONXML")
-    except Exception as error:  # on a broken file obspy's readers raise anything
-        wrong = f"is no StationXML ({type(error).__name__}: {str(error)[:200]})"
-        raise refusal(file, "response", wrong, "fetch it again with level=response") from error
-    steps += [
-        f"{file.name}: the reader warned: {w.message!s:.200}" for w in caught if issubclass(w.category, UserWarning)
-    ]
-    return inventory
 
 
 def _component(

@@ -178,6 +178,18 @@ class Record(Table):
         """Every file that the record is made of, the response included."""
         return self.files if self.response is None else (*self.files, self.response)
 
+    def inside(self, folder: str) -> Record:
+        """Return the record with its files in a folder below."""
+        files = set(self.all_files)
+        return self.model_copy(
+            update={
+                "files": tuple(f"{folder}/{name}" for name in self.files),
+                "response": self.response and f"{folder}/{self.response}",
+                "components": {f"{folder}/{key}" if key in files else key: one for key, one in self.components.items()},
+                "sha256": {f"{folder}/{name}": digest for name, digest in self.sha256.items()},
+            }
+        )
+
     @property
     def corner_hz(self) -> float | None:
         """The high-pass corner that the manifest gives as a number, else None."""

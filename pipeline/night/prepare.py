@@ -32,6 +32,7 @@ from pipeline.night.unit_tasks import ChartTask
 from pipeline.operations.presentation import presentation
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Model, Progress, RunRecord, Scene
+from pipeline.report import Units
 from pipeline.report.pages.reading import INVENTORY, READING
 from pipeline.resources import code_version
 from pipeline.store.reuse import CODE, DISPLAY, HOUSE, KERNELS, LEVELS, RULES, TABLES
@@ -78,7 +79,7 @@ def run_context(
     fragile = _asked(settings.analysis.fragility, shown <= FRAGILE)
     surveyed = _asked(settings.report.survey, shown <= SURVEYED)
     info = latest_import(workspace.engine)
-    said = [_level_note(level) for level in site.levels]
+    said = [_level_note(level, Units(settings.report.length)) for level in site.levels]
     said += notes(settings, site, index.objects.galleries)
     if settings.analysis.fragility and not fragile:
         said.append(_left_out("From what shaking each object fails", "[analysis] fragility = true"))
@@ -217,7 +218,7 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
     }
 
 
-def _level_note(level: Level) -> str:
+def _level_note(level: Level, units: Units) -> str:
     period = "" if level.return_period_years is None else f", return period {level.return_period_years:g} years"
     answers = (
         f"approved by {level.approved_by} on {level.approved_on}"
@@ -226,8 +227,18 @@ def _level_note(level: Level) -> str:
     )
     number = len(level.motions)
     how = "1 motion" if number == 1 else f"the {level.combine} of {number} motions"
+    # What topples an object is velocity more than acceleration: both are said.
+    how += "".join(
+        f", {title} {_between([one.measures[key] for one in level.motions], unit, units)}"
+        for key, title, unit in (("pga", "PGA", "m/s2"), ("pgv", "PGV", "m/s"))
+    )
     caution = f"; {level.caution}" if level.caution else ""
     flat = [one.motion.name for one in level.motions if NO_VERTICAL in one.motion.steps]
     if flat:
         caution += f"; no vertical shaking was recorded, and none is assumed: {', '.join(flat)}"
     return f"Level {level.name}{period}: {how}{caution}; {answers}."
+
+
+def _between(values: Sequence[float], unit: str, units: Units) -> str:
+    low, high = units.number(min(values), unit), units.text(max(values), unit)
+    return high if len(values) == 1 else f"{low} to {high}"

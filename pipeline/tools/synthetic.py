@@ -5,10 +5,15 @@ from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
+from pipeline.errors import InputError
 from pipeline.motions import matching, synthesis
+from pipeline.motions.candidates import Unusable, read_candidates
+from pipeline.motions.errors import refusal
 from pipeline.motions.manifest import SiteTable
+from pipeline.motions.targets import read_target
 from pipeline.motions.writing import write_site
 from pipeline.operations.workspace import UsageError
+from pipeline.quantities import G
 from pipeline.records import Motion
 
 SIGNALS: Mapping[str, Callable[..., Motion]] = {
@@ -62,10 +67,78 @@ def synthesise(kind: str, words: Sequence[str], folder: Path, *, dry_run: bool =
     return file, motion
 
 
+def synthesise_from(
+    records: Path,
+    target: Path,
+    words: Sequence[str],
+    folder: Path,
+    *,
+    compact: bool = False,
+    dry_run: bool = False,
+) -> tuple[Path, list[Motion], list[Unusable]]:
+    """Change each record of a folder until it matches a target spectrum, and write them as a site of their own.
+
+    Parameters
+    ----------
+    records : Path
+        A site, or a folder of record files.
+    target : Path
+        As of `targets.read_target`.
+    words : sequence of str
+        "name=value" of damping, band and tolerance.
+    folder : Path
+        Of the new site.
+    compact : bool
+        As of `writing.write_site`.
+    dry_run : bool
+        Write nothing.
+
+    Returns
+    -------
+    Path
+        The manifest.
+    list of Motion
+        What was made.
+    list of Unusable
+        What could not be used, or would not match.
+
+    Raises
+    ------
+    UsageError
+        Naming the parameter.
+    MotionError
+        Where there is a site already, or no record can be used.
+    """
+    make = matching.spectrum_compatible_record
+    given = _arguments("spectrum", make, words, taken=("motion", "periods", "target"))
+    spectrum = read_target(target)
+    # The band is matched whatever a filter has taken of it before.
+    found = read_candidates([records], 0.0, (target,))
+    made: list[Motion] = []
+    left = list(found.unusable)
+    for one in found.candidates:
+        try:
+            made.append(make(one.motion, spectrum.periods, G * spectrum.psa_g, **given))
+        except InputError as problem:
+            left.append(Unusable(one.record.name, str(problem)))
+    if not made:
+        told = "; ".join(f"{one.name}: {one.reason}" for one in left[:3]) or "it holds no files"
+        raise refusal(records, "records", f"none can be matched ({told})", "give records of three components")
+    site = found.site or SiteTable(name="Virtual shake table", latitude=0.0, longitude=0.0)
+    why = f"Made by Kouros from the records of {records.name} for {spectrum.name}; none of them is a recorded motion."
+    motions = [(spectrum.level, motion) for motion in made]
+    file = write_site(folder, motions, site, licence="as the record", why=why, compact=compact, dry_run=dry_run)
+    return file, made, left
+
+
 def describe(kind: str) -> str:
     """Return the parameters of a signal as a person would type them, with those that may be left out in brackets."""
+    return _described(signature(SIGNALS[kind]).parameters)
+
+
+def _described(parameters: Mapping[str, Parameter]) -> str:
     parts = []
-    for name, parameter in signature(SIGNALS[kind]).parameters.items():
+    for name, parameter in parameters.items():
         if parameter.default is Parameter.empty:
             parts.append(f"{name}=")
         else:
@@ -77,20 +150,22 @@ def _shown(value: Any) -> str:
     return ",".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 
-def _arguments(kind: str, make: Callable[..., Motion], words: Sequence[str]) -> dict[str, Any]:
+def _arguments(
+    kind: str, make: Callable[..., Motion], words: Sequence[str], taken: Sequence[str] = ()
+) -> dict[str, Any]:
     hints = get_type_hints(make)
-    known = signature(make).parameters
+    known = {name: one for name, one in signature(make).parameters.items() if name not in taken}
     out: dict[str, Any] = {}
     for word in words:
         name, equals, text = word.partition("=")
         if name not in known or not equals:
-            raise UsageError(f"{word!r}: {kind} takes {describe(kind)}")
+            raise UsageError(f"{word!r}: {kind} takes {_described(known)}")
         if name in out:
             raise UsageError(f"{name} is given twice")
         out[name] = _value(name, text, hints[name])
     missing = [name for name, p in known.items() if p.default is Parameter.empty and name not in out]
     if missing:
-        raise UsageError(f"{kind} needs {', '.join(missing)}; it takes {describe(kind)}")
+        raise UsageError(f"{kind} needs {', '.join(missing)}; it takes {_described(known)}")
     return out
 
 

@@ -134,6 +134,7 @@ DRY: Sequence[tuple[Sequence[str], int, str]] = (
     (["demo", "--folder", "."], 0, "3  objects on display"),
     (["motions", "synthesise", "sine", "amplitude=2", "frequency=2", "cycles=2", "--out", "new"], 0, "manifest.toml"),
     (["motions", "synthesise", "sine", "amplitude=2", "--out", "new"], 2, "sine needs frequency"),
+    (["motions", "select", "shaking", "--target", "absent.csv"], 4, "absent.csv: file: cannot be read"),
     (["motions", "process", "shaking", "--out", "new"], 0, "manifest.toml"),
     (["motions", "process", "shaking", "--out", "shaking"], 4, "nothing is overwritten"),
     (["motions", "process", "shaking", "--record", "absent", "--accept", "w"], 2, "there is no record 'absent'"),
