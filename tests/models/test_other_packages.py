@@ -20,6 +20,7 @@ from pipeline.quantities import G
 from pipeline.records import Item
 from pipeline.resources import resource
 from pipeline.settings import load_settings, template
+from tests.museum import few_samples
 from tests.packages import install
 from tests.warm import kouros_process
 
@@ -166,7 +167,7 @@ def museum(folder: Path, *rows: str) -> None:
     """A museum of its own in a folder, whose objects stand on the floor: closed forms hold of its motion."""
     (folder / "export.csv").write_text("\n".join(["number,gallery,title,height,width", *rows]) + "\n", encoding="utf-8")
     (folder / "mapping.toml").write_text(MAPPING, encoding="utf-8")
-    settings = template(museum="Test", source="export.csv", mapping="mapping.toml", site="demo")
+    settings = few_samples(template(museum="Test", source="export.csv", mapping="mapping.toml", site="demo"))
     stands = '[[house]]\ngallery = "A"\nfurniture = "floor"\nsaid_by = "Ann"\nsaid_on = 2031-05-01\n'
     (folder / "kouros.toml").write_text(f"{settings}\n{stands}", encoding="utf-8")
 

@@ -65,6 +65,13 @@ def _names() -> tuple[str, ...]:
 
 
 @cache
+def _places() -> dict[str, int]:
+    names = _names()
+    at = {name: place for place, name in enumerate(names)}
+    return at | {name: at[cause] for name, cause in ONE_CAUSE.items() if cause in at}
+
+
+@cache
 def _shares(samples: int) -> Array:
     from scipy.stats import qmc
 
@@ -89,7 +96,7 @@ class Draw:
 
     def share(self, name: str) -> float:
         """Return the share of a distribution below which the sample lies: of a role, or of a parameter."""
-        return float(_shares(self.most)[self.number, _names().index(ONE_CAUSE.get(name, name))])
+        return float(_shares(self.most)[self.number, _places()[name]])
 
 
 @dataclass(frozen=True)

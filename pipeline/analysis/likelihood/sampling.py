@@ -12,7 +12,7 @@ degrees of freedom 37 % fell where one plane through the same motion said 25 %).
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from itertools import pairwise
 from math import log2
 
@@ -199,14 +199,11 @@ def _sampled(
     for at, number in enumerate(numbers):
         draw = Draw(number, most)
         reached = np.zeros_like(harmful)
-        floor = drawn_motion(level, draw)
         for (furniture, isolator), those in groups.items():
             some = [one for one in those if wanted[one.of].any()]
             if not some:
                 continue
-            felt, falls = through(floor, furniture, draw)
-            if isolator is not None:
-                felt = transmit(isolator[0], felt, refine=1, **dict(isolator[1]))
+            felt, falls = _felt(level.motions, furniture, isolator, draw)
             for one in some:
                 one.run(felt, draw, wanted, reached)
                 if falls:
@@ -214,6 +211,15 @@ def _sampled(
         total += reached
         harmed[at] = (reached & harmful).any(axis=0)
     return total, harmed
+
+
+@lru_cache(maxsize=2 * FIRST)
+def _felt(
+    motions: tuple[Motion, ...], furniture: FurnitureFilter | None, isolator: Transfer | None, draw: Draw
+) -> tuple[Motion, bool]:
+    # Measures are tried under the first samples again and again.
+    felt, falls = through(drawn_motion(motions, draw), furniture, draw)
+    return felt if isolator is None else transmit(isolator[0], felt, refine=1, **dict(isolator[1])), falls
 
 
 def _uncertain(analyses: Iterable["_Analyses"], count: int) -> dict[str, NDArray[np.bool_]]:

@@ -1,5 +1,6 @@
 """The shaking of a joint sample: a motion of the level, scaled by the scatter of the models, through its furniture."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +23,6 @@ from pipeline.analysis.likelihood.draws import (
 )
 from pipeline.analysis.loose import passed_on
 from pipeline.analysis.model_runs import prepare
-from pipeline.analysis.verdicts import LevelMotions
 from pipeline.models.oscillator import OSCILLATOR
 from pipeline.models.standing import STANDING
 from pipeline.quantities import G
@@ -32,17 +32,17 @@ FARTHEST = 2.0
 """Standard deviations beyond which the scatter of the models is not followed: 1 sample of 22 is put there."""
 
 
-def drawn_motion(level: LevelMotions, draw: Draw) -> Motion:
-    """Return the motion of a level that is drawn, as strong as the scatter of the models makes it.
+def drawn_motion(motions: Sequence[Motion], draw: Draw) -> Motion:
+    """Return the one of the motions of a level that is drawn, as strong as the scatter of the models makes it.
 
     What models leave out (the third dimension of rocking, the give of a floor) makes them err in both directions:
     dispersion.csv says by how much, as a dispersion of the shaking at which they say that something happens.
     """
     from scipy.special import ndtri
 
-    at = min(int(draw.share(MOTION) * len(level.motions)), len(level.motions) - 1)
+    at = min(int(draw.share(MOTION) * len(motions)), len(motions) - 1)
     off = float(np.clip(ndtri(draw.share(SCATTER)), -FARTHEST, FARTHEST))
-    return level.motions[at].scaled(float(np.exp(stated("modelling").value * off)), "scatter of the models")
+    return motions[at].scaled(float(np.exp(stated("modelling").value * off)), "scatter of the models")
 
 
 def direction(draw: Draw) -> float:

@@ -121,8 +121,8 @@ def _sentence(found: Likelihood) -> str:
     """Say what is likeliest to harm it, and how likely any harm is."""
     band = _BANDS[found.band]()
     if not found.harm:
-        return _("That it comes to harm is %(band)s.") % {"band": band}
-    return _("That it comes to harm is %(band)s; it most likely %(harm)s.") % {
+        return _("Harm is %(band)s.") % {"band": band}
+    return _("Harm is %(band)s; it most likely %(harm)s.") % {
         "band": band,
         "harm": _STATES[Harm(found.harm)](),
     }

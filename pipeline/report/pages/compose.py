@@ -258,7 +258,8 @@ def _effort(title: str, effort: Mapping[str, int]) -> EffortView:
 
 def _total(counts: Iterable[StateCounts]) -> StateCounts:
     listed = list(counts)
-    return StateCounts(**{state.value: sum(getattr(c, state.value) for c in listed) for state in State})
+    names = (*(state.value for state in State), "open")
+    return StateCounts(**{name: sum(getattr(c, name) for c in listed) for name in names})
 
 
 def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], describer: Describer, units: Units) -> tuple[TaskView, ...]:
