@@ -11,7 +11,7 @@ from pipeline.cli.console import printable
 from pipeline.cli.options import Options
 
 if TYPE_CHECKING:
-    from pipeline.records import Estimate, Recommendation
+    from pipeline.records import Estimate, Likelihood, Recommendation
     from pipeline.settings import Settings
     from pipeline.tools.explain import Explanation, Reasoning, Taken
 
@@ -63,8 +63,19 @@ def explanation_lines(explained: "Explanation") -> Iterator[str]:
             yield f"    {title}: {why}"
     for reasoning in explained.reasonings:
         yield from _reasoning(reasoning)
+    for found in explained.likelihoods:
+        yield from _likelihood(found)
     for advice in explained.advice:
         yield from _advice(advice)
+
+
+def _likelihood(found: "Likelihood") -> Iterator[str]:
+    yield f"  harm, {found.level}: {found.band.value}"
+    yield f"    probability {found.probability:.3g} ± {found.error:.1g}, of {found.samples} samples"
+    for state, probability in found.states.items():
+        yield f"    {state:<10}{probability:.3g}"
+    if found.open_for:
+        yield f"    open      {found.open_for} alone may change what is decided; it is worth {found.worth:.2g}"
 
 
 def _reasoning(reasoning: "Reasoning") -> Iterator[str]:
@@ -100,6 +111,8 @@ def _advice(advice: "Recommendation") -> Iterator[str]:
         yield f"    {ANCHORED}"
     if advice.sentence.endswith(ONLY_HERE):
         yield f"    {ONLY_HERE}"
+    if advice.remaining is not None:
+        yield f"    harm remains with a probability of {advice.remaining:.2g}"
     for check in advice.checks:
         state = "passes" if check.passes else "fails"
         yield f"    {check.title}: {_number(check.demand)} of {_number(check.capacity)} {check.unit}, {state}"

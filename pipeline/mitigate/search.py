@@ -28,7 +28,7 @@ from pipeline.mitigate.proposals import (
     refused,
 )
 from pipeline.mitigate.trials import (
-    Aim,
+    HarmAim,
     TransmittedMotions,
     Trial,
     TrialRunner,
@@ -71,7 +71,7 @@ def advise(
     catalogue: MeasureCatalogue | None = None,
     transmitted: TransmittedMotions | None = None,
     chances: Sequence[Sequence[Likelihood]] | None = None,
-    aim: Aim | None = None,
+    aim: HarmAim | None = None,
 ) -> list[list[Recommendation]]:
     """Recommend a measure for each object and level at which something fails, or is open for want of room alone.
 
@@ -107,7 +107,7 @@ def advise(
         What isolators pass on, kept from one call to the next.
     chances : sequence of sequence of Likelihood, optional
         Of each scene, how likely it comes to harm at each level.
-    aim : Aim, optional
+    aim : HarmAim, optional
         How unlikely harm has to become.
 
     Returns
@@ -156,7 +156,7 @@ def advise(
     return out
 
 
-def _asked(chances: Sequence[Likelihood], aim: Aim) -> frozenset[str]:
+def _asked(chances: Sequence[Likelihood], aim: HarmAim) -> frozenset[str]:
     """Return the levels at which harm is too likely."""
     return frozenset(one.level for one in chances if one.probability >= aim.target)
 

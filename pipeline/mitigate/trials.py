@@ -84,7 +84,7 @@ class IsolatorResponse:
 
 
 @dataclass(frozen=True, slots=True)
-class Aim:
+class HarmAim:
     """How unlikely a measure has to make harm.
 
     Attributes
@@ -195,7 +195,7 @@ class TrialRunner:
         What is assumed of materials and surfaces; Kouros's own tables where it is left out.
     furniture : FurnitureFilter, optional
         What all objects that measures are tried for stand in: ``levels`` is what it passes on.
-    aim : Aim, optional
+    aim : HarmAim, optional
         How unlikely harm has to become; where it is left out, it has to be excluded.
     """
 
@@ -208,7 +208,7 @@ class TrialRunner:
         transmitted: TransmittedMotions | None = None,
         values: AssumedValues | None = None,
         furniture: FurnitureFilter | None = None,
-        aim: Aim | None = None,
+        aim: HarmAim | None = None,
     ) -> None:
         self.values = values or assumed()
         self._aim = aim

@@ -15,14 +15,16 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, each_apart, fault, unassessed
 from pipeline.analysis.fragility.objects import fragilities
 from pipeline.analysis.house.matching import HouseRules
+from pipeline.analysis.likelihood.sampling import ACTS
 from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.rules import RuleTable
 from pipeline.analysis.survey import measurement_requests
+from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.record import INDIVIDUAL
 from pipeline.mitigate import MeasureCatalogue, advise
 from pipeline.mitigate.installed import InstalledMeasure, Placed, assess_above, likely, placed
 from pipeline.mitigate.proposals import case_of
-from pipeline.mitigate.trials import Aim
+from pipeline.mitigate.trials import HarmAim, TransmittedMotions
 from pipeline.models import model_named
 from pipeline.night.floors import Floor
 from pipeline.records import (
@@ -33,7 +35,11 @@ from pipeline.records import (
     Finding,
     Fragility,
     Item,
+    Likelihood,
     MeasurementRequest,
+    Numerics,
+    Recommendation,
+    Sampling,
     Scene,
     Support,
 )
@@ -294,18 +300,8 @@ def _assessed(
         done = {finding.title for finding in findings[at]}
         skipped = {title: why for title, why in {**plan.skipped[at], **left_out}.items() if title not in done}
         scenes[at] = replace(scenes[at], skipped=skipped)
-    sampling = context.sampling
-    chances = likely(objects, levels, sampling, working) if sampling.samples else [()] * len(scenes)
-    advice = advise(
-        scenes,
-        findings,
-        levels,
-        working,
-        numerics,
-        catalogue=context.measures,
-        transmitted=context.transmitted,
-        chances=chances if sampling.samples else None,
-        aim=Aim(sampling.edges[2], sampling) if sampling.samples else None,
+    chances, advice = advised(
+        objects, scenes, findings, levels, working, numerics, context.sampling, context.measures, context.transmitted
     )
     curves: Sequence[tuple[Fragility, ...]] = [()] * len(scenes)
     if context.fragile:
@@ -318,6 +314,41 @@ def _assessed(
             scenes, findings, advice, curves, needing, chances, strict=True
         )
     ]
+
+
+def advised(
+    objects: Sequence[Placed],
+    scenes: Sequence[Scene],
+    findings: Sequence[Sequence[Finding]],
+    levels: Sequence[LevelMotions],
+    working: Context,
+    numerics: Numerics,
+    sampling: Sampling,
+    measures: MeasureCatalogue,
+    transmitted: TransmittedMotions | None = None,
+) -> tuple[Sequence[tuple[Likelihood, ...]], list[list[Recommendation]]]:
+    """Return how likely objects come to harm, and what is advised for them: by that, or else by verdicts.
+
+    objects  : as they stand, with their scenes and what was found of them under these levels
+    sampling : no samples where nobody asks how likely harm is
+    """
+    if not sampling.samples:
+        advice = advise(scenes, findings, levels, working, numerics, catalogue=measures, transmitted=transmitted)
+        return [()] * len(scenes), advice
+    chances = likely(objects, levels, sampling, working)
+    aim = HarmAim(sampling.edges[ACTS], sampling)
+    advice = advise(
+        scenes,
+        findings,
+        levels,
+        working,
+        numerics,
+        catalogue=measures,
+        transmitted=transmitted,
+        chances=chances,
+        aim=aim,
+    )
+    return chances, advice
 
 
 def _has_a_curve(scene: Scene) -> bool:

@@ -13,16 +13,15 @@ from pipeline.analysis.refinement import FidelitySearch, examine
 from pipeline.analysis.verdicts import LevelMotions, capacity_of
 from pipeline.collection.inventory import read_inventory
 from pipeline.execute import Threads
-from pipeline.mitigate import advise
 from pipeline.mitigate.installed import Placed, assess_above
 from pipeline.models import model_named
-from pipeline.night.assessment import place
+from pipeline.night.assessment import advised, place
 from pipeline.night.floors import floors_with
 from pipeline.night.prepare import assessed, popular
 from pipeline.night.run import named
 from pipeline.operations.workspace import Workspace, charts_of
 from pipeline.quantities import Array
-from pipeline.records import Estimate, Finding, Item, Numerics, Progress, Recommendation, Scene
+from pipeline.records import Estimate, Finding, Item, Likelihood, Numerics, Progress, Recommendation, Scene
 from pipeline.records.numerics import AUTO, CHART, SCAN
 from pipeline.store.decisions import InForce, decisions_in_force
 
@@ -83,6 +82,7 @@ class Explanation:
     scene: Scene
     reasonings: tuple[Reasoning, ...]
     advice: tuple[Recommendation, ...]
+    likelihoods: tuple[Likelihood, ...] = ()
 
 
 def explain(workspace: Workspace, number: str, progress: Progress) -> list[Explanation]:
@@ -170,8 +170,9 @@ def _explain(
         [r.finding for r in reasonings],
         *([*own, *above_it] for own, (above_it, _) in zip(around, on_top[1:], strict=True)),
     ]
-    advice = advise(scenes, found, levels, context, numerics, catalogue=workspace.measures)
-    return Explanation(scene, tuple(reasonings), tuple(advice[0]))
+    sampling = workspace.settings.likelihood.sampling
+    chances, advice = advised((one, *others), scenes, found, levels, context, numerics, sampling, workspace.measures)
+    return Explanation(scene, tuple(reasonings), tuple(advice[0]), chances[0])
 
 
 def _reason(work: Work, scene: Scene, level: LevelMotions, context: Context, numerics: Numerics) -> Reasoning:

@@ -92,7 +92,7 @@ def test_stores_are_a_section_of_their_own_and_never_mixed_in(tmp_path: Path) ->
     assert (summary.objects, summary.on_display, summary.act, summary.cannot) == (4, 1, 1, 0)
     assert summary.stores is not None
     stored = summary.stores
-    assert (stored.act + stored.open + stored.safe + stored.cannot, stored.cannot) == (3, 1)
+    assert (stored.act + stored.watch + stored.fine + stored.cannot, stored.cannot) == (3, 1)
     assert stored.act == 2
     assert [text.split()[0] for text in summary.first] == ["1"]
     assert sum(summary.measures.values()) == 1

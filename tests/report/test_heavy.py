@@ -88,12 +88,12 @@ def test_sorting_and_filtering(browser: Chrome, page: Path) -> None:
     after = browser.execute_script("return [...document.querySelectorAll('.list tbody tr')].map(r => r.dataset.p)")
     assert after == before == [str(i) for i in range(COUNT)]
     browser.execute_script(
-        "const s = document.querySelector('#tools select'); s.value = 'open'; s.dispatchEvent(new Event('change'))"
+        "const s = document.querySelector('#tools select'); s.value = 'watch'; s.dispatchEvent(new Event('change'))"
     )
     states = browser.execute_script(
         "return [...document.querySelectorAll('.list tbody tr')].filter(r => !r.hidden).map(r => r.dataset.s)"
     )
-    assert set(states) == {"open"}
+    assert set(states) == {"watch"}
     assert browser.find_element("css selector", "#tools output").text.startswith(f"{len(states)} ")
 
 
