@@ -67,7 +67,7 @@ def tension(assessment: Assessment, push: float) -> float:
 def bears(assessment: Assessment, advice: Recommendation, motion: Motion) -> bool:
     """Whether its section does: at all worse ends, or by the best estimates where the advice says so."""
     p = held(assessment.scene).parameters
-    if not advice.sentence.endswith(AT_BEST):
+    if advice.remaining is None and not advice.sentence.endswith(AT_BEST):
         return tension(assessment, pushed(assessment, motion)) <= p["allowable_stress"].low
     push = float(np.hypot(*felt(assessment, motion)[0].acceleration[:2]).max())
     k = p["concentration"].value if "concentration" in p else 1.0
@@ -78,10 +78,15 @@ def bears(assessment: Assessment, advice: Recommendation, motion: Motion) -> boo
 FIXINGS = ("pins", "wax", "putty", "ties", "clips", "brackets", "clamps")
 
 
-def test_each_failing_object_has_one_advice_and_each_advice_a_reason(record: RunRecord) -> None:
+TARGET = 0.1
+"""Where "possible" begins, in the settings that are not changed."""
+
+
+def test_each_object_to_act_on_has_one_advice_and_each_advice_a_reason(record: RunRecord) -> None:
     for assessment in record.assessments:
-        fails = any(f.verdict is Verdict.FAIL for f in assessment.findings)
-        assert len(assessment.recommendations) == 1 if fails else len(assessment.recommendations) <= 1
+        acts = assessment.likelihood is not None and assessment.likelihood.probability >= TARGET
+        assert len(assessment.recommendations) == acts, assessment.scene.item.object_number
+        assert all(one.remaining is None or one.remaining < TARGET for one in assessment.recommendations)
         demands = {f.model: f.demand for f in assessment.findings}
         for advice in assessment.recommendations:
             assert all(check.passes for check in advice.checks)
@@ -130,7 +135,8 @@ def test_what_nobody_recorded_how_it_hangs_is_open_and_is_not_told_to_keep_clear
         assert assessment.scene.hanging is None
         assert verdicts["swing"] is Verdict.UNDETERMINED
         assert verdicts["unhooking"] is Verdict.PASS
-        assert not assessment.recommendations
+        # Of some harm is possible all the same: it is kept from swinging, whichever way it hangs.
+        assert {r.measure for r in assessment.recommendations} <= {"restrain"}
 
 
 def test_fastened_objects_bear_the_push(record: RunRecord, motion: Motion) -> None:
@@ -239,6 +245,8 @@ def test_isolated_objects_stand_or_hold(record: RunRecord, motion: Motion) -> No
         assert free != held
         # Four times as many samples of the passed-on motion; the trial's own margin of 0.5 % covers the difference.
         number = assessment.scene.item.object_number
+        if recommended.remaining is not None:
+            continue
         assert tension(assessment, push) <= p["allowable_stress"].low if held else lift <= slopes(assessment), number
         if free:
             assert slides_on(at["frequency"], at["friction"], p["friction_static"].low) <= p["clearance"].low, number
