@@ -6,8 +6,9 @@ The expected loss counts in losses of an object that the museum calls C,
 
     P(\text{harm}) \, w + P(\text{falls}) \, w_p \left(1 - e^{-m g h / E}\right)
 
-with w the weight of its class of value, w_p that of a person, and m g h what it has to fall: a roll of bread of 12 g
-hurts nobody, and a sculpture of 11 t anybody.  Weights are rows of tables/stakes.csv.
+with w the weight of its class of value, w_p that of a person, and m g h the energy of a fall from its centre of gravity
+to what it stands on: a roll of bread of 12 g hurts nobody, and a sculpture of 11 t anybody.  Weights are rows of
+tables/stakes.csv.
 """
 
 from functools import cache

@@ -293,6 +293,7 @@ class _AtBest:
     measure: Measure
     candidate: Candidate
     results: Mapping[int, Sequence[Finding]]
+    left: Mapping[int, Mapping[str, Likelihood]]
     rejected: Sequence[str]
 
 
@@ -344,7 +345,7 @@ class _Search:
         for index, found in self.at_best.items():
             if index not in self.helped:
                 self.rejected[index] = list(found.rejected)
-                self._recommend(found.unit, found.measure, found.candidate, (), found.results, {}, at_best=True)
+                self._recommend(found.unit, found.measure, found.candidate, (), found.results, found.left, at_best=True)
         self.at_best.clear()
 
     def _units(self, pending: Sequence[Deficiency], measure: Measure) -> list[Unit]:
@@ -377,24 +378,31 @@ class _Search:
 
         still = []
         for unit, proposal, candidates, candidate in asked:
-            options = [next((o for o in some if holds([o.trial])), None) for _, some in candidate.options]
+            # What it does itself and what stands on it harm together.
+            own = candidate.trials
+            options = [next((o for o in some if holds([*own, o.trial])), None) for _, some in candidate.options]
             failing = [trial for trial in candidate.trials if not holds([trial])]
             held = all(check.passes for _, check in candidate.checks)
             if holds(candidate.trials) and held and all(option is not None for option in options):
                 self._recommend(unit, measure, candidate, [one for one in options if one is not None], results, left)
                 continue
             if candidate.at_best and held and all(passes_at_best(results[id(t)]) for t in candidate.trials):
-                self._keep(unit, measure, candidate, results)
+                self._keep(unit, measure, candidate, results, left)
             last[unit] = _said(failing, candidate, results)
             still.append((unit, proposal, candidates))
         return still
 
     def _keep(
-        self, unit: Unit, measure: Measure, candidate: Candidate, results: Mapping[int, Sequence[Finding]]
+        self,
+        unit: Unit,
+        measure: Measure,
+        candidate: Candidate,
+        results: Mapping[int, Sequence[Finding]],
+        left: Mapping[int, Mapping[str, Likelihood]],
     ) -> None:
         for one in unit:
             before = tuple(self.rejected.get(one.index, ()))
-            self.at_best.setdefault(one.index, _AtBest((one,), measure, candidate, results, before))
+            self.at_best.setdefault(one.index, _AtBest((one,), measure, candidate, results, left, before))
 
     def _reject(self, unit: Unit, measure: Measure, reason: str) -> None:
         for one in unit:

@@ -343,7 +343,7 @@ class TrialRunner:
         for at, trial in enumerate(trials):
             stood.append(Stood(at, trial.scene, None if trial.on is None else trial.on.transfer))
         sampling = self._aim.sampling.deciding(self._aim.target)
-        found = likelihoods(stood, len(trials), self._floor, sampling, self._context.executor)
+        found = likelihoods(stood, len(trials), self._floor, sampling, self._context.executor, telling=False)
         return [{one.level: one for one in those} for those in found]
 
     @property

@@ -246,6 +246,22 @@ HALF = 0.5 - 1e-9
 """Share of the motions from which on an object counts as overturned ("half the records" included)."""
 
 
+def rocking_harms(scene: Scene) -> bool:
+    """Say whether rocking itself harms an object: unless the museum, or else its class, says that it does not.
+
+    Parameters
+    ----------
+    scene : Scene
+        An object where it stands.
+
+    Returns
+    -------
+    bool
+        As `overturning` judges it.
+    """
+    return overturning(scene) is None
+
+
 def overturning(scene: Scene) -> tuple[str, float, str] | None:
     """Return what decides about an object that rocking itself does not harm: it fails when it falls over.
 

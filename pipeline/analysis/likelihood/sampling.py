@@ -12,9 +12,9 @@ degrees of freedom 37 % fell where one plane through the same motion said 25 %).
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import cached_property, lru_cache, partial
 from itertools import pairwise
-from math import log2
+from math import ceil, log2
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,11 +23,13 @@ from pipeline.analysis.furniture import FurnitureFilter
 from pipeline.analysis.likelihood.draws import ONE_CAUSE, Draw, Ranges
 from pipeline.analysis.likelihood.shaking import direction, drawn_motion, through
 from pipeline.analysis.likelihood.worth import most_telling
+from pipeline.analysis.loose import FINEST
 from pipeline.analysis.plan import Indices, own_angle, plan, unique_rows
 from pipeline.analysis.transmission import transmit
-from pipeline.analysis.verdicts import LevelMotions, capacity_of, exceeds
+from pipeline.analysis.verdicts import LevelMotions, capacity_of, utilisation
+from pipeline.models.rigid_body import rocking_harms
 from pipeline.quantities import Array
-from pipeline.records import Columns, Excitation, Executor, Harm, Likelihood, Model, Motion, Sampling, Scene
+from pipeline.records import Columns, Estimate, Excitation, Executor, Harm, Likelihood, Model, Motion, Sampling, Scene
 
 FIRST = 64
 """Samples that are taken of every object."""
@@ -35,7 +37,7 @@ FIRST = 64
 STATES = tuple(Harm)
 
 HARMFUL = (Harm.LEAVES, Harm.FALLS, Harm.BREAKS)
-"""States that harm whatever reaches them; rocking does where the museum says so."""
+"""States that harm whatever reaches them; rocking does where neither the museum nor its class says that it does not."""
 
 Transfer = tuple[str, tuple[tuple[str, float], ...]]
 """An isolator that passes the motion on: its model, and its parameters by name."""
@@ -70,7 +72,13 @@ class Stood:
 
 
 def likelihoods(
-    stood: Sequence[Stood], count: int, levels: Sequence[LevelMotions], sampling: Sampling, executor: Executor
+    stood: Sequence[Stood],
+    count: int,
+    levels: Sequence[LevelMotions],
+    sampling: Sampling,
+    executor: Executor,
+    *,
+    telling: bool = True,
 ) -> list[tuple[Likelihood, ...]]:
     """Return how likely objects come to harm at each level.
 
@@ -86,6 +94,8 @@ def likelihoods(
         How many samples, and the words.
     executor
         Where the samples are run.
+    telling
+        Whether to find what one measurement would tell.
 
     Returns
     -------
@@ -103,9 +113,9 @@ def likelihoods(
                 groups.setdefault((work.furniture, isolator), []).append(_analyses(work.model, alike, angle))
     harmful = np.zeros((len(STATES), count), dtype=bool)
     for one in stood:
-        harms = (*HARMFUL, Harm.ROCKS) if one.scene.item.susceptible else HARMFUL
+        harms = (*HARMFUL, Harm.ROCKS) if rocking_harms(one.scene) else HARMFUL
         harmful[:, one.of] = [state in harms for state in STATES]
-    uncertain = _uncertain((one for those in groups.values() for one in those), count)
+    uncertain = _uncertain((one for those in groups.values() for one in those), count) if telling else {}
     out: list[tuple[Likelihood, ...]] = [() for _ in range(count)]
     asked = sorted({at for those in groups.values() for one in those for at in one.of.tolist()})
     for level in levels:
@@ -113,8 +123,8 @@ def likelihoods(
         bits = np.concatenate(counted.bits) if counted.bits else np.zeros((0, count), dtype=bool)
         names, worth = most_telling(bits, counted.taken, uncertain, sampling.edges[ACTS], sampling)
         for at in asked:
-            telling = names[at], float(worth[at])
-            out[at] = (*out[at], counted.told(at, level.name, harmful[:, at], sampling, telling))
+            best = names[at], float(worth[at])
+            out[at] = (*out[at], counted.told(at, level.name, harmful[:, at], sampling, best))
     return out
 
 
@@ -140,12 +150,12 @@ class _Counted:
         a, b = harmed + 0.5, taken - harmed + 0.5
         error = float(np.sqrt(a * b / (a + b) ** 2 / (a + b + 1.0)))
         reached = self.reached[:, at]
-        # Of states that come together the worse one names it.
-        worst = max((n, i) for i, n in enumerate(np.where(harmful, reached, 0).tolist()))
         states = {
             s.value: int(n) / taken for s, n, may in zip(STATES, reached, self.possible[:, at], strict=True) if may
         }
-        named = STATES[worst[1]].value if worst[0] else ""
+        # The gravest state that half of the harm comes to names it; or else the likeliest.
+        told = [(int(n), state.value) for state, n, harms in zip(STATES, reached, harmful, strict=True) if harms and n]
+        named = next((name for n, name in told[::-1] if 2 * n >= harmed), max(told, default=(0, ""))[1])
         return Likelihood(level, share, error, taken, sampling.band(share), named, states, *telling)
 
 
@@ -165,9 +175,10 @@ def _counted(
         np.zeros((len(STATES), count), dtype=bool),
         [],
     )
-    for those in groups.values():
+    for (furniture, _), those in groups.items():
+        tips = (Harm.FALLS,) if furniture is not None and furniture.loose is not None else ()
         for one in those:
-            for state in one.model.reachable:
+            for state in (*one.model.reachable, *tips):
                 done.possible[STATES.index(state), one.of] = True
     wanted = np.zeros(count, dtype=bool)
     wanted[asked] = True
@@ -219,7 +230,10 @@ def _felt(
 ) -> tuple[Motion, bool]:
     # Measures are tried under the first samples again and again.
     felt, falls = through(drawn_motion(motions, draw), furniture, draw)
-    return felt if isolator is None else transmit(isolator[0], felt, refine=1, **dict(isolator[1])), falls
+    if isolator is None:
+        return felt, falls
+    # What slips jumps between samples.
+    return transmit(isolator[0], felt, refine=max(1, ceil(felt.dt / FINEST - 1e-9)), **dict(isolator[1])), falls
 
 
 def _uncertain(analyses: Iterable["_Analyses"], count: int) -> dict[str, NDArray[np.bool_]]:
@@ -229,7 +243,8 @@ def _uncertain(analyses: Iterable["_Analyses"], count: int) -> dict[str, NDArray
         for ranges in (*one.ways[0], one.capacity, one.room):
             name = ONE_CAUSE.get(ranges.name, ranges.name)
             mine = out.setdefault(name, np.zeros(count, dtype=bool))
-            mine[one.of[ranges.low < ranges.high]] = True
+            free = np.isnan(one.tied[0][ranges.name][1]) if ranges.name in one.tied[0] else True
+            mine[one.of[(ranges.low < ranges.high) & free]] = True
     return out
 
 
@@ -243,7 +258,7 @@ def _certain(done: _Counted, sampling: Sampling) -> NDArray[np.bool_]:
     from scipy.special import betainc
 
     taken = np.maximum(done.taken, 1)
-    ends = np.array([sampling.ends(share) for share in (done.harmed / taken).tolist()]).T
+    ends = np.minimum(np.array([sampling.ends(share) for share in (done.harmed / taken).tolist()]).T, 1.0)
     a, b = done.harmed + 0.5, done.taken - done.harmed + 0.5
     inside = betainc(a, b, ends[1]) - betainc(a, b, ends[0])
     return np.asarray(inside >= sampling.certainty)
@@ -267,18 +282,24 @@ class _Analyses:
     of : (m,) the object of each
     angle : of their width, degrees from x towards y; None: drawn
     ways : by direction, the parameters that a body has along it
-    tied : parameters that go up and down with another one: by name the other one's, and how many times it, (m,)
+    tied : by direction, parameters that go up and down with another one: by name the other one's, and how many times
+           it, (m,)
     """
 
     model: Model
     of: Indices
     angle: float | None
     ways: tuple[tuple[Ranges, ...], ...]
-    tied: Mapping[str, tuple[str, Array]]
+    tied: tuple[Mapping[str, tuple[str, Array]], ...]
     wider: Array
     output: tuple[str, ...]
     capacity: Ranges
     room: Ranges
+
+    @cached_property
+    def outputs(self) -> frozenset[str]:
+        """The different outputs that are held against capacities."""
+        return frozenset(self.output)
 
     def run(self, felt: Motion, draw: Draw, wanted: NDArray[np.bool_], reached: NDArray[np.bool_]) -> None:
         """Add what is reached in a sample, (s, objects), by the objects that are wanted."""
@@ -287,7 +308,7 @@ class _Analyses:
             return
         turned = direction(draw) + (90.0 if model.across else 0.0) if self.angle is None else self.angle
         for at, way in enumerate(self.ways):
-            values = self._values(way, draw, chosen, wide=bool(at) and self.angle is None)
+            values = self._values(way, self.tied[at], draw, chosen, wide=bool(at) and self.angle is None)
             along = None if model.directions != 1 or (model.resultant and self.angle is None) else turned + 90.0 * at
             excitation = felt.excitation(along)
             # What it shows to rest need not be integrated: of all hung works it leaves one of six.
@@ -303,9 +324,11 @@ class _Analyses:
             for state, mask in model.reached(columns, self._exceeded(columns, some, capacity), room).items():
                 reached[STATES.index(state), self.of[some]] |= mask
 
-    def _values(self, way: Sequence[Ranges], draw: Draw, chosen: Indices, *, wide: bool) -> dict[str, Array]:
+    def _values(
+        self, way: Sequence[Ranges], tied: Mapping[str, tuple[str, Array]], draw: Draw, chosen: Indices, *, wide: bool
+    ) -> dict[str, Array]:
         values = {one.name: one.at(draw, chosen) for one in way}
-        for name, (other, times) in self.tied.items():
+        for name, (other, times) in tied.items():
             mine = times[chosen]
             values[name] = np.where(np.isnan(mine), values[name], mine * values[other])
         for name in _HALVES if wide else ():
@@ -315,10 +338,13 @@ class _Analyses:
 
     def _exceeded(self, columns: Columns, chosen: Indices, capacity: Array) -> NDArray[np.bool_]:
         demand = np.empty(chosen.size)
-        for output in set(self.output):
+        if len(self.outputs) == 1:
+            return ~(utilisation(columns[self.output[0]], capacity) <= 1.0)
+        for output in self.outputs:
             mine = np.array([self.output[at] == output for at in chosen])
             demand[mine] = columns[output][mine]
-        return exceeds(demand, capacity)
+        # What could not be followed may be anything.
+        return ~(utilisation(demand, capacity) <= 1.0)
 
 
 _HALVES = ("half_width", "half_width_other")
@@ -335,15 +361,15 @@ def _analyses(model: Model, stood: Sequence[Stood], angle: float | None) -> _Ana
     names = [q.name for q in model.needs]
     defaults = {q.name: np.nan if q.default is None else q.default for q in model.needs}
     axes = model.axes if model.directions == 1 and not (model.resultant and angle is None) else ({},)
-    ways = []
+    ways, tied = [], []
     for axis in axes:
-        own = {name: axis.get(name, name) if angle is not None else name for name in names}
-        ways.append(
-            tuple(
-                Ranges.of(name, [s.parameters.get(own[name]) or s.parameters.get(name) for s in scenes], defaults[name])
-                for name in names
-            )
-        )
+        # What is known along its own axis takes the place of what is known of it as a whole.
+        known = [
+            {n: s.parameters.get(axis.get(n, n) if angle is not None else n) or s.parameters.get(n) for n in names}
+            for s in scenes
+        ]
+        ways.append(tuple(Ranges.of(name, [one[name] for one in known], defaults[name]) for name in names))
+        tied.append(_ties(scenes, known))
     capacities = [capacity_of(model, scene) for scene in scenes]
     named = model.capacity if isinstance(model.capacity, str) else ""
     return _Analyses(
@@ -351,7 +377,7 @@ def _analyses(model: Model, stood: Sequence[Stood], angle: float | None) -> _Ana
         np.array([one.of for one in stood], dtype=np.intp),
         angle,
         tuple(ways),
-        _ties(scenes, names),
+        tuple(tied),
         np.array([_aspect(scene) for scene in scenes]),
         tuple(output for output, _ in capacities),
         Ranges.of(named or "clearance", [estimate for _, estimate in capacities], np.nan),
@@ -359,13 +385,12 @@ def _analyses(model: Model, stood: Sequence[Stood], angle: float | None) -> _Ana
     )
 
 
-def _ties(scenes: Sequence[Scene], names: Sequence[str]) -> dict[str, tuple[str, Array]]:
+def _ties(scenes: Sequence[Scene], known: Sequence[Mapping[str, Estimate | None]]) -> dict[str, tuple[str, Array]]:
     """Return of parameters that are in proportion to another one which, and how many times that, (m,); NaN: not."""
     out: dict[str, tuple[str, Array]] = {}
-    for at, scene in enumerate(scenes):
-        for name in names:
-            estimate = scene.parameters.get(name)
-            if estimate is None or not estimate.per or estimate.per not in names:
+    for at, (scene, those) in enumerate(zip(scenes, known, strict=True)):
+        for name, estimate in those.items():
+            if estimate is None or not estimate.per or estimate.per not in those:
                 continue
             other = scene.parameters.get(estimate.per)
             if other is not None and other.value:

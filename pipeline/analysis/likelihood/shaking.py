@@ -79,7 +79,9 @@ def through(motion: Motion, furniture: FurnitureFilter | None, draw: Draw) -> tu
             body = _body(furniture.loose, draw)
             falls = overturns(shaken, body, direction(draw))
             # Nobody asks for it again: it is not to be remembered.
-            shaken = passed_on.__wrapped__(shaken, body)
+            passed = passed_on.__wrapped__(shaken, body)
+            # Along the strongest push it may fall where it does not along either of these: then the motion ends.
+            falls, shaken = falls or passed.samples < shaken.samples, passed
     tilt = G * float(np.sin(furniture.level_error * draw.share(LEAN)))
     if tilt == 0.0:
         return shaken, falls

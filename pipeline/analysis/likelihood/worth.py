@@ -60,6 +60,9 @@ def most_telling(
     names, worth = [""] * m, np.zeros(m)
     counted = np.arange(n)[:, None] < taken
     acts = np.where(taken > 0, (harmed & counted).sum(axis=0) / np.maximum(taken, 1), 0.0) >= target
+    # The best of many that tell nothing looks as if it did: each part of each number has to be that much more certain.
+    tried = PARTS * np.maximum(np.sum([*uncertain.values()], axis=0), 1) if uncertain else np.ones(m)
+    certainty = 1.0 - (1.0 - sampling.certainty) / tried
     for name, mask in sorted(uncertain.items()):
         some = np.flatnonzero(mask & (taken > 0))
         if some.size == 0:
@@ -73,7 +76,7 @@ def most_telling(
             a, b = hurt + 0.5, there - hurt + 0.5
             below = betainc(a, b, target)
             p = hurt / np.maximum(there, 1)
-            otherwise = np.where(acts[some], below >= sampling.certainty, 1.0 - below >= sampling.certainty)
+            otherwise = np.where(acts[some], below >= certainty[some], 1.0 - below >= certainty[some])
             better += np.where(otherwise, np.abs(p - target) * there / taken[some], 0.0)
         for at, value in zip(some.tolist(), better.tolist(), strict=True):
             if value > worth[at]:

@@ -20,21 +20,18 @@ _STATES = {Band.VERY_UNLIKELY: State.FINE, Band.UNLIKELY: State.WATCH}
 def state_of(assessment: Assessment) -> State:
     """Return where an object stands: by how likely harm is, or where that was not asked for by its verdicts.
 
-    A proof beats a probability: what passes in all its models, whatever its uncertain inputs are, is fine.  What has no
-    verdict at all never is.
+    A proof beats a probability: what passes in all its models, whatever its uncertain inputs are, is fine, unless the
+    scatter of the models, which no verdict counts, makes harm possible.  What has no verdict at all never is.
     """
     if assessment.aside:
         return State.ASIDE
     verdicts = {f.verdict for f in assessment.findings}
-    if assessment.assessed and verdicts == {Verdict.PASS}:
-        return State.FINE
     found = assessment.likelihood
-    if found is not None:
-        state = _STATES.get(found.band, State.ACT)
-    elif Verdict.FAIL in verdicts:
-        state = State.ACT
-    else:
-        state = State.WATCH
+    state = State.FINE if found is None else _STATES.get(found.band, State.ACT)
+    if assessment.assessed and verdicts == {Verdict.PASS} and state is not State.ACT:
+        return State.FINE
+    if found is None:
+        state = State.ACT if Verdict.FAIL in verdicts else State.WATCH
     # Where some of it could not be run, only what is bad is known.
     return state if assessment.assessed or (verdicts and state is State.ACT) else State.UNKNOWN
 
