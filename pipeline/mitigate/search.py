@@ -429,7 +429,8 @@ class _Search:
                 continue
             trials = [*candidate.trials, *([options[at].trial] if options else [])]
             ran = [f for trial in trials for f in results[id(trial)]]
-            drawn = [left[id(trial)] for trial in trials if not passes(results[id(trial)]) and id(trial) in left]
+            # Without an aim nothing was drawn.
+            drawn = [left[id(trial)] for trial in trials if not passes(results[id(trial)]) and left.get(id(trial))]
             words = dict(candidate.words)
             if options:
                 case = case_of(one.scene)

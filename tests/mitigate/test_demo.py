@@ -86,7 +86,9 @@ def test_each_object_to_act_on_has_one_advice_and_each_advice_a_reason(record: R
     for assessment in record.assessments:
         acts = assessment.likelihood is not None and assessment.likelihood.probability >= TARGET
         assert len(assessment.recommendations) == acts, assessment.scene.item.object_number
-        assert all(one.remaining is None or one.remaining < TARGET for one in assessment.recommendations)
+        for one in assessment.recommendations:
+            # Where no fastening reaches it, the gentlest that holds by the best estimates says what remains.
+            assert one.remaining is None or one.remaining < TARGET or one.sentence.endswith(AT_BEST)
         demands = {f.model: f.demand for f in assessment.findings}
         for advice in assessment.recommendations:
             assert all(check.passes for check in advice.checks)
