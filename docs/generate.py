@@ -87,7 +87,7 @@ COLUMN_WORDS = {
     "probability": "of coming to harm at the level where that is likeliest; empty where nobody knows",
     "probability_error": "standard error of it, by the number of samples",
     "band": "the word for it: almost certain, likely, possible, unlikely, very unlikely",
-    "harm": "the gravest state that half of the harm comes to: leaves, rocks, falls, breaks; empty where none is harm",
+    "harm": "the state of harm that is likeliest: leaves, rocks without a fall, falls, breaks; empty for none",
     "harm_level": "the level of shaking at which harm is likeliest",
     "p_shifts": "probability that it shifts by a millimetre; empty where no model tells it, as of the others",
     "p_leaves": "probability that it leaves its place or hits something",

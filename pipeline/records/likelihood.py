@@ -79,7 +79,7 @@ class Likelihood:
     band : Band
         The word for the probability.
     harm : str
-        The gravest state that half of the harm comes to, or else the likeliest; "" where no sample came to any.
+        The state of harm that is likeliest, rocking without a fall; "" where no sample came to any.
     states : mapping of str to float
         By `Harm`, the probability of each state that it can reach; those that do it no harm as well.
     open_for : str

@@ -153,9 +153,12 @@ class _Counted:
         states = {
             s.value: int(n) / taken for s, n, may in zip(STATES, reached, self.possible[:, at], strict=True) if may
         }
-        # The gravest state that half of the harm comes to names it; or else the likeliest.
-        told = [(int(n), state.value) for state, n, harms in zip(STATES, reached, harmful, strict=True) if harms and n]
-        named = next((name for n, name in told[::-1] if 2 * n >= harmed), max(told, default=(0, ""))[1])
+        often = np.where(harmful, reached, 0)
+        # What falls has rocked before.
+        rocks, falls = STATES.index(Harm.ROCKS), STATES.index(Harm.FALLS)
+        often[rocks] = max(0, often[rocks] - often[falls])
+        likeliest, at_worst = max((n, i) for i, n in enumerate(often.tolist()))
+        named = STATES[at_worst].value if likeliest else ""
         return Likelihood(level, share, error, taken, sampling.band(share), named, states, *telling)
 
 
