@@ -136,6 +136,19 @@ def plan(scenes: Sequence[Scene], x_azimuth: float = EAST) -> Plan:
 
     x_azimuth : degrees clockwise from north of the x axis of the motions
     """
+    required, skipped = requirements(scenes)
+    work = (
+        replace(_gather(model, scenes, which, x_azimuth), furniture=furniture) for model, furniture, which in required
+    )
+    return Plan(tuple(work), skipped)
+
+
+Required = tuple[Model, FurnitureFilter | None, list[int]]
+"""A model, a kind of furniture, and the places of the scenes in it that the model is run for."""
+
+
+def requirements(scenes: Sequence[Scene]) -> tuple[list[Required], tuple[Mapping[str, str], ...]]:
+    """Return which models are run for which scenes, by furniture, and for each scene why the others are not."""
     reasons: dict[Hashable, tuple[tuple[int, ...], Mapping[str, str]]] = {}
     chosen: list[dict[FurnitureFilter | None, list[int]]] = [{} for _ in MODELS]
     skipped = []
@@ -148,12 +161,12 @@ def plan(scenes: Sequence[Scene], x_azimuth: float = EAST) -> Plan:
         furniture = filter_of(scene)
         for model in models:
             chosen[model].setdefault(furniture, []).append(index)
-    work = (
-        replace(_gather(model, scenes, which, x_azimuth), furniture=furniture)
+    required = [
+        (model, furniture, which)
         for model, groups in zip(MODELS, chosen, strict=True)
         for furniture, which in groups.items()
-    )
-    return Plan(tuple(work), tuple(skipped))
+    ]
+    return required, tuple(skipped)
 
 
 def _kind(scene: Scene) -> Hashable:

@@ -24,7 +24,7 @@ from pipeline.analysis.likelihood.draws import ONE_CAUSE, Draw, Ranges
 from pipeline.analysis.likelihood.shaking import direction, drawn_motion, through
 from pipeline.analysis.likelihood.worth import most_telling
 from pipeline.analysis.loose import FINEST
-from pipeline.analysis.plan import Indices, own_angle, plan, unique_rows
+from pipeline.analysis.plan import Indices, own_angle, requirements, unique_rows
 from pipeline.analysis.transmission import transmit
 from pipeline.analysis.verdicts import LevelMotions, capacity_of, utilisation
 from pipeline.models.rigid_body import rocking_harms
@@ -102,15 +102,14 @@ def likelihoods(
     list of tuple of Likelihood
         Of each object one for each level; none of one for which no model is run.
     """
-    todo = plan([one.scene for one in stood], levels[0].x_azimuth)
     groups: dict[tuple[FurnitureFilter | None, Transfer | None], list[_Analyses]] = {}
-    for work in todo.work:
-        by_isolator: dict[Transfer | None, list[int]] = {}
-        for at in work.scenes.tolist():
-            by_isolator.setdefault(stood[at].isolator, []).append(at)
-        for isolator, members in by_isolator.items():
-            for angle, alike in _turned(work.model, [stood[at] for at in members], levels[0].x_azimuth):
-                groups.setdefault((work.furniture, isolator), []).append(_analyses(work.model, alike, angle))
+    for model, furniture, members in requirements([one.scene for one in stood])[0]:
+        by_isolator: dict[Transfer | None, list[Stood]] = {}
+        for at in members:
+            by_isolator.setdefault(stood[at].isolator, []).append(stood[at])
+        for isolator, those in by_isolator.items():
+            for angle, alike in _turned(model, those, levels[0].x_azimuth):
+                groups.setdefault((furniture, isolator), []).append(_analyses(model, alike, angle))
     harmful = np.zeros((len(STATES), count), dtype=bool)
     for one in stood:
         harms = (*HARMFUL, Harm.ROCKS) if rocking_harms(one.scene) else HARMFUL

@@ -12,13 +12,12 @@ from pipeline.report.text import clean, words
 
 @dataclass(frozen=True, slots=True)
 class ChanceView:
-    """How likely an object comes to harm: the word for it, what it is likeliest to do, and the numbers behind that.
+    """How likely an object comes to harm, what it is likeliest to do, and the numbers behind that.
 
     level : of shaking, at which that is likeliest;  check : why its record is to be looked at first, "" for no reason;
     measure : what one would measure to decide otherwise
     """
 
-    band: str
     sentence: str
     numbers: str
     level: str
@@ -31,9 +30,8 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
     found = assessment.likelihood
     if found is None:
         return None
-    share = f"{found.probability:.0%}" if found.samples and found.probability >= _LEAST else _("below 1 %")
     numbers = _("%(share)s ± %(error)s of %(samples)s samples of all that is uncertain") % {
-        "share": share,
+        "share": _percent(found.probability),
         "error": f"{100.0 * found.error:.1f} %",
         "samples": found.samples,
     }
@@ -44,18 +42,19 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
     if slender:
         check = _("Check its record first: it is %(times)s times as high as it is deep, and hardly stands by itself.")
         check %= {"times": f"{slender:.1f}"}
-    return ChanceView(
-        _BANDS[found.band](), _sentence(found), f"{numbers}{more}.", clean(found.level), check, name_of(found.open_for)
-    )
+    return ChanceView(_sentence(found), f"{numbers}{more}.", clean(found.level), check, name_of(found.open_for))
 
 
 def left_over(advice: Recommendation) -> str:
     """Say how likely harm is that a measure leaves; "" where its checks exclude it, and where nobody drew it."""
     if advice.remaining is None:
         return ""
-    left = advice.remaining
-    share = f"{left:.0%}" if left >= _LEAST else _("below 1 %")
-    return " " + _("Of what is uncertain %(share)s remains in which it still comes to harm.") % {"share": share}
+    said_so = _("Of what is uncertain %(share)s remains in which it still comes to harm.")
+    return " " + said_so % {"share": _percent(advice.remaining)}
+
+
+def _percent(probability: float) -> str:
+    return f"{probability:.0%}" if probability >= _LEAST else _("below 1 %")
 
 
 def open_for(assessment: Assessment) -> str:
