@@ -368,13 +368,15 @@ class _Search:
                 asked.append((unit, proposal, candidates, candidate))
         every = [trial for *_, candidate in asked for trial in candidate.every]
         results = {id(trial): found for trial, found in zip(every, self.runner.run(every), strict=True)}
-        # What passes by the best estimates and not for sure is worth drawing.
-        doubtful = [t for t in every if not passes(results[id(t)]) and passes_at_best(results[id(t)])]
-        left = {id(trial): left for trial, left in zip(doubtful, self.runner.remaining(doubtful), strict=True)}
+        # What passes by the best estimates is worth drawing; a verdict counts neither the scatter of the models nor,
+        # where the mean of the motions decides, that of the motions.
+        worth = [trial for trial in every if passes_at_best(results[id(trial)])]
+        left = {id(trial): left for trial, left in zip(worth, self.runner.remaining(worth), strict=True)}
 
         def holds(trials: Sequence[Trial]) -> bool:
-            unsure = [trial for trial in trials if not passes(results[id(trial)])]
-            return self.runner.reaches_aim([left.get(id(trial), {}) for trial in unsure])
+            if self.runner.aims:
+                return self.runner.reaches_aim([left.get(id(trial), {}) for trial in trials])
+            return all(passes(results[id(trial)]) for trial in trials)
 
         still = []
         for unit, proposal, candidates, candidate in asked:
@@ -388,7 +390,7 @@ class _Search:
                 continue
             if candidate.at_best and held and all(passes_at_best(results[id(t)]) for t in candidate.trials):
                 self._keep(unit, measure, candidate, results, left)
-            last[unit] = _said(failing, candidate, results)
+            last[unit] = _said(failing, candidate, results, left)
             still.append((unit, proposal, candidates))
         return still
 
@@ -430,7 +432,8 @@ class _Search:
             trials = [*candidate.trials, *([options[at].trial] if options else [])]
             ran = [f for trial in trials for f in results[id(trial)]]
             # Without an aim nothing was drawn.
-            drawn = [left[id(trial)] for trial in trials if not passes(results[id(trial)]) and left.get(id(trial))]
+            drawn = [left[id(trial)] for trial in trials if left.get(id(trial))]
+            unsure = not all(passes(results[id(trial)]) for trial in trials)
             words = dict(candidate.words)
             if options:
                 case = case_of(one.scene)
@@ -456,12 +459,12 @@ class _Search:
                     units={key: unit_ for key, (_, unit_) in numbers.items()},
                     checks=(
                         *(check for of, check in candidate.checks if of in ("", level)),
-                        *checks(here, before, at_best=at_best or bool(drawn)),
+                        *checks(here, before, at_best=at_best or unsure),
                     ),
                     rejected=tuple(self.rejected.get(one.index, ())),
                     mark=self._mark(candidate, here, measure.row.title, level),
                     source=measure.row.source,
-                    remaining=sum(one[level].probability for one in drawn) if drawn else None,
+                    remaining=min(1.0, sum(one[level].expected for one in drawn)) if drawn else None,
                 )
 
     def _mark(self, candidate: Candidate, ran: Sequence[Finding], title: str, level: str) -> Mark | None:
@@ -474,8 +477,16 @@ class _Search:
         return replace(marks[0], label=title) if marks else None
 
 
-def _said(failing: Sequence[Trial], candidate: Candidate, results: Mapping[int, Sequence[Finding]]) -> str:
+def _said(
+    failing: Sequence[Trial],
+    candidate: Candidate,
+    results: Mapping[int, Sequence[Finding]],
+    left: Mapping[int, Mapping[str, Likelihood]],
+) -> str:
     if failing:
+        remains = [one.expected for one in left.get(id(failing[0]), {}).values()]
+        if remains:
+            return f"harm would remain with a probability of {max(remains):.0%}"
         return why_not(failing[0].scene, results[id(failing[0])])
     short: list[Check] = [check for _, check in candidate.checks if not check.passes]
     return f"{short[0].title.lower()} is not enough" if short else ""

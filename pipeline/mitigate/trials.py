@@ -13,7 +13,7 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.fragility.curve import ENOUGH, stated
 from pipeline.analysis.furnished import furnished, isolating
 from pipeline.analysis.furniture import FurnitureFilter
-from pipeline.analysis.likelihood.sampling import Stood, Transfer, likelihoods
+from pipeline.analysis.likelihood.sampling import FEWEST, Stood, Transfer, likelihoods
 from pipeline.analysis.model_runs import prepare
 from pipeline.analysis.response import answer
 from pipeline.analysis.transmission import transmit
@@ -343,7 +343,9 @@ class TrialRunner:
         for at, trial in enumerate(trials):
             stood.append(Stood(at, trial.scene, None if trial.on is None else trial.on.transfer))
         sampling = self._aim.sampling.deciding(self._aim.target)
-        found = likelihoods(stood, len(trials), self._floor, sampling, self._context.executor, telling=False)
+        found = likelihoods(
+            stood, len(trials), self._floor, sampling, self._context.executor, telling=False, first=FEWEST
+        )
         return [{one.level: one for one in those} for those in found]
 
     @property
@@ -357,7 +359,7 @@ class TrialRunner:
         Parameters
         ----------
         remaining : sequence of mapping of str to Likelihood
-            Of each trial in which harm is not excluded; of none of them harm is as unlikely as can be.
+            Of each trial; of none of them harm is as unlikely as can be.
         """
         if self._aim is None:
             return not remaining
