@@ -11,6 +11,8 @@ from pipeline.analysis.figures import chart_key
 from pipeline.analysis.furniture import FurnitureFilter, fastened, filter_of, loose
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
+from pipeline.mitigate.evidence import checks, passes, passes_at_best, shortfall
+from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.mitigate.measures import Measure
 from pipeline.mitigate.measures.anchor import Anchor
 from pipeline.mitigate.measures.base import UNKNOWN_FREQUENCY, bends
@@ -27,19 +29,10 @@ from pipeline.mitigate.proposals import (
     known_to_swing,
     refused,
 )
-from pipeline.mitigate.trials import (
-    HarmAim,
-    TransmittedMotions,
-    Trial,
-    TrialRunner,
-    checks,
-    passes,
-    passes_at_best,
-    why_not,
-)
+from pipeline.mitigate.trials import HarmAim, Trial, TrialRunner
 from pipeline.models import settled_by_room
 from pipeline.models.unanchored import UNANCHORED
-from pipeline.records import Check, Finding, Likelihood, Mark, Numerics, Recommendation, Scene, Verdict
+from pipeline.records import Finding, Likelihood, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 
 ONLY_HERE = "At another level of shaking it is not enough, and nothing that was tried is enough at all of them."
@@ -390,7 +383,7 @@ class _Search:
                 continue
             if candidate.at_best and held and all(passes_at_best(results[id(t)]) for t in candidate.trials):
                 self._keep(unit, measure, candidate, results, left)
-            last[unit] = _said(failing, candidate, results, left)
+            last[unit] = shortfall(failing, candidate, results, left)
             still.append((unit, proposal, candidates))
         return still
 
@@ -475,21 +468,6 @@ class _Search:
             return None if shaking.passed_on else Mark(chart_key(kind, shaking.motions[0]), x, y, title)
         marks = [f.mark for f in ran if f.model == candidate.mark_of and f.mark is not None]
         return replace(marks[0], label=title) if marks else None
-
-
-def _said(
-    failing: Sequence[Trial],
-    candidate: Candidate,
-    results: Mapping[int, Sequence[Finding]],
-    left: Mapping[int, Mapping[str, Likelihood]],
-) -> str:
-    if failing:
-        remains = [one.expected for one in left.get(id(failing[0]), {}).values()]
-        if remains:
-            return f"harm would remain with a probability of {max(remains):.0%}"
-        return why_not(failing[0].scene, results[id(failing[0])])
-    short: list[Check] = [check for _, check in candidate.checks if not check.passes]
-    return f"{short[0].title.lower()} is not enough" if short else ""
 
 
 def _filled(sentence: str, words: Mapping[str, str]) -> str:

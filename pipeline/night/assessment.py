@@ -23,8 +23,9 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.record import INDIVIDUAL
 from pipeline.mitigate import MeasureCatalogue, advise
 from pipeline.mitigate.installed import InstalledMeasure, Placed, assess_above, likely, placed
+from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.mitigate.proposals import case_of
-from pipeline.mitigate.trials import HarmAim, TransmittedMotions
+from pipeline.mitigate.trials import HarmAim
 from pipeline.models import model_named
 from pipeline.night.floors import Floor
 from pipeline.records import (
