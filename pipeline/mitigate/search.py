@@ -277,7 +277,7 @@ def _unassessed(scenes: Sequence[Scene], findings: Sequence[Sequence[Finding]]) 
 
 @dataclass(frozen=True)
 class _AtBest:
-    """A fastening that passes by the best estimates only.
+    """A fastening that passes by the best estimates only: of those that leave as much harm the gentlest.
 
     rejected : what was tried before it, and why not
     """
@@ -289,6 +289,12 @@ class _AtBest:
     left: Mapping[int, Mapping[str, Likelihood]]
     rejected: Sequence[str]
 
+    @property
+    def remains(self) -> float:
+        """How likely harm is that it leaves, at the worst level; 0 where nobody drew it."""
+        drawn = [self.left.get(id(trial), {}) for trial in self.candidate.trials]
+        return max((one.expected for each in drawn for one in each.values()), default=0.0)
+
 
 @dataclass
 class _Search:
@@ -296,7 +302,7 @@ class _Search:
 
     unassessed  : numbers of what no model could be run for, by the case that it stands in
     recommended : by the place of the scene and the name of the level
-    at_best     : the gentlest fastening that passes by the best estimates, by the place of the scene
+    at_best     : the fastening that passes by the best estimates and leaves least, by the place of the scene
     fastened    : places of the scenes for which that stands: no isolator takes its place
     """
 
@@ -395,9 +401,12 @@ class _Search:
         results: Mapping[int, Sequence[Finding]],
         left: Mapping[int, Mapping[str, Likelihood]],
     ) -> None:
+        found = _AtBest(unit, measure, candidate, results, left, ())
         for one in unit:
-            before = tuple(self.rejected.get(one.index, ()))
-            self.at_best.setdefault(one.index, _AtBest((one,), measure, candidate, results, left, before))
+            kept = self.at_best.get(one.index)
+            if kept is None or found.remains < kept.remains:
+                before = tuple(self.rejected.get(one.index, ()))
+                self.at_best[one.index] = replace(found, unit=(one,), rejected=before)
 
     def _reject(self, unit: Unit, measure: Measure, reason: str) -> None:
         for one in unit:
