@@ -133,23 +133,19 @@ def _together(plan: "Plan") -> list[tuple[str, str]]:
     """
     from pipeline.report.pages.errand_views import number
 
-    groups: dict[tuple[str, ...], list[int]] = {}
     ranked = plan.best_first
-    for at in ranked if plan.terms.limits.open else sorted(ranked):
-        one = plan.errands[at]
-        after = "" if one.needs is None else plan.errands[one.needs].title
-        groups.setdefault((one.gallery, one.case, one.title, one.trade, after), []).append(at)
     lines = []
-    for (gallery, case, title, trade, after), places in groups.items():
+    for places in plan.together(ranked if plan.terms.limits.open else sorted(ranked)):
         some = [plan.errands[at] for at in places]
+        one = some[0]
         numbers = [object_.object_number for one in some for object_ in one.objects]
         more = f" and {len(numbers) - _NAMED:,} more" if len(numbers) > _NAMED else ""
         hours, cost = sum(one.hours.value for one in some), sum(one.cost.value for one in some)
         share = sum(one.avoided for one in some) / plan.loss if plan.loss > 0.0 else 0.0
-        first = f", after: {after}" if after else ""
-        where = f"case {case}: " if case else ""
-        effort = f"{number(hours)} h {trade}, cost {number(cost)}; avoids {share:.2%}"
-        lines.append((gallery, f"{where}{title}{first}: {', '.join(numbers[:_NAMED])}{more}; {effort}"))
+        first = "" if one.needs is None else f", after: {plan.errands[one.needs].title}"
+        where = f"case {one.case}: " if one.case else ""
+        effort = f"{number(hours)} h {one.trade}, cost {number(cost)}; avoids {share:.2%}"
+        lines.append((one.gallery, f"{where}{one.title}{first}: {', '.join(numbers[:_NAMED])}{more}; {effort}"))
     return lines
 
 

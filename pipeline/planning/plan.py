@@ -75,6 +75,14 @@ class Plan:
         """Places of what to do, what avoids most for an hour first; nothing stands before what it needs."""
         return tuple(sorted(self.choice.chosen, key=lambda at: (self.ranks.get(at, len(self.errands)), at)))
 
+    def together(self, places: Iterable[int]) -> list[tuple[int, ...]]:
+        """Return errands by what is done in one gallery, or one case of it, by one measure; as the first of each."""
+        groups: dict[tuple[str, str, str, str, bool], list[int]] = {}
+        for at in places:
+            one = self.errands[at]
+            groups.setdefault((one.gallery, one.case, one.title, one.trade, one.needs is None), []).append(at)
+        return [tuple(those) for those in groups.values()]
+
     @property
     def away(self) -> tuple[int, ...]:
         """Places of the errands that take objects from view and are not chosen."""

@@ -1,5 +1,6 @@
 """The plan as a page: what to do with the hours and the money there are, errand by errand, to be ticked off."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -7,7 +8,7 @@ from markupsafe import Markup
 
 from pipeline.mitigate.search import ANCHORED
 from pipeline.planning.efforts import TRADES, Span
-from pipeline.planning.errands import Errand
+from pipeline.planning.errands import Advised, Errand
 from pipeline.planning.plan import Plan
 from pipeline.report.language import Language, _, ngettext, said, speaking
 from pipeline.report.pages.compose import PageHead
@@ -20,10 +21,16 @@ SHOWN = 300
 """Errands on the page: about ten printed pages; the list beside it has all."""
 
 BEGIN = 5
-"""Errands that the first layer names."""
+"""Kinds of errands that the first layer names: what is done in one gallery, or one case of it, by one measure."""
 
 DOUBTFUL = 60
 """Errands that take objects from view, on the page."""
+
+FEW = 4
+"""Objects that a line of the first layer names."""
+
+_CLAUSE = re.compile(r"; |(?<=[a-z)])\. ")
+"""Where the words of an advice go on with why it holds, and what to mind."""
 
 NAMED = 8
 """Objects of an errand that are named; of more it says how many."""
@@ -54,6 +61,21 @@ class ErrandView:
 
 
 @dataclass(frozen=True, slots=True)
+class BeginView:
+    """What is done in one gallery, or one case of it, by one measure, in a line."""
+
+    title: str
+    gallery: str
+    case: str
+    objects: tuple[tuple[str, str, str], ...]
+    more: int
+    trade: str
+    hours: str
+    avoids: str
+    first: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class PlanView:
     """The plan's page; all texts are ready to be shown.
 
@@ -74,7 +96,7 @@ class PlanView:
     gap: str
     left: str
     trades: tuple[tuple[str, str, str], ...]
-    begin: tuple[ErrandView, ...]
+    begin: tuple[BeginView, ...]
     errands: tuple[ErrandView, ...]
     walking: bool
     hidden: int
@@ -121,10 +143,7 @@ def plan_view(plan: Plan, *, linked: bool = True, sentences: bool = True) -> Pla
     first = plan.best_first
     listed = sorted(first[:SHOWN]) if walking else first[:SHOWN]
     away = sorted(plan.away, key=lambda at: (-plan.errands[at].avoided, at))
-    views = {
-        at: _errand(plan, at, linked=linked, sentences=sentences)
-        for at in dict.fromkeys((*first[:BEGIN], *listed, *away[:DOUBTFUL]))
-    }
+    views = {at: _errand(plan, at, linked=linked, sentences=sentences) for at in (*listed, *away[:DOUBTFUL])}
     return PlanView(
         lede=_lede(plan),
         takes=_takes(plan),
@@ -135,7 +154,7 @@ def plan_view(plan: Plan, *, linked: bool = True, sentences: bool = True) -> Pla
             (_TRADES[trade](), count(sum(one.trade == trade for one in plan.chosen)), spanned(hours))
             for trade, hours in plan.by_trade.items()
         ),
-        begin=tuple(views[at] for at in first[:BEGIN]),
+        begin=tuple(_begun(plan, places, linked=linked) for places in plan.together(first)[:BEGIN]),
         errands=tuple(views[at] for at in listed),
         walking=walking,
         hidden=len(first) - len(listed),
@@ -187,8 +206,8 @@ def _errand(plan: Plan, at: int, *, linked: bool, sentences: bool) -> ErrandView
         gallery=clean(one.gallery),
         case=clean(one.case),
         title=said(clean(one.title)),
-        told=tuple(clean(text) for text in told[:NAMED]),
-        objects=tuple((clean(o.object_number), short(o.title, 60), clean(o.page) if linked else "") for o in named),
+        told=tuple(clean(_brief(text)) for text in told[:NAMED]),
+        objects=tuple(_named(each, linked=linked) for each in named),
         more=len(one.objects) - len(named),
         trade=_TRADES[one.trade](),
         hours=number(one.hours.value),
@@ -197,6 +216,33 @@ def _errand(plan: Plan, at: int, *, linked: bool, sentences: bool) -> ErrandView
         avoids="" if one.prepares else _share(_ratio(one.avoided, plan)),
         first="" if one.needs is None else said(clean(plan.errands[one.needs].title)),
     )
+
+
+def _begun(plan: Plan, places: Sequence[int], *, linked: bool) -> BeginView:
+    some = [plan.errands[at] for at in places]
+    objects = [one for errand in some for one in errand.objects]
+    return BeginView(
+        said(clean(some[0].title)),
+        clean(some[0].gallery),
+        clean(some[0].case),
+        tuple(_named(one, linked=linked) for one in objects[:FEW]),
+        len(objects) - len(objects[:FEW]),
+        _TRADES[some[0].trade](),
+        number(sum(one.hours.value for one in some)),
+        _share(_ratio(sum(one.avoided for one in some), plan)),
+        "" if some[0].needs is None else said(clean(plan.errands[some[0].needs].title)),
+    )
+
+
+def _named(one: Advised, *, linked: bool) -> tuple[str, str, str]:
+    return clean(one.object_number), short(one.title, 60), clean(one.page) if linked else ""
+
+
+def _brief(sentence: str) -> str:
+    """Return what is to be done, without why it holds and what to mind: the object's entry says that."""
+    # That its furniture is fastened first is an errand of its own.
+    text = sentence.removeprefix(ANCHORED).strip() or sentence
+    return _CLAUSE.split(text, maxsplit=1)[0].rstrip(".") + "."
 
 
 def _ratio(avoided: float, plan: Plan) -> float:
@@ -281,7 +327,7 @@ def _left(plan: Plan) -> str:
     if plan.loss <= 0.0:
         return ""
     told = _(
-        "All errands that leave the objects where they are would avoid %(most)s; what is left then no errand avoids."
+        "All errands that leave objects in view avoid %(most)s together; the rest of the loss none of them avoids."
     )
     return told % {"most": _share(plan.most)}
 
@@ -292,7 +338,7 @@ def _curve(plan: Plan) -> Markup:
     hours, limit = plan.hours, plan.terms.limits.hours
     whole = plan.curve[-1].hours
     # The whole curve would press a small plan against its axis.
-    reach = max(4.0 * hours.value, 1.1 * hours.high, 2.0 * (limit or 0.0)) if plan.chosen else whole
+    reach = max(10.0 * hours.value, 1.1 * hours.high, 2.0 * (limit or 0.0)) if plan.chosen else whole
     most = max(min(whole, reach), hours.high if plan.terms.limits.open else 0.0)
     corners = [(corner.hours, 1.0 - _ratio(corner.avoided, plan)) for corner in plan.curve]
     return effort_curve(corners, (hours.value, hours.low, hours.high), 1.0 - plan.share, limit, most)
