@@ -172,7 +172,7 @@ def test_nothing_to_do_and_nothing_to_do_it_with() -> None:
 
 @pytest.mark.parametrize("limits", [{"hours": -1.0}, {"cost": float("nan")}, {"trades": {"plumber": 3.0}}])
 def test_limits_that_are_none_are_refused(limits: dict[str, object]) -> None:
-    with pytest.raises(InputError, match="hours|cost|plumber"):
+    with pytest.raises(InputError, match=r"hours|cost|plumber"):
         Limits(**limits)  # type: ignore[arg-type]
 
 

@@ -10,9 +10,7 @@ from pipeline.mitigate import measure_catalogue
 from pipeline.planning.efforts import OTHER, TRADES, VISIT, efforts
 from pipeline.tables import TableError, table
 
-HEAD = (
-    "measure,trade,hours,hours_low,hours_high,hours_further,cost,cost_low,cost_high,cost_further,source\n"
-)
+HEAD = "measure,trade,hours,hours_low,hours_high,hours_further,cost,cost_low,cost_high,cost_further,source\n"
 GOOD = "wax,handler,0.2,0.1,0.4,0.5,3,1,9,1,our own\n"
 
 
