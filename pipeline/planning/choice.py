@@ -5,6 +5,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import fsum
 from pathlib import Path
 from typing import Any
@@ -21,10 +22,13 @@ from pipeline.planning.errands import Errand
 from pipeline.quantities import Array
 
 EXACT = 3_000
-"""Errands and visits up to which the choice is searched through; of more it is rounded from the relaxed problem."""
+"""Errands and visits up to which the choice is searched through; of more the relaxed problem guides it."""
 
 NODES = 2_000
 """Nodes of the search, at most: a number and not a time, so that the same plan comes of the same objects anywhere."""
+
+CUTS = 200
+"""Cutting planes of the relaxed problem, at most."""
 
 SECONDS = 60.0
 """A guard beyond any search of that many nodes that was seen."""
@@ -138,9 +142,22 @@ class Work:
         trades = [visit.trade] * number + [one.trade for one in some]
         self.trades = {name: np.array([one == name for one in trades]) for name in TRADES}
 
+    @cached_property
     def bundles(self) -> list[Bundle]:
-        """Return what is done together, in the order of what avoids most for an hour."""
-        return bundles(self.parents, self.gains.tolist(), self.hours.tolist())
+        """What is done together, in the order of what avoids most for an hour."""
+        return self.bundled(self.hours)
+
+    def bundled(self, effort: Array) -> list[Bundle]:
+        """Return what is done together, in the order of what avoids most for an effort (nodes,)."""
+        return bundles(self.parents, self.gains.tolist(), effort.tolist())
+
+    @cached_property
+    def levels(self) -> list[NDArray[np.intp]]:
+        """The nodes that need nothing, those that need one of these, and so on."""
+        depth = np.zeros(len(self.parents), dtype=np.intp)
+        for node, parent in enumerate(self.parents):
+            depth[node] = 0 if parent < 0 else depth[parent] + 1
+        return [np.flatnonzero(depth == one) for one in range(int(depth.max(initial=-1)) + 1)]
 
     def limited(self, limits: Limits) -> tuple[Array, Array]:
         """Return what every node takes of what is limited (limits, nodes), and how much of it there is (limits,)."""
@@ -169,8 +186,8 @@ def choose(work: Work, limits: Limits) -> Choice:
 
     A 0/1 problem of which every errand needs its visit, and may need another: up to `EXACT` of them it is solved by
     `scipy.optimize.milp`, and of equal gains what takes the fewest hours, then what comes first on the way, is chosen.
-    Of more the relaxed problem is solved and rounded down, and what still fits is added; the bound tells how much is
-    missing at most.
+    Of more the limits are relaxed to prices, by which errands are taken as long as there is room; the bound that the
+    prices give tells how much is missing at most.
 
     Parameters
     ----------
@@ -184,40 +201,42 @@ def choose(work: Work, limits: Limits) -> Choice:
     Choice
     """
     taking, most = work.limited(limits)
-    useful = _useful(work)
-    if limits.open or not useful.any() or bool(np.all(taking @ useful <= most * (1.0 + _HAIR))):
+    useful = _useful(work, taking, most)
+    if not useful.any() or bool(np.all(taking @ useful <= most * (1.0 + _HAIR))):
         return work.choice(useful, 0.0)
-    greedy = _filled(work, np.zeros(useful.size, dtype=bool), useful, taking, most)
+    greedy = _filled(work, useful, taking, most, work.bundles)
     if useful.size > EXACT:
-        relaxed, bound = _relaxed(work, taking, most)
-        rounded = _filled(work, relaxed, useful, taking, most)
-        return work.choice(max(rounded, greedy, key=lambda taken: float(work.gains[taken].sum())), bound)
+        weights, bound = _relaxed(work, useful, taking, most)
+        weighed = _filled(work, useful, taking, most, work.bundled(weights @ taking))
+        return work.choice(max(weighed, greedy, key=lambda taken: float(work.gains[taken].sum())), bound)
     reached = float(work.gains[greedy].sum()) or float(work.gains.max())
     found, bound = _searched(work, useful, taking, most, reached)
     better = found is not None and work.gains[found].sum() >= work.gains[greedy].sum()
     return work.choice(found if found is not None and better else greedy, bound)
 
 
-def _useful(work: Work) -> Taken:
-    """Return the nodes that avoid something, and what these need."""
-    useful = work.gains > 0.0
+def _useful(work: Work, taking: Array, most: Array) -> Taken:
+    """Return the nodes that avoid something and are within the limits together with all they need, and these."""
+    whole = taking.copy()
+    for node, parent in enumerate(work.parents):
+        if parent >= 0:
+            whole[:, node] += whole[:, parent]
+    useful: Taken = (work.gains > 0.0) & np.all(whole <= most[:, None] * (1.0 + _HAIR), axis=0)
     for node in range(useful.size - 1, -1, -1):
         if useful[node] and work.parents[node] >= 0:
             useful[work.parents[node]] = True
     return useful
 
 
-def _filled(work: Work, taken: Taken, useful: Taken, taking: Array, most: Array) -> Taken:
-    """Return a choice with whatever still fits added, bundle by bundle and then one by one."""
-    taken = taken.copy()
-    room = most * (1.0 + _HAIR) - taking @ taken
-    whole = [[node for node in one.nodes if useful[node]] for one in work.bundles() if one.gain > 0.0]
-    single = [[node] for nodes in whole for node in nodes]
+def _filled(work: Work, useful: Taken, taking: Array, most: Array, order: Sequence[Bundle]) -> Taken:
+    """Return the choice that takes whatever still fits, bundle by bundle in some order and then one by one."""
+    taken = np.zeros(useful.size, dtype=bool)
+    room = most * (1.0 + _HAIR)
+    whole = [[node for node in one.nodes if useful[node]] for one in order if one.gain > 0.0]
+    single = [[node] for nodes in whole for node in nodes if work.gains[node] > 0.0]
     for nodes in (*whole, *single):
         wanted = [node for node in nodes if not taken[node]]
         if not wanted or any(_lacks(work, node, taken, wanted) for node in wanted):
-            continue
-        if len(nodes) == 1 and work.gains[nodes[0]] <= 0.0:
             continue
         takes = taking[:, wanted].sum(axis=1)
         if np.all(takes <= room):
@@ -231,6 +250,60 @@ def _lacks(work: Work, node: int, taken: Taken, wanted: Sequence[int]) -> bool:
     return parent >= 0 and not taken[parent] and parent not in wanted
 
 
+def _relaxed(work: Work, useful: Taken, taking: Array, most: Array) -> tuple[Array, float]:
+    r"""Return the prices of what is limited at which the least could be gained, and what no choice gains more than.
+
+    With a price :math:`\lambda_k` on each limited thing, of which an errand takes :math:`r_k` and there is
+    :math:`b_k`, no choice within the limits gains more than
+
+    .. math::
+
+        g(\lambda) = \sum_k \lambda_k b_k + \max_y \sum_i \Bigl(a_i - \sum_k \lambda_k r_{ki}\Bigr) y_i
+
+    (Lagrange), where only what is needed first binds the y: the largest sum of every tree is found from its leaves.
+    The least g is found by cutting planes (Kelley 1960, "The cutting-plane method for solving convex programs", J. SIAM
+    8); any g bounds the choice.
+    """
+    # In shares of what there is; what there is nothing of no useful node takes.
+    shares = taking / np.where(most > 0.0, most, 1.0)[:, None]
+    total, number = float(work.gains[useful].sum()), most.size
+    best, weights = np.inf, np.zeros(number)
+    rows, above = [], []
+    at = np.zeros(number)
+    for _ in range(CUTS):
+        reduced = np.where(useful, work.gains - at @ shares, -np.inf)
+        taken, gained = _largest(work, reduced)
+        bound = float(at.sum() + gained)
+        if bound < best:
+            best, weights = bound, at
+        slope = 1.0 - shares @ taken
+        rows.append([*slope, -1.0])
+        above.append(float(slope @ at) - bound)
+        cut = linprog(
+            [*np.zeros(number), 1.0],
+            A_ub=np.array(rows),
+            b_ub=np.array(above),
+            bounds=[*[(0.0, total)] * number, (0.0, None)],
+            method="highs-ds",
+        )
+        if cut.x is None or best - cut.x[-1] <= 1e-6 * best:
+            break
+        at = np.clip(cut.x[:-1], 0.0, total)
+    return weights / np.where(most > 0.0, most, 1.0), best
+
+
+def _largest(work: Work, values: Array) -> tuple[Taken, float]:
+    """Return the choice with the largest sum of values (nodes,) where only what is needed first binds it, and that."""
+    parents = np.array(work.parents)
+    held = values.copy()
+    for nodes in work.levels[:0:-1]:
+        held += np.bincount(parents[nodes], weights=np.maximum(held[nodes], 0.0), minlength=held.size)
+    taken = held > 0.0
+    for nodes in work.levels[1:]:
+        taken[nodes] &= taken[parents[nodes]]
+    return taken, float(np.maximum(held[work.levels[0]], 0.0).sum())
+
+
 def _needs(work: Work) -> csr_array:
     """Return the rows that say that nothing is done before what it needs: each times the choice is at most 0."""
     nodes = np.flatnonzero(np.array(work.parents) >= 0)
@@ -238,25 +311,6 @@ def _needs(work: Work) -> csr_array:
     ones = np.ones(nodes.size)
     at = np.r_[rows, rows], np.r_[nodes, np.array(work.parents)[nodes]]
     return csr_array((np.r_[ones, -ones], at), shape=(nodes.size, len(work.parents)))
-
-
-def _relaxed(work: Work, taking: Array, most: Array) -> tuple[Taken, float]:
-    """Return the nodes that the relaxed problem takes as a whole, and what it gains: no choice gains more."""
-    needs = _needs(work)
-    scale = np.maximum(most, 1.0)[:, None]
-    # The stubs of scipy know of no sparse rows here.
-    rows: Any = vstack([needs, csr_array(taking / scale)]).tocsr()
-    limit = np.r_[np.zeros(needs.shape[0]), most / scale[:, 0]]
-    found = linprog(-work.gains, A_ub=rows, b_ub=limit, bounds=(0.0, 1.0), method="highs-ds")
-    if found.x is None:
-        return np.zeros(work.gains.size, dtype=bool), float(work.gains.sum())
-    taken = found.x > 1.0 - 1e-7
-    # What the rounding of the solver took without what it needs is left.
-    for node, parent in enumerate(work.parents):
-        taken[node] &= parent < 0 or taken[parent]
-    if np.any(taking @ taken > most * (1.0 + _HAIR)):
-        taken[:] = False
-    return taken, -float(found.fun or 0.0)
 
 
 def _searched(work: Work, useful: Taken, taking: Array, most: Array, reached: float) -> tuple[Taken | None, float]:

@@ -164,7 +164,7 @@ def _ordered(work: Work) -> tuple[dict[int, int], tuple[Corner, ...]]:
     ranks: dict[int, int] = {}
     corners = [Corner(0.0, 0.0, 0.0)]
     visits = len(work.galleries)
-    for one in work.bundles():
+    for one in work.bundles:
         for node in one.nodes:
             if node >= visits:
                 ranks[work.places[node - visits]] = len(ranks) + 1
