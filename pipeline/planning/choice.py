@@ -319,8 +319,8 @@ def _searched(work: Work, useful: Taken, taking: Array, most: Array, reached: fl
     reached : what some choice gains, for the scale
     """
     needs, scale = _needs(work), np.maximum(most, 1.0)[:, None]
-    rows = [needs, csr_array(taking / scale), _alike(work, taking)]
-    above = np.r_[np.zeros(needs.shape[0]), most / scale[:, 0], np.zeros(rows[2].shape[0])]
+    rows = [needs, csr_array(taking / scale)]
+    above = np.r_[np.zeros(needs.shape[0]), most / scale[:, 0]]
     limited = LinearConstraint(vstack(rows).tocsr(), -np.inf, above)
     total = float(work.gains.sum())
     # HiGHS takes 1e-6 of whatever unit for nothing.
@@ -363,23 +363,3 @@ def _unheard() -> Iterator[None]:
     finally:
         os.dup2(kept, 1)
         os.close(kept)
-
-
-def _alike(work: Work, taking: Array) -> csr_array:
-    """Return the rows by which, of errands that are alike in everything, those that come first are chosen first."""
-    parents = set(work.parents)
-    last: dict[tuple[float, ...], int] = {}
-    pairs = []
-    for node, parent in enumerate(work.parents):
-        if node in parents:
-            continue
-        key = (parent, work.gains[node], work.hours[node], *taking[:, node].tolist())
-        if key in last:
-            pairs.append((last[key], node))
-        last[key] = node
-    rows = np.arange(len(pairs))
-    earlier, later = np.array(pairs, dtype=int).reshape(-1, 2).T
-    ones = np.ones(len(pairs))
-    return csr_array(
-        (np.r_[ones, -ones], (np.r_[rows, rows], np.r_[later, earlier])), shape=(len(pairs), len(work.parents))
-    )
