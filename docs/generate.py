@@ -21,6 +21,7 @@ from pipeline.models import MODELS
 from pipeline.quantities import Quantity
 from pipeline.records import Model
 from pipeline.report.files.exports import FINDING_COLUMNS, OBJECT_COLUMNS, RECOMMENDATION_COLUMNS
+from pipeline.report.files.plan_files import PLAN_COLUMNS
 from pipeline.report.pages.reading import COLUMNS as READING_COLUMNS
 from pipeline.resources import resource
 from pipeline.settings import Settings
@@ -40,6 +41,7 @@ TABLE_WORDS = {
     "dimension_units": "Units of dimension texts.",
     "dimension_words": "Words of dimension texts.",
     "dispersion": "What a fragility curve's dispersion is made of.",
+    "efforts": "Hours, cost and trade of each measure, of one that is not named, and of setting out in a gallery.",
     "fixings": "What wax, putty, pins, ties, clips, brackets and clamps hold, and which materials they harm.",
     "fragility": "Published medians and dispersions that stand beside the computed ones.",
     "friction": "Friction between object and surface (Table 3 of the paper, handbooks and judgement).",
@@ -83,6 +85,23 @@ COLUMN_WORDS = {
     ),
     "missing": "what is not recorded, so that it cannot be assessed",
     "median_g": "the peak ground acceleration at which half of such objects fail first, in g",
+    "settled": "whether people accepted or overruled all that does not pass at that level",
+    "case": "the case that it stands in, as its record says",
+    "errand": "its number on the way through the museum",
+    "needs": "number of the errand that has to be done first",
+    "do": "whether the plan has it, within [plan] hours and cost",
+    "rank": "its place in the order of what avoids most for an hour; empty for what takes objects from view",
+    "objects": "numbers of the objects that it is for",
+    "trade": "whose work it is: handler, mount-maker, engineer",
+    "hours": "of work, of all who work together",
+    "hours_low": "if it goes well",
+    "hours_high": "if it does not",
+    "cost": "of material and outside work, in the museum's currency",
+    "cost_low": "if it goes well",
+    "cost_high": "if it does not",
+    "loss": "expected loss of its objects without it, in objects of class C; 0 where it only prepares another",
+    "avoided": "what of that it avoids",
+    "takes_from_view": "whether it takes objects off display",
     "remaining": "probability of harm that remains with it; empty where its checks exclude harm",
     "probability": "of coming to harm at the level where that is likeliest; empty where nobody knows",
     "probability_error": "standard error of it, by the number of samples",
@@ -291,7 +310,7 @@ def exports() -> str:
         " begins as a formula has an apostrophe in front."
     )
     parts, used = [intro], set()
-    for name, columns in {**tables, "reading": READING_COLUMNS}.items():
+    for name, columns in {**tables, "plan": PLAN_COLUMNS, "reading": READING_COLUMNS}.items():
         own = described if name == "findings" else {}
         used |= set(columns) - set(own)
         rows = [(f"`{c}`", plain(own[c]["description"] if c in own else COLUMN_WORDS[c])) for c in columns]

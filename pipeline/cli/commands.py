@@ -15,6 +15,7 @@ from pipeline.cli.explaining import print_explanation
 from pipeline.cli.importing import import_
 from pipeline.cli.motions import motions
 from pipeline.cli.options import Options, as_json, dry_run, say_dry
+from pipeline.cli.planning import plan
 from pipeline.cli.scanning import scan
 from pipeline.cli.validating import validate
 from pipeline.quantities import counted
@@ -465,6 +466,7 @@ ALL = (
     report,
     decide,
     diff,
+    plan,
     motions,
     models,
     respond,

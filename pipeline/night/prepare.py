@@ -29,7 +29,7 @@ from pipeline.night.floors import floors_of, notes
 from pipeline.night.reading_summary import told
 from pipeline.night.source_state import house_digest, rules_digest, tables_digest
 from pipeline.night.unit_tasks import ChartTask
-from pipeline.operations.presentation import presentation
+from pipeline.operations.presentation import presentation, terms_of
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Model, Progress, RunRecord, Scene
 from pipeline.report import Units
@@ -72,6 +72,7 @@ def run_context(
     # What is wrong with the museum's own tables, or that a catalogue of phrases is missing, is said before the work.
     rules, measures, house = workspace.rules, workspace.measures, workspace.house
     written = presentation(settings)
+    terms_of(workspace)
     floors = floors_of(settings, site, chosen.galleries)
     motions = motions_of(floors)
     samples = sum(motion.acceleration.shape[1] for motion in motions.values())

@@ -22,6 +22,7 @@ from pipeline.night.reading_summary import doubts_of
 from pipeline.night.scheduler import Scheduler
 from pipeline.night.source_state import unchanged
 from pipeline.operations.dry_run import DryRunWarning, rehearsed
+from pipeline.operations.presentation import terms_of
 from pipeline.operations.report_status import Status, last_good, mark_good, mark_running, status
 from pipeline.operations.run_summary import SUMMARY, Stores, Summary, summary_text
 from pipeline.operations.stopping import uninterrupted
@@ -148,7 +149,8 @@ def _hold(night: Scheduler, progress: Progress, chosen: Selection, *, dry_run: b
         summary = _judged(summary, strict=strict)
         beside = {SUMMARY: summary_text(summary, writer.folder)}
         doubts = doubts_of(workspace, head)
-        writer.finish(replace(head, decisions=strangers), found, changes, shown.links(changes), beside, doubts)
+        ended, terms = replace(head, decisions=strangers), terms_of(workspace)
+        writer.finish(ended, found, changes, shown.links(changes), beside, doubts, terms)
     with uninterrupted():
         # From here on the report is whole: first it is shown, then said to be good.
         if latest is not None:

@@ -2,6 +2,8 @@
 
 from typing import TypedDict
 
+from pipeline.operations.workspace import Workspace
+from pipeline.planning.plan import Terms
 from pipeline.report import Language, Units, language
 from pipeline.settings import Settings
 
@@ -34,3 +36,8 @@ def presentation(settings: Settings) -> Presentation:
     asked = settings.report
     folder = settings.path(asked.catalogues) if asked.catalogues else None
     return {"units": Units(length=asked.length), "language": language(asked.language, folder)}
+
+
+def terms_of(workspace: Workspace) -> Terms | None:
+    """Return what the plan of a report rests on; None where nobody asks how likely harm is: there is no plan then."""
+    return workspace.plan_terms if workspace.settings.likelihood.samples else None

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
+from pipeline.planning.plan import Terms
 from pipeline.records import Assessment, Found, Page, RunChanges, RunRecord, Spacing
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.report_writer import ReportWriter, link_to, page_key
@@ -24,6 +25,7 @@ def render(
     language: Language | None = None,
     changes: RunChanges | None = None,
     doubts: Doubts | None = None,
+    terms: Terms | None = None,
 ) -> Path:
     """Write a whole report: pages and exports.  The same record gives the same bytes.
 
@@ -31,13 +33,13 @@ def render(
     units   : the reader's units; centimetres where None
     language: of the pages; English where None.  The exports keep the words of the run, for programs read them.
     changes : since the run before, for the index; None where there was none
-    doubts  : see `ReportWriter.finish`
+    doubts, terms : see `ReportWriter.finish`
     returns : the path of index.html
     raises  : ReportError if the folder exists, or if the record cannot be shown (see `compose`)
     """
     head = replace(record, assessments=(), wishes=None, spacings=())
     with ReportWriter(Path(folder), PageRenderer(head, units or Units(), language or Language())) as writer:
-        return draw_all(writer, head, pages_of(record), changes, doubts=doubts)
+        return draw_all(writer, head, pages_of(record), changes, doubts=doubts, terms=terms)
 
 
 def draw_all(
@@ -47,12 +49,13 @@ def draw_all(
     changes: RunChanges | None,
     beside: Mapping[str, str] | None = None,
     doubts: Doubts | None = None,
+    terms: Terms | None = None,
 ) -> Path:
     """Draw every page of a run that is over into a report, one at a time, and finish it.
 
     head    : the run without its objects, with all decisions as they stood
     beside  : further files of the report, by name
-    doubts  : see `ReportWriter.finish`
+    doubts, terms : see `ReportWriter.finish`
     returns : the path of index.html
     """
     decisions = by_object(head.decisions)
@@ -66,7 +69,7 @@ def draw_all(
         tallies.append(writer.add(page_key(writer.renderer, page, mine), rendered))
         links |= {number: link_to(page, number, title) for number, title in titles.items() if number in named}
     strangers = tuple(standing for left in decisions.values() for standing in left)
-    return writer.finish(replace(head, decisions=strangers), total(tallies), changes, links, beside, doubts)
+    return writer.finish(replace(head, decisions=strangers), total(tallies), changes, links, beside, doubts, terms)
 
 
 def pages_of(record: RunRecord) -> list[tuple[Page, Found]]:

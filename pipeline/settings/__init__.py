@@ -235,6 +235,20 @@ class Mitigation(_Part):
     )
 
 
+class PlanSettings(_Part):
+    """What there is for mounts and other measures until the next look at the plan; the report chooses within it."""
+
+    hours: float = Field(default=0.0, ge=0.0, le=1e7, description="hours of work, of all trades together; 0: no limit")
+    cost: float = Field(
+        default=0.0, ge=0.0, le=1e12, description="material and outside work, in your currency; 0: no limit"
+    )
+    efforts: str = Field(
+        default="",
+        description="a CSV file with the columns of Kouros's efforts.csv: what a measure takes you of hours and cost, "
+        "and whose work it is; a row takes the place of Kouros's of the same name",
+    )
+
+
 class OwnTables(_Part):
     """Your own rows of what Kouros assumes where a record is silent; each takes the place of Kouros's of the same name.
 
@@ -315,6 +329,7 @@ class Settings(_Part):
     execution: Execution = Execution()
     tables: OwnTables = OwnTables()
     mitigation: Mitigation = Mitigation()
+    plan: PlanSettings = PlanSettings()
     charts: Charts = Charts()
     report: Report = Report()
     hooks: Hooks = Hooks()

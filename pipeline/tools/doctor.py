@@ -134,6 +134,8 @@ def _measures(workspace: Workspace) -> tuple[str, str]:
 
     have, left_out = workspace.measures, MEASURES.problems
     text = f"{counted(len(have.measures), 'measure')}, {counted(len(have.isolators), 'isolator')}"
+    # What they take is read as a night reads it.
+    text += f", {counted(len(workspace.plan_terms.efforts.rows), 'effort')}"
     return "warning" if left_out else "ok", "; ".join([text, *left_out])
 
 

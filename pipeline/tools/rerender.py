@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from pipeline.night.reading_summary import doubts_of
-from pipeline.operations.presentation import presentation
+from pipeline.operations.presentation import presentation, terms_of
 from pipeline.operations.report_status import renew
 from pipeline.operations.run_summary import SUMMARY
 from pipeline.operations.workspace import UsageError, locked, open_workspace
@@ -49,7 +49,7 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
         beside = {SUMMARY: told.read_text(encoding="utf-8")} if told.is_file() else {}
         renderer = PageRenderer(head, **presentation(settings))
         with ReportWriter(_free(workspace.reports / head.run_id), renderer) as writer:
-            index = draw_all(writer, head, found, changes, beside, doubts_of(workspace, head))
+            index = draw_all(writer, head, found, changes, beside, doubts_of(workspace, head), terms_of(workspace))
         if [head.run_id] == whole[:1]:
             publish(index.parent, workspace.reports)
             renew(settings)

@@ -124,6 +124,7 @@ DRY: Sequence[tuple[Sequence[str], int, str]] = (
     (["prune"], 0, "1 run and 1 report folder"),
     (["survey"], 0, "worth making: "),
     (["survey", "--out", "new/survey.xlsx", "--json"], 0, '"path": "new/survey.xlsx"'),
+    (["plan", "--hours", "3", "--out", "new/plan.xlsx"], 0, "would write new/plan.xlsx"),
     (["decide", "2", "accept", "--why", "w", "--who", "A"], 0, "2: risk accepted"),
     (["decide", "1", "withdraw", "1", "--why", "w", "--who", "A"], 0, "1: "),
     (["decide", "1", "withdraw", "5", "--why", "w", "--who", "A"], 2, "has no decision '5' to withdraw"),

@@ -20,6 +20,8 @@ SIZES = (0, 1, *range(44), 0, 53)
 def _cell(field: pa.Field, n: int) -> object:
     if pa.types.is_list(field.type):
         return [str(n)] * (n % 3)
+    if pa.types.is_boolean(field.type):
+        return n % 2 == 0
     return float(n) if pa.types.is_floating(field.type) else f"<{n}>"
 
 

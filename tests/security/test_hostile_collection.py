@@ -46,6 +46,8 @@ EXPORTS = {
         "summary.json",
         "reading.csv",
         "reading.html",
+        "plan.csv",
+        "plan.html",
     ),
 }
 OUTSIDE = "owned-by-a-title"

@@ -15,6 +15,7 @@ from pipeline.records import Assessment, Finding, Harm, Recommendation, RunRecor
 from pipeline.report.files.workbook import write_workbook
 from pipeline.report.pages.alike import Memory, finding_key
 from pipeline.report.pages.chances import chance_columns
+from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import first_failure
 from pipeline.report.pages.ranking import state_of
 from pipeline.report.text import encodable, safe_cell
@@ -33,11 +34,11 @@ FINDING_COLUMNS = (
 _OWN, _SHARED = FINDING_COLUMNS[:3], FINDING_COLUMNS[3:]
 RECOMMENDATION_COLUMNS = (
     "run", "object_number", "gallery", "level", "measure", "title", "sentence", "parameters", "checks", "rejected",
-    "remaining", "source",
+    "remaining", "settled", "source",
 )  # fmt: skip
 OBJECT_COLUMNS = (
-    "run", "object_number", "title", "gallery", "on_display", "state", "object_class", "furniture", "furniture_origin",
-    "missing", "probability", "probability_error", "band", "harm", "harm_level",
+    "run", "object_number", "title", "gallery", "case", "on_display", "state", "object_class", "furniture",
+    "furniture_origin", "missing", "probability", "probability_error", "band", "harm", "harm_level",
     *(f"p_{state.value}" for state in Harm), "open_for", "worth", "expected_loss",
     "median_g", "median_is", "dispersion", "annual_rate", "page",
 )  # fmt: skip
@@ -142,10 +143,15 @@ def page_exports(
     dict of str to bytes
         By name of the export, see `EXPORTS`.
     """
+    decided = Decided(record.decisions, units)
     found, lines, objects = findings.of(run, (f for a in record.assessments for f in a.findings))
     rows: dict[str, Sequence[Mapping[str, Any]]] = {
         "findings": found,
-        "recommendations": [_recommendation(run, r, units) for a in record.assessments for r in a.recommendations],
+        "recommendations": [
+            _recommendation(run, r, units) | {"settled": decided.covered(a, r.level)}
+            for a in record.assessments
+            for r in a.recommendations
+        ],
         "objects": [_object(run, a, f"{page}#{anchors(a)}") for a in record.assessments],
     }
     told = {name: _csv(TABLES[name], rows[name]) for name in ("recommendations", "objects")} | {"findings": lines}
@@ -199,8 +205,13 @@ def exported_unit(unit: str) -> str:
     return ONE if unit == "-" else unit
 
 
-def _recommendation(run: str, r: Recommendation, units: Units) -> dict[str, Any]:
+def sentence_of(r: Recommendation, units: Units) -> str:
+    """Return the words of a recommendation with its numbers in the reader's units."""
     values: dict[str, tuple[float | None, str]] = {k: (v, r.units.get(k, "")) for k, v in r.parameters.items()}
+    return units.fill(r.sentence, values, f"object {r.object_number}, recommendation {r.measure}")
+
+
+def _recommendation(run: str, r: Recommendation, units: Units) -> dict[str, Any]:
     return {
         "run": run,
         "object_number": r.object_number,
@@ -208,7 +219,7 @@ def _recommendation(run: str, r: Recommendation, units: Units) -> dict[str, Any]
         "level": r.level,
         "measure": r.measure,
         "title": r.title,
-        "sentence": units.fill(r.sentence, values, f"object {r.object_number}, recommendation {r.measure}"),
+        "sentence": sentence_of(r, units),
         "parameters": [f"{k}={v!r} {exported_unit(r.units.get(k, ''))}".rstrip() for k, v in r.parameters.items()],
         "checks": [
             f"{c.model}: {'' if c.before is None else f'{c.before!r} -> '}{c.demand!r} of {c.capacity!r} "
@@ -233,6 +244,7 @@ def _object(run: str, a: Assessment, page: str) -> dict[str, Any]:
         "object_number": item.object_number,
         "title": item.title,
         "gallery": item.gallery,
+        "case": item.case,
         "on_display": item.on_display,
         "state": _NOT_SHOWN if a.aside else state_of(a).value,
         "object_class": a.scene.object_class,
@@ -280,7 +292,7 @@ def schema_of(name: str) -> Any:
     """Return the types of the columns of a table, for Parquet."""
     import pyarrow as pa
 
-    kinds = {column: pa.float64() for column in _NUMBERS} | {"on_display": pa.bool_()}
+    kinds = {column: pa.float64() for column in _NUMBERS} | {"on_display": pa.bool_(), "settled": pa.bool_()}
     kinds |= dict.fromkeys(_LISTS, pa.list_(pa.string()))
     return pa.schema([(column, kinds.get(column, pa.string())) for column in TABLES[name]])
 

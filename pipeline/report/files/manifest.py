@@ -58,11 +58,13 @@ class ReportManifest:
     pages   : in their order
     reading : key of all that the page and the list of what reading refused depend on, "" where there are none
     files   : every file of the report but the manifest, by name
+    plan    : key of all that the plan depends on, "" where there is none
     """
 
     pages: tuple[KeptPage, ...] = ()
     reading: str = ""
     files: Mapping[str, FileSum] = field(default_factory=dict)
+    plan: str = ""
 
 
 class ReportDamage(NamedTuple):

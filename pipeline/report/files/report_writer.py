@@ -14,6 +14,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+from pipeline.planning.plan import Terms
 from pipeline.records import DecisionStatus, Page, RunChanges, RunRecord, Tally
 from pipeline.report.errors import ReportError
 from pipeline.report.files.concatenation import concatenate
@@ -29,9 +30,11 @@ from pipeline.report.files.manifest import (
     write_manifest,
 )
 from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, drawn
+from pipeline.report.files.plan_files import PLAN_FILES, gathered_from, write_plan_table
 from pipeline.report.language import speaking
 from pipeline.report.pages.compose import anchor_of, museum_view, page_head, page_name
 from pipeline.report.pages.environment import environment, fill
+from pipeline.report.pages.errand_views import plan_page
 from pipeline.report.pages.further import further_pages
 from pipeline.report.pages.reading import FILES, INVENTORY, READING, Doubts, reading_view, write_doubts
 from pipeline.report.pages.since import since_view
@@ -138,6 +141,7 @@ class ReportWriter:
         links: Mapping[str, Pointer],
         beside: Mapping[str, str] | None = None,
         doubts: Doubts | None = None,
+        terms: Terms | None = None,
     ) -> Path:
         """Write the exports, the index and the pages that all share, and give the report its name.
 
@@ -155,6 +159,8 @@ class ReportWriter:
             Further files of the report, by name.
         doubts : callable, optional
             Gives what reading refused and doubts, if that is known.
+        terms : Terms, optional
+            What the plan rests on; without it there is none, as where nobody knows how likely harm is.
 
         Returns
         -------
@@ -167,10 +173,12 @@ class ReportWriter:
             Where two galleries' files would have one name.
         """
         self._export(head.started)
-        for name, text in [*self._shared(head, tally, changes, links), *(beside or {}).items()]:
+        plan = "" if terms is None else self._plan(head, terms)
+        for name, text in [*self._shared(head, tally, changes, links, plan=plan), *(beside or {}).items()]:
             self._write(name, text.encode())
         reading = "" if doubts is None else self._read(head, doubts)
-        write_manifest(self._partial, ReportManifest(tuple(self._pages), reading, dict(sorted(self._files.items()))))
+        files = dict(sorted(self._files.items()))
+        write_manifest(self._partial, ReportManifest(tuple(self._pages), reading, files, plan))
         self._partial.rename(self.folder)
         return self.folder / "index.html"
 
@@ -217,8 +225,23 @@ class ReportWriter:
         self._write(page, text.encode())
         return key
 
+    def _plan(self, head: RunRecord, terms: Terms) -> str:
+        """Write the page and the list of errands, or take those of the earlier report."""
+        key = _key(self.renderer, [page.key for page in self._pages], terms)
+        if key == self._previous.manifest.plan and self._previous.has(*PLAN_FILES):
+            self._link(*PLAN_FILES)
+            return key
+        page, table = PLAN_FILES
+        plan = gathered_from(self._partial).plan(terms)
+        # An unchanged night takes it over: like a gallery's page it says when its results were found.
+        shown = page_head(head, Page("", "", True, 1, 1, head.run_id, head.finished))
+        self._write(page, plan_page(plan, shown, self.renderer.language).encode())
+        write_plan_table(self._partial / table, plan)
+        self._files[table] = sum_of(self._partial / table)
+        return key
+
     def _shared(
-        self, head: RunRecord, tally: Tally, changes: RunChanges | None, links: Mapping[str, Pointer]
+        self, head: RunRecord, tally: Tally, changes: RunChanges | None, links: Mapping[str, Pointer], *, plan: str
     ) -> list[tuple[str, str]]:
         units, drawings = self.renderer.units, self.renderer.drawings
         with speaking(self.renderer.language):
@@ -228,6 +251,7 @@ class ReportWriter:
             env = environment(self.renderer.language)
             further, left_out = further_pages(env, head, tally, entries)
             shared: dict[str, Any] = {"museum": museum, "units": units, "State": State, "further": further}
+            shared["planned"] = bool(plan)
             traces = {
                 view.anchor: trace(motion, units, view.anchor)
                 for view, motion in zip(museum.motions, head.motions, strict=True)
