@@ -55,7 +55,9 @@ def read_hazard(file: Path) -> HazardCurve:
         raise refusal(file, "text", str(error), "save it as CSV in UTF-8") from error
     except OSError as error:
         why = f"cannot be read: {error.strerror or error}"
-        raise refusal(file, "file", why, "put it into the site's folder, and check its permissions and its size") from error
+        raise refusal(
+            file, "file", why, "put it into the site's folder, and check its permissions and its size"
+        ) from error
     told = [(at, line) for at, line in enumerate(lines, start=1) if line.strip() and not line.lstrip().startswith("#")]
     try:
         rows = [(at, [cell.strip() for cell in next(csv.reader([line], strict=True))]) for at, line in told]
@@ -119,6 +121,8 @@ def _rate(file: Path, row: int, column: str, cell: str) -> float:
 def _believed(file: Path, row: int, column: str, cell: str, rate: float) -> float:
     if not LEAST * (1.0 - 1e-9) <= rate <= MOST:
         least, most = -expm1(-YEARS * LEAST), f"{MOST:g}"
-        wrong = f"{cell[:80]} is a rate of {rate:.3g} a year; believed are {LEAST:g} (in 50 years {least:.1g}) to {most}"
+        wrong = (
+            f"{cell[:80]} is a rate of {rate:.3g} a year; believed are {LEAST:g} (in 50 years {least:.1g}) to {most}"
+        )
         raise refusal(file, f"row {row}, {column}", wrong, "check the number and the column's name")
     return rate

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from math import erf, expm1, log, sqrt
 
 from pipeline.records.hazard import Measure
@@ -76,6 +77,8 @@ class Fragility:
         Peak acceleration or velocity: by which the motions differ less, and how often it happens is told.
     median_pgv, dispersion_pgv : float or None
         The median by peak velocity of the floor, m/s, and the dispersion about it [-].
+    stripes : tuple of (float, int, int)
+        By rising peak acceleration [m/s2], how many samples were run and how many of them reached it.
     """
 
     object_number: str
@@ -108,6 +111,7 @@ class Fragility:
     measure: Measure = "pga"
     median_pgv: float | None = None
     dispersion_pgv: float | None = None
+    stripes: tuple[tuple[float, int, int], ...] = ()
 
     @property
     def chances(self) -> tuple[float, float, float] | None:
@@ -133,3 +137,26 @@ class Fragility:
         if intensity <= 0.0:
             return 0.0
         return 0.5 * (1.0 + erf(log(intensity / self.median) / (sqrt(2.0) * self.dispersion)))
+
+    def seen(self, intensity: float) -> float | None:
+        """Return the share of samples that reached it, straight in ln of the intensity between stripes.
+
+        Parameters
+        ----------
+        intensity : float
+            Peak acceleration of the floor, m/s2.
+
+        Returns
+        -------
+        float or None
+            From 0 to 1; None beyond what was tried, where it is not known.
+        """
+        if not self.stripes:
+            return None
+        shares = [(at, reached / taken) for at, taken, reached in self.stripes]
+        if intensity < shares[0][0]:
+            return 0.0 if shares[0][1] == 0.0 else None
+        for (low, before), (high, after) in pairwise(shares):
+            if intensity <= high:
+                return before + (after - before) * log(intensity / low) / log(high / low)
+        return shares[-1][1] if intensity == shares[-1][0] else None

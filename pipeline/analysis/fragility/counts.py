@@ -65,7 +65,7 @@ class CountFit:
         return np.where(free, chdtrc(np.where(free, self.degrees, 1), self.deviance), np.nan)
 
 
-def fit_counts(intensity: Array, taken: Array, failed: Array, least: float = 0.0) -> CountFit:
+def fit_counts(intensity: Array, taken: Array, failed: Array, least: float = 0.0, most: float = FLATTEST) -> CountFit:
     """Fit a curve to counts, for each of several objects.
 
     Parameters
@@ -74,8 +74,8 @@ def fit_counts(intensity: Array, taken: Array, failed: Array, least: float = 0.0
         That were tried, in any unit.
     taken, failed : ndarray, shape (n, m)
         Trials of each object, and how many of these failed; not necessarily whole numbers.
-    least : float
-        Dispersion that no curve is steeper than [-].
+    least, most : float
+        Dispersions between which it is looked for [-].
 
     Returns
     -------
@@ -86,7 +86,7 @@ def fit_counts(intensity: Array, taken: Array, failed: Array, least: float = 0.0
     x = (np.log(intensity) - middle)[:, None]
     some = (failed > 0.0).any(axis=0) & (taken > failed).any(axis=0)
     k, n = failed[:, some].astype(float), taken[:, some].astype(float)
-    low, high = 1.0 / FLATTEST, 1.0 / max(least, 1e-3)
+    low, high = 1.0 / most, 1.0 / max(least, 1e-3)
     b = np.full(k.shape[1], np.clip(2.0, low, high))
     a = -b * (_sum(n * x) / _sum(n))
     found = _log_likelihood(a + b * x, n, k)

@@ -1,10 +1,11 @@
 r"""Fragility curves by joint samples under stripes of shaking: the motions of a floor, scaled to several intensities.
 
-All motions are scaled to the peak acceleration of a stripe.  Each stripe has its own samples: a balanced part of the one
-Sobol' sequence, the same for all objects, so that the counts of its stripes are independent of each other, and those of
-an object of whoever else is asked for.  Stripes lie on a ladder with even steps in the logarithm.  Each object climbs
-it in coarse steps: up until nearly all samples harm it and half of them bring it to each state that harms, or its
-last two stripes tell that this is out of reach; down until none harms it.  Where its curve is steep, the steps between are run too.
+All motions are scaled to the peak acceleration of a stripe.  Each stripe has its own samples: a balanced part of the
+one Sobol' sequence, the same for all objects, so that the counts of its stripes are independent of each other, and
+those of an object of whoever else is asked for.  Stripes lie on a ladder with even steps in the logarithm.  Each object
+climbs it in coarse steps: up until nearly all samples harm it and half of them bring it to each state that harms, or
+its last two stripes tell that this is out of reach; down until none harms it.  Where its curve is steep, the steps
+between are run too.
 
 The samples hold all that is uncertain of the object and the scatter of the models, and of what differs from earthquake
 to earthquake as much as so few motions show: of n motions, drawn from many, the expected variance among themselves is
@@ -117,6 +118,10 @@ class _Counts:
     taken: NDArray[np.intp]
     reached: NDArray[np.intp]
 
+    def floats(self) -> tuple[Array, Array]:
+        """Return what was taken and reached as numbers."""
+        return self.taken.astype(float), self.reached.astype(float)
+
     def share(self, place: int) -> Array:
         """Return the share that reached what at a stripe, (kinds, m); NaN where none were taken."""
         taken, reached = self.taken[place].sum(axis=0), self.reached[place].sum(axis=0)
@@ -182,8 +187,8 @@ def sampled_fragilities(
     hazards, why = hazards_of(stripes, told)
     possible = np.vstack([asked, possible])
     first: dict[int, Stood] = {}
-    for one in stood:
-        first.setdefault(one.of, one)
+    for each in stood:
+        first.setdefault(each.of, each)
     for at in np.flatnonzero(asked).tolist():
         kinds = np.flatnonzero(possible[:, at]).tolist()
         out[at] = tuple(curves.told(kind, at, first[at], hazards, why) for kind in kinds)
@@ -211,18 +216,19 @@ def _climbed(
     )
     run = partial(_run, counts=counts, groups=groups, ladder=ladder, harmful=harmful, each=each, executor=executor)
     start = ladder.coarse[len(ladder.coarse) // 2]
-    run({start: asked})
-    here, wanted, before = start, asked, None
+    run({start: np.asarray(asked)})
+    here, wanted = start, np.array(asked)
+    before: Array | None = None
     while here + BETWEEN < places:
         share, drawn = counts.share(here), counts.deviate(here)
         left = (places - 1 - here) // BETWEEN
-        reaches = np.isfinite(drawn) if before is None else drawn + left * (drawn - before) > SHORT
-        wanted = wanted & (looked_for & (share < enough) & reaches).any(axis=0)
+        reaches: NDArray[np.bool_] = np.isfinite(drawn) if before is None else drawn + left * (drawn - before) > SHORT
+        wanted = wanted & np.any(looked_for & (share < enough) & reaches, axis=0)
         if not wanted.any():
             break
         here, before = here + BETWEEN, drawn
         run({here: wanted})
-    here, wanted = start, asked
+    here, wanted = start, np.array(asked)
     while here - BETWEEN >= 0:
         wanted = wanted & (counts.share(here)[0] > 0.0)
         if not wanted.any():
@@ -231,11 +237,11 @@ def _climbed(
         run({here: wanted})
     fine: dict[int, NDArray[np.bool_]] = {}
     for low in ladder.coarse[:-1]:
-        rise = counts.share(low + BETWEEN)[0] - counts.share(low)[0]
+        rise: Array = counts.share(low + BETWEEN)[0] - counts.share(low)[0]
         # NaN where either was not run.
-        steep = rise > STEEP
+        steep: NDArray[np.bool_] = np.asarray(rise > STEEP)
         if steep.any():
-            fine |= {low + step: steep for step in range(1, BETWEEN)}
+            fine.update(dict.fromkeys(range(low + 1, low + BETWEEN), steep))
     run(fine)
     return counts
 
@@ -258,14 +264,12 @@ def _run(
         by_motion: dict[int, list[int]] = {}
         for number in range(place * each, (place + 1) * each):
             by_motion.setdefault(which_motion(len(ladder.motions), Draw(number, most)), []).append(number)
-        for motion, numbers in by_motion.items():
-            tasks += [(place, motion, numbers[at : at + PART]) for at in range(0, len(numbers), PART)]
+        for motion, those in by_motion.items():
+            tasks += [(place, motion, those[at : at + PART]) for at in range(0, len(those), PART)]
 
     def sample(task: tuple[int, int, Sequence[int]]) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
         place, _, numbers = task
-        return sampled(
-            numbers, groups=groups, wanted=wanted[place], harmful=harmful, level=levels[place], most=most
-        )
+        return sampled(numbers, groups=groups, wanted=wanted[place], harmful=harmful, level=levels[place], most=most)
 
     for (place, motion, numbers), (reached, harmed) in zip(tasks, executor.map(sample, tasks), strict=True):
         counts.taken[place, motion] += len(numbers) * wanted[place]
@@ -284,10 +288,11 @@ class _Curves:
     @classmethod
     def of(cls, ladder: _Ladder, counts: _Counts) -> "_Curves":
         places, motions, count = counts.taken.shape
-        by_pga = counts.taken.sum(axis=1), counts.reached.sum(axis=1)
+        taken, reached = counts.floats()
+        by_pga = taken.sum(axis=1), reached.sum(axis=1)
         ratios = np.array(ladder.velocities) / np.array(ladder.accelerations)
         speeds = (ladder.intensity[:, None] * ratios).ravel()
-        each = counts.taken.reshape(-1, count), counts.reached.reshape(places * motions, len(KINDS), count)
+        each = taken.reshape(-1, count), reached.reshape(places * motions, len(KINDS), count)
         least = scatter()
         # What the models scatter by is in the samples: no curve is steeper than that.
         fits: dict[Measure, Sequence[CountFit]] = {
@@ -333,6 +338,7 @@ class _Curves:
             measure="pga" if bound else chosen,
             median_pgv=None if bound else pgv.median,
             dispersion_pgv=None if bound else pgv.dispersion,
+            stripes=self._stripes(kind, at),
         )
         # A curve that is told in one measure only is answered in that.
         by = chosen if chosen in hazards else next(iter(hazards), chosen)
@@ -351,11 +357,24 @@ class _Curves:
             return ABOVE, high
         if reached == int(self.counts.taken[:, :, at].sum()):
             return BELOW, low
-        if fit.flat:
-            return FLAT, high
-        if low <= fit.median <= high:
+        if not fit.flat and low <= fit.median <= high:
             return "", fit.median
-        return (ABOVE, high) if fit.median > high else (BELOW, low)
+        first, last = (float(self.counts.share(place)[kind, at]) for place in self._ends(at))
+        # As few as half are reached at the strongest that was tried.
+        if fit.median > high or last < HALF:
+            return ABOVE, high
+        return (BELOW, low) if fit.median < low or first > HALF else (FLAT, high)
+
+    def _ends(self, at: int) -> tuple[int, int]:
+        """Return the lowest and the highest stripe that an object was run at."""
+        places = np.flatnonzero(self.counts.taken[:, :, at].any(axis=1))
+        return int(places[0]), int(places[-1])
+
+    def _stripes(self, kind: int, at: int) -> tuple[tuple[float, int, int], ...]:
+        """Return what was seen at each stripe."""
+        taken, reached = self.counts.taken[:, :, at].sum(axis=1), self.counts.reached[:, :, kind, at].sum(axis=1)
+        rows = zip(self.ladder.intensity.tolist(), taken.tolist(), reached.tolist(), strict=True)
+        return tuple((float(f"{a:.6g}"), n, k) for a, n, k in rows if n)
 
 
 @dataclass(frozen=True)

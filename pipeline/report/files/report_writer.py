@@ -30,6 +30,8 @@ from pipeline.report.files.manifest import (
 )
 from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, drawn
 from pipeline.report.language import speaking
+from pipeline.report.pages.class_curves import FILE as CLASS_CURVES
+from pipeline.report.pages.class_curves import class_curves, curves_csv
 from pipeline.report.pages.compose import anchor_of, museum_view, page_head, page_name
 from pipeline.report.pages.environment import environment, fill
 from pipeline.report.pages.further import further_pages
@@ -169,6 +171,9 @@ class ReportWriter:
         self._export(head.started)
         for name, text in [*self._shared(head, tally, changes, links), *(beside or {}).items()]:
             self._write(name, text.encode())
+        curves = class_curves(tally)
+        if curves:
+            self._write(CLASS_CURVES, curves_csv(curves).encode())
         reading = "" if doubts is None else self._read(head, doubts)
         write_manifest(self._partial, ReportManifest(tuple(self._pages), reading, dict(sorted(self._files.items()))))
         self._partial.rename(self.folder)
