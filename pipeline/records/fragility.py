@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import erf, expm1, log, sqrt
 
-from pipeline.records.hazard import Measure
-
 HARM = "harm"
 """What a curve is of that counts whatever harms the object."""
 
@@ -108,7 +106,7 @@ class Fragility:
     deviance: float | None = None
     goodness: float | None = None
     degrees: int = 0
-    measure: Measure = "pga"
+    measure: str = "pga"
     median_pgv: float | None = None
     dispersion_pgv: float | None = None
     stripes: tuple[tuple[float, int, int], ...] = ()

@@ -284,7 +284,7 @@ def test_more_hazard_is_more_risk() -> None:
 
 
 def test_states_come_to_no_more_than_harm_and_in_their_order() -> None:
-    """Every sample that falls harms.  Rates are of fits of their own to 16 samples a stripe: they may cross a little."""
+    """Every sample that falls harms.  Rates are of fits of their own to 16 samples a stripe, and may cross."""
     some = [one for one in curves(scenes_on_display()[::11], [stripe(strong())], CURVE, threads=2) if one]
     seen = 0
     for harm, *states in some:
