@@ -22,6 +22,9 @@ from pipeline.quantities import Quantity
 from pipeline.records import Model
 from pipeline.report.files.exports import FINDING_COLUMNS, OBJECT_COLUMNS, RECOMMENDATION_COLUMNS
 from pipeline.report.files.plan_files import PLAN_COLUMNS
+from pipeline.report.pages.class_curves import COLUMNS as CLASS_COLUMNS
+from pipeline.report.pages.class_curves import FILE as CLASS_CURVES
+from pipeline.report.pages.class_curves import GRID
 from pipeline.report.pages.reading import COLUMNS as READING_COLUMNS
 from pipeline.resources import resource
 from pipeline.settings import Settings
@@ -116,9 +119,19 @@ COLUMN_WORDS = {
     "open_for": "the parameter whose measurement alone may change what is decided; empty where none may",
     "worth": "by how much that measurement lowers the expected loss, as a share of the loss by harm",
     "expected_loss": "probability times what is at stake, in objects of class C",
-    "median_is": "whether the median was found, or is only a bound",
+    "median_is": "empty where the median was found; above, below: it is only a bound; flat: no curve tells it",
     "dispersion": "of the fragility curve, lognormal",
-    "annual_rate": "how often a year that comes; empty without two return periods",
+    "median_pgv_m_s": "the same median in peak velocity, in m/s",
+    "goodness": "probability of a deviance from the curve as large by chance",
+    "annual_rate": "how often a year it comes to harm; empty without a hazard curve or two return periods",
+    "chance_50_years": "of coming to harm within 50 years",
+    "chance_50_years_low": "lower end of its range: 1 case of 20 is below",
+    "chance_50_years_high": "upper end of its range",
+    "yearly_shifts": "how often a year it shifts; empty where no curve tells it, as of the others",
+    "yearly_leaves": "how often a year it leaves its place or hits something",
+    "yearly_rocks": "how often a year it rocks",
+    "yearly_falls": "how often a year it falls",
+    "yearly_breaks": "how often a year it breaks",
     "page": "the page and place of the object in the report",
     "row": "of the source",
     "line": "of a text file, where it differs from the row",
@@ -316,6 +329,14 @@ def exports() -> str:
         rows = [(f"`{c}`", plain(own[c]["description"] if c in own else COLUMN_WORDS[c])) for c in columns]
         parts.append(f"## {name}\n\n{markdown_table(('Column', 'Meaning'), rows)}")
     _agree(used == set(COLUMN_WORDS), "a column is described that is not there")
+    parts.append(
+        f"## {Path(CLASS_CURVES).stem}\n\nThe mean fragility of all objects on display (empty `object_class`) and of"
+        " each class, fitted by a lognormal: how many objects, how many of these have a curve of their own, the median"
+        " in g and whether it is only a bound (`median_is`), the dispersion, by how much mean and lognormal differ at"
+        " most, of how many objects it is known how often they come to harm, how many of these are expected to within"
+        f" 50 years, and the mean probability of harm at {len(GRID)} peak accelerations, empty where that is not known"
+        f" of all: {', '.join(f'`{name}`' for name in CLASS_COLUMNS)}."
+    )
     return "\n\n".join(parts)
 
 

@@ -177,13 +177,18 @@ def likely(
     list of tuple of Likelihood
         Of each object one for each level.
     """
+    return likelihoods(stood_of(objects), len(objects), levels, sampling, context.executor)
+
+
+def stood_of(objects: Sequence[Placed]) -> list[Stood]:
+    """Return the scenes of objects as joint samples shake them: those on isolators by what these do and pass on."""
     stood = []
     for at, one in enumerate(objects):
         stood.append(Stood(at, one.scene))
         if one.above is not None:
             passed = one.passing()
             stood += [Stood(at, scene, passed if on_top else None) for scene, on_top in _shaken(one.above, passed[0])]
-    return likelihoods(stood, len(objects), levels, sampling, context.executor)
+    return stood
 
 
 def _passed(level: LevelMotions, transfer: Transfer) -> LevelMotions:

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints, Validation
 
 from pipeline.errors import InputError
 from pipeline.motions.errors import MotionError, refusal
-from pipeline.motions.record import PRINTABLE, BaselineTable, Horizontal, Record, Table, Text
+from pipeline.motions.record import PRINTABLE, BaselineTable, FileName, Horizontal, Record, Table, Text
 from pipeline.resources import small_text
 
 MANIFEST = "manifest.toml"
@@ -168,6 +168,8 @@ class SiteTable(Table):
 
     x_azimuth : degrees clockwise from north of the x axis that motions are turned to; east where left out, else an axis
                 of the building
+    hazard    : CSV file beside the manifest with the hazard curve of the ground, see `hazard_file`; it takes the place
+                of the curve through the levels' return periods
     """
 
     name: Text
@@ -175,6 +177,7 @@ class SiteTable(Table):
     longitude: float = Field(ge=-180.0, le=180.0)
     vs30: float | None = Field(default=None, gt=0.0)
     x_azimuth: float = Field(default=90.0, ge=0.0, lt=360.0)
+    hazard: FileName | None = None
 
 
 class Manifest(Table):
@@ -329,7 +332,7 @@ def unlisted(file: Path, manifest: Manifest) -> list[str]:
     list of str
         Paths inside the folder, with / between folders; at most MOST.
     """
-    named = {name for _, record in manifest.records() for name in record.all_files}
+    named = {name for _, record in manifest.records() for name in record.all_files} | {manifest.site.hazard}
     folder = file.parent
     there = (path for path in folder.rglob("*") if path.is_file() and not path.is_symlink() and path != file)
     names = (path.relative_to(folder).as_posix() for path in there if path.suffix.lower() not in NO_RECORDS)

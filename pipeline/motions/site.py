@@ -16,6 +16,7 @@ from pipeline.cache import MOTIONS, Cache, CacheEntry, key_of
 from pipeline.errors import InputError
 from pipeline.motions.blas import one_thread
 from pipeline.motions.errors import MotionError, judged, refusal
+from pipeline.motions.hazard_file import read_hazard
 from pipeline.motions.intensity import integrate, measures, strong_part
 from pipeline.motions.manifest import (
     GROUND_FLOOR,
@@ -33,6 +34,7 @@ from pipeline.motions.reading import read_record
 from pipeline.motions.record import Record
 from pipeline.quantities import Array
 from pipeline.records import Motion, MotionSummary
+from pipeline.records.hazard import HazardCurve
 from pipeline.supports import TRANSMITTED, refined
 from pipeline.supports.floor import carried
 
@@ -116,12 +118,15 @@ class Site:
         The levels of shaking, as the ground feels them.
     kept : Path or None
         Where processed motions are kept between nights; None keeps nothing.
+    hazard : HazardCurve or None
+        Of the ground, where the manifest names its file.
     """
 
     file: Path
     manifest: Manifest
     levels: tuple[Level, ...]
     kept: Path | None = None
+    hazard: HazardCurve | None = None
 
     @property
     def name(self) -> str:
@@ -161,7 +166,7 @@ def read_site(folder: str | Path, *, kept: Path | None = None) -> Site:
     """
     file = manifest_file(folder)
     manifest = load_manifest(file)
-    site = Site(file, manifest, (), kept)
+    site = Site(file, manifest, (), kept, _hazard(file, manifest))
     levels = tuple(
         Level(
             name=level.name,
@@ -177,6 +182,20 @@ def read_site(folder: str | Path, *, kept: Path | None = None) -> Site:
         for i, level in enumerate(manifest.level)
     )
     return replace(site, levels=levels)
+
+
+def _hazard(file: Path, manifest: Manifest) -> HazardCurve | None:
+    name = manifest.site.hazard
+    if name is None:
+        return None
+    folder = file.parent.resolve()
+    path = folder / name
+    if not path.resolve().is_relative_to(folder):
+        wrong = f"{name!r} is a link out of the site's folder"
+        raise refusal(file, "site.hazard", wrong, "copy the file into the folder")
+    if not path.is_file():
+        raise refusal(file, "site.hazard", f"there is no file {name!r}", "put it beside the manifest or mend its name")
+    return read_hazard(path)
 
 
 def levels_at(site: Site, floor: str) -> tuple[Level, ...]:

@@ -16,13 +16,14 @@ from pipeline.analysis.faults import Fault, apart, each_apart, fault, unassessed
 from pipeline.analysis.fragility.objects import fragilities
 from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.likelihood.sampling import ACTS
+from pipeline.analysis.likelihood.stripes import sampled_fragilities
 from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.rules import RuleTable
 from pipeline.analysis.survey import measurement_requests, telling_requests
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.record import INDIVIDUAL
 from pipeline.mitigate import MeasureCatalogue, advise
-from pipeline.mitigate.installed import InstalledMeasure, Placed, assess_above, likely, placed
+from pipeline.mitigate.installed import InstalledMeasure, Placed, assess_above, likely, placed, stood_of
 from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.mitigate.proposals import case_of
 from pipeline.mitigate.trials import HarmAim
@@ -309,9 +310,22 @@ def _assessed(
         objects, scenes, findings, levels, working, numerics, context.sampling, context.measures, context.transmitted
     )
     curves: Sequence[tuple[Fragility, ...]] = [()] * len(scenes)
-    if context.fragile:
+    if context.fragile and context.sampling.samples:
+        shown = [s.item.on_display for s in scenes]
+        curves = sampled_fragilities(
+            stood_of(objects),
+            len(objects),
+            floor.stripes,
+            floor.x_azimuth,
+            context.sampling,
+            working.executor,
+            chosen=shown,
+            told=floor.hazard,
+        )
+    elif context.fragile:
         shown = [s.item.on_display and _has_a_curve(s) for s in scenes]
-        curves = fragilities(scenes, plan.work, floor.stripes, Context(working.executor), chosen=shown)
+        alone = Context(working.executor)
+        curves = fragilities(scenes, plan.work, floor.stripes, alone, chosen=shown, told=floor.hazard)
     scenes = [_needing(scene, those) for scene, those in zip(scenes, findings, strict=True)]
     return [
         (Assessment(scene, tuple(those), tuple(advised), curve, likelihoods=chance), counts)

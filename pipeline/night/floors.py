@@ -3,12 +3,15 @@
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from math import exp, log
+from statistics import fmean
 
 from pipeline.analysis.fragility.objects import Stripe
 from pipeline.analysis.verdicts import EAST, LevelMotions
 from pipeline.motions.manifest import GROUND_FLOOR, FloorTable
 from pipeline.motions.site import Level, Site, levels_at, summaries
 from pipeline.records import Item, MotionSummary
+from pipeline.records.hazard import HazardCurve
 from pipeline.settings import Floors, Settings, SettingsError
 
 
@@ -18,12 +21,14 @@ class Floor:
 
     name      : "" for the ground
     x_azimuth : degrees clockwise from north of the x axis of the motions
+    hazard    : curve of the floor, where the site's manifest names one
     """
 
     name: str
     levels: tuple[Level, ...]
     members: tuple[int, ...]
     x_azimuth: float = EAST
+    hazard: HazardCurve | None = None
 
     @property
     def shaking(self) -> list[LevelMotions]:
@@ -34,12 +39,13 @@ class Floor:
 
     @property
     def stripes(self) -> list[Stripe]:
-        """The levels as fragilities see them: by the peak acceleration of this floor."""
+        """The levels as fragilities see them: by the peak acceleration and velocity of this floor."""
         return [
             Stripe(
                 tuple(m.motion for m in v.motions),
                 tuple(m.measures["pga"] for m in v.motions),
                 v.return_period_years,
+                tuple(m.measures["pgv"] for m in v.motions),
             )
             for v in self.levels
         ]
@@ -74,8 +80,24 @@ def floors_of(settings: Settings, site: Site, galleries: Collection[str]) -> dic
     for name in (GROUND_FLOOR, *site.floors):
         if name in wanted:
             said = "" if name == GROUND_FLOOR else name
-            found[said] = Floor(said, levels_at(site, name), (), x_azimuth)
+            levels = levels_at(site, name)
+            found[said] = Floor(said, levels, (), x_azimuth, _hazard(site, levels))
     return found
+
+
+def _hazard(site: Site, levels: Sequence[Level]) -> HazardCurve | None:
+    """Return the hazard curve of a floor: that of the ground, as many times as strong as the floor's motions are."""
+    curve = site.hazard
+    if curve is None:
+        return None
+    there, ground = (
+        [log(m.measures[curve.measure]) for v in those for m in v.motions if m.measures[curve.measure] > 0.0]
+        for those in (levels, site.levels)
+    )
+    if not (there and ground):
+        return None
+    times = exp(fmean(there) - fmean(ground))
+    return replace(curve, intensity=tuple(times * one for one in curve.intensity))
 
 
 def floor_name(settings: Settings, gallery: str) -> str:

@@ -39,7 +39,8 @@ from pipeline.store.reuse import CODE, DISPLAY, HOUSE, KERNELS, LEVELS, RULES, T
 from pipeline.verification import selftest, tradeoff
 
 FRAGILE, SURVEYED = 1e8, 2e8
-"""Objects on display times samples of all motions up to which curves, and wishes, are found unasked: some minutes."""
+"""Objects on display times samples of all motions (of the longest, where joint samples tell the curves) up to which
+curves, and wishes, are found unasked: some minutes."""
 
 SAMPLE = 2_000
 """Objects that are looked at to see which response charts pay for the whole collection."""
@@ -77,7 +78,10 @@ def run_context(
     motions = motions_of(floors)
     samples = sum(motion.acceleration.shape[1] for motion in motions.values())
     shown = chosen.shown * samples
-    fragile = _asked(settings.analysis.fragility, shown <= FRAGILE)
+    # A joint sample is of one motion, however many there are.
+    longest = max((motion.acceleration.shape[1] for motion in motions.values()), default=0)
+    curves = chosen.shown * longest if settings.likelihood.samples else shown
+    fragile = _asked(settings.analysis.fragility, curves <= FRAGILE)
     # Samples tell it for nothing.
     surveyed = _asked(settings.report.survey, bool(settings.likelihood.samples) or shown <= SURVEYED)
     info = latest_import(workspace.engine)

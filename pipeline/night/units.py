@@ -136,10 +136,11 @@ class UnitKeys:
 
 
 def _shaking(floor: Floor) -> list[object]:
-    out: list[object] = [floor.name, floor.x_azimuth]
+    out: list[object] = [floor.name, floor.x_azimuth, floor.hazard]
     for level in floor.levels:
         motions = [
-            (m.motion.hash, m.motion.name, m.motion.start, m.motion.v_max, m.measures["pga"]) for m in level.motions
+            (m.motion.hash, m.motion.name, m.motion.start, m.motion.v_max, m.measures["pga"], m.measures["pgv"])
+            for m in level.motions
         ]
         out.append((level.name, level.combine, level.return_period_years, motions))
     return out

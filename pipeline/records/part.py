@@ -159,6 +159,8 @@ class Tally:
         Objects on display by where it is known from what they stand on, see `Scene.stands_by`.
     open_for : mapping of str to int
         Objects on display about which one measurement may change what is decided, by what is to be measured.
+    curves : mapping of str to mapping of str to int
+        Of the fragility of harm of objects on display, by class: what `pipeline.report.pages.class_curves` adds up.
     """
 
     states: Mapping[str, int]
@@ -180,6 +182,7 @@ class Tally:
     verdicts: Mapping[str, int] = field(default_factory=dict)
     stands_by: Mapping[str, int] = field(default_factory=dict)
     open_for: Mapping[str, int] = field(default_factory=dict)
+    curves: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -178,7 +178,7 @@ def _site(suite: Suite, place: SitePlace) -> SiteTable:
     if latitude is None or longitude is None:
         raise UsageError("neither the target nor the folder says where the site is: --latitude and --longitude")
     # The motions of a site's folder were turned to its own axes.
-    azimuth = {} if known is None else {"x_azimuth": known.x_azimuth}
+    azimuth: dict[str, Any] = {} if known is None else {"x_azimuth": known.x_azimuth}
     return SiteTable(name=place.name, latitude=latitude, longitude=longitude, **azimuth)
 
 

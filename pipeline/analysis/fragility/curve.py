@@ -12,7 +12,7 @@ from pipeline.records.fragility import ABOVE, BELOW
 from pipeline.tables import Range, table
 from pipeline.tables.rows import RangeRow, Text, checked
 
-_LOG_ROOT = 0.5 * log(2.0 * pi)
+LOG_ROOT = 0.5 * log(2.0 * pi)
 """Of the standard normal density: log f(z) = -z^2 / 2 - log sqrt(2 pi)."""
 
 ENOUGH = 7
@@ -130,7 +130,7 @@ def _censored(held: Array, short: Array, far: Array) -> tuple[Array, Array]:
     for _ in range(ROUNDS):
         z = (held - mean[:, None]) / deviation[:, None]
         # What is expected of a sample beyond z, and of its square, in standard deviations.
-        density = -0.5 * z**2 - _LOG_ROOT
+        density = -0.5 * z**2 - LOG_ROOT
         over, under = np.exp(density - log_ndtr(-z)), np.exp(density - log_ndtr(z))
         first = np.where(far, over, np.where(short, -under, z))
         second = np.where(far, 1.0 + z * over, np.where(short, 1.0 - z * under, z * z))

@@ -1,4 +1,4 @@
-"""Hazard curve of a floor through the levels' return periods, and the annual rate of failure that follows from it."""
+"""Hazard curve of a floor, told or through the levels' return periods, and the annual rate of failure by it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ import numpy as np
 
 from pipeline.errors import InputError
 from pipeline.quantities import Array
+from pipeline.records.hazard import HazardCurve, Measure
 
 EXTENDED = 2.0
 """Factor of intensity by which the straight ends of a hazard curve are drawn out beyond its levels, and no further."""
@@ -23,13 +24,16 @@ class Hazard:
     Attributes
     ----------
     intensity : ndarray, shape (n,)
-        Rising, m/s2.
+        Rising, m/s2 or m/s.
     rate : ndarray, shape (n,)
         Falling, 1/year.
+    measure : {"pga", "pgv"}
+        Of the intensity.
     """
 
     intensity: Array
     rate: Array
+    measure: Measure = "pga"
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -37,17 +41,30 @@ class Hazard:
         return float(self.intensity[0]), float(self.intensity[-1])
 
     @classmethod
-    def of(cls, intensities: Sequence[float], periods: Sequence[float], extended: float = EXTENDED) -> "Hazard":
+    def told(cls, curve: HazardCurve) -> "Hazard":
+        """Return a curve as it is told, without anything beyond its ends."""
+        return cls(np.array(curve.intensity), np.array(curve.rate), curve.measure)
+
+    @classmethod
+    def of(
+        cls,
+        intensities: Sequence[float],
+        periods: Sequence[float],
+        extended: float = EXTENDED,
+        measure: Measure = "pga",
+    ) -> "Hazard":
         """Return the curve through levels of shaking.
 
         Parameters
         ----------
         intensities : sequence of float
-            Of the levels, m/s2.
+            Of the levels, m/s2 or m/s.
         periods : sequence of float
             Their return periods, years.
         extended : float
             Factor by which it is drawn out at both ends [-].
+        measure : {"pga", "pgv"}
+            Of the intensities.
 
         Returns
         -------
@@ -71,7 +88,35 @@ class Hazard:
         return cls(
             np.concatenate([[x[0] / extended], x, [x[-1] * extended]]),
             np.exp(np.concatenate([[first], rates, [last]])),
+            measure,
         )
+
+    def beyond(self, median: float, dispersion: float) -> tuple[float, float]:
+        """Return which shares of a lognormal fragility lie below the curve's intensities and above them.
+
+        Parameters
+        ----------
+        median : float
+            Of the intensity at failure, m/s2 or m/s.
+        dispersion : float
+            Standard deviation of its ln, above 0 [-].
+
+        Returns
+        -------
+        below, above : float
+            From 0 to 1.
+        """
+        from scipy.special import ndtr
+
+        first, last = ((np.log(end) - np.log(median)) / dispersion for end in self.ends)
+        return float(ndtr(first)), float(ndtr(-last))
+
+    def most(self, median: float, dispersion: float) -> float:
+        """Return the annual rate of failure if beyond its upper end the curve stayed as high as there, 1/year.
+
+        It cannot be higher there; `failures` takes it as none.  Parameters are those of `failures`.
+        """
+        return self.failures(median, dispersion) + float(self.rate[-1]) * self.beyond(median, dispersion)[1]
 
     def failures(self, median: float, dispersion: float) -> float:
         r"""Return the annual rate of failure of a lognormal fragility: the hazard, averaged over its failure intensity.
@@ -89,7 +134,7 @@ class Hazard:
         Parameters
         ----------
         median : float
-            Of the intensity at failure, m/s2.
+            Of the intensity at failure, m/s2 or m/s.
         dispersion : float
             Standard deviation of its ln [-].
 

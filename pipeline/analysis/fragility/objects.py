@@ -17,13 +17,18 @@ from pipeline.analysis.plan import Indices, Work
 from pipeline.analysis.verdicts import capacity_of
 from pipeline.quantities import Array
 from pipeline.records import Fragility, Motion, Numerics, Scene
-from pipeline.records.fragility import ABOVE
+from pipeline.records.fragility import ABOVE, FLAT
+from pipeline.records.hazard import HazardCurve, Measure
 
 DIRECTIONS = 30.0
 """Degrees between the directions tried at least: a worst one missed by half of that is 3 % of the demand."""
 
 FINELY = Numerics("history", DIRECTIONS)
 """How each scaled motion is integrated unless said otherwise."""
+
+
+BEYOND = 0.05
+"""Share of a curve beyond an end of the hazard curve from which on it is said."""
 
 
 @dataclass(frozen=True)
@@ -38,25 +43,58 @@ class Stripe:
         Of each, peak horizontal acceleration of the floor that objects stand on, m/s2.
     return_period_years : float or None
         How rarely it comes, years.
+    velocities : tuple of float
+        Of each motion, peak horizontal velocity of the floor, m/s.
     """
 
     motions: tuple[Motion, ...]
     intensities: tuple[float, ...]
     return_period_years: float | None = None
+    velocities: tuple[float, ...] = ()
 
 
-def hazard_of(stripes: Sequence[Stripe]) -> Hazard:
+def hazards_of(stripes: Sequence[Stripe], told: HazardCurve | None) -> tuple[Mapping[Measure, Hazard], str]:
+    """Return the hazard curves of a floor by measure, and why there are none.
+
+    Parameters
+    ----------
+    stripes
+        Its levels of shaking.
+    told
+        The curve that takes the place of those through the levels' return periods; None where there is none.
+
+    Returns
+    -------
+    mapping, str
+        At most one of each measure; "" where there is any.
+    """
+    if told is not None:
+        return {told.measure: Hazard.told(told)}, ""
+    found: dict[Measure, Hazard] = {}
+    measures: tuple[Measure, ...] = ("pga", "pgv")
+    why = ""
+    for measure in measures:
+        try:
+            found[measure] = hazard_of(stripes, measure)
+        except NoHazardError as problem:
+            why = why or str(problem)
+    return found, "" if found else why
+
+
+def hazard_of(stripes: Sequence[Stripe], measure: Measure = "pga") -> Hazard:
     """Return the hazard curve through the levels that have a return period, at the geometric mean of their intensities.
 
     Parameters
     ----------
     stripes
         Levels of shaking; those without a return period have no say.
+    measure
+        Whether of peak acceleration or of peak velocity.
 
     Returns
     -------
     Hazard
-        Annual rate of exceedance against peak horizontal acceleration [m/s2].
+        Annual rate of exceedance against peak horizontal acceleration [m/s2] or velocity [m/s].
 
     Raises
     ------
@@ -64,9 +102,12 @@ def hazard_of(stripes: Sequence[Stripe]) -> Hazard:
         See `Hazard.of`.
     """
     told = [s for s in stripes if s.return_period_years is not None and s.motions]
+    each = [s.intensities if measure == "pga" else s.velocities for s in told]
+    if not all(each):
+        raise NoHazardError("how often it happens cannot be told by a peak velocity that nobody gave")
     with np.errstate(divide="ignore"):
-        means = [float(np.exp(np.mean(np.log(s.intensities)))) for s in told]
-    return Hazard.of(means, [s.return_period_years or 0.0 for s in told])
+        means = [float(np.exp(np.mean(np.log(values)))) for values in each]
+    return Hazard.of(means, [s.return_period_years or 0.0 for s in told], measure=measure)
 
 
 def fragilities(
@@ -77,6 +118,7 @@ def fragilities(
     numerics: Numerics = FINELY,
     *,
     chosen: Sequence[bool] | None = None,
+    told: HazardCurve | None = None,
 ) -> list[tuple[Fragility, ...]]:
     """Scale every motion of every level until each object fails, in each of its ways, and fit fragility curves.
 
@@ -98,6 +140,8 @@ def fragilities(
         How finely; directions are no closer than every `DIRECTIONS` degrees.
     chosen
         Which scenes are asked for; None: all.
+    told
+        The hazard curve of the floor; None where the levels' return periods are to tell it.
 
     Returns
     -------
@@ -115,10 +159,10 @@ def fragilities(
     out: list[list[Fragility]] = [[] for _ in scenes]
     if not any(motions for motions, _ in shaking.values()):
         return [() for _ in scenes]
-    try:
-        hazard, why = hazard_of(stripes), ""
-    except NoHazardError as problem:
-        hazard, why = None, str(problem)
+    hazards, why = hazards_of(stripes, told)
+    hazard = hazards.get("pga")
+    if hazard is None and told is not None:
+        why = "how often it happens cannot be told by a hazard curve of peak velocity unless joint samples are drawn"
     for done, one in enumerate(work):
         context.progress.step("fragilities", done, len(work))
         motions, intensities = shaking[one.furniture]
@@ -245,13 +289,51 @@ def _inputs(factors: Array, starts: Indices, lengths: Indices) -> Array:
 
 def _with_rate(found: Fragility, hazard: Hazard | None, why: str) -> Fragility:
     """Return the fragility with the annual rate of failure, or with the reason why there is none."""
+    ends = (found.low, found.median, found.high)
+    return with_rate(found, hazard, why, ends, (found.record, found.dispersion))
+
+
+def with_rate(
+    found: Fragility,
+    hazard: Hazard | None,
+    why: str,
+    medians: tuple[float, float, float],
+    dispersions: tuple[float, float],
+) -> Fragility:
+    """Return a fragility with the annual rate of failure, or with the reason why there is none.
+
+    Beyond the ends of the hazard curve nothing is made up: the rate is what the curve accounts for, its range takes in
+    what may come from above its upper end, and the note says so where that is much.
+
+    Parameters
+    ----------
+    found : Fragility
+        Without a rate.
+    hazard : Hazard or None
+        Of the floor.
+    why : str
+        Why there is none.
+    medians : (float, float, float)
+        In the measure of the hazard: low, best, high.
+    dispersions : (float, float)
+        In that measure: that of earthquakes alone, and with all that is not known of the object.
+    """
     if hazard is None:
         return replace(found, note=why)
+    if found.bound == FLAT:
+        return replace(found, note="how often it happens cannot be told: more shaking hardly makes it likelier")
     if found.bound:
         return replace(found, note="how often it happens cannot be told without the shaking at which it fails")
+    (low, median, high), (record, whole) = medians, dispersions
     least, most = hazard.ends
-    if not least <= found.median <= most:
-        return replace(found, note="it fails at shaking too far from the site's levels to tell how often it comes")
-    rate = hazard.failures(found.median, found.dispersion)
-    rare, often = (hazard.failures(median, found.record) for median in (found.high, found.low))
-    return replace(found, annual_rate=rate, rate_low=min(rare, rate), rate_high=max(often, rate))
+    if not least <= median <= most:
+        return replace(found, note="it fails at shaking too far from the hazard curve to tell how often it comes")
+    rate = hazard.failures(median, whole)
+    rare, often = hazard.failures(high, record), hazard.most(low, record)
+    below, above = hazard.beyond(median, whole)
+    note = ""
+    if above > BEYOND:
+        note = "its hazard curve ends before it fails for certain: the upper end of how often it happens counts that"
+    if below > BEYOND:
+        note = "it fails at times below the hazard curve, which is not counted: it happens at least this often"
+    return replace(found, annual_rate=rate, rate_low=min(rare, rate), rate_high=max(often, rate), note=note)

@@ -52,7 +52,8 @@ ACTS = 2
 PART = 8
 """Samples that one who works runs in one go."""
 
-_Groups = Mapping[tuple[FurnitureFilter | None, Transfer | None], Sequence["_Analyses"]]
+Groups = Mapping[tuple[FurnitureFilter | None, Transfer | None], Sequence["_Analyses"]]
+"""Analyses by what their shaking passes through."""
 
 
 @dataclass(frozen=True)
@@ -108,18 +109,7 @@ def likelihoods(
     list of tuple of Likelihood
         Of each object one for each level; none of one for which no model is run.
     """
-    groups: dict[tuple[FurnitureFilter | None, Transfer | None], list[_Analyses]] = {}
-    for model, furniture, members in requirements([one.scene for one in stood])[0]:
-        by_isolator: dict[Transfer | None, list[Stood]] = {}
-        for at in members:
-            by_isolator.setdefault(stood[at].isolator, []).append(stood[at])
-        for isolator, those in by_isolator.items():
-            for angle, alike in _turned(model, those, levels[0].x_azimuth):
-                groups.setdefault((furniture, isolator), []).append(_analyses(model, alike, angle))
-    harmful = np.zeros((len(STATES), count), dtype=bool)
-    for one in stood:
-        harms = (*HARMFUL, Harm.ROCKS) if rocking_harms(one.scene) else HARMFUL
-        harmful[:, one.of] = [state in harms for state in STATES]
+    groups, harmful = grouped(stood, levels[0].x_azimuth), harmful_states(stood, count)
     uncertain = _uncertain((one for those in groups.values() for one in those), count) if telling else {}
     out: list[tuple[Likelihood, ...]] = [() for _ in range(count)]
     asked = sorted({at for those in groups.values() for one in those for at in one.of.tolist()})
@@ -131,6 +121,42 @@ def likelihoods(
             best = names[at], float(worth[at]), float(moves[at])
             out[at] = (*out[at], counted.told(at, level.name, harmful[:, at], sampling, best))
     return out
+
+
+def grouped(stood: Sequence[Stood], x_azimuth: float) -> Groups:
+    """Return the analyses of scenes by what their shaking passes through.
+
+    x_azimuth : degrees clockwise from north of the x axis of the motions
+    """
+    groups: dict[tuple[FurnitureFilter | None, Transfer | None], list[_Analyses]] = {}
+    for model, furniture, members in requirements([one.scene for one in stood])[0]:
+        by_isolator: dict[Transfer | None, list[Stood]] = {}
+        for at in members:
+            by_isolator.setdefault(stood[at].isolator, []).append(stood[at])
+        for isolator, those in by_isolator.items():
+            for angle, alike in _turned(model, those, x_azimuth):
+                groups.setdefault((furniture, isolator), []).append(_analyses(model, alike, angle))
+    return groups
+
+
+def harmful_states(stood: Sequence[Stood], count: int) -> NDArray[np.bool_]:
+    """Return which states harm each object, (s, m)."""
+    harmful = np.zeros((len(STATES), count), dtype=bool)
+    for one in stood:
+        harms = (*HARMFUL, Harm.ROCKS) if rocking_harms(one.scene) else HARMFUL
+        harmful[:, one.of] = [state in harms for state in STATES]
+    return harmful
+
+
+def possible_states(groups: Groups, count: int) -> NDArray[np.bool_]:
+    """Return which states each object can reach, (s, m)."""
+    possible = np.zeros((len(STATES), count), dtype=bool)
+    for (furniture, _), those in groups.items():
+        tips = (Harm.FALLS,) if furniture is not None and furniture.loose is not None else ()
+        for one in those:
+            for state in (*one.model.reachable, *tips):
+                possible[STATES.index(state), one.of] = True
+    return possible
 
 
 @dataclass
@@ -168,7 +194,7 @@ class _Counted:
 
 
 def _counted(
-    groups: _Groups,
+    groups: Groups,
     count: int,
     asked: Indices,
     harmful: NDArray[np.bool_],
@@ -181,19 +207,14 @@ def _counted(
         np.zeros(count, dtype=np.intp),
         np.zeros(count, dtype=np.intp),
         np.zeros((len(STATES), count), dtype=np.intp),
-        np.zeros((len(STATES), count), dtype=bool),
+        possible_states(groups, count),
         [],
     )
-    for (furniture, _), those in groups.items():
-        tips = (Harm.FALLS,) if furniture is not None and furniture.loose is not None else ()
-        for one in those:
-            for state in (*one.model.reachable, *tips):
-                done.possible[STATES.index(state), one.of] = True
     wanted = np.zeros(count, dtype=bool)
     wanted[asked] = True
     for start, end in pairwise(_stages(sampling.samples, first)):
         parts = [range(at, min(at + PART, end)) for at in range(start, end, PART)]
-        work = partial(_sampled, groups=groups, wanted=wanted, harmful=harmful, level=level, most=sampling.samples)
+        work = partial(sampled, groups=groups, wanted=wanted, harmful=harmful, level=level, most=sampling.samples)
         for reached, harmed in executor.map(work, parts):
             done.reached += reached
             done.bits.append(harmed)
@@ -205,10 +226,10 @@ def _counted(
     return done
 
 
-def _sampled(
-    numbers: range,
+def sampled(
+    numbers: Sequence[int],
     *,
-    groups: _Groups,
+    groups: Groups,
     wanted: NDArray[np.bool_],
     harmful: NDArray[np.bool_],
     level: LevelMotions,

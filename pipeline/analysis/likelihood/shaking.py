@@ -40,9 +40,25 @@ def drawn_motion(motions: Sequence[Motion], draw: Draw) -> Motion:
     """
     from scipy.special import ndtri
 
-    at = min(int(draw.share(MOTION) * len(motions)), len(motions) - 1)
+    at = which_motion(len(motions), draw)
     off = float(np.clip(ndtri(draw.share(SCATTER)), -FARTHEST, FARTHEST))
     return motions[at].scaled(float(np.exp(stated("modelling").value * off)), "scatter of the models")
+
+
+def which_motion(motions: int, draw: Draw) -> int:
+    """Return which of so many motions is drawn."""
+    return min(int(draw.share(MOTION) * motions), motions - 1)
+
+
+def scatter() -> float:
+    """Return the standard deviation of ln of what the scatter of the models scales motions by [-]."""
+    from scipy.special import ndtr
+
+    end = FARTHEST
+    density = float(np.exp(-0.5 * end * end) / np.sqrt(2.0 * np.pi))
+    # What lies beyond the ends is put there.
+    square = 2.0 * ndtr(end) - 1.0 - 2.0 * end * density + 2.0 * end**2 * ndtr(-end)
+    return stated("modelling").value * float(np.sqrt(square))
 
 
 def direction(draw: Draw) -> float:

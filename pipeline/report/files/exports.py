@@ -22,7 +22,9 @@ from pipeline.report.text import encodable, safe_cell
 from pipeline.report.units import Units
 
 _NUMBERS = (
-    "demand", "low", "high", "capacity", "utilisation", "error", "median_g", "dispersion", "annual_rate",
+    "demand", "low", "high", "capacity", "utilisation", "error",
+    "median_g", "dispersion", "median_pgv_m_s", "goodness", "annual_rate", "chance_50_years", "chance_50_years_low",
+    "chance_50_years_high", *(f"yearly_{state.value}" for state in Harm),
     "probability", "probability_error", *(f"p_{state.value}" for state in Harm), "worth", "expected_loss", "remaining",
 )  # fmt: skip
 _LISTS = ("assumptions", "parameters", "checks", "rejected")
@@ -40,7 +42,8 @@ OBJECT_COLUMNS = (
     "run", "object_number", "title", "gallery", "case", "on_display", "state", "object_class", "furniture",
     "furniture_origin", "missing", "probability", "probability_error", "band", "harm", "harm_level",
     *(f"p_{state.value}" for state in Harm), "open_for", "worth", "expected_loss",
-    "median_g", "median_is", "dispersion", "annual_rate", "page",
+    "median_g", "median_is", "dispersion", "median_pgv_m_s", "goodness", "annual_rate", "chance_50_years",
+    "chance_50_years_low", "chance_50_years_high", *(f"yearly_{state.value}" for state in Harm), "page",
 )  # fmt: skip
 
 

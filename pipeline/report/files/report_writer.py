@@ -32,6 +32,8 @@ from pipeline.report.files.manifest import (
 from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, drawn
 from pipeline.report.files.plan_files import PLAN_FILES, gathered_from, write_plan_table
 from pipeline.report.language import speaking
+from pipeline.report.pages.class_curves import FILE as CLASS_CURVES
+from pipeline.report.pages.class_curves import class_curves, curves_csv
 from pipeline.report.pages.compose import anchor_of, museum_view, page_head, page_name
 from pipeline.report.pages.environment import environment, fill
 from pipeline.report.pages.errand_views import plan_page
@@ -176,6 +178,9 @@ class ReportWriter:
         plan = "" if terms is None else self._plan(head, terms)
         for name, text in [*self._shared(head, tally, changes, links, plan=plan), *(beside or {}).items()]:
             self._write(name, text.encode())
+        curves = class_curves(tally)
+        if curves:
+            self._write(CLASS_CURVES, curves_csv(curves).encode())
         reading = "" if doubts is None else self._read(head, doubts)
         files = dict(sorted(self._files.items()))
         write_manifest(self._partial, ReportManifest(tuple(self._pages), reading, files, plan))

@@ -116,6 +116,11 @@ _STATES = {
 }
 
 
+def state_word(state: Harm) -> str:
+    """Return a state in words."""
+    return _STATES[state]()
+
+
 def _sentence(found: Likelihood) -> str:
     """Say what is likeliest to harm it, and how likely any harm is."""
     band = _BANDS[found.band]()

@@ -8,6 +8,7 @@ from math import inf, isnan
 from pipeline.records import Assessment, Page, Recommendation, RunRecord, Tally, Verdict
 from pipeline.report.errors import ReportError
 from pipeline.report.language import ngettext, said
+from pipeline.report.pages.class_curves import class_curve_views, class_curves
 from pipeline.report.pages.decided import Decided, decisions_view, merged
 from pipeline.report.pages.describe import Describer, Sayings, furniture_known, percent
 from pipeline.report.pages.floor_plan import plan_view
@@ -213,6 +214,7 @@ def museum_view(
         workbook=workbook,
         reading=reading_view(head.settings),
         whole=not head.settings.get(SELECTION),
+        classes=class_curve_views(class_curves(tally)),
     )
 
 

@@ -1,7 +1,7 @@
 """Fragility curves and the spacing of neighbours in words, numbers and small pictures."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import inf, isfinite
 from statistics import median
 
@@ -9,10 +9,11 @@ from markupsafe import Markup
 
 from pipeline.analysis.fragility.published import Published, all_published, in_si
 from pipeline.quantities import G
-from pipeline.records import Assessment, Finding, Fragility, Spacing, Support, Verdict
-from pipeline.records.fragility import ABOVE, BELOW
+from pipeline.records import Assessment, Finding, Fragility, Harm, Spacing, Support, Verdict
+from pipeline.records.fragility import ABOVE, BELOW, FLAT, HARM
 from pipeline.records.result import BOUNDS
 from pipeline.report.language import _, ngettext, said
+from pipeline.report.pages.chances import state_word
 from pipeline.report.plots.panel import Panel
 from pipeline.report.plots.scales import Scale
 from pipeline.report.plots.svg import path, picture, text, through, upright
@@ -28,18 +29,25 @@ _POINTS = 13
 _TOLD = (0.25 * G, 0.5 * G, G)
 """Where the picture's text alternative tells the probability."""
 
+_ENDS = ("chance", "low", "high")
+
 MOVES = ("displacement",)
 """Outputs that tell how far an object moves from where it stands."""
 
 
 @dataclass(frozen=True, slots=True)
 class FragilityView:
-    """One fragility curve: what fails and from when on, why it is not sharper, how often, beside what; its picture."""
+    """One fragility curve: what fails and from when on, why it is not sharper, how often, beside what; its picture.
+
+    chance : of harm within 50 years, where joint samples tell it;  numbers : how well the curve fits these
+    """
 
     title: str
     sentence: str
     sources: str
     rate: str
+    chance: str
+    numbers: str
     beside: str
     picture: Markup
 
@@ -85,36 +93,54 @@ class ShakingView:
 def fragility_views(assessment: Assessment, *, drawn: bool) -> tuple[FragilityView, ...]:
     """Return the curves of an object, what fails first to begin with; only that one is drawn."""
     number = clean(assessment.scene.item.object_number)
+    # States are told beside the curve of harm as a whole.
+    told = [f for f in assessment.fragilities if f.state in ("", HARM)]
     # Of what is only bounded there is no curve.
-    return tuple(
-        _view(f, number if drawn and i == 0 and not f.bound else "") for i, f in enumerate(assessment.fragilities)
-    )
+    views = [_view(f, number if drawn and i == 0 and not f.bound else "") for i, f in enumerate(told)]
+    states = _state_chances(assessment.fragilities)
+    return tuple(replace(view, numbers=f"{view.numbers} {states}".strip()) for view in views)
+
+
+def _state_chances(curves: Sequence[Fragility]) -> str:
+    """Say how likely an object is to come to each state within 50 years; "" where nobody knows."""
+    told = [(f.state, f.chances) for f in curves if f.state and f.state != HARM]
+    known = [
+        _("%(state)s %(chance)s (%(low)s to %(high)s)")
+        % ({"state": state_word(Harm(state))} | dict(zip(_ENDS, map(_percent, chances), strict=True)))
+        for state, chances in told
+        if chances is not None
+    ]
+    return f"{_('Within 50 years:')} {', '.join(known)}." if known else ""
 
 
 def _view(f: Fragility, draw: str) -> FragilityView:
     at = in_g(f.median)
     if f.bound:
-        phrase = _("stands up to %(at)s at least") if f.bound == ABOVE else _("fails already at %(at)s or less")
-        sentence = phrase % {"at": at}
+        sentence = _bounds(sampled=bool(f.state))[f.bound] % {"at": at}
     else:
-        sentence = _("fails from about %(at)s (%(low)s to %(high)s)") % {
-            "at": at,
-            "low": in_g(f.low),
-            "high": in_g(f.high),
-        }
+        phrase = (
+            _("as likely as not it comes to harm at about %(at)s (%(low)s to %(high)s)")
+            if f.state
+            else _("fails from about %(at)s (%(low)s to %(high)s)")
+        )
+        sentence = phrase % {"at": at, "low": in_g(f.low), "high": in_g(f.high)}
     again = "; " + _("stronger shaking of the same kind may pass: the weakest that fails counts") if f.returns else ""
     beside = "" if f.published_median is None else in_g(f.published_median)
     return FragilityView(
-        said(clean(f.title)),
+        title_of(f),
         sentence + again,
         _sources(f),
-        _rate(f),
+        "" if f.state else _rate(f),
+        _chance(f) if f.state else "",
+        _goodness(f) if f.state else "",
         clean(beside),
         _picture(f, draw) if draw else Markup(""),
     )
 
 
 def _sources(f: Fragility) -> str:
+    if f.bound and f.samples:
+        return ""
     motions = ngettext("%(count)s motion", "%(count)s motions", f.motions) % {"count": count(f.motions)}
     # That few motions cannot tell it is said once a gallery.
     record = _("stated") if f.stated else _("of %(motions)s") % {"motions": motions}
@@ -125,6 +151,62 @@ def _sources(f: Fragility) -> str:
         "inputs": f"{f.inputs:.2f}",
         "model": f"{f.modelling:.2f}",
     }
+
+
+def _goodness(f: Fragility) -> str:
+    """Say how well the curve fits its samples, and what it is by peak velocity."""
+    told = _("The curve of harm is by %(samples)s samples at %(stripes)s intensities.")
+    said_so = told % {"samples": count(f.samples), "stripes": count(len(f.stripes))}
+    if f.error is not None:
+        told = _("By their number its median is known within %(error)s.")
+        said_so += " " + told % {"error": f"{100.0 * f.error:.0f} %"}
+    if f.goodness is not None and f.deviance is not None:
+        told = _("Deviance %(deviance)s with %(degrees)s degrees of freedom: by chance as large in %(share)s of cases.")
+        share = f"{f.goodness:.0%}"
+        said_so += " " + told % {"deviance": f"{f.deviance:.1f}", "degrees": count(f.degrees), "share": share}
+    if f.median_pgv is not None:
+        told = (
+            _("By peak velocity, in which the motions differ less: %(at)s cm/s.")
+            if f.measure == "pgv"
+            else _("By peak velocity: %(at)s cm/s.")
+        )
+        said_so += " " + told % {"at": significant(100.0 * f.median_pgv, 2)}
+    return said_so
+
+
+def _bounds(*, sampled: bool) -> Mapping[str, str]:
+    if sampled:
+        return {
+            ABOVE: _("up to %(at)s at least it stays unharmed oftener than not"),
+            BELOW: _("already at %(at)s or less it comes to harm oftener than not"),
+            FLAT: _("there is no one shaking from which on: up to %(at)s more shaking hardly makes it likelier"),
+        }
+    return {ABOVE: _("stands up to %(at)s at least"), BELOW: _("fails already at %(at)s or less")}
+
+
+def title_of(f: Fragility) -> str:
+    """Return what a curve is of, in words: a way to fail, or any harm."""
+    return _("Harm") + ":" if f.state == HARM else said(clean(f.title))
+
+
+def _chance(f: Fragility) -> str:
+    """Say how likely harm is within 50 years; "" where nobody knows."""
+    chances = f.chances
+    if chances is None:
+        return ""
+    told = _("Within 50 years it comes to harm with a chance of %(chance)s (%(low)s to %(high)s).")
+    chance, low, high = (_percent(one) for one in chances)
+    note = f" {said(clean(f.note))}." if f.note else ""
+    return told % {"chance": chance, "low": low, "high": high} + note[:2].upper() + note[2:]
+
+
+def _percent(chance: float) -> str:
+    """Write a chance in percent with two digits at most: more would be a boast."""
+    if chance < 0.001:
+        return _("less than 0.1 %")
+    if chance > 0.99:
+        return _("more than 99 %")
+    return f"{significant(100.0 * chance, 1 if chance < 0.01 else 2)} %"
 
 
 def _rate(f: Fragility) -> str:
@@ -174,7 +256,7 @@ def _picture(f: Fragility, number: str) -> Markup:
         for a in _TOLD
     ]
     told = _("Probability of failure:") + " " + ", ".join(at) + "."
-    return picture("chart curve", 220, 72, f"{clean(number)}: {said(clean(f.title))}", told, drawn)
+    return picture("chart curve", 220, 72, f"{clean(number)}: {title_of(f).rstrip(':')}", told, drawn)
 
 
 def shaking_view(members: Sequence[Assessment]) -> ShakingView | None:
@@ -185,7 +267,7 @@ def shaking_view(members: Sequence[Assessment]) -> ShakingView | None:
     free = [a.fragilities[0] for a in members if a.scene.support is Support.FREESTANDING and a.fragilities]
     if not free:
         return None
-    middle = median(inf if f.bound == ABOVE else f.median for f in free)
+    middle = median(inf if f.bound in (ABOVE, FLAT) else f.median for f in free)
     if isfinite(middle):
         phrase = ngettext(
             "The one object that stands free fails from about %(at)s of peak acceleration of its floor on.",
@@ -194,7 +276,7 @@ def shaking_view(members: Sequence[Assessment]) -> ShakingView | None:
         )
     else:
         # Each of these bounds is below its own median, and so is their median below that of the medians.
-        middle = median(0.0 if f.bound == BELOW else f.median for f in free)
+        middle = median(0.0 if f.bound in (BELOW, FLAT) else f.median for f in free)
         phrase = ngettext(
             "The one object that stands free stands at %(at)s of peak acceleration at least.",
             "Half of the %(count)s objects that stand free stand at %(at)s of peak acceleration at least.",
@@ -269,12 +351,24 @@ def spanned(f: Finding, units: Units) -> str:
 def first_failure(assessment: Assessment) -> dict[str, str | float | None]:
     """Return the columns of an export that tell what fails first; empty where no curve was made.
 
-    median_is : "" where the median is known, else "above" or "below": it is only known to be that
+    median_is : "" where the median is known, else "above" or "below": it is only known to be that, or "flat": what
+                fails hardly grows with the shaking
     """
     first = next(iter(assessment.fragilities), None)
+    rates = {f.state: f.annual_rate for f in assessment.fragilities}
     return {
         "median_g": None if first is None else first.median / G,
         "median_is": "" if first is None else first.bound,
         "dispersion": None if first is None else first.dispersion,
+        "median_pgv_m_s": None if first is None else first.median_pgv,
+        "goodness": None if first is None else first.goodness,
         "annual_rate": None if first is None else first.annual_rate,
+        **_within_years(first),
+        **{f"yearly_{state.value}": rates.get(state.value) for state in Harm},
     }
+
+
+def _within_years(first: Fragility | None) -> dict[str, str | float | None]:
+    chances = None if first is None else first.chances
+    told = (None, None, None) if chances is None else chances
+    return dict(zip(("chance_50_years", "chance_50_years_low", "chance_50_years_high"), told, strict=True))

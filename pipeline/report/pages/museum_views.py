@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from pipeline.report.pages.class_curves import ClassCurveView
 from pipeline.report.pages.judging import RoomView, ShakingView, SpacingView
 from pipeline.report.pages.numerics import DecidedView
 from pipeline.report.pages.plan_views import PlanView
@@ -66,6 +67,7 @@ class MuseumView:
     self_test  : None where none was run before this run
     furniture  : of how many objects it is known from where what they stand on, in one line, "" of none
     survey     : what is worth measuring in the whole museum and what asking cost, "" where it was not asked
+    classes   : from what shaking on the classes of objects come to harm; none where that was not asked
     since     : None where there was no run before
     """
 
@@ -94,6 +96,7 @@ class MuseumView:
     stores: GalleryRow | None = None
     reading: ReadingView | None = None
     whole: bool = True
+    classes: tuple[ClassCurveView, ...] = ()
 
     @property
     def complete(self) -> bool:

@@ -6,6 +6,7 @@ from math import isfinite
 
 from pipeline.records import Assessment, Errors, Finding, Found, Tally, Urgent, Verdict
 from pipeline.report.pages.chances import open_for
+from pipeline.report.pages.class_curves import curve_sums
 from pipeline.report.pages.ranking import finding_order, state_of, urgency
 from pipeline.report.pages.views import STATES, State
 from pipeline.report.text import encodable
@@ -42,6 +43,7 @@ def tally(found: Found) -> Tally:
         verdicts=dict(Counter(f.verdict.value for f in findings)),
         stands_by=dict(Counter(a.scene.stands_by.value for a in shown if a.scene.stands_by is not None)),
         open_for=dict(Counter(open_for(a) for a in shown if open_for(a))),
+        curves=curve_sums(shown),
     )
 
 
@@ -55,7 +57,7 @@ def total(tallies: Iterable[Tally]) -> Tally:
         first=_worst(urgent for t in listed for urgent in t.first),
         decided=_all_decided(listed),
         fidelities=_sum(t.fidelities for t in listed),
-        efforts=_all_efforts(listed),
+        efforts=_all_sums(t.efforts for t in listed),
         surveyed=bool(listed) and all(t.surveyed for t in listed),
         worth=sum(t.worth for t in listed),
         waste=sum(t.waste for t in listed),
@@ -68,6 +70,7 @@ def total(tallies: Iterable[Tally]) -> Tally:
         verdicts=_sum(t.verdicts for t in listed),
         stands_by=_sum(t.stands_by for t in listed),
         open_for=_sum(t.open_for for t in listed),
+        curves=_all_sums(t.curves for t in listed),
     )
 
 
@@ -145,12 +148,12 @@ def _all_decided(tallies: Iterable[Tally]) -> dict[str, Errors]:
     }
 
 
-def _all_efforts(tallies: Iterable[Tally]) -> dict[str, dict[str, int]]:
+def _all_sums(counts: Iterable[Mapping[str, Mapping[str, int]]]) -> dict[str, dict[str, int]]:
     members: dict[str, list[Mapping[str, int]]] = {}
-    for one in tallies:
-        for model, effort in one.efforts.items():
-            members.setdefault(model, []).append(effort)
-    return {model: _sum(those) for model, those in members.items()}
+    for one in counts:
+        for name, those in one.items():
+            members.setdefault(name, []).append(those)
+    return {name: _sum(those) for name, those in members.items()}
 
 
 def _sum(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
