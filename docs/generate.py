@@ -101,6 +101,8 @@ COLUMN_WORDS = {
     "dispersion": "of the fragility curve, lognormal",
     "annual_rate": "how often a year that comes; empty without two return periods",
     "page": "the page and place of the object in the report",
+    "rank": "its place among all objects on display, 1 the most urgent: act before watch, cannot be assessed and fine; "
+    "in each, what nobody has settled, what is not to be checked first, and what is expected to be lost come first",
     "row": "of the source",
     "line": "of a text file, where it differs from the row",
     "field": "of the object record",
@@ -286,9 +288,9 @@ def exports() -> str:
     tables = {"findings": FINDING_COLUMNS, "recommendations": RECOMMENDATION_COLUMNS, "objects": OBJECT_COLUMNS}
     intro = (
         "# Exports\n\nThe same results lie beside the pages of a report: `findings`, `recommendations` and `objects`"
-        " as CSV and Parquet, findings as JSON Lines too, and all of them as a workbook where there are not too many."
-        " Numbers are in SI units. An unknown number is an empty cell, and an endless one is `inf`. In CSV a text that"
-        " begins as a formula has an apostrophe in front."
+        " as CSV and Parquet, findings and objects as JSON Lines too, and all of them as a workbook where there are not"
+        " too many. Numbers are in SI units. An unknown number is an empty cell, and an endless one is `inf`. In CSV a"
+        " text that begins as a formula has an apostrophe in front."
     )
     parts, used = [intro], set()
     for name, columns in {**tables, "reading": READING_COLUMNS}.items():

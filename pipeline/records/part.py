@@ -80,13 +80,19 @@ class Result:
     likelihoods: tuple[Likelihood, ...] = ()
 
 
+Urgency = tuple[int, bool, bool, float, float, float, str, str]
+"""What sorts an object among others, the most urgent first: state; whether people settled it; whether its record is to
+be checked first; expected loss in steps, falling; ease of what is advised; how likely harm is, falling; object number
+and gallery."""
+
+
 @dataclass(frozen=True, slots=True)
 class Urgent:
     """An object on display that fails, as a list of the worst shows it.
 
     Attributes
     ----------
-    order : tuple
+    order : Urgency
         The key that sorts it among others.
     object_number, title, gallery, outcome : str
         As the list shows them.
@@ -94,7 +100,7 @@ class Urgent:
         Model and level of each of its findings that does not pass.
     """
 
-    order: tuple[int, bool, float, float, str, str]
+    order: Urgency
     object_number: str
     title: str
     gallery: str

@@ -31,7 +31,7 @@ class RenderedPage:
     page  : its HTML
     entry : what the index says of it
     tally : what it adds to the totals of the run
-    parts : its part of each export, by the export's name
+    parts : what it adds to each export, by the names of `PARTS_OF_PAGE`
     """
 
     page: bytes
@@ -92,7 +92,7 @@ class PageRenderer:
             else:
                 context |= drawn(gallery.charts, self.drawings) | self._script
                 text = fill(self._environment, "gallery.html", context | {"notes": page_notes(gallery.objects)})
-            parts = page_exports(record, page.run, gallery.page.file, made.anchor, self.units, self._rows)
+            parts = page_exports(record, page.run, gallery.page.file, made.anchor, made.key, self.units, self._rows)
         return RenderedPage(text.encode(), made.entry, tally(found), parts)
 
     @cached_property

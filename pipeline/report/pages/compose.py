@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isnan
 
-from pipeline.records import Assessment, Page, Recommendation, RunRecord, Tally, Verdict
+from pipeline.records import Assessment, Page, Recommendation, RunRecord, Tally, Urgency, Verdict
 from pipeline.report.errors import ReportError
 from pipeline.report.language import ngettext, said
 from pipeline.report.pages.decided import Decided, decisions_view, merged
@@ -44,7 +44,7 @@ SELECTION = "selection"
 LEADERS = 8
 """Objects that the index names as the most urgent."""
 
-_LAST = (len(State), True, inf, inf, "", "")
+_LAST: Urgency = (len(State), True, True, inf, inf, inf, "", "")
 """Sorts after every object."""
 
 _HELPLESS = "\0"
@@ -81,11 +81,12 @@ def page_head(head: RunRecord, page: Page) -> PageHead:
 
 @dataclass(frozen=True)
 class Composed:
-    """A gallery's page ready to be filled in, what the index says of it, and the ids of its objects."""
+    """A gallery's page ready to be filled in, what the index says of it, and the ids and ranks of its objects."""
 
     gallery: GalleryView
     entry: Entry
     anchor: Callable[[Assessment], str]
+    key: Callable[[Assessment], Urgency | None]
 
 
 def compose(record: RunRecord, page: Page, units: Units, sayings: Sayings | None = None, *, several: bool) -> Composed:
@@ -123,7 +124,7 @@ def compose(record: RunRecord, page: Page, units: Units, sayings: Sayings | None
         shaking=shaking_view(members) if page.on_display else None,
         decisions=decisions_view([(v.decisions, v.settled, pointer(v)) for v in views if v.decisions]),
     )
-    return Composed(gallery, _entry(gallery, pairs), describer.anchor)
+    return Composed(gallery, _entry(gallery, pairs), describer.anchor, describer.key)
 
 
 def _entry(gallery: GalleryView, pairs: Sequence[tuple[Assessment, ObjectView]]) -> Entry:

@@ -21,6 +21,7 @@ from pipeline.records import (
     RunRecord,
     Scene,
     Support,
+    Urgency,
     Verdict,
 )
 from pipeline.records.result import BOUNDS
@@ -30,7 +31,7 @@ from pipeline.report.pages.alike import Memory, finding_key
 from pipeline.report.pages.chances import chance_view, left_over, open_for
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import fragility_views, most, spanned
-from pipeline.report.pages.ranking import finding_order, finding_state, grave, state_of
+from pipeline.report.pages.ranking import finding_order, finding_state, grave, state_of, urgency
 from pipeline.report.pages.survey_words import wish_views
 from pipeline.report.pages.views import (
     Bar,
@@ -303,6 +304,12 @@ class Describer:
     def anchor(self, assessment: Assessment) -> str:
         """Return the id of the object on its page; it stays the same from run to run."""
         return f"o{digest(assessment.scene.item.object_number, 10)}"
+
+    def key(self, assessment: Assessment) -> Urgency | None:
+        """Return what sorts an object among all of the museum; None for one that is not on display."""
+        if not assessment.scene.item.on_display:
+            return None
+        return urgency(assessment, settled=self.decided.covered(assessment))
 
     def object(self, assessment: Assessment, page: str) -> ObjectView:
         """Return everything that the report says about one object.

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from itertools import groupby
 
+from pipeline.records import Urgency
 from pipeline.report.pages.chances import ChanceView
 from pipeline.report.pages.judging import FragilityView
 from pipeline.report.plots.chart import Spot
@@ -387,7 +388,7 @@ class Entry:
     page: PageView
     counts: StateCounts
     task: str
-    leaders: tuple[tuple[tuple[int, bool, float, float, str, str], Pointer], ...] = ()
+    leaders: tuple[tuple[Urgency, Pointer], ...] = ()
     decisions: DecisionsView = DecisionsView()
 
 
