@@ -15,6 +15,7 @@ from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.plan import Work, plan
 from pipeline.analysis.response_charts.grouping import group_name, groups
 from pipeline.analysis.rules import RuleTable
+from pipeline.analysis.stakes import VALUE_PER_C
 from pipeline.collection.inventory import latest_import
 from pipeline.collection.listing import Listing
 from pipeline.collection.object_index import ObjectIndex
@@ -209,6 +210,7 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
         HOUSE: house_digest(settings),
         LEVELS: {level.name: level.combine for level in site.levels},
         "credit": credit,
+        VALUE_PER_C: settings.museum.value_per_c,
         "analysis": settings.analysis.model_dump(),
         "length": settings.report.length,
         "site": settings.site.folder,

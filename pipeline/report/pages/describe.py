@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import lru_cache
 from math import isfinite, isnan
 
+from pipeline.analysis.stakes import worth_of
 from pipeline.records import (
     Anchorage,
     Assessment,
@@ -28,7 +29,7 @@ from pipeline.records.result import BOUNDS
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
 from pipeline.report.pages.alike import Memory, finding_key
-from pipeline.report.pages.chances import chance_view, left_over, open_for
+from pipeline.report.pages.chances import chance_view, left_over, open_for, worth_words
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import fragility_views, most, spanned
 from pipeline.report.pages.ranking import finding_order, finding_state, grave, state_of, urgency
@@ -323,6 +324,7 @@ class Describer:
         named = [*scene.assumptions, *(text for f in assessment.findings for text in f.assumptions)]
         estimates = sorted(scene.parameters.items(), key=lambda pair: (_ORIGIN_ORDER[pair[1].origin], pair[0]))
         title = clean(item.title or item.object_name)
+        worth = worth_of(scene)
         return ObjectView(
             number=clean(item.object_number),
             title=title,
@@ -332,6 +334,7 @@ class Describer:
             page=page,
             state=state,
             value_class=clean(item.value_class),
+            worth=worth_words(scene, worth) if worth.terms else "",
             object_class=words(clean(scene.object_class)),
             rule=said(clean(scene.rule)),
             support=support(scene.support),

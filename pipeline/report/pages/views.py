@@ -181,6 +181,7 @@ class ObjectView:
     """One object with everything that the report says about it; ``lead`` is its most urgent finding.
 
     settled : whether people accepted or overruled all that does not pass, and nothing of that is in doubt
+    worth   : what it counts where losses are compared, and why; "" where nothing is recorded of that
     """
 
     number: str
@@ -191,6 +192,7 @@ class ObjectView:
     page: str
     state: State
     value_class: str
+    worth: str
     object_class: str
     rule: str
     support: str
