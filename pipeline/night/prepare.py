@@ -34,6 +34,7 @@ from pipeline.operations.presentation import presentation
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Model, Progress, RunRecord, Scene
 from pipeline.report import Units
+from pipeline.report.pages.compose import PERIODS
 from pipeline.report.pages.reading import INVENTORY, READING
 from pipeline.resources import code_version
 from pipeline.store.reuse import CODE, DISPLAY, HOUSE, KERNELS, LEVELS, RULES, TABLES
@@ -209,6 +210,7 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
         TABLES: tables_digest(settings),
         HOUSE: house_digest(settings),
         LEVELS: {level.name: level.combine for level in site.levels},
+        PERIODS: {level.name: level.return_period_years for level in site.levels},
         "credit": credit,
         VALUE_PER_C: settings.museum.value_per_c,
         "analysis": settings.analysis.model_dump(),

@@ -165,6 +165,10 @@ class Tally:
         Objects on display by where it is known from what they stand on, see `Scene.stands_by`.
     open_for : mapping of str to int
         Objects on display about which one measurement may change what is decided, by what is to be measured.
+    check : int
+        Of the objects on display to be acted on, those whose record is to be checked first.
+    levels : mapping of str to mapping of str to int
+        Where there are several levels of shaking: objects on display with findings, by level and their state at it.
     """
 
     states: Mapping[str, int]
@@ -186,6 +190,8 @@ class Tally:
     verdicts: Mapping[str, int] = field(default_factory=dict)
     stands_by: Mapping[str, int] = field(default_factory=dict)
     open_for: Mapping[str, int] = field(default_factory=dict)
+    check: int = 0
+    levels: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

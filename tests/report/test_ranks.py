@@ -8,19 +8,26 @@ from math import inf
 from pathlib import Path
 from random import Random
 
+import jsonschema
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from lxml import html
 
-from pipeline.records import Assessment, Item, Likelihood, Urgency
+from pipeline.cli.console import summary_lines
+from pipeline.night.run import summarise
+from pipeline.operations.run_summary import summary_document
+from pipeline.records import Assessment, Found, Item, Likelihood, Urgency
 from pipeline.records.likelihood import Sampling
 from pipeline.report import render
 from pipeline.report.files.concatenation import concatenate
 from pipeline.report.files.exports import OBJECT_COLUMNS, RANK, schema_of
 from pipeline.report.files.ranks import keys_part, ranks_of
+from pipeline.report.pages.compose import PERIODS
 from pipeline.report.pages.ranking import urgency
+from pipeline.report.pages.tallies import tally
+from pipeline.resources import resource
 
 from . import builder
 
@@ -144,7 +151,72 @@ def test_the_rank_is_the_order_of_the_first_page_and_that_of_what_is_lost(tmp_pa
     first = html.parse(page).xpath("//table[@class='urgent']/tbody/tr/th//text()")
     shown = [text.strip() for text in first if text.strip() in ranks]
     assert shown == sorted(shown, key=lambda number: int(ranks[number]))
-    assert shown[:4] == ["1", "2", "3", "4"]
+    assert shown == ["1", "2", "3", "4"]
+    check = html.parse(page).xpath("//section[@aria-labelledby='check']")[0]
+    assert [text for text in check.xpath(".//li/a//text()") if text.strip() in ranks] == ["5"]
+    assert "1 object to act on can hardly stand as it is recorded" in check.text_content()
+
+
+def test_the_list_of_records_to_check_is_bounded_and_counts_all(tmp_path: Path) -> None:
+    objects = tuple(_likely(f"{n:02d}", 0.9, height_m=0.9, width_m=0.1, depth_m=0.1) for n in range(30))
+    page = render(replace(builder.record(), assessments=objects, decisions=()), tmp_path / "report")
+    (check,) = html.parse(page).xpath("//section[@aria-labelledby='check']")
+    assert len(check.xpath(".//li")) == 8
+    assert "30 objects to act on can hardly stand" in check.text_content()
+    assert "and 22 more" in check.text_content()
+    assert not html.parse(page).xpath("//section[@aria-labelledby='first']")
+
+
+def _at_two_levels(number: str, frequent: float, rare: float) -> Assessment:
+    """An object with a finding and a probability at each of two levels."""
+    made = _likely(number, rare)
+    finding, (found,) = made.findings[0], made.likelihoods
+    levels = (("frequent", frequent), ("<i>rare</i>", rare))
+    return replace(
+        made,
+        findings=tuple(replace(finding, level=name) for name, _ in levels),
+        likelihoods=tuple(replace(found, level=n, probability=p, band=Sampling().band(p)) for n, p in levels),
+    )
+
+
+def test_results_are_counted_by_level_and_the_state_is_that_where_harm_is_likeliest(tmp_path: Path) -> None:
+    """Act from 0.1 on, watch from 0.01 on, fine below; each level by itself, and the worse of both for the object."""
+    objects = (
+        _at_two_levels("1", 0.2, 0.9),
+        _at_two_levels("2", 0.05, 0.5),
+        _at_two_levels("3", 0.001, 0.3),
+        _at_two_levels("4", 0.001, 0.02),
+        builder.unknown(Item("5", "g")),
+    )
+    totals = tally(Found(objects, None, ()))
+    assert totals.levels == {"frequent": {"act": 1, "watch": 1, "fine": 2}, "<i>rare</i>": {"act": 3, "watch": 1}}
+    assert totals.states == {"act": 3, "watch": 1, "unknown": 1, "fine": 0}
+    head = replace(builder.record(), assessments=(), decisions=())
+    head = replace(head, settings={**head.settings, PERIODS: {"frequent": 73.0, "<i>rare</i>": 2475.0}})
+    page = render(replace(head, assessments=objects), tmp_path / "report")
+    rows = html.parse(page).xpath("//section[@aria-labelledby='levels']//tbody/tr")
+    assert [[cell.text_content().strip() for cell in row] for row in rows] == [
+        ["frequent", "73 years", "1", "1", "2"],
+        ["<i>rare</i>", "2,475 years", "3", "1", "0"],
+    ]
+    summary = summarise(head, (), totals)
+    assert [tuple(level.values()) for level in summary.levels] == [
+        ("frequent", 73.0, 1, 1, 2),
+        ("<i>rare</i>", 2475.0, 3, 1, 0),
+    ]
+    assert "    frequent: 1 to act on, 1 to watch, 2 fine" in summary_lines(summary)
+    schema = json.loads(resource("schemas", "run-summary.schema.json").read_text(encoding="utf-8"))
+    jsonschema.validate(summary_document(summary), schema)
+
+
+def test_of_a_single_level_the_summary_counts_the_objects_themselves() -> None:
+    head = replace(builder.record(), assessments=(), decisions=())
+    head = replace(head, settings={**head.settings, PERIODS: {"design": None}})
+    totals = tally(Found((_likely("1", 0.9), _likely("2", 0.05), _likely("3", 0.001)), None, ()))
+    assert totals.levels == {}
+    assert summarise(head, (), totals).levels == [
+        {"name": "design", "return_period_years": None, "act": 1, "watch": 1, "fine": 1}
+    ]
 
 
 def test_what_people_settled_comes_after_what_nobody_looked_at_and_before_what_is_to_be_watched() -> None:

@@ -1,5 +1,6 @@
 """Order of objects, the worst first."""
 
+from dataclasses import replace
 from functools import cache
 from math import inf, isnan, log, log1p
 
@@ -39,6 +40,20 @@ def state_of(assessment: Assessment) -> State:
         state = State.ACT if Verdict.FAIL in verdicts else State.WATCH
     # Where some of it could not be run, only what is bad is known.
     return state if assessment.assessed or (verdicts and state is State.ACT) else State.UNKNOWN
+
+
+def at_level(assessment: Assessment, level: str) -> Assessment:
+    """Return an object with what was found about it at one level of shaking alone."""
+    return replace(
+        assessment,
+        findings=tuple(f for f in assessment.findings if f.level == level),
+        likelihoods=tuple(one for one in assessment.likelihoods if one.level == level),
+    )
+
+
+def to_check(assessment: Assessment) -> bool:
+    """Say whether the record of an object is to be checked before anything is done about it."""
+    return assessment.likelihood is not None and doubtful(assessment.scene) > 0.0
 
 
 def finding_state(finding: Finding) -> Judged:
@@ -93,7 +108,7 @@ def urgency(assessment: Assessment, *, settled: bool = False) -> Urgency:
     return (
         _ORDER.index(state_of(assessment)),
         settled,
-        found is not None and doubtful(assessment.scene) > 0.0,
+        to_check(assessment),
         inf if loss <= 0.0 else float(-round(log(loss) / _ALIKE)),
         ease,
         -size,

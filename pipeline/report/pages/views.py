@@ -383,6 +383,7 @@ class Entry:
 
     task     : what is to do first there, in words, "" where nothing is advised
     leaders  : its most urgent objects that nobody has settled, each with the key that sorts it among all
+    check    : the same of those whose record is to be checked first, which are not among the leaders
     """
 
     name: str
@@ -391,6 +392,7 @@ class Entry:
     counts: StateCounts
     task: str
     leaders: tuple[tuple[Urgency, Pointer], ...] = ()
+    check: tuple[tuple[Urgency, Pointer], ...] = ()
     decisions: DecisionsView = DecisionsView()
 
 
@@ -403,6 +405,15 @@ class GalleryRow:
     pages: tuple[PageView, ...]
     counts: StateCounts
     task: str
+
+
+@dataclass(frozen=True, slots=True)
+class LevelRow:
+    """How many objects are in which state at one level of shaking; period: how often it comes, "" where nobody says."""
+
+    name: str
+    period: str
+    counts: StateCounts
 
 
 @dataclass(frozen=True, slots=True)
