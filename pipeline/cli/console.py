@@ -257,6 +257,18 @@ def tradeoff_lines(found: "Tradeoff", wanted: float) -> list[str]:
     for name, setting in found.cheapest(wanted).items():
         told = "none of these" if setting is None else f"{setting.setting}, {setting.cost:.2f} ns"
         lines.append(f"    {name:<30}{told}")
+    if found.probabilities:
+        objects = found.probabilities[0].objects
+        lines += [
+            "",
+            f"Probabilities of harm of {objects} objects, against other samples of the same objects:",
+            f"{'':<34}{'samples':>10}{'CPU s':>10}{'rms':>10}{'stated':>10}{'worst':>10}{'right words':>16}",
+        ]
+    lines += [
+        f"    {s.setting:<30}{s.samples:>10.0f}{s.seconds:>10.1f}{s.rms:>10.4f}{s.stated:>10.4f}{s.worst:>10.3f}"
+        f"{s.right:>16.1%}"
+        for s in found.probabilities
+    ]
     return lines
 
 
