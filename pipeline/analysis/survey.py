@@ -1,8 +1,10 @@
-"""Survey of missing measurements that would settle a verdict: the models are run at the ends of what is assumed.
+"""Survey of missing measurements: those without which nothing can be said, and those that may change what is decided.
 
-A verdict is open because inputs are uncertain.  For each of them in turn, the object is assessed as if that one had
-been measured, as low, best and high; the others stay as uncertain as they are.  If the verdict stays open at all three,
-measuring that alone is taken to settle nothing.
+Where it is known how likely harm is, the joint samples tell already which number, once measured, may change what is
+decided (`pipeline.analysis.likelihood.worth`).  Where nobody draws samples, verdicts are settled.  A verdict is open
+because inputs are uncertain: for each of them in turn, the object is assessed as if that one had been measured, as low,
+best and high; the others stay as uncertain as they are.  If the verdict stays open at all three, measuring that alone
+is taken to settle nothing.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,7 +16,7 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.footing import HALVES, tilted
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.models import model_named
-from pipeline.records import Estimate, Finding, MeasurementRequest, Numerics, Origin, Scene, Verdict
+from pipeline.records import Estimate, Finding, Likelihood, MeasurementRequest, Numerics, Origin, Scene, Verdict
 from pipeline.records.numerics import HISTORIES
 from pipeline.tables import table
 from pipeline.tables.rows import Entries, Optional, checked
@@ -130,6 +132,42 @@ def measurement_requests(
             settled[id(trial)] = settled.get(id(trial), 0) + decided
         out += [_request(trial, settled.get(id(trial), 0) / len(ENDS)) for trial in trials]
     context.progress.step("survey", len(shown), len(shown))
+    return in_order(out)
+
+
+def telling_requests(scenes: Sequence[Scene], chances: Sequence[Sequence[Likelihood]]) -> list[MeasurementRequest]:
+    """Return what is worth measuring on the objects on display, where it is known how likely harm is.
+
+    Parameters
+    ----------
+    scenes
+        The objects as they stand.
+    chances
+        Of each scene, how likely it comes to harm at each level.
+
+    Returns
+    -------
+    list of MeasurementRequest
+        What is missing, and of each object and level the number that tells most; what settles most first.
+    """
+    out: list[MeasurementRequest] = []
+    for scene, those in zip(scenes, chances, strict=True):
+        if not scene.item.on_display:
+            continue
+        out += [_request(trial, 0.0) for trial in _missing(scene)]
+        best: dict[str, list[Likelihood]] = {}
+        for one in those:
+            best.setdefault(one.open_for, []).append(one)
+        for parameter, some in best.items():
+            # The first of the table that may be asked for: a tilt test tells more than a base that is measured.
+            fit = (m for m in measurables() if parameter in m.parameters and _may_be_asked(scene, m))
+            measurable = next(fit, None)
+            if measurable is None:
+                continue
+            estimate = scene.parameters.get(parameter)
+            reason = (estimate.note if estimate is not None else "") or "derived"
+            trial = _Trial(scene, measurable, frozenset((parameter, one.level) for one in some), (), reason)
+            out.append(replace(_request(trial, sum(one.moves for one in some)), drawn=True))
     return in_order(out)
 
 

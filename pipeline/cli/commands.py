@@ -87,7 +87,7 @@ def init(folder: Path, dry_run: bool) -> None:
 @as_json
 @click.pass_obj
 def survey(options: Options, galleries: tuple[str, ...], out: Path | None, dry_run: bool, as_json: bool) -> None:
-    """Write a workbook of what is worth measuring: which missing numbers would settle a verdict.
+    """Write a workbook of what is worth measuring: which missing numbers may change what is decided.
 
     What one house rule answers for many objects is asked for first, as text for kouros.toml and on a sheet "Rules".
     Print it, fill it in, and read it back with `kouros import FILE --sheet`.
@@ -374,7 +374,9 @@ def models(as_json: bool) -> None:
 @click.command()
 @click.argument("model")
 @click.argument("parameters", nargs=-1, metavar="NAME=VALUE[,VALUE...]...")
-@click.option("--site", default="demo", show_default=True, help="Site folder whose motions shake it, or 'demo'.")
+@click.option(
+    "--site", default="demo", show_default=True, help="Site folder whose motions shake it, 'demo' or 'demo_suite'."
+)
 @click.option(
     "--through",
     multiple=True,

@@ -121,7 +121,8 @@ def summary_lines(summary: "Summary") -> list[str]:
     lines += ["", "  Recommended, each run again and passing, by the best estimates at least:"]
     lines += [count(number, title) for title, number in summary.measures.items()]
     if summary.worth is not None:
-        told = f"measurements would settle a verdict; finding them took {summary.survey_seconds:.1f} s"
+        took = f"; finding them took {summary.survey_seconds:.1f} s" if summary.survey_seconds else ""
+        told = f"measurements may change what is decided, or make a check possible{took}"
         lines += ["", count(summary.worth, told)]
     lines += effort_lines(summary.efforts)
     if summary.first:

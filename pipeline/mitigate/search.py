@@ -11,6 +11,8 @@ from pipeline.analysis.figures import chart_key
 from pipeline.analysis.furniture import FurnitureFilter, fastened, filter_of, loose
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
+from pipeline.mitigate.evidence import checks, passes, passes_at_best, shortfall
+from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.mitigate.measures import Measure
 from pipeline.mitigate.measures.anchor import Anchor
 from pipeline.mitigate.measures.base import UNKNOWN_FREQUENCY, bends
@@ -27,19 +29,10 @@ from pipeline.mitigate.proposals import (
     known_to_swing,
     refused,
 )
-from pipeline.mitigate.trials import (
-    HarmAim,
-    TransmittedMotions,
-    Trial,
-    TrialRunner,
-    checks,
-    passes,
-    passes_at_best,
-    why_not,
-)
+from pipeline.mitigate.trials import HarmAim, Trial, TrialRunner
 from pipeline.models import settled_by_room
 from pipeline.models.unanchored import UNANCHORED
-from pipeline.records import Check, Finding, Likelihood, Mark, Numerics, Recommendation, Scene, Verdict
+from pipeline.records import Finding, Likelihood, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 
 ONLY_HERE = "At another level of shaking it is not enough, and nothing that was tried is enough at all of them."
@@ -284,7 +277,7 @@ def _unassessed(scenes: Sequence[Scene], findings: Sequence[Sequence[Finding]]) 
 
 @dataclass(frozen=True)
 class _AtBest:
-    """A fastening that passes by the best estimates only.
+    """A fastening that passes by the best estimates only: of those that leave as much harm the gentlest.
 
     rejected : what was tried before it, and why not
     """
@@ -296,6 +289,12 @@ class _AtBest:
     left: Mapping[int, Mapping[str, Likelihood]]
     rejected: Sequence[str]
 
+    @property
+    def remains(self) -> float:
+        """How likely harm is that it leaves, at the worst level; 0 where nobody drew it."""
+        drawn = [self.left.get(id(trial), {}) for trial in self.candidate.trials]
+        return max((one.expected for each in drawn for one in each.values()), default=0.0)
+
 
 @dataclass
 class _Search:
@@ -303,7 +302,7 @@ class _Search:
 
     unassessed  : numbers of what no model could be run for, by the case that it stands in
     recommended : by the place of the scene and the name of the level
-    at_best     : the gentlest fastening that passes by the best estimates, by the place of the scene
+    at_best     : the fastening that passes by the best estimates and leaves least, by the place of the scene
     fastened    : places of the scenes for which that stands: no isolator takes its place
     """
 
@@ -368,13 +367,15 @@ class _Search:
                 asked.append((unit, proposal, candidates, candidate))
         every = [trial for *_, candidate in asked for trial in candidate.every]
         results = {id(trial): found for trial, found in zip(every, self.runner.run(every), strict=True)}
-        # What passes by the best estimates and not for sure is worth drawing.
-        doubtful = [t for t in every if not passes(results[id(t)]) and passes_at_best(results[id(t)])]
-        left = {id(trial): left for trial, left in zip(doubtful, self.runner.remaining(doubtful), strict=True)}
+        # What passes by the best estimates is worth drawing; a verdict counts neither the scatter of the models nor,
+        # where the mean of the motions decides, that of the motions.
+        worth = [trial for trial in every if passes_at_best(results[id(trial)])]
+        left = {id(trial): left for trial, left in zip(worth, self.runner.remaining(worth), strict=True)}
 
         def holds(trials: Sequence[Trial]) -> bool:
-            unsure = [trial for trial in trials if not passes(results[id(trial)])]
-            return self.runner.reaches_aim([left.get(id(trial), {}) for trial in unsure])
+            if self.runner.aims:
+                return self.runner.reaches_aim([left.get(id(trial), {}) for trial in trials])
+            return all(passes(results[id(trial)]) for trial in trials)
 
         still = []
         for unit, proposal, candidates, candidate in asked:
@@ -388,7 +389,7 @@ class _Search:
                 continue
             if candidate.at_best and held and all(passes_at_best(results[id(t)]) for t in candidate.trials):
                 self._keep(unit, measure, candidate, results, left)
-            last[unit] = _said(failing, candidate, results)
+            last[unit] = shortfall(failing, candidate, results, left)
             still.append((unit, proposal, candidates))
         return still
 
@@ -400,9 +401,12 @@ class _Search:
         results: Mapping[int, Sequence[Finding]],
         left: Mapping[int, Mapping[str, Likelihood]],
     ) -> None:
+        found = _AtBest(unit, measure, candidate, results, left, ())
         for one in unit:
-            before = tuple(self.rejected.get(one.index, ()))
-            self.at_best.setdefault(one.index, _AtBest((one,), measure, candidate, results, left, before))
+            kept = self.at_best.get(one.index)
+            if kept is None or found.remains < kept.remains:
+                before = tuple(self.rejected.get(one.index, ()))
+                self.at_best[one.index] = replace(found, unit=(one,), rejected=before)
 
     def _reject(self, unit: Unit, measure: Measure, reason: str) -> None:
         for one in unit:
@@ -430,7 +434,8 @@ class _Search:
             trials = [*candidate.trials, *([options[at].trial] if options else [])]
             ran = [f for trial in trials for f in results[id(trial)]]
             # Without an aim nothing was drawn.
-            drawn = [left[id(trial)] for trial in trials if not passes(results[id(trial)]) and left.get(id(trial))]
+            drawn = [left[id(trial)] for trial in trials if left.get(id(trial))]
+            unsure = not all(passes(results[id(trial)]) for trial in trials)
             words = dict(candidate.words)
             if options:
                 case = case_of(one.scene)
@@ -456,12 +461,12 @@ class _Search:
                     units={key: unit_ for key, (_, unit_) in numbers.items()},
                     checks=(
                         *(check for of, check in candidate.checks if of in ("", level)),
-                        *checks(here, before, at_best=at_best or bool(drawn)),
+                        *checks(here, before, at_best=at_best or unsure),
                     ),
                     rejected=tuple(self.rejected.get(one.index, ())),
                     mark=self._mark(candidate, here, measure.row.title, level),
                     source=measure.row.source,
-                    remaining=sum(one[level].probability for one in drawn) if drawn else None,
+                    remaining=min(1.0, sum(one[level].expected for one in drawn)) if drawn else None,
                 )
 
     def _mark(self, candidate: Candidate, ran: Sequence[Finding], title: str, level: str) -> Mark | None:
@@ -472,13 +477,6 @@ class _Search:
             return None if shaking.passed_on else Mark(chart_key(kind, shaking.motions[0]), x, y, title)
         marks = [f.mark for f in ran if f.model == candidate.mark_of and f.mark is not None]
         return replace(marks[0], label=title) if marks else None
-
-
-def _said(failing: Sequence[Trial], candidate: Candidate, results: Mapping[int, Sequence[Finding]]) -> str:
-    if failing:
-        return why_not(failing[0].scene, results[id(failing[0])])
-    short: list[Check] = [check for _, check in candidate.checks if not check.passes]
-    return f"{short[0].title.lower()} is not enough" if short else ""
 
 
 def _filled(sentence: str, words: Mapping[str, str]) -> str:

@@ -18,13 +18,14 @@ from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.likelihood.sampling import ACTS
 from pipeline.analysis.response_charts import ChartCache
 from pipeline.analysis.rules import RuleTable
-from pipeline.analysis.survey import measurement_requests
+from pipeline.analysis.survey import measurement_requests, telling_requests
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.record import INDIVIDUAL
 from pipeline.mitigate import MeasureCatalogue, advise
 from pipeline.mitigate.installed import InstalledMeasure, Placed, assess_above, likely, placed
+from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.mitigate.proposals import case_of
-from pipeline.mitigate.trials import HarmAim, TransmittedMotions
+from pipeline.mitigate.trials import HarmAim
 from pipeline.models import model_named
 from pipeline.night.floors import Floor
 from pipeline.records import (
@@ -159,7 +160,11 @@ def _found(
     assessments = tuple(assessment for assessment, _ in every)
     asked: dict[str, list[MeasurementRequest]] = {}
     began = perf_counter()
-    if context.surveyed:
+    if context.surveyed and context.sampling.samples:
+        chances = [one.likelihoods for one in assessments]
+        for wish in telling_requests([one.scene for one in assessments], chances):
+            asked.setdefault(wish.object_number, []).append(wish)
+    elif context.surveyed:
         # Each trial is asked once: a chart would not pay.
         numerics = context.analysis.numerics
         uncharted = Context(working.executor, charts=ChartCache(admitted=frozenset()))
@@ -172,7 +177,7 @@ def _found(
         )
         for wish in several:
             asked.setdefault(wish.object_number, []).append(wish)
-    seconds = perf_counter() - began if context.surveyed else 0.0
+    seconds = 0.0 if context.sampling.samples or not context.surveyed else perf_counter() - began
     found = {}
     for like, assessment, (_, needing) in zip(objects, assessments, every, strict=True):
         mine = tuple(asked.get(assessment.scene.item.object_number, ())) if context.surveyed else None

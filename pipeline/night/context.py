@@ -15,7 +15,7 @@ from pipeline.analysis.rules import RuleTable
 from pipeline.cache import Cache, key_of
 from pipeline.execute import Threads
 from pipeline.mitigate import MeasureCatalogue
-from pipeline.mitigate.trials import TransmittedMotions
+from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.models.band import sharing_spectra
 from pipeline.night.floors import Floor
 from pipeline.records import (

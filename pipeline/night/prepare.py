@@ -79,7 +79,8 @@ def run_context(
     samples = sum(motion.acceleration.shape[1] for motion in motions.values())
     shown = chosen.shown * samples
     fragile = _asked(settings.analysis.fragility, shown <= FRAGILE)
-    surveyed = _asked(settings.report.survey, shown <= SURVEYED)
+    # Samples tell it for nothing.
+    surveyed = _asked(settings.report.survey, bool(settings.likelihood.samples) or shown <= SURVEYED)
     info = latest_import(workspace.engine)
     said = [_level_note(level, Units(settings.report.length)) for level in site.levels]
     said += notes(settings, site, index.objects.galleries)

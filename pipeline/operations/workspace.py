@@ -192,6 +192,10 @@ def near(name: str, known: Collection[str]) -> str:
     return f"; did you mean {' or '.join(map(repr, close))}?" if close else ""
 
 
+BUNDLED = ("demo", "demo_suite")
+"""Names of the sites that come with Kouros: one record as it was, and the demonstration's suite of eleven motions."""
+
+
 def site_folder(home: Path, name: str) -> Path:
     """Return a site's folder.
 
@@ -200,14 +204,14 @@ def site_folder(home: Path, name: str) -> Path:
     home : Path
         The folder of the settings.
     name : str
-        "demo" for the bundled one, else a folder, relative to home.
+        One of `BUNDLED`, else a folder, relative to home.
 
     Returns
     -------
     Path
         Whether or not it is there.
     """
-    return resource("site_motions", "demo") if name == "demo" else home / Path(name).expanduser()
+    return resource("site_motions", name) if name in BUNDLED else home / Path(name).expanduser()
 
 
 def open_workspace(settings: "Settings") -> Workspace:
@@ -268,7 +272,7 @@ def _sweep(settings: "Settings") -> None:
     kept = settings.kept
     folders = [settings.home, settings.path(IMPORTS), settings.path(settings.report.folder)]
     folders += [kept, *(kept / kind for kind in KINDS)]
-    if settings.site.folder != "demo":
+    if settings.site.folder not in BUNDLED:
         folders.append(site_folder(settings.home, settings.site.folder))
     for folder in dict.fromkeys(folders):
         sweep(folder)

@@ -86,6 +86,8 @@ class Likelihood:
         The parameter whose measurement alone may change what is decided about it; "" for none.
     worth : float
         By how much that measurement lowers the expected loss, in units of the loss by harm.
+    moves : float
+        Probability that it is measured where something else is decided than now.
     """
 
     level: str
@@ -97,3 +99,9 @@ class Likelihood:
     states: Mapping[str, float] = field(default_factory=dict)
     open_for: str = ""
     worth: float = 0.0
+    moves: float = 0.0
+
+    @property
+    def expected(self) -> float:
+        """The probability to be expected (Jeffreys's): of few samples of which none harmed, harm is not excluded."""
+        return (self.probability * self.samples + 0.5) / (self.samples + 1.0)

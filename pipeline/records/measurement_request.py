@@ -22,11 +22,13 @@ class MeasurementRequest:
     reason : str
         What is assumed and by which source, or that it is not recorded.
     open : int
-        Verdicts that are undetermined now and that it takes part in.
+        Verdicts that are undetermined now and that it takes part in, or levels at which it may change what is decided.
     settles : float
-        How many of them it would settle, the mean over its being measured as low, best and high.
+        How many of them it would settle: of verdicts the mean over its being measured as low, best and high.
     unlocks : int
         Models that cannot be run without it.
+    drawn : bool
+        Whether ``settles`` is the probability that something else is decided once it is measured, from joint samples.
     """
 
     object_number: str
@@ -41,10 +43,11 @@ class MeasurementRequest:
     open: int
     settles: float
     unlocks: int
+    drawn: bool = False
 
     @property
     def gain(self) -> float:
-        """What measuring it brings: verdicts that it would settle, and models that it would make possible."""
+        """What measuring it brings: what it would settle, and models that it would make possible."""
         return self.settles + self.unlocks
 
     @property

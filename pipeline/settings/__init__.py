@@ -100,7 +100,8 @@ class SiteFolder(_Part):
 
     folder: str = Field(
         default="site_motions/site",
-        description='the folder with manifest.toml and the records of your site; "demo" is the bundled record',
+        description="the folder with manifest.toml and the records of your site; bundled are 'demo', one record, and "
+        "'demo_suite', eleven motions of one level",
     )
 
 
@@ -278,7 +279,7 @@ class Report(_Part):
     )
     survey: bool | Literal["auto"] = Field(
         default="auto",
-        description="find out which missing measurements would settle a verdict, and print what that costs: true, "
+        description="find out which missing measurements may change what is decided, and print what that costs: true, "
         'false, or "auto", which leaves it out of a collection where it would take minutes',
     )
     language: str = Field(

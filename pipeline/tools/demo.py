@@ -31,7 +31,7 @@ def demonstration(folder: Path, *, dry_run: bool = False) -> Settings:
         Of the demonstration.
     """
     file = folder / "kouros.toml"
-    text = template(museum=MUSEUM, source=str(bundled_collection()), mapping="carnegie", site="demo")
+    text = template(museum=MUSEUM, source=str(bundled_collection()), mapping="carnegie", site="demo_suite")
     if dry_run and not file.exists():
         warnings.warn(f"{file} is not there yet: the real one makes it", DryRunWarning, stacklevel=2)
         settings = Settings(**tomllib.loads(text), home=folder)

@@ -10,7 +10,7 @@ from pipeline.analysis.assess import assess
 from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, fault
 from pipeline.analysis.house.questions import RuleQuestion, rule_questions
-from pipeline.analysis.survey import in_order, measurables, measurement_requests
+from pipeline.analysis.survey import in_order, measurables, measurement_requests, telling_requests
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.errors import CollectionError, NoRowsError
 from pipeline.collection.inventory import Difference, add_sheet, read_inventory
@@ -18,6 +18,7 @@ from pipeline.collection.inventory.local_measurements import filled_in
 from pipeline.collection.mapping import Mapping, load_mapping
 from pipeline.collection.reading import Reading, read_items
 from pipeline.execute import Threads
+from pipeline.mitigate.installed import likely
 from pipeline.night.assessment import place
 from pipeline.night.floors import floors_with
 from pipeline.operations.workspace import Workspace
@@ -105,14 +106,19 @@ def survey(
     known: dict[str, Scene] = {}
 
     rules, measures, house = workspace.rules, workspace.measures, workspace.house
+    sampling = settings.likelihood.sampling
 
     def asked(shaking: Sequence[LevelMotions], some: Sequence[Item]) -> list[list[MeasurementRequest]]:
         objects = [place(item, rules, decisions.get(item.object_number, ()), measures, house) for item in some]
         scenes = [one.scene for one in objects]
         known.update((scene.item.object_number, scene) for scene in scenes)
-        _, findings = assess(scenes, shaking, context, numerics, outcomes=False)
         by_object: dict[str, list[MeasurementRequest]] = {item.object_number: [] for item in some}
-        for request in measurement_requests(scenes, findings, shaking, context, numerics):
+        if sampling.samples:
+            requests = telling_requests(scenes, likely(objects, shaking, sampling, context))
+        else:
+            _, findings = assess(scenes, shaking, context, numerics, outcomes=False)
+            requests = measurement_requests(scenes, findings, shaking, context, numerics)
+        for request in requests:
             by_object[request.object_number].append(request)
         return list(by_object.values())
 

@@ -19,6 +19,7 @@ from pipeline.analysis.fragility.curve import stated
 from pipeline.analysis.likelihood.draws import OTHERWISE, Draw, switched, value_at
 from pipeline.analysis.likelihood.sampling import FIRST, Stood, likelihoods
 from pipeline.analysis.likelihood.shaking import FARTHEST
+from pipeline.analysis.survey import telling_requests
 from pipeline.analysis.transmission import transmit
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.mapping import load_mapping
@@ -267,6 +268,34 @@ def test_no_more_samples_are_drawn_than_the_word_takes() -> None:
     # Of none in 64, 1 % is not shown not to be exceeded with 9 chances of 10; of none in 128 it is.
     assert FIRST < never.samples <= 256
     assert near.samples > 128
+
+
+def test_a_survey_asks_for_the_number_that_may_change_what_is_decided(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a block under a pulse only the friction is uncertain: it leaves its place where that is below a limit.
+
+    Where the limit is the share q of the distribution, harm is certain in the parts below it and excluded in those
+    above: of four parts those wholly above change what is decided, and measured there the loss of doing something (the
+    target) is saved.  Without the scatter of the models, so that the closed form says which.
+    """
+    monkeypatch.setattr("pipeline.analysis.likelihood.shaking.FARTHEST", 0.0)
+    push, seconds, low, best, high = 6.0, 0.3, 0.2, 0.3, 0.6
+    limit = value_at(0.4, low, best, high)
+    room = (push**2 * seconds**2 / (G * limit) - push * seconds**2) / 2.0
+    scenes = [slider(low, best, high, room), slider(low, best, high, 100.0), slider(0.3, 0.3, 0.3, room)]
+    chances = found(scenes, level(pulse(push, seconds)), Sampling(512, 0.9999))
+    assert chances[0].probability == pytest.approx(0.4, abs=0.01)
+    assert (chances[0].open_for, chances[0].moves) == ("friction_static", pytest.approx(0.5, abs=0.01))
+    assert chances[0].worth == pytest.approx(0.5 * 0.1, abs=0.005)
+    assert [one.open_for for one in chances[1:]] == ["", ""]
+    (request,) = telling_requests(scenes, [(one,) for one in chances])
+    assert (request.field, request.drawn, request.low, request.best, request.high) == (
+        "friction",
+        True,
+        low,
+        best,
+        high,
+    )
+    assert request.gain == pytest.approx(0.5, abs=0.01)
 
 
 def test_distributions_keep_to_their_ends_and_have_the_best_estimate_as_their_median() -> None:

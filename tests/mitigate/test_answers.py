@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
@@ -16,6 +17,7 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate import changed
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
+from pipeline.mitigate.measures.brace import LEVER, STIFFER
 from pipeline.motions.synthesis import sine
 from pipeline.quantities import G
 from pipeline.records import Hanging, Motion, Numerics, Support, Verdict
@@ -154,6 +156,39 @@ def test_a_pad_that_turns_is_the_right_answer() -> None:
     assert advice.parameters["acceleration"] < 0.35 * G
     assert {"Fasten", "Low-friction pad", "Horizontal isolator"} <= set(rejected(advice))
     assert [check.model for check in advice.checks] == ["rotational_isolator", "stress"]
+
+
+def test_a_brace_is_the_right_answer(motion: Motion) -> None:
+    """Clamped, the section bears twice what it may; braced above its middle half of that at most, by the table."""
+    push = float(np.hypot(*motion.acceleration[:2]).max())
+    bending, weight = 20.0 * push * 0.5 / (0.1**3 / 6.0), 20.0 * G / 0.01
+    weak = replace(TOWER, object_name="Statue", allowable_stress_pa=0.55 * bending - weight)
+    advice = solve(weak, motion)
+    assert advice.measure == "brace"
+    assert {"Padded clamps", "Fasten"} <= set(rejected(advice))
+    assert advice.parameters == pytest.approx({"force": 20.0 * push, "height": 0.6})
+    (check,) = advice.checks
+    assert check.demand == pytest.approx(0.25 * bending - weight)
+    # Nobody braces what is lower than a hand.
+    small = {name: 0.1 * getattr(weak, name) for name in ("height_m", "base_width_m", "base_depth_m", "cg_height_m")}
+    assert "brace" not in {r.measure for r in sum(solve_all([replace(weak, **small)], [motion]), [])}  # noqa: RUF017
+
+
+def test_a_brace_leaves_a_quarter_of_the_bending_of_an_even_bar() -> None:
+    """By the deflections of a cantilever: held at a, the force there brings it back to where it is not bent away.
+
+    Frequencies: cos(x) cosh(x) = -1 of a bar that is fixed and free, tan(x) = tanh(x) of one that is fixed and held.
+    """
+    x = np.linspace(0.0, 1.0, 2001)
+    for a in np.linspace(0.5, 1.0, 11):
+        free = a**2 * (6.0 - 4.0 * a + a**2) / 24.0
+        force = free / (a**3 / 3.0)
+        moment = (1.0 - x) ** 2 / 2.0 - force * np.maximum(a - x, 0.0)
+        # 5e-4 between the points that are looked at.
+        assert np.abs(moment).max() <= LEVER[1] * 0.5 + 1e-12
+    alone = brentq(lambda x: np.cos(x) * np.cosh(x) + 1.0, 1.0, 3.0)
+    propped = brentq(lambda x: np.tan(x) - np.tanh(x), 3.2, 4.5)
+    assert STIFFER[2] == pytest.approx((propped / alone) ** 2, abs=0.005)
 
 
 def test_strengthening_is_the_right_answer(motion: Motion) -> None:

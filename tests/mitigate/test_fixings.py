@@ -13,10 +13,11 @@ from pipeline.analysis.verdicts import LevelMotions
 from pipeline.execute import Threads
 from pipeline.mitigate.catalogue import MeasureCatalogue, measure_catalogue, own_catalogue
 from pipeline.mitigate.fixing_rows import FixingStrength, fixing_strengths
+from pipeline.mitigate.isolation import upper_stroke
 from pipeline.mitigate.measures.adhesives import LEVER
 from pipeline.mitigate.measures.restraints import BEARING
 from pipeline.mitigate.search import AT_BEST, SIZED
-from pipeline.mitigate.trials import TrialRunner, upper_stroke
+from pipeline.mitigate.trials import TrialRunner
 from pipeline.models.rigid_body import UNHARMED
 from pipeline.quantities import G
 from pipeline.records import Item, Motion, Recommendation

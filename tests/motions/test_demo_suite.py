@@ -23,8 +23,8 @@ def suite() -> Site:
 
 
 def elastic(periods: np.ndarray) -> np.ndarray:
-    """EN 1998-1:2004, (3.2) to (3.5): a_g 0.50 g, type 1, ground type B, 5 % damping; g."""
-    ag, s, tb, tc, td = 0.50, 1.2, 0.15, 0.5, 2.0
+    """EN 1998-1:2004, (3.2) to (3.5): a_g 0.25 g, type 1, ground type B, 5 % damping; g."""
+    ag, s, tb, tc, td = 0.25, 1.2, 0.15, 0.5, 2.0
     falling = np.where(periods <= td, tc / periods, tc * td / periods**2)
     shape = np.where(periods < tb, 1.0 + 1.5 * periods / tb, np.where(periods <= tc, 2.5, 2.5 * falling))
     return ag * s * shape

@@ -30,7 +30,7 @@ def most_telling(
     uncertain: Mapping[str, NDArray[np.bool_]],
     target: float,
     sampling: Sampling,
-) -> tuple[list[str], Array]:
+) -> tuple[list[str], Array, Array]:
     """Return the number of each object that is best measured, and what that is worth.
 
     Parameters
@@ -53,11 +53,13 @@ def most_telling(
     worth : ndarray, shape (m,)
         By how much the expected loss falls, in units of the loss by harm; doing something costs as much as harm of the
         target probability.
+    moves : ndarray, shape (m,)
+        Probability that it is found where something else is decided than without it.
     """
     from scipy.special import betainc
 
     n, m = harmed.shape
-    names, worth = [""] * m, np.zeros(m)
+    names, worth, moves = [""] * m, np.zeros(m), np.zeros(m)
     counted = np.arange(n)[:, None] < taken
     acts = np.where(taken > 0, (harmed & counted).sum(axis=0) / np.maximum(taken, 1), 0.0) >= target
     # The best of many that tell nothing looks as if it did: each part of each number has to be that much more certain.
@@ -69,7 +71,7 @@ def most_telling(
             continue
         shares = np.array([Draw(at, sampling.samples).share(name) for at in range(n)])
         part = np.minimum((PARTS * shares).astype(int), PARTS - 1)
-        better = np.zeros(some.size)
+        better, moved = np.zeros(some.size), np.zeros(some.size)
         for at in range(PARTS):
             mine = counted[:, some] & (part == at)[:, None]
             there, hurt = mine.sum(axis=0), (harmed[:, some] & mine).sum(axis=0)
@@ -78,7 +80,8 @@ def most_telling(
             p = hurt / np.maximum(there, 1)
             otherwise = np.where(acts[some], below >= certainty[some], 1.0 - below >= certainty[some])
             better += np.where(otherwise, np.abs(p - target) * there / taken[some], 0.0)
-        for at, value in zip(some.tolist(), better.tolist(), strict=True):
+            moved += np.where(otherwise, there / taken[some], 0.0)
+        for at, value, share in zip(some.tolist(), better.tolist(), moved.tolist(), strict=True):
             if value > worth[at]:
-                names[at], worth[at] = name, value
-    return names, worth
+                names[at], worth[at], moves[at] = name, value, share
+    return names, worth, moves

@@ -11,6 +11,7 @@ from pipeline.mitigate.measures.adhesives import Putty, Wax
 from pipeline.mitigate.measures.anchor import Anchor
 from pipeline.mitigate.measures.ballast import Ballast
 from pipeline.mitigate.measures.base import Measure
+from pipeline.mitigate.measures.brace import Brace
 from pipeline.mitigate.measures.clearance import Clearance
 from pipeline.mitigate.measures.close_hooks import CloseHooks
 from pipeline.mitigate.measures.fasten import Fasten
@@ -76,6 +77,7 @@ MEASURES: Registry[type[Measure]] = Registry(
         Brackets,
         Clamps,
         Fasten,
+        Brace,
         CloseHooks,
         Restrain,
         FrictionIsolator,

@@ -15,7 +15,7 @@ from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models import settled_by_room
 from pipeline.models.stress import FLEXIBLE_STRESS
 from pipeline.quantities import Quantity
-from pipeline.records import Check, Estimate, Finding, Hanging, Item, Origin, Scene, Support
+from pipeline.records import Check, Estimate, Finding, Hanging, Item, Origin, Scene, Support, Verdict
 
 MARGIN = 1.1
 """Room asked for over the largest demand of the uncertain inputs: the error of the motion is not in it."""
@@ -215,14 +215,16 @@ def with_parameters(scene: Scene, **found: Estimate) -> Scene:
 
 
 def held(scene: Scene) -> Scene:
-    """Return it held at its base: it neither rocks nor slides, and its critical section bears the push.
+    """Return it held at its base: it neither rocks nor slides, and its critical section bears the push."""
+    return replace(fixed_at_base(scene), support=Support.FASTENED, models=models_of(Support.FASTENED))
 
-    What concentrates the stress there counts from now on.
-    """
+
+def fixed_at_base(scene: Scene) -> Scene:
+    """Return it fixed to what it stands on: what concentrates the stress in its critical section counts."""
     concentrated = concentration(scene.item, material_of(scene.item)) if knows_section(scene) else None
     if concentrated is not None and scene.support is not Support.FASTENED:
         scene = with_parameters(scene, concentration=concentrated)
-    return replace(scene, support=Support.FASTENED, models=models_of(Support.FASTENED))
+    return scene
 
 
 def rehung(scene: Scene, way: Hanging) -> Scene:
@@ -265,6 +267,7 @@ def isolated(scene: Scene, kind: str) -> Scene:
 
 
 def movement(findings: Sequence[Finding]) -> Numbers:
-    """Return how far it moves in a trial [m], all that is uncertain at its worse end."""
+    """Return how far it moves in a trial [m]: at most, where that is within the room for sure; else as best known."""
     moves = [f for f in findings if settled_by_room(f.model)]
-    return {"movement": (max((f.high or 0.0 for f in moves), default=0.0), "m")}
+    far = [(f.high if f.verdict is Verdict.PASS else f.demand) or 0.0 for f in moves]
+    return {"movement": (max(far, default=0.0), "m")}

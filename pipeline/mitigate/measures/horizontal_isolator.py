@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
 
+from pipeline.mitigate.isolation import IsolatorResponse
 from pipeline.mitigate.measures.base import (
     DAMPING,
     FREQUENCY,
@@ -16,7 +17,7 @@ from pipeline.mitigate.measures.base import (
     with_parameters,
 )
 from pipeline.mitigate.proposals import IT, STANDING, Candidate, Deficiency, Option, Proposal, refused
-from pipeline.mitigate.trials import IsolatorResponse, Trial, TrialRunner
+from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models.common import lift_ratios
 from pipeline.quantities import Quantity
 from pipeline.records import Check, Estimate, Scene, Support

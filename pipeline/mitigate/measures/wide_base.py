@@ -15,6 +15,7 @@ from pipeline.mitigate.measures.base import (
     Measure,
     cleared,
     exactly,
+    fixed_at_base,
     knows_section,
     round_up,
     with_parameters,
@@ -51,7 +52,7 @@ class WideBase(Measure):
             if before is not None:
                 found[name] = exactly(half, "m", "half of the footing plate") if before.high < half else before
         models = dict.fromkeys((*models_of(Support.FREESTANDING), *models_of(Support.FASTENED), *scene.models))
-        wider = cleared(with_parameters(scene, **found), parameters)
+        wider = cleared(with_parameters(fixed_at_base(scene), **found), parameters)
         return replace(wider, models=tuple(models))
 
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:

@@ -83,7 +83,7 @@ def _texts(question: RuleQuestion, length: str) -> dict[str, str]:
         of = "" if unit == "-" else f" {unit}"
         why += f"; taken as {question.low / per:.3g} to {question.high / per:.3g}{of} now"
     if question.settles:
-        why += f"; would settle about {counted(max(1, round(question.settles)), 'verdict')}"
+        why += f"; would settle about {counted(max(1, round(question.settles)), 'case')}"
     if question.unlocks:
         why += f"; without it {counted(question.unlocks, 'check')} cannot be made"
     if not (question.settles or question.unlocks):

@@ -103,7 +103,7 @@ def _fill_in(sheet: Worksheet, asked: Sequence[MeasurementRequest], fields: Sequ
 
 
 def _ranking(sheet: Worksheet, asked: Sequence[MeasurementRequest], labels: Mapping[str, str]) -> None:
-    sheet.append(["Gallery", "Quantity", "Objects", "Verdicts it would settle", "Models it would make possible"])
+    sheet.append(["Gallery", "Quantity", "Objects", "What it would settle", "Models it would make possible"])
     totals: dict[tuple[str, str], list[float]] = {}
     for request in asked:
         total = totals.setdefault((request.gallery, request.field), [0, 0.0, 0])
@@ -144,4 +144,7 @@ def _reason(request: MeasurementRequest, length: str) -> str:
         unit = length if request.unit == "m" else "" if request.unit == "-" else request.unit
         span = f"{request.low / per:.3g} to {request.high / per:.3g} {unit}".strip()
         span = f", taken as {span} now"
+    if request.drawn:
+        chance = f"{min(request.settles, 1.0):.0%}"
+        return f"{column_name(request.field, length)}: changes what is decided with a chance of {chance}{span}"
     return f"{column_name(request.field, length)}: settles {request.settles:.2g} of {request.open} open verdicts{span}"

@@ -57,13 +57,17 @@ def survey_sentence(tally: Tally, seconds: float) -> str:
     phrase = ngettext("%(count)s measurement", "%(count)s measurements", tally.worth)
     measurements = phrase % {"count": count(tally.worth)}
     on = ngettext("on %(count)s object", "on %(count)s objects", tally.wished) % {"count": count(tally.wished)}
-    told = [_("%(measurements)s %(objects)s would settle a verdict.") % {"measurements": measurements, "objects": on}]
+    told = [
+        _("%(measurements)s %(objects)s may change what is decided.") % {"measurements": measurements, "objects": on}
+    ]
     if tally.waste:
         others = ngettext(
             "%(count)s other alone would settle nothing.", "%(count)s others alone would settle nothing.", tally.waste
         )
         told.append(others % {"count": count(tally.waste)})
-    return " ".join([*told, _("Finding this out took %(seconds)s s.") % {"seconds": f"{seconds:.1f}"}])
+    if seconds:
+        told.append(_("Finding this out took %(seconds)s s.") % {"seconds": f"{seconds:.1f}"})
+    return " ".join(told)
 
 
 def _label(field: str) -> str:
@@ -76,6 +80,8 @@ def _effect(request: MeasurementRequest) -> str:
         return _("without it nothing can be said")
     if request.settles_nothing:
         return _("alone it settles nothing")
+    if request.drawn:
+        return _("changes what is decided with a chance of %(share)s") % {"share": f"{min(request.settles, 1.0):.0%}"}
     if request.open == 1:
         # The mean over three trials that either settle the verdict or do not: a whole number of them.
         return _("settles it in %(number)s of %(trials)s trials") % {
@@ -92,7 +98,7 @@ def _gain(settles: float, unlocks: int) -> str:
     told = []
     if settles:
         about = max(1, round(settles))
-        phrase = ngettext("settles about %(count)s verdict", "settles about %(count)s verdicts", about)
+        phrase = ngettext("decides about %(count)s case", "decides about %(count)s cases", about)
         told.append(phrase % {"count": count(about)})
     if unlocks:
         phrase = ngettext("makes %(count)s check possible", "makes %(count)s checks possible", unlocks)
