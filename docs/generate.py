@@ -93,7 +93,7 @@ COLUMN_WORDS = {
     "errand": "its number on the way through the museum",
     "needs": "number of the errand that has to be done first",
     "do": "whether the plan has it, within [plan] hours and cost",
-    "rank": "its place in the order of what avoids most for an hour; empty for what takes objects from view",
+    "place": "its place in the order of what avoids most for an hour; empty for what takes objects from view",
     "objects": "numbers of the objects that it is for",
     "trade": "whose work it is: handler, mount-maker, engineer",
     "hours": "of work, of all who work together",
@@ -133,6 +133,8 @@ COLUMN_WORDS = {
     "yearly_falls": "how often a year it falls",
     "yearly_breaks": "how often a year it breaks",
     "page": "the page and place of the object in the report",
+    "rank": "its place among all objects on display, 1 the most urgent: act before watch, cannot be assessed and fine; "
+    "in each, what nobody has settled, what is not to be checked first, and what is expected to be lost come first",
     "row": "of the source",
     "line": "of a text file, where it differs from the row",
     "field": "of the object record",
@@ -318,9 +320,9 @@ def exports() -> str:
     tables = {"findings": FINDING_COLUMNS, "recommendations": RECOMMENDATION_COLUMNS, "objects": OBJECT_COLUMNS}
     intro = (
         "# Exports\n\nThe same results lie beside the pages of a report: `findings`, `recommendations` and `objects`"
-        " as CSV and Parquet, findings as JSON Lines too, and all of them as a workbook where there are not too many."
-        " Numbers are in SI units. An unknown number is an empty cell, and an endless one is `inf`. In CSV a text that"
-        " begins as a formula has an apostrophe in front."
+        " as CSV and Parquet, findings and objects as JSON Lines too, and all of them as a workbook where there are not"
+        " too many. Numbers are in SI units. An unknown number is an empty cell, and an endless one is `inf`. In CSV a"
+        " text that begins as a formula has an apostrophe in front."
     )
     parts, used = [intro], set()
     for name, columns in {**tables, "plan": PLAN_COLUMNS, "reading": READING_COLUMNS}.items():

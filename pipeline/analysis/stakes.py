@@ -4,19 +4,26 @@ The expected loss counts in losses of an object that the museum calls C,
 
 .. math::
 
-    P(\text{harm}) \, w + P(\text{falls}) \, w_p \left(1 - e^{-m g h / E}\right)
+    P(\text{harm}) \, w + P(\text{falls}) \, c \, w_p \left(1 - e^{-m g h / E}\right)
 
-with w the weight of its class of value, w_p that of a person, and m g h the energy of a fall from its centre of gravity
-to what it stands on: a roll of bread of 12 g hurts nobody, and a sculpture of 11 t anybody.  Weights are rows of
-tables/stakes.csv.
+with w the weight of its value or class of value, w_p that of a person, c a share for what falls within a closed case,
+and m g h the energy of a fall from its centre of gravity to the floor: a roll of bread of 12 g hurts nobody, and a
+sculpture of 11 t anybody.  Weights are rows of tables/stakes.csv.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from enum import StrEnum
 from functools import cache
 from math import exp
 
+from pipeline.analysis.furniture import SHELF_HEIGHT
 from pipeline.quantities import G
-from pipeline.records import Assessment, Harm, Scene, Support
+from pipeline.records import Assessment, Furniture, Harm, Scene, Support
 from pipeline.tables import Range, table
+from pipeline.tables.assumed import assumed
 from pipeline.tables.rows import RangeRow, Text, checked
 
 SLENDER = 6.0
@@ -37,26 +44,111 @@ class Stake(RangeRow):
     unit: Text
 
 
+class Term(StrEnum):
+    """What an object's worth rests on."""
+
+    CLASS = "class"
+    VALUE = "value"
+    IRREPLACEABLE = "irreplaceable"
+    ON_LOAN = "on loan"
+
+
+@dataclass(frozen=True, slots=True)
+class Worth:
+    """What an object is worth to the museum.
+
+    Attributes
+    ----------
+    weight : float
+        In objects that the museum calls C.
+    terms : tuple of Term
+        What it rests on; none where nothing is recorded.
+    """
+
+    weight: float
+    terms: tuple[Term, ...]
+
+
+VALUE_PER_C = "value_per_c"
+"""Row of stakes.csv, and key of a run's settings: the money that counts as one object of class C."""
+
+_MONEY: ContextVar[float] = ContextVar("value_per_c", default=0.0)
+
+
+@contextmanager
+def counting(value_per_c: float) -> Iterator[None]:
+    """Count money as the museum does, until the end of the block.
+
+    Parameters
+    ----------
+    value_per_c : float
+        What an object of class C is worth in its money; 0 where it does not say it.
+    """
+    token = _MONEY.set(value_per_c)
+    try:
+        yield
+    finally:
+        _MONEY.reset(token)
+
+
 @cache
 def stakes() -> dict[str, Range]:
     """Return the rows of tables/stakes.csv by name."""
     return {row.name: row.range for row in checked(Stake, table("stakes"), "stakes.csv", named="name")}
 
 
+def worth_of(scene: Scene) -> Worth:
+    """Return what an object is worth to the museum, and what that rests on.
+
+    Its value in money where that is recorded, within bounds, else its class of value; more where it is irreplaceable or
+    on loan.
+    """
+    rows, item = stakes(), scene.item
+    named = f"class_{item.value_class.strip().lower()}"
+    terms: list[Term] = []
+    if item.value is not None:
+        in_c = item.value / (_MONEY.get() or rows[VALUE_PER_C].value)
+        weight = min(max(in_c, rows["value_least"].value), rows["value_most"].value)
+        terms.append(Term.VALUE)
+    elif named in rows and item.value_class.strip():
+        weight = rows[named].value
+        terms.append(Term.CLASS)
+    else:
+        weight = rows["class_unknown"].value
+    for recorded, term in ((item.irreplaceable, Term.IRREPLACEABLE), (item.on_loan, Term.ON_LOAN)):
+        if recorded:
+            weight *= rows[term.name.lower()].value
+            terms.append(term)
+    return Worth(weight, tuple(terms))
+
+
 def value_of(scene: Scene) -> float:
     """Return what an object is worth to the museum, in objects that it calls C."""
-    rows = stakes()
-    return rows.get(f"class_{scene.item.value_class.strip().lower()}", rows["class_unknown"]).value
+    return worth_of(scene).weight
 
 
 def danger_of(scene: Scene) -> float:
-    """Return what its fall is to the people beside it, in objects that the museum calls C."""
+    """Return what its fall is to the people beside it, in objects that the museum calls C.
+
+    It falls from as high as its centre of gravity lies above the floor on which people stand: that above its base, and
+    that of the furniture that it stands on.
+    """
     mass, height = (scene.parameters.get(name) for name in ("mass", "cg_height"))
     if mass is None:
         return 0.0
-    # What hangs falls from about the height of eyes.
-    high = 1.5 if height is None else height.value
-    return stakes()["person"].value * (1.0 - exp(-mass.value * G * high / stakes()["energy"].value))
+    rows = stakes()
+    high = rows["hung_height"].value if height is None else height.value + _stands_at(scene)
+    share = rows["in_a_case"].value if scene.furniture is Furniture.SHOWCASE else 1.0
+    return share * rows["person"].value * (1.0 - exp(-mass.value * G * high / rows["energy"].value))
+
+
+def _stands_at(scene: Scene) -> float:
+    """Return the height of what an object stands on above the floor [m]."""
+    known = scene.parameters.get(SHELF_HEIGHT)
+    if known is not None:
+        return known.value
+    row = None if scene.furniture is None else assumed().furniture.get(scene.furniture.value)
+    return 0.0 if row is None or row.shelf_height is None else row.shelf_height
 
 
 def expected_loss(assessment: Assessment) -> float:

@@ -429,15 +429,28 @@ def respond(
 @click.option("--site", help="Site folder whose motions are used, or 'demo'; else the settings'.")
 @click.option("--model", "models", multiple=True, help="Only this model; may be repeated.")
 @click.option("--objects", default=128, show_default=True, type=click.IntRange(1, 100_000), help="Objects a model.")
+@click.option(
+    "--probabilities",
+    type=click.IntRange(0, 10_000),
+    help="Objects whose probabilities of harm are measured; default: 100, and none with --model.",
+)
 @click.option("--error", "wanted", default=1e-3, show_default=True, type=click.FloatRange(0.0), help="Error to keep.")
 @as_json
 @click.pass_obj
 def tradeoff(
-    options: Options, site: str | None, models: tuple[str, ...], objects: int, wanted: float, as_json: bool
+    options: Options,
+    site: str | None,
+    models: tuple[str, ...],
+    objects: int,
+    probabilities: int | None,
+    wanted: float,
+    as_json: bool,
 ) -> None:
     """Measure error against cost for each model, on your motions and on objects of your collection.
 
-    It takes a minute or more.  The next report of `kouros run` shows the result as a picture.
+    And for probabilities of harm: of each number of samples, and of the rule that stops when a word is sure.
+
+    It takes a minute or two.  The next report of `kouros run` shows the result as a picture.
 
     Example: kouros tradeoff --site demo --model sliding --error 1e-4
     """
@@ -445,7 +458,8 @@ def tradeoff(
 
     settings = options.settings() if Path(options.config).exists() else None
     with options.console() as console:
-        found = tradeoff_on(settings, site, console, models=models, objects=objects)
+        drawn = (0 if models else 100) if probabilities is None else probabilities
+        found = tradeoff_on(settings, site, console, models=models, objects=objects, probabilities=drawn)
     cheapest = found.cheapest(wanted)
     if as_json:
         best = {name: None if setting is None else asdict(setting) for name, setting in cheapest.items()}

@@ -97,6 +97,7 @@ def summary_lines(summary: "Summary") -> list[str]:
         count(summary.on_display, f"objects on display, in {summary.galleries:,} galleries"),
         count(summary.assessed, f"assessed ({summary.findings:,} findings), of which"),
         count(summary.act, "  to act on: harm is possible or likelier"),
+        *([count(summary.check, "    of these, the record is to be checked first")] if summary.check else []),
         count(summary.watch, "  to watch: harm is unlikely"),
         count(summary.fine, "  are fine: harm is very unlikely, or excluded"),
         *([count(open_, "  of these, one measurement may change what is decided")] if open_ else []),
@@ -110,6 +111,13 @@ def summary_lines(summary: "Summary") -> list[str]:
         lines.append(
             count(summary.faults, "of all these met a fault of Kouros: see the log, and please tell its makers")
         )
+    if len(summary.levels) > 1:
+        lines += ["", "  By level of shaking, an object's own state being that at which harm is likeliest:"]
+        lines += [
+            f"    {printable(level['name'])}: {level['act']:,} to act on, {level['watch']:,} to watch, "
+            f"{level['fine']:,} fine"
+            for level in summary.levels
+        ]
     lines += ["", "  Recommended, each run again and passing, by the best estimates at least:"]
     lines += [count(number, title) for title, number in summary.measures.items()]
     if summary.worth is not None:
@@ -250,6 +258,18 @@ def tradeoff_lines(found: "Tradeoff", wanted: float) -> list[str]:
     for name, setting in found.cheapest(wanted).items():
         told = "none of these" if setting is None else f"{setting.setting}, {setting.cost:.2f} ns"
         lines.append(f"    {name:<30}{told}")
+    if found.probabilities:
+        objects = found.probabilities[0].objects
+        lines += [
+            "",
+            f"Probabilities of harm of {objects} objects, against other samples of the same objects:",
+            f"{'':<34}{'samples':>10}{'CPU s':>10}{'rms':>10}{'stated':>10}{'worst':>10}{'right words':>16}",
+        ]
+    lines += [
+        f"    {s.setting:<30}{s.samples:>10.0f}{s.seconds:>10.1f}{s.rms:>10.4f}{s.stated:>10.4f}{s.worst:>10.3f}"
+        f"{s.right:>16.1%}"
+        for s in found.probabilities
+    ]
     return lines
 
 

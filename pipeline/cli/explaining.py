@@ -45,6 +45,8 @@ def print_explanation(settings: "Settings", number: str, options: Options, as_js
 
 def explanation_lines(explained: "Explanation") -> Iterator[str]:
     """Yield the reasoning for one object, line by line."""
+    from pipeline.report.pages.chances import worth_words
+
     scene = explained.scene
     item = scene.item
     yield f"{item.object_number}  {item.title}  ({item.gallery})"
@@ -52,6 +54,8 @@ def explanation_lines(explained: "Explanation") -> Iterator[str]:
     yield f"  support  {scene.support.value}" + (f", on floor {scene.floor}" if scene.floor else "")
     for statement in scene.statements:
         yield f"  house    {statement}"
+    if explained.worth is not None:
+        yield f"  worth    {worth_words(scene, explained.worth)}"
     for missing in scene.missing:
         yield f"  missing  {missing}"
     yield "  numbers"

@@ -55,6 +55,7 @@ def list_(options: Options, site: str | None, as_json: bool) -> None:
         click.echo(json.dumps([asdict(row) for row in rows], indent=2))
         return
     click.echo("\n".join(_table(rows)))
+    click.echo("\nWhat topples an object is the peak velocity (PGV) more than the peak acceleration (PGA).")
 
 
 @motions.command()

@@ -100,6 +100,9 @@ _MEANINGS = {
     "clearance_m": "Room to the nearest neighbour or edge.",
     "susceptible": "Whether rocking itself damages it.",
     "value_class": "The museum's own class of value.",
+    "value": "What it is valued at, as for insurance, in the museum's own money.",
+    "irreplaceable": "Whether nothing could take its place.",
+    "on_loan": "Whether it is on loan to the museum.",
     "on_display": "Whether it is on display now; only then it is assessed.",
     "provenance": "Where each quantity comes from: how it was recorded, and the characters it was read from.",
     "problems": "What the import could not accept, or doubts.",
@@ -174,7 +177,8 @@ def digest_of(item: Item) -> str:
 
 
 INDIVIDUAL = (
-    "object_number", "gallery", "dimensions", "position_x_m", "position_y_m", "value_class", "provenance", "problems",
+    "object_number", "gallery", "dimensions", "position_x_m", "position_y_m", "value_class", "value", "irreplaceable",
+    "on_loan", "provenance", "problems",
 )  # fmt: skip
 """Fields that tell one object from others that are alike: nothing computed of an object by itself rests on them."""
 

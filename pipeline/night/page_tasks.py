@@ -8,7 +8,6 @@ from pipeline.analysis.faults import Fault, fitting
 from pipeline.night.context import RunContext
 from pipeline.records import DecisionStatus, Found, Page, Tally
 from pipeline.report.files.page_renderer import PageRenderer, RenderedPage
-from pipeline.report.pages.tallies import tally
 from pipeline.store.pages import Members, found_of
 
 
@@ -50,11 +49,11 @@ def render_page(context: RunContext, task: PageTask) -> Rendered:
     """Render a page; an object that Kouros fails on is shown as one that cannot be assessed, and told."""
     found = found_of(task.members, task.results)
     if not task.draw:
-        return Rendered(tally(found))
+        return Rendered(context.renderer.tally(found))
     faults: list[Fault] = []
     # What renders is made outside of any object's guard: a language without a catalogue is nobody's fault here.
     shown, page = fitting(found, partial(_drawn, context.renderer, task.page, task.decisions), faults)
-    return Rendered(page.tally if shown is found else tally(shown), page, tuple(faults))
+    return Rendered(page.tally if shown is found else context.renderer.tally(shown), page, tuple(faults))
 
 
 def _drawn(renderer: PageRenderer, page: Page, decisions: Sequence[DecisionStatus], found: Found) -> RenderedPage:

@@ -15,6 +15,7 @@ from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.plan import Work, plan
 from pipeline.analysis.response_charts.grouping import group_name, groups
 from pipeline.analysis.rules import RuleTable
+from pipeline.analysis.stakes import VALUE_PER_C
 from pipeline.collection.inventory import latest_import
 from pipeline.collection.listing import Listing
 from pipeline.collection.object_index import ObjectIndex
@@ -33,6 +34,7 @@ from pipeline.operations.presentation import presentation, terms_of
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Model, Progress, RunRecord, Scene
 from pipeline.report import Units
+from pipeline.report.pages.compose import PERIODS
 from pipeline.report.pages.reading import INVENTORY, READING
 from pipeline.resources import code_version
 from pipeline.store.reuse import CODE, DISPLAY, HOUSE, KERNELS, LEVELS, RULES, TABLES
@@ -214,7 +216,9 @@ def _stored_settings(workspace: Workspace, site: Site, credit: str, tested: self
         TABLES: tables_digest(settings),
         HOUSE: house_digest(settings),
         LEVELS: {level.name: level.combine for level in site.levels},
+        PERIODS: {level.name: level.return_period_years for level in site.levels},
         "credit": credit,
+        VALUE_PER_C: settings.museum.value_per_c,
         "analysis": settings.analysis.model_dump(),
         "length": settings.report.length,
         "site": settings.site.folder,

@@ -2,7 +2,7 @@
 
 import warnings
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import Any, Protocol, TypeVar
@@ -29,6 +29,7 @@ from pipeline.operations.stopping import uninterrupted
 from pipeline.operations.workspace import UsageError, Workspace, locked, near, open_workspace, tidy
 from pipeline.records import Page, Progress, RunRecord, Tally, Urgent
 from pipeline.report import lasting_name, publish
+from pipeline.report.pages.compose import PERIODS
 from pipeline.report.pages.decided import by_object
 from pipeline.report.pages.reading import READING
 from pipeline.report.pages.survey_words import SURVEY_SECONDS
@@ -317,6 +318,8 @@ def summarise(head: RunRecord, pages: Sequence[Page], found: Tally) -> Summary:
         missing=found.missing,
         stores=stores,
         reading=head.settings.get(READING),
+        check=found.check,
+        levels=_by_level(head, found),
         first=[f"{u.object_number}  {u.title[:48]}  ({u.gallery}): {u.outcome}" for u in _unsettled(head, found)],
         stands_by=found.stands_by,
         faults=found.faults,
@@ -331,6 +334,18 @@ def summarise(head: RunRecord, pages: Sequence[Page], found: Tally) -> Summary:
         ],
         efforts=[{"title": title, **effort} for title, effort in found.efforts.items()],
     )
+
+
+def _by_level(head: RunRecord, found: Tally) -> list[dict[str, Any]]:
+    """Count what is on display by each level of shaking; of a single one the states are those of the objects."""
+    periods: Mapping[str, float | None] = head.settings.get(PERIODS) or {}
+    states = found.levels or dict.fromkeys(list(periods)[:1], found.states)
+    return [
+        {"name": name, "return_period_years": years}
+        | {state.value: states[name].get(state, 0) for state in (State.ACT, State.WATCH, State.FINE)}
+        for name, years in periods.items()
+        if name in states
+    ]
 
 
 _COUNTED = {"act": State.ACT, "watch": State.WATCH, "fine": State.FINE, "cannot": State.UNKNOWN}

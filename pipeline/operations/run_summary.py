@@ -64,6 +64,11 @@ class Summary:
         How many by where it is known from what they stand on: an `Origin`.
     open_for : mapping of str to int
         About how many one measurement may change what is decided, by the parameter that is to be measured.
+    check : int
+        Of those to act on, how many have a record that is to be checked first.
+    levels : sequence of mapping
+        Of each level of shaking its name, its return period (years, None where the manifest has none), and how many
+        objects are to be acted on, to be watched and fine at it.
     faults : int
         How many objects Kouros itself failed on; the log has the tracebacks.
     fresh : int
@@ -112,6 +117,8 @@ class Summary:
     first: Sequence[str]
     stands_by: Mapping[str, int]
     open_for: Mapping[str, int] = field(default_factory=dict)
+    check: int = 0
+    levels: Sequence[Mapping[str, Any]] = ()
     faults: int = 0
     fresh: int = 0
     stores: "Stores | None" = None

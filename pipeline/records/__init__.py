@@ -20,7 +20,7 @@ from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.model import Bounds, ChartAxis, ChartFigure, Columns, Figure, Model, Trials
 from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.numerics import Numerics
-from pipeline.records.part import Errors, Found, Outline, Page, Result, Tally, Urgent
+from pipeline.records.part import Errors, Found, Outline, Page, Result, Tally, Urgency, Urgent
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress, Silent
 from pipeline.records.reading import Account, Doubt
@@ -106,6 +106,7 @@ __all__ = [
     "Support",
     "Tally",
     "Trials",
+    "Urgency",
     "Urgent",
     "Verdict",
     "VerdictChange",

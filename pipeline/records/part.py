@@ -80,13 +80,19 @@ class Result:
     likelihoods: tuple[Likelihood, ...] = ()
 
 
+Urgency = tuple[int, bool, bool, float, float, float, str, str]
+"""What sorts an object among others, the most urgent first: state; whether people settled it; whether its record is to
+be checked first; expected loss in steps, falling; ease of what is advised; how likely harm is, falling; object number
+and gallery."""
+
+
 @dataclass(frozen=True, slots=True)
 class Urgent:
     """An object on display that fails, as a list of the worst shows it.
 
     Attributes
     ----------
-    order : tuple
+    order : Urgency
         The key that sorts it among others.
     object_number, title, gallery, outcome : str
         As the list shows them.
@@ -94,7 +100,7 @@ class Urgent:
         Model and level of each of its findings that does not pass.
     """
 
-    order: tuple[int, bool, float, float, str, str]
+    order: Urgency
     object_number: str
     title: str
     gallery: str
@@ -161,6 +167,10 @@ class Tally:
         Objects on display about which one measurement may change what is decided, by what is to be measured.
     curves : mapping of str to mapping of str to int
         Of the fragility of harm of objects on display, by class: what `pipeline.report.pages.class_curves` adds up.
+    check : int
+        Of the objects on display to be acted on, those whose record is to be checked first.
+    levels : mapping of str to mapping of str to int
+        Where there are several levels of shaking: objects on display with findings, by level and their state at it.
     """
 
     states: Mapping[str, int]
@@ -183,6 +193,8 @@ class Tally:
     stands_by: Mapping[str, int] = field(default_factory=dict)
     open_for: Mapping[str, int] = field(default_factory=dict)
     curves: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    check: int = 0
+    levels: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -147,6 +147,10 @@ class Item:
         To the nearest neighbour or edge, m.
     susceptible, value_class, on_display : bool or None, str, bool
         Whether rocking itself damages it, the museum's class of value, and whether it is on display.
+    value : float or None
+        What it is valued at, in the museum's own money.
+    irreplaceable, on_loan : bool or None
+        Whether nothing could take its place, and whether it belongs to somebody else.
     provenance : tuple of Provenance
         Of each quantity.
     problems : tuple of Problem
@@ -200,6 +204,9 @@ class Item:
     clearance_m: float | None = None
     susceptible: bool | None = None
     value_class: str = ""
+    value: float | None = None
+    irreplaceable: bool | None = None
+    on_loan: bool | None = None
     on_display: bool = True
     provenance: tuple[Provenance, ...] = ()
     problems: tuple[Problem, ...] = ()

@@ -50,6 +50,14 @@ class MuseumSettings(_Part):
     """Whose collection it is."""
 
     name: str = Field(default="", description="shown on every page")
+    value_per_c: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=1e12,
+        allow_inf_nan=False,
+        description="what an object of its class of value C is worth in its own money, where values are recorded; 0: "
+        "as Kouros's stakes.csv takes it",
+    )
 
 
 class Inventory(_Part):

@@ -95,8 +95,13 @@ def _motions(settings: Settings) -> tuple[str, str]:
     from pipeline.quantities import G
 
     site = read_site(site_folder(settings.home, settings.site.folder))
-    peaks = [f"{m.motion.name} {m.measures['pga'] / G:.2f} g" for level in site.levels for m in level.motions]
-    text = f"{site.name} ({site.folder}): {', '.join(peaks)}"
+    # What topples an object is velocity more than acceleration: both are said.
+    peaks = [
+        f"{m.motion.name} {m.measures['pga'] / G:.2f} g, {100.0 * m.measures['pgv']:.0f} cm/s"
+        for level in site.levels
+        for m in level.motions
+    ]
+    text = f"{site.name} ({site.folder}): {'; '.join(peaks)}"
     known(settings, site)
     for floor in site.floors:
         levels_at(site, floor)

@@ -10,6 +10,7 @@ from pipeline.analysis.findings import findings
 from pipeline.analysis.furniture import itself, loose
 from pipeline.analysis.plan import Work, plan
 from pipeline.analysis.refinement import FidelitySearch, examine
+from pipeline.analysis.stakes import Worth, counting, worth_of
 from pipeline.analysis.verdicts import LevelMotions, capacity_of
 from pipeline.collection.inventory import read_inventory
 from pipeline.execute import Threads
@@ -83,6 +84,7 @@ class Explanation:
     reasonings: tuple[Reasoning, ...]
     advice: tuple[Recommendation, ...]
     likelihoods: tuple[Likelihood, ...] = ()
+    worth: Worth | None = None
 
 
 def explain(workspace: Workspace, number: str, progress: Progress) -> list[Explanation]:
@@ -172,7 +174,9 @@ def _explain(
     ]
     sampling = workspace.settings.likelihood.sampling
     chances, advice = advised((one, *others), scenes, found, levels, context, numerics, sampling, workspace.measures)
-    return Explanation(scene, tuple(reasonings), tuple(advice[0]), chances[0])
+    with counting(workspace.settings.museum.value_per_c):
+        worth = worth_of(scene)
+    return Explanation(scene, tuple(reasonings), tuple(advice[0]), chances[0], worth)
 
 
 def _reason(work: Work, scene: Scene, level: LevelMotions, context: Context, numerics: Numerics) -> Reasoning:

@@ -30,6 +30,7 @@ from pipeline.quantities import Array
 from pipeline.records import Axis, Chart, Columns, Curve, Item, Model, Motion, Numerics, Progress, Scene
 from pipeline.records.numerics import AZIMUTH_STEP, HISTORIES, REFINE
 from pipeline.settings import Settings
+from pipeline.verification.sampling_cost import SamplingCost, measured_on
 
 STEPS = (1, 2, 4, 8, 16)
 """How much finer than the coarsest step the settings of a fixed direction integrate."""
@@ -118,13 +119,14 @@ class Sample:
 
 @dataclass(frozen=True)
 class Tradeoff:
-    """A measurement, with what it depends on."""
+    """A measurement, with what it depends on; probabilities: none where they were not asked for."""
 
     measured: str
     kernels: str
     motions: Sequence[str]
     samples: Sequence[Sample]
     settings: Sequence[Setting]
+    probabilities: Sequence[SamplingCost] = ()
 
     def cheapest(self, wanted: float) -> dict[str, Setting | None]:
         """Return, for each model, the cheapest step whose worst error keeps a wanted one, with every outcome right.
@@ -430,7 +432,9 @@ def kept(folder: Path) -> Tradeoff | None:
     return last if fits else None
 
 
-def tradeoff_on(settings: Settings | None, site: str | None, progress: Progress, **wishes: Any) -> Tradeoff:
+def tradeoff_on(
+    settings: Settings | None, site: str | None, progress: Progress, *, probabilities: int = 0, **wishes: Any
+) -> Tradeoff:
     """Measure on a site and on the inventory of the settings, and keep it for the next report.
 
     Parameters
@@ -441,6 +445,8 @@ def tradeoff_on(settings: Settings | None, site: str | None, progress: Progress,
         Its folder, or "demo"; None: that of the settings.
     progress : callable
         Is told what is done, of how much.
+    probabilities : int
+        Objects on display whose probabilities of harm are measured too; of the demonstration where settings are None.
     **wishes : Any
         As of `measure`.
 
@@ -464,6 +470,8 @@ def tradeoff_on(settings: Settings | None, site: str | None, progress: Progress,
     items = [] if settings is None else read_inventory(open_workspace(settings).engine)
     with charts_of(settings) as charts:
         found = measure(motions, items, progress, models=names, charts=charts, **wishes)
+    if probabilities:
+        found = replace(found, probabilities=measured_on(settings, site, items, progress, probabilities))
     # A part would take the place of the whole in the report.
     if settings is not None and site is None and not names:
         keep(found, settings.kept)

@@ -153,6 +153,28 @@ def test_a_diameter_fills_only_what_is_missing(read: Read) -> None:
     assert sizes == [(0.3, 0.2), (0.2, 0.2), (None, None)]
 
 
+def test_what_is_at_stake_is_read_and_what_cannot_be_is_told(read: Read) -> None:
+    mapping = MAPPING.replace(
+        "[display]",
+        'value = { column = "insured" }\nirreplaceable = { column = "unique", values = { "ja" = true } }\n'
+        'on_loan = { column = "loan" }\n[display]',
+    )
+    header = "number,location,title,height,mass,insured,unique,loan\n"
+    rows = "A1,H,V,,,1250000.50,Ja,yes\nA2,H,V,,,,,\nA3,H,V,,,0,no,n\nA4,H,V,,,-5,perhaps,from Berlin\n"
+    rows += "A5,H,V,,,1e13,,\nA6,H,V,,,inf,,\nA7,H,V,,,1e9999,,\nA8,H,V,,,dear,,\nA9,H,V,,,=1+1,,\n"
+    a, b, c, d, *others = read(header + rows, mapping).items
+    assert (a.value, a.irreplaceable, a.on_loan, a.problems) == (1_250_000.5, True, True, ())
+    assert (b.value, b.irreplaceable, b.on_loan, b.problems) == (None, None, None, ())
+    assert (c.value, c.irreplaceable, c.on_loan, c.problems) == (0.0, False, False, ())
+    assert (d.value, d.irreplaceable, d.on_loan) == (None, None, None)
+    assert [p.field for p in d.problems] == ["value", "irreplaceable", "on_loan"]
+    for item in (d, *others):
+        assert item.value is None
+        assert item.problems[0].field == "value"
+        assert "insured" in item.problems[0].message
+        assert item.problems[0].remedy
+
+
 def test_words_counts_and_truths(read: Read) -> None:
     mapping = MAPPING.replace(
         "[display]",

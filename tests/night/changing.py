@@ -33,7 +33,7 @@ from tests.museum import DATABASE, SILENT, few_samples, in_common, with_tables
 COLUMNS = (
     "object_number", "title", "object_name", "gallery", "case", "on_display", "medium", "height_m", "width_m",
     "depth_m", "friction", "mass_kg", "clearance_m", "position_x_m", "position_y_m", "value_class", "support",
-    "furniture", "furniture_anchorage",
+    "furniture", "furniture_anchorage", "value", "irreplaceable", "on_loan",
 )  # fmt: skip
 EXPORTS = ("findings.csv", "objects.csv", "recommendations.csv")
 NAMES = ("Vase", "Vase", "Bowl", "Plate", "Painting", "Figurine")
@@ -226,6 +226,7 @@ class Changing:
         row, other = self.any_row(), self.object()
         name = self.random.choice([*COLUMNS[1:], "friction", "mass_kg", "clearance_m"])
         more = {"friction": "0.3", "mass_kg": "2.5", "clearance_m": "0.02", "value_class": "A", "support": "fastened"}
+        more |= {"value": "40000", "irreplaceable": "yes", "on_loan": "yes"}
         row[name] = other[name] or ("" if row[name] else more.get(name, ""))
 
     def make_alike(self) -> None:

@@ -204,6 +204,10 @@ def value(museum: Changing) -> None:
     museum.rows[1]["value_class"] = "A"
 
 
+def loan(museum: Changing) -> None:
+    museum.rows[1] |= {"value": "40000", "irreplaceable": "yes", "on_loan": "yes"}
+
+
 def in_a_case(museum: Changing) -> None:
     museum.rows[3]["height_m"] = "0.77"
 
@@ -268,6 +272,7 @@ def accepted(museum: Changing) -> None:
         (setting("classes", '"classes.csv"'), ALL),
         # A setting of each group.
         (setting("name", '"Another museum"'), PAGES),
+        (setting("value_per_c", "500.0"), PAGES),
         (setting("shrink_limit", "0.5"), NOTHING),
         (setting("azimuth_step", "30.0"), SHOWN),
         (setting("fidelity", '"history"'), SHOWN),
@@ -296,6 +301,7 @@ def accepted(museum: Changing) -> None:
         # Where an object stands is its neighbours' business, and what it is worth that of its page.
         (place, (0, 0, 1)),
         (value, (0, 0, 1)),
+        (loan, (0, 0, 1)),
         (off_display, (0, 1, 2)),
         (order, NOTHING),
         (line_ends, NOTHING),

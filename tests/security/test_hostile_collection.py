@@ -36,9 +36,12 @@ STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u20
 """What may reach no terminal: control characters but tabs and line ends, and marks of direction."""
 
 PAGE = re.compile(r"(index|motion|method)\.html|[a-z0-9-]{1,60}-[0-9a-f]{8}\.html")
-PART = re.compile(r"parts|parts/[a-z0-9-]{1,60}-[0-9a-f]{8}\.(findings|recommendations|objects)\.(csv|jsonl|parquet)")
+PART = re.compile(
+    r"parts|parts/[a-z0-9-]{1,60}-[0-9a-f]{8}\.((findings|recommendations|objects)\.(csv|jsonl|parquet)|keys\.arrow)"
+)
 EXPORTS = {
     *("findings.csv", "findings.jsonl", "findings.parquet", "findings.xlsx", "objects.csv", "objects.parquet"),
+    "objects.jsonl",
     *(
         "recommendations.csv",
         "recommendations.parquet",
@@ -173,7 +176,7 @@ def test_nothing_was_written_elsewhere(night: Night) -> None:
 def test_what_is_left_holds_no_objects_of_python(night: Night) -> None:
     """Texts, tables, JSON, SQL and plain arrays: nothing that runs when it is read."""
     kept = [path for path in night.folder.rglob("*") if path.is_file()]
-    kinds = {*(".toml", ".sqlite", ".lock", ".html", ".csv", ".jsonl", ".json", ".parquet", ".xlsx", ".kept")}
+    kinds = {*(".toml", ".sqlite", ".lock", ".html", ".csv", ".jsonl", ".json", ".parquet", ".arrow", ".xlsx", ".kept")}
     assert {path.suffix or path.name for path in kept} - {".kouros.lock"} <= kinds
     sealed = [
         path for path in [*kept, *(night.folder / ".kouros-kept" / "charts").rglob("*")] if path.suffix == ".kept"

@@ -55,8 +55,9 @@ def test_the_inventory_works_on_migrated_tables(engine: Engine) -> None:
     items = [
         Item("1", "G1", support=Support.HUNG, section_count=4, height_m=0.1 + 0.2, susceptible=False),
         Item("2", "G1", problems=(Problem("mass_kg", "no number", "weigh it"),)),
+        Item("3", "G1", value=1e12 / 3.0, irreplaceable=True, on_loan=False),
     ]
-    batch = {"sha256": "", "mapping": "", "museum": "", "credit": "", "rows": 2, "items": 2, "rejected": []}
+    batch = {"sha256": "", "mapping": "", "museum": "", "credit": "", "rows": 3, "items": 3, "rejected": []}
     with engine.begin() as connection:
         version = {"since": 1, "until": None}
         records = zip(items, to_records(items), strict=True)

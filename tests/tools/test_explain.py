@@ -144,3 +144,24 @@ def test_furniture_that_is_not_fastened_is_explained_as_the_night_judged_it(tmp_
     (advice,) = reasoned.advice
     too = replace(reasoned, advice=(replace(advice, sentence=f"{ANCHORED} {advice.sentence}"),))
     assert set(explanation_lines(too)) - set(explanation_lines(reasoned)) == {f"    {ANCHORED}"}
+
+
+def test_what_an_object_counts_and_why_is_told(museum: Settings, tmp_path: Path) -> None:
+    """80,000 at 20,000 for an object of class C is 4, and thrice that, as it is irreplaceable: stakes.csv."""
+    assert "  worth    counts 2: nothing is recorded of its value" in explained(museum, "1").stdout.splitlines()
+    settings = workspace(tmp_path, ["1,A,Vase,1.2,0.2,0.2"])
+    file = tmp_path / "kouros.toml"
+    file.write_text(file.read_text(encoding="utf-8").replace("value_per_c = 0.0", "value_per_c = 20000.0"), "utf-8")
+    for name, more in (("export.csv", ",value,irreplaceable,on_loan"), ("mapping.toml", "")):
+        said = (tmp_path / name).read_text(encoding="utf-8").splitlines()
+        if more:
+            said = [said[0] + more, *(f"{line},80000,yes,no" for line in said[1:])]
+        else:
+            said += [f'[columns.{field}]\ncolumn = "{field}"' for field in ("value", "irreplaceable", "on_loan")]
+        (tmp_path / name).write_text("\n".join(said) + "\n", encoding="utf-8")
+    settings = load_settings(file)
+    summary = run(settings, Console(quiet=True))
+    assert "  worth    counts 12: valued at 80,000, irreplaceable" in explained(settings, "1").stdout.splitlines()
+    assert summary.report is not None
+    page = next(summary.report.parent.glob("a-*.html")).read_text(encoding="utf-8")
+    assert "counts 12: valued at 80,000, irreplaceable" in page

@@ -11,7 +11,8 @@ from math import isfinite, isnan
 from pathlib import Path
 from typing import Any
 
-from pipeline.records import Assessment, Finding, Harm, Recommendation, RunRecord
+from pipeline.records import Assessment, Finding, Harm, Recommendation, RunRecord, Urgency
+from pipeline.report.files.ranks import KEYS, keys_part
 from pipeline.report.files.workbook import write_workbook
 from pipeline.report.pages.alike import Memory, finding_key
 from pipeline.report.pages.chances import chance_columns
@@ -43,19 +44,27 @@ OBJECT_COLUMNS = (
     "furniture_origin", "missing", "probability", "probability_error", "band", "harm", "harm_level",
     *(f"p_{state.value}" for state in Harm), "open_for", "worth", "expected_loss",
     "median_g", "median_is", "dispersion", "median_pgv_m_s", "goodness", "annual_rate", "chance_50_years",
-    "chance_50_years_low", "chance_50_years_high", *(f"yearly_{state.value}" for state in Harm), "page",
+    "chance_50_years_low", "chance_50_years_high", *(f"yearly_{state.value}" for state in Harm), "page", "rank",
 )  # fmt: skip
 
 
 TABLES = {"findings": FINDING_COLUMNS, "recommendations": RECOMMENDATION_COLUMNS, "objects": OBJECT_COLUMNS}
-"""The exported tables, each as CSV and Parquet; findings as JSON Lines too, and all of them as one workbook."""
+"""The exported tables, each as CSV and Parquet; findings and objects as JSON Lines too, and all as one workbook."""
 
-HEADERS = {f"{name}.csv": (",".join(columns) + "\n").encode() for name, columns in TABLES.items()}
-"""What the CSV files begin with."""
+RANK = "rank"
+"""The last column of the objects: their place among all of the report, which no part of it can know."""
 
-TEXTS = ("findings.csv", "findings.jsonl", "recommendations.csv", "objects.csv")
+_OF_PARTS = TABLES | {"objects": OBJECT_COLUMNS[: OBJECT_COLUMNS.index(RANK)]}
+
+HEADERS = {f"{name}.csv": (",".join(columns) + "\n").encode() for name, columns in _OF_PARTS.items()}
+"""What the CSV files of the parts begin with."""
+
+TEXTS = ("findings.csv", "findings.jsonl", "recommendations.csv", "objects.csv", "objects.jsonl")
 EXPORTS = (*TEXTS, *(f"{name}.parquet" for name in TABLES))
 """The exports of a report; of every page there is a part of each, a whole file of the same kind."""
+
+PARTS_OF_PAGE = (*EXPORTS, KEYS)
+"""The files with what a page adds to the exports."""
 
 WORKBOOK = "findings.xlsx"
 
@@ -113,6 +122,7 @@ def page_exports(
     run: str,
     page: str,
     anchors: Callable[[Assessment], str],
+    keys: Callable[[Assessment], Urgency | None],
     units: Units,
     findings: FindingRows,
 ) -> dict[str, bytes]:
@@ -124,7 +134,7 @@ def page_exports(
     tab or a carriage return gets a leading apostrophe, because a spreadsheet would run it as a formula; JSON Lines and
     Parquet keep the text as it is.  JSON has no infinity: it is the text "inf" there.  Only the sentences of
     recommendations are in the reader's units.  objects.csv has one row for every object, so that what could not be
-    assessed is not lost.
+    assessed is not lost; its rank is not in a part, but the key that gives it is.
 
     Parameters
     ----------
@@ -136,6 +146,8 @@ def page_exports(
         File of the page.
     anchors : callable
         Gives the id of an object on it.
+    keys : callable
+        Gives what sorts an object among all of the report; None for one that has no rank.
     units : Units
         The reader's, for sentences.
     findings : FindingRows
@@ -144,7 +156,7 @@ def page_exports(
     Returns
     -------
     dict of str to bytes
-        By name of the export, see `EXPORTS`.
+        By name of the part, see `PARTS_OF_PAGE`.
     """
     decided = Decided(record.decisions, units)
     found, lines, objects = findings.of(run, (f for a in record.assessments for f in a.findings))
@@ -157,9 +169,11 @@ def page_exports(
         ],
         "objects": [_object(run, a, f"{page}#{anchors(a)}") for a in record.assessments],
     }
-    told = {name: _csv(TABLES[name], rows[name]) for name in ("recommendations", "objects")} | {"findings": lines}
+    told = {name: _csv(_OF_PARTS[name], rows[name]) for name in ("recommendations", "objects")} | {"findings": lines}
     parts = {f"{name}.csv": HEADERS[f"{name}.csv"] + told[name].encode() for name in TABLES}
     parts["findings.jsonl"] = objects.encode()
+    parts["objects.jsonl"] = "".join(map(_line, rows["objects"])).encode()
+    parts[KEYS] = keys_part([keys(a) for a in record.assessments])
     return parts | {f"{name}.parquet": _parquet(name, rows[name]) for name in TABLES}
 
 
@@ -260,6 +274,10 @@ def _object(run: str, a: Assessment, page: str) -> dict[str, Any]:
     }
 
 
+def _line(row: Mapping[str, Any]) -> str:
+    return json.dumps({name: _json(row[name]) for name in _OF_PARTS["objects"]}, allow_nan=False) + "\n"
+
+
 def _csv(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
     stream = io.StringIO(newline="")
     writer = csv.writer(stream, lineterminator="\n")
@@ -292,11 +310,11 @@ def _json(value: object) -> object:
 
 @cache
 def schema_of(name: str) -> Any:
-    """Return the types of the columns of a table, for Parquet."""
+    """Return the types of the columns of a whole table, for Parquet."""
     import pyarrow as pa
 
     kinds = {column: pa.float64() for column in _NUMBERS} | {"on_display": pa.bool_(), "settled": pa.bool_()}
-    kinds |= dict.fromkeys(_LISTS, pa.list_(pa.string()))
+    kinds |= dict.fromkeys(_LISTS, pa.list_(pa.string())) | {RANK: pa.int64()}
     return pa.schema([(column, kinds.get(column, pa.string())) for column in TABLES[name]])
 
 
@@ -304,7 +322,7 @@ def _parquet(name: str, rows: Sequence[Mapping[str, Any]]) -> bytes:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    schema = schema_of(name)
+    schema = pa.schema([schema_of(name).field(column) for column in _OF_PARTS[name]])
     columns = [pa.array(_writable([row[field.name] for row in rows], field.type), field.type) for field in schema]
     sink = pa.BufferOutputStream()
     pq.write_table(pa.Table.from_arrays(columns, schema=schema), sink, compression="zstd")

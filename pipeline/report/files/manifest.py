@@ -17,7 +17,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from pipeline.records import Tally
 from pipeline.report.errors import ReportWarning
-from pipeline.report.files.exports import EXPORTS
+from pipeline.report.files.exports import PARTS_OF_PAGE
 from pipeline.report.pages.views import Entry
 
 MANIFEST = ".pages.json"
@@ -75,8 +75,8 @@ class ReportDamage(NamedTuple):
 
 
 def part_files(page: str) -> tuple[str, ...]:
-    """Return the files with a page's part of each export, in the order of `EXPORTS`."""
-    return tuple(f"{PARTS}/{page.removesuffix('.html')}.{name}" for name in EXPORTS)
+    """Return the files with a page's part of each export, in the order of `PARTS_OF_PAGE`."""
+    return tuple(f"{PARTS}/{page.removesuffix('.html')}.{name}" for name in PARTS_OF_PAGE)
 
 
 def sum_of(file: Path) -> FileSum:

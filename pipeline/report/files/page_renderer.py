@@ -10,6 +10,7 @@ from typing import Any
 from jinja2 import Environment
 from markupsafe import Markup
 
+from pipeline.analysis.stakes import VALUE_PER_C, counting
 from pipeline.records import DecisionStatus, Found, Page, RunRecord, Tally
 from pipeline.report.files.exports import FindingRows, page_exports
 from pipeline.report.language import Language, speaking
@@ -31,7 +32,7 @@ class RenderedPage:
     page  : its HTML
     entry : what the index says of it
     tally : what it adds to the totals of the run
-    parts : its part of each export, by the export's name
+    parts : what it adds to each export, by the names of `PARTS_OF_PAGE`
     """
 
     page: bytes
@@ -80,7 +81,7 @@ class PageRenderer:
             spacings=found.spacings,
             decisions=tuple(decisions),
         )
-        with speaking(self.language):
+        with speaking(self.language), counting(self._value_per_c):
             made = compose(
                 record, page, self.units, self._sayings, several=len({m.level for m in self.head.motions}) > 1
             )
@@ -92,8 +93,17 @@ class PageRenderer:
             else:
                 context |= drawn(gallery.charts, self.drawings) | self._script
                 text = fill(self._environment, "gallery.html", context | {"notes": page_notes(gallery.objects)})
-            parts = page_exports(record, page.run, gallery.page.file, made.anchor, self.units, self._rows)
-        return RenderedPage(text.encode(), made.entry, tally(found), parts)
+            parts = page_exports(record, page.run, gallery.page.file, made.anchor, made.key, self.units, self._rows)
+        return RenderedPage(text.encode(), made.entry, self.tally(found), parts)
+
+    def tally(self, found: Found) -> Tally:
+        """Return what the objects of a page add to the totals of the run."""
+        with counting(self._value_per_c):
+            return tally(found)
+
+    @property
+    def _value_per_c(self) -> float:
+        return float(self.head.settings.get(VALUE_PER_C, 0.0))
 
     @cached_property
     def identity(self) -> str:
@@ -101,7 +111,7 @@ class PageRenderer:
         head = self.head
         said = (
             repr(self.units), self.language.code, self.language.digest, head.museum, head.settings.get("credit"),
-            head.version, head.demonstration,
+            head.version, head.demonstration, self._value_per_c,
             [(m.hash, m.name, m.level, m.floor, m.approved_by, m.approved_on) for m in head.motions],
             sorted(head.charts),
         )  # fmt: skip

@@ -27,7 +27,7 @@ PLAN_FILES = ("plan.html", "plan.csv")
 """The page of a report, and the list of all errands beside it."""
 
 PLAN_COLUMNS = (
-    "errand", "needs", "do", "rank", "gallery", "case", "objects", "measure", "title", "sentence", "trade",
+    "errand", "needs", "do", "place", "gallery", "case", "objects", "measure", "title", "sentence", "trade",
     "hours", "hours_low", "hours_high", "cost", "cost_low", "cost_high", "loss", "avoided", "takes_from_view", "page",
 )  # fmt: skip
 
@@ -174,7 +174,7 @@ def errand_row(plan: Plan, at: int, one: Errand) -> dict[str, Any]:
         "errand": at + 1,
         "needs": "" if one.needs is None else one.needs + 1,
         "do": at in plan.choice.chosen,
-        "rank": plan.ranks.get(at, ""),
+        "place": plan.ranks.get(at, ""),
         "gallery": one.gallery,
         "case": one.case,
         "objects": "; ".join(object_.object_number for object_ in one.objects),

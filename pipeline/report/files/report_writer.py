@@ -17,8 +17,8 @@ from typing import Any, Self
 from pipeline.planning.plan import Terms
 from pipeline.records import DecisionStatus, Page, RunChanges, RunRecord, Tally
 from pipeline.report.errors import ReportError
-from pipeline.report.files.concatenation import concatenate
-from pipeline.report.files.exports import EXPORTS, WORKBOOK, write_exports_workbook
+from pipeline.report.files.concatenation import concatenate, ranked
+from pipeline.report.files.exports import EXPORTS, PARTS_OF_PAGE, WORKBOOK, write_exports_workbook
 from pipeline.report.files.manifest import (
     PARTS,
     FileSum,
@@ -31,6 +31,7 @@ from pipeline.report.files.manifest import (
 )
 from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, drawn
 from pipeline.report.files.plan_files import PLAN_FILES, gathered_from, write_plan_table
+from pipeline.report.files.ranks import KEYS, ranks_of
 from pipeline.report.language import speaking
 from pipeline.report.pages.class_curves import FILE as CLASS_CURVES
 from pipeline.report.pages.class_curves import class_curves, curves_csv
@@ -130,7 +131,7 @@ class ReportWriter:
         page = rendered.entry.page.file
         if page not in self._files:
             self._write(page, rendered.page)
-            for name, export in zip(part_files(page), EXPORTS, strict=True):
+            for name, export in zip(part_files(page), PARTS_OF_PAGE, strict=True):
                 self._write(name, rendered.parts[export])
         self._pages.append(KeptPage(key, rendered.entry, rendered.tally))
         return rendered.tally
@@ -203,11 +204,15 @@ class ReportWriter:
         parts = [part_files(page.entry.page.file) for page in self._pages]
         taken = {name for name in (*EXPORTS, WORKBOOK) if same and self._previous.has(name)}
         self._link(*taken)
-        wanted = {name: [self._partial / part[at] for part in parts] for at, name in enumerate(EXPORTS)}
+        wanted = {name: [self._partial / part[at] for part in parts] for at, name in enumerate(PARTS_OF_PAGE)}
+        keys = wanted.pop(KEYS)
+        left = wanted.keys() - taken
+        ranks = ranks_of(keys) if any(map(ranked, left)) else None
         # Copying, checksums and compression leave the other files' threads to work.
         with ThreadPoolExecutor() as pool:
             made = {
-                name: pool.submit(concatenate, self._partial / name, wanted[name]) for name in wanted.keys() - taken
+                name: pool.submit(concatenate, self._partial / name, wanted[name], ranks if ranked(name) else None)
+                for name in left
             }
         self._files |= {name: one.result() for name, one in made.items()}
         if WORKBOOK not in taken and write_exports_workbook(self._partial, started):

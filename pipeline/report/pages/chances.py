@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from functools import cache
 
-from pipeline.analysis.stakes import doubtful, expected_loss
+from pipeline.analysis.stakes import Term, Worth, doubtful, expected_loss
 from pipeline.analysis.survey import measurables
-from pipeline.records import Assessment, Band, Harm, Likelihood, Recommendation
+from pipeline.records import Assessment, Band, Harm, Likelihood, Recommendation, Scene
 from pipeline.report.language import _, said
 from pipeline.report.text import clean, words
 
@@ -43,6 +43,19 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
         check = _("Check its record first: it is %(times)s times as high as it is deep, and hardly stands by itself.")
         check %= {"times": f"{slender:.1f}"}
     return ChanceView(_sentence(found), f"{numbers}{more}.", clean(found.level), check, name_of(found.open_for))
+
+
+def worth_words(scene: Scene, worth: Worth) -> str:
+    """Say what an object counts where losses are compared, and what that rests on."""
+    item = scene.item
+    told = {
+        Term.CLASS: _("class %(name)s") % {"name": clean(item.value_class)},
+        Term.VALUE: _("valued at %(money)s") % {"money": f"{item.value or 0.0:,.0f}"},
+        Term.IRREPLACEABLE: _("irreplaceable"),
+        Term.ON_LOAN: _("on loan"),
+    }
+    rests = ", ".join(told[term] for term in worth.terms) or _("nothing is recorded of its value")
+    return _("counts %(weight)s: %(rests)s") % {"weight": f"{worth.weight:.3g}", "rests": rests}
 
 
 def left_over(advice: Recommendation) -> str:

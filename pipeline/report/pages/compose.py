@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isnan
 
-from pipeline.records import Assessment, Page, Recommendation, RunRecord, Tally, Verdict
+from pipeline.records import Assessment, Page, Recommendation, RunRecord, Tally, Urgency, Verdict
 from pipeline.report.errors import ReportError
-from pipeline.report.language import ngettext, said
+from pipeline.report.language import _, ngettext, said
 from pipeline.report.pages.class_curves import class_curve_views, class_curves
 from pipeline.report.pages.decided import Decided, decisions_view, merged
 from pipeline.report.pages.describe import Describer, Sayings, furniture_known, percent
@@ -16,7 +16,7 @@ from pipeline.report.pages.ground import motion_view
 from pipeline.report.pages.judging import room_views, shaking_view, spacing_views
 from pipeline.report.pages.museum_views import GalleryView, MuseumView
 from pipeline.report.pages.numerics import decided_views, fidelities
-from pipeline.report.pages.ranking import urgency
+from pipeline.report.pages.ranking import to_check, urgency
 from pipeline.report.pages.reading import reading_view
 from pipeline.report.pages.selftest import self_test_view
 from pipeline.report.pages.survey_words import SURVEY_SECONDS, errands, survey_sentence
@@ -25,6 +25,7 @@ from pipeline.report.pages.views import (
     Entry,
     GalleryRow,
     Lead,
+    LevelRow,
     ObjectView,
     PageView,
     Pointer,
@@ -42,10 +43,13 @@ STORED = "not-on-display"
 SELECTION = "selection"
 """Key of a run's settings that is true for a run of a part of the collection."""
 
+PERIODS = "return_periods"
+"""Key of a run's settings with the return period of each level of shaking, years; None where the manifest has none."""
+
 LEADERS = 8
 """Objects that the index names as the most urgent."""
 
-_LAST = (len(State), True, inf, inf, "", "")
+_LAST: Urgency = (len(State), True, True, inf, inf, inf, "", "")
 """Sorts after every object."""
 
 _HELPLESS = "\0"
@@ -82,11 +86,12 @@ def page_head(head: RunRecord, page: Page) -> PageHead:
 
 @dataclass(frozen=True)
 class Composed:
-    """A gallery's page ready to be filled in, what the index says of it, and the ids of its objects."""
+    """A gallery's page ready to be filled in, what the index says of it, and the ids and ranks of its objects."""
 
     gallery: GalleryView
     entry: Entry
     anchor: Callable[[Assessment], str]
+    key: Callable[[Assessment], Urgency | None]
 
 
 def compose(record: RunRecord, page: Page, units: Units, sayings: Sayings | None = None, *, several: bool) -> Composed:
@@ -124,11 +129,13 @@ def compose(record: RunRecord, page: Page, units: Units, sayings: Sayings | None
         shaking=shaking_view(members) if page.on_display else None,
         decisions=decisions_view([(v.decisions, v.settled, pointer(v)) for v in views if v.decisions]),
     )
-    return Composed(gallery, _entry(gallery, pairs), describer.anchor)
+    return Composed(gallery, _entry(gallery, pairs), describer.anchor, describer.key)
 
 
 def _entry(gallery: GalleryView, pairs: Sequence[tuple[Assessment, ObjectView]]) -> Entry:
-    leaders = [(urgency(a), pointer(v)) for a, v in pairs if v.state is State.ACT and not v.settled]
+    open_ = [(a, v) for a, v in pairs if v.state is State.ACT and not v.settled]
+    leaders = [(urgency(a), pointer(v)) for a, v in open_ if not to_check(a)]
+    check = [(urgency(a), pointer(v)) for a, v in open_ if to_check(a)]
     return Entry(
         name=gallery.name,
         on_display=gallery.on_display,
@@ -136,6 +143,7 @@ def _entry(gallery: GalleryView, pairs: Sequence[tuple[Assessment, ObjectView]])
         counts=gallery.counts,
         task=_first_task(gallery),
         leaders=tuple(leaders[:LEADERS]),
+        check=tuple(check[:LEADERS]),
         decisions=decisions_view([(v.decisions, v.settled, pointer(v)) for _, v in pairs if v.decisions]),
     )
 
@@ -187,6 +195,7 @@ def museum_view(
         raise ReportError(f"galleries {twins} would share one file; rename one of them in the collection's records")
     shown = [entry for entry in entries if entry.on_display]
     leaders = sorted((leader for entry in shown for leader in entry.leaders), key=lambda leader: leader[0])
+    check = sorted((one for entry in shown for one in entry.check), key=lambda one: one[0])
     strangers = decisions_view([((d,), False, None) for d in Decided(head.decisions, units).all()])
     return MuseumView(
         museum=clean(head.museum),
@@ -201,6 +210,9 @@ def museum_view(
         rows=_rows(shown),
         stores=next(iter(_rows([entry for entry in entries if not entry.on_display])), None),
         first=tuple(leader for _, leader in leaders[:LEADERS]),
+        check=tuple(one for _, one in check[:LEADERS]),
+        checks=tally.check,
+        levels=_levels(head, tally),
         motions=tuple(motion_view(m, head.charts, units) for m in head.motions),
         level_notes=tuple(clean(n) for n in head.level_notes),
         efforts=tuple(_effort(title, efforts) for title, efforts in tally.efforts.items()),
@@ -216,6 +228,17 @@ def museum_view(
         whole=not head.settings.get(SELECTION),
         classes=class_curve_views(class_curves(tally)),
     )
+
+
+def _levels(head: RunRecord, tally: Tally) -> tuple[LevelRow, ...]:
+    periods: Mapping[str, float | None] = head.settings.get(PERIODS) or {}
+    names = [*(name for name in periods if name in tally.levels), *(n for n in tally.levels if n not in periods)]
+    rows = []
+    for name in names:
+        years = periods.get(name)
+        period = "" if years is None else _("%(years)s years") % {"years": f"{years:,g}"}
+        rows.append(LevelRow(clean(name), period, StateCounts(**tally.levels[name])))
+    return tuple(rows)
 
 
 def _rows(entries: Sequence[Entry]) -> tuple[GalleryRow, ...]:

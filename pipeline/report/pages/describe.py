@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import lru_cache
 from math import isfinite, isnan
 
+from pipeline.analysis.stakes import worth_of
 from pipeline.records import (
     Anchorage,
     Assessment,
@@ -21,16 +22,17 @@ from pipeline.records import (
     RunRecord,
     Scene,
     Support,
+    Urgency,
     Verdict,
 )
 from pipeline.records.result import BOUNDS
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
 from pipeline.report.pages.alike import Memory, finding_key
-from pipeline.report.pages.chances import chance_view, left_over, open_for
+from pipeline.report.pages.chances import chance_view, left_over, open_for, worth_words
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.judging import fragility_views, most, spanned
-from pipeline.report.pages.ranking import finding_order, finding_state, grave, state_of
+from pipeline.report.pages.ranking import finding_order, finding_state, grave, state_of, urgency
 from pipeline.report.pages.survey_words import wish_views
 from pipeline.report.pages.views import (
     Bar,
@@ -304,6 +306,12 @@ class Describer:
         """Return the id of the object on its page; it stays the same from run to run."""
         return f"o{digest(assessment.scene.item.object_number, 10)}"
 
+    def key(self, assessment: Assessment) -> Urgency | None:
+        """Return what sorts an object among all of the museum; None for one that is not on display."""
+        if not assessment.scene.item.on_display:
+            return None
+        return urgency(assessment, settled=self.decided.covered(assessment))
+
     def object(self, assessment: Assessment, page: str) -> ObjectView:
         """Return everything that the report says about one object.
 
@@ -316,6 +324,7 @@ class Describer:
         named = [*scene.assumptions, *(text for f in assessment.findings for text in f.assumptions)]
         estimates = sorted(scene.parameters.items(), key=lambda pair: (_ORIGIN_ORDER[pair[1].origin], pair[0]))
         title = clean(item.title or item.object_name)
+        worth = worth_of(scene)
         return ObjectView(
             number=clean(item.object_number),
             title=title,
@@ -325,6 +334,7 @@ class Describer:
             page=page,
             state=state,
             value_class=clean(item.value_class),
+            worth=worth_words(scene, worth) if worth.terms else "",
             object_class=words(clean(scene.object_class)),
             rule=said(clean(scene.rule)),
             support=support(scene.support),

@@ -13,6 +13,7 @@ from pipeline.report.pages.views import (
     DecisionsView,
     EffortView,
     GalleryRow,
+    LevelRow,
     MotionLink,
     MotionView,
     ObjectView,
@@ -58,6 +59,8 @@ class MuseumView:
 
     counts     : of what is on display
     rows       : the galleries, the one with the most to do first
+    check      : the first of those whose record is to be checked before anything is done; checks: how many there are
+    levels     : what there is to do at each level of shaking, where there are several
     stores     : what is not on display, with totals of its own; None where everything is on display
     reading    : what was refused and is doubted of the museum's records
     whole      : whether the run is of the whole collection
@@ -83,6 +86,9 @@ class MuseumView:
     rows: tuple[GalleryRow, ...]
     first: tuple[Pointer, ...]
     motions: tuple[MotionView, ...]
+    check: tuple[Pointer, ...] = ()
+    checks: int = 0
+    levels: tuple[LevelRow, ...] = ()
     level_notes: tuple[str, ...] = field(default=())
     efforts: tuple[EffortView, ...] = ()
     self_test: SelfTestView | None = None

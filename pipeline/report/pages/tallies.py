@@ -1,13 +1,13 @@
 """The totals of a run, and what each page adds to them."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 
 from pipeline.records import Assessment, Errors, Finding, Found, Tally, Urgent, Verdict
 from pipeline.report.pages.chances import open_for
 from pipeline.report.pages.class_curves import curve_sums
-from pipeline.report.pages.ranking import finding_order, state_of, urgency
+from pipeline.report.pages.ranking import at_level, finding_order, state_of, to_check, urgency
 from pipeline.report.pages.views import STATES, State
 from pipeline.report.text import encodable
 
@@ -44,6 +44,8 @@ def tally(found: Found) -> Tally:
         stands_by=dict(Counter(a.scene.stands_by.value for a in shown if a.scene.stands_by is not None)),
         open_for=dict(Counter(open_for(a) for a in shown if open_for(a))),
         curves=curve_sums(shown),
+        check=sum(state_of(a) is State.ACT and to_check(a) for a in shown),
+        levels=_by_level(shown),
     )
 
 
@@ -71,6 +73,8 @@ def total(tallies: Iterable[Tally]) -> Tally:
         stands_by=_sum(t.stands_by for t in listed),
         open_for=_sum(t.open_for for t in listed),
         curves=_all_sums(t.curves for t in listed),
+        check=sum(t.check for t in listed),
+        levels=_all_sums(t.levels for t in listed),
     )
 
 
@@ -96,6 +100,17 @@ def _urgent(assessment: Assessment) -> Urgent:
     bad = dict.fromkeys((f.model, f.level) for f in assessment.findings if f.verdict is not Verdict.PASS)
     number, title, gallery, outcome = map(encodable, (item.object_number, item.title, item.gallery, outcome))
     return Urgent(urgency(assessment), number, title, gallery, outcome, tuple(bad))
+
+
+def _by_level(shown: Sequence[Assessment]) -> dict[str, dict[str, int]]:
+    levels = dict.fromkeys(f.level for a in shown for f in a.findings)
+    if len(levels) < 2:
+        return {}
+    out = {}
+    for level in levels:
+        states = Counter(state_of(at_level(a, level)) for a in shown if any(f.level == level for f in a.findings))
+        out[level] = {state.value: number for state, number in states.items()}
+    return out
 
 
 def _worst(urgent: Iterable[Urgent]) -> tuple[Urgent, ...]:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from itertools import groupby
 
+from pipeline.records import Urgency
 from pipeline.report.pages.chances import ChanceView
 from pipeline.report.pages.judging import FragilityView
 from pipeline.report.plots.chart import Spot
@@ -180,6 +181,7 @@ class ObjectView:
     """One object with everything that the report says about it; ``lead`` is its most urgent finding.
 
     settled : whether people accepted or overruled all that does not pass, and nothing of that is in doubt
+    worth   : what it counts where losses are compared, and why; "" where nothing is recorded of that
     """
 
     number: str
@@ -190,6 +192,7 @@ class ObjectView:
     page: str
     state: State
     value_class: str
+    worth: str
     object_class: str
     rule: str
     support: str
@@ -380,6 +383,7 @@ class Entry:
 
     task     : what is to do first there, in words, "" where nothing is advised
     leaders  : its most urgent objects that nobody has settled, each with the key that sorts it among all
+    check    : the same of those whose record is to be checked first, which are not among the leaders
     """
 
     name: str
@@ -387,7 +391,8 @@ class Entry:
     page: PageView
     counts: StateCounts
     task: str
-    leaders: tuple[tuple[tuple[int, bool, float, float, str, str], Pointer], ...] = ()
+    leaders: tuple[tuple[Urgency, Pointer], ...] = ()
+    check: tuple[tuple[Urgency, Pointer], ...] = ()
     decisions: DecisionsView = DecisionsView()
 
 
@@ -400,6 +405,15 @@ class GalleryRow:
     pages: tuple[PageView, ...]
     counts: StateCounts
     task: str
+
+
+@dataclass(frozen=True, slots=True)
+class LevelRow:
+    """How many objects are in which state at one level of shaking; period: how often it comes, "" where nobody says."""
+
+    name: str
+    period: str
+    counts: StateCounts
 
 
 @dataclass(frozen=True, slots=True)
