@@ -295,6 +295,12 @@ def itself(scene: Scene) -> Scene:
     )
 
 
+def without_furniture(scene: Scene) -> Scene:
+    """Return a scene on which the furniture has no part in the shaking: of what feels what that passes on already."""
+    gone = (FREQUENCY, DAMPING, LEVEL_ERROR)
+    return replace(scene, parameters={name: one for name, one in scene.parameters.items() if name not in gone})
+
+
 def filter_of(scene: Scene) -> FurnitureFilter | None:
     """Return what the furniture of a scene does to the shaking of its floor; None where it does nothing to it."""
     known = scene.parameters

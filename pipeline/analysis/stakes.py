@@ -11,10 +11,10 @@ and m g h the energy of a fall from its centre of gravity to the floor: a roll o
 sculpture of 11 t anybody.  Weights are rows of tables/stakes.csv.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cache
 from math import exp
@@ -120,6 +120,18 @@ def worth_of(scene: Scene) -> Worth:
             weight *= rows[term.name.lower()].value
             terms.append(term)
     return Worth(weight, tuple(terms))
+
+
+def proportion(scenes: Iterable[Scene]) -> float:
+    """Return by how much things are worth an isolator: by class, irreplaceability, and danger to people; 1: just so.
+
+    Money and loans do not count here: what is advised for an object does not change with the rate of insurance.
+    """
+    rows, total = stakes(), 0.0
+    for scene in scenes:
+        plain = replace(scene, item=replace(scene.item, value=None, on_loan=None))
+        total += worth_of(plain).weight + danger_of(scene)
+    return total / rows["isolator"].value
 
 
 def value_of(scene: Scene) -> float:

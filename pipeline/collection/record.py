@@ -177,8 +177,8 @@ def digest_of(item: Item) -> str:
 
 
 INDIVIDUAL = (
-    "object_number", "gallery", "dimensions", "position_x_m", "position_y_m", "value_class", "value", "irreplaceable",
-    "on_loan", "provenance", "problems",
+    "object_number", "gallery", "dimensions", "position_x_m", "position_y_m", "value", "on_loan", "provenance",
+    "problems",
 )  # fmt: skip
 """Fields that tell one object from others that are alike: nothing computed of an object by itself rests on them."""
 

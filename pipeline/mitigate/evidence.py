@@ -57,6 +57,8 @@ def why_not(scene: Scene, findings: Sequence[Finding]) -> str:
         return "none of its models can be run then"
     times, finding = max(worst, key=lambda pair: pair[0])
     error, demand = finding.error or 0.0, finding.demand or 0.0
+    if finding.low == finding.high and finding.utilisation is not None and not isinf(finding.utilisation):
+        return f"{finding.title.lower()} reaches {finding.utilisation:.2g} times what is allowed by the best estimates"
     if finding.fidelity == "bound" and error and (isinf(error) or error > TIGHT * demand):
         return f"{finding.title.lower()} may still be more than is allowed"
     if finding.high is not None and isinf(finding.high):

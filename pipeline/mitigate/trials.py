@@ -1,15 +1,16 @@
 """Trials of measures: the models of changed scenes run again, and how likely harm remains."""
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.context import Context
-from pipeline.analysis.furnished import furnished, isolating
-from pipeline.analysis.furniture import FurnitureFilter
+from pipeline.analysis.furnished import best_furnished, furnished, isolating
+from pipeline.analysis.furniture import FurnitureFilter, filter_of, loose, without_furniture
 from pipeline.analysis.likelihood.sampling import FEWEST, Stood, likelihoods
 from pipeline.analysis.response import answer
 from pipeline.analysis.verdicts import LevelMotions
@@ -177,7 +178,10 @@ class TrialRunner:
         return made
 
     def run(self, trials: Sequence[Trial]) -> list[list[Finding]]:
-        """Run every model of each trial's scene, equal work once, at every corner of the uncertain inputs.
+        """Run every model of each trial's scene, equal work once.
+
+        Where harm has to be excluded, at every corner of the uncertain inputs; where it has to become unlikely, by the
+        best estimates alone: joint samples tell the rest (`remaining`).
 
         Parameters
         ----------
@@ -189,26 +193,32 @@ class TrialRunner:
             Those of each trial, in the order of the trials.
         """
         out: list[list[Finding]] = [[] for _ in trials]
-        groups: dict[int, list[int]] = {}
+        groups: dict[tuple[int, bool, FurnitureFilter | None], list[int]] = {}
         for at, trial in enumerate(trials):
-            groups.setdefault(id(trial.on), []).append(at)
-        for members in groups.values():
+            groups.setdefault((id(trial.on), *self._best_in(trial)), []).append(at)
+        for (_, best, furniture), members in groups.items():
             on = trials[members[0]].on
+            # What stands on no isolator is run in its own furniture, as it is assessed.
+            levels = self._floor if on is None else on.shaking
+            scenes = [trials[at].scene for at in members]
+            if best:
+                levels = self.once(("best", id(on), furniture), partial(_best_levels, levels, furniture))
+                scenes = [settled(scene) for scene in scenes]
             numerics = self._numerics
             if on is not None and numerics.fidelity == CHART:
                 # A chart of what one isolator passes on would be looked at once.
                 numerics = numerics.integrated
-            _, found = assess(
-                [trials[at].scene for at in members],
-                # What stands on no isolator is run in its own furniture, as it is assessed.
-                self._floor if on is None else on.shaking,
-                self._context.silent,
-                numerics,
-                outcomes=False,
-            )
+            _, found = assess(scenes, levels, self._context.silent, numerics, outcomes=False)
             for at, findings in zip(members, found, strict=True):
                 out[at] = findings
         return out
+
+    def _best_in(self, trial: Trial) -> tuple[bool, FurnitureFilter | None]:
+        """Return whether the best estimates alone are asked for, and in which furniture."""
+        # Furniture that is not fastened is judged by itself, in all that it may be.
+        if self._aim is None or loose(trial.scene):
+            return False, None
+        return True, filter_of(trial.scene) if trial.on is None else None
 
     def remaining(self, trials: Sequence[Trial]) -> list[dict[str, Likelihood]]:
         """Return how likely harm remains in each trial, by level; nothing where no aim is given.
@@ -324,3 +334,19 @@ class TrialRunner:
             turns[at] = np.max(each, axis=0)
         for one, turn, share in zip(fresh, turns.max(axis=0).tolist(), shares.tolist(), strict=True):
             self._on_pads[pad, one] = (turn, share)
+
+
+def settled(scene: Scene) -> Scene:
+    """Return a scene of which every number is its best estimate, and which feels what its furniture passes on."""
+    bare = without_furniture(scene)
+    sure = {name: replace(one, low=one.value, high=one.value) for name, one in bare.parameters.items()}
+    return replace(bare, parameters=sure)
+
+
+def _best_levels(levels: Sequence[LevelMotions], furniture: FurnitureFilter | None) -> tuple[LevelMotions, ...]:
+    """Return levels as furniture passes them on by the best estimates; None: what feels them already."""
+    out = []
+    for level in levels:
+        felt = best_furnished(level.motions, furniture)
+        out.append(replace(level, motions=felt, others=(), site=level.told))
+    return tuple(out)

@@ -1,6 +1,6 @@
 """Keep clear: the room that an object needs to slide or to swing in."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from pipeline.analysis.verdicts import judge
 from pipeline.mitigate.measures.base import CLEARANCE, MARGIN, Measure, cleared, round_up
@@ -11,6 +11,10 @@ from pipeline.records import Check, Scene, Support, Verdict
 
 STEPS = (1.0, 1.4, 2.0, 2.8, 4.0, 5.6)
 """Rooms that are tried, over what it needs by the best estimates: each 1.4 times the one before."""
+
+
+HAND = 0.10
+"""Room that is spared around anything [m]; more only around what is itself as wide: judgement."""
 
 
 class Clearance(Measure):
@@ -39,7 +43,7 @@ class Clearance(Measure):
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
         """Propose a tenth more room than it needs: at the worst of what is uncertain, or as little as is enough."""
         if runner.aims:
-            return self._likely_enough(one)
+            return self._likely_enough(one, runner)
         others = [f for f in one.findings if not settled_by_room(f.model) and f.verdict is not Verdict.PASS]
         if others:
             may = "it fails" if any(f.verdict is Verdict.FAIL for f in others) else "it may fail"
@@ -66,23 +70,56 @@ class Clearance(Measure):
             checks.append((f.level, Check(f.model, f.title, demand, f.unit, limit, used, passes, f.demand)))
         return Proposal((Candidate(numbers, checks=tuple(checks)),))
 
-    def _likely_enough(self, one: Deficiency) -> Proposal:
-        others = [f for f in one.findings if not settled_by_room(f.model) and not (f.utilisation or 0.0) <= 1.0]
-        if others:
-            return refused("room does not help: it fails otherwise than by moving")
+    def prepare(self, objects: Sequence[Deficiency], runner: TrialRunner) -> None:
+        """Find out of all at once for which the most room is enough: of most it is not, and no less is tried."""
+        if not runner.aims:
+            return
+        asked = [
+            (one, rooms) for one, rooms in ((one, self._rooms(one)) for one in objects) if not isinstance(rooms, str)
+        ]
+        trials = [self._trial(one, rooms[-1]) for one, rooms in asked]
+        left = runner.remaining(trials)
+        runner.once(self.row.name, dict[int, float]).update(
+            (one.index, max((each.expected for each in some.values()), default=1.0))
+            for (one, _), some in zip(asked, left, strict=True)
+            if not runner.reaches_aim([some])
+        )
+
+    def _likely_enough(self, one: Deficiency, runner: TrialRunner) -> Proposal:
+        rooms = self._rooms(one)
+        if isinstance(rooms, str):
+            return refused(rooms)
+        remains = runner.once(self.row.name, dict[int, float]).get(one.index)
+        if remains is not None:
+            return refused(f"with {100 * rooms[-1]:.0f} cm harm would remain with a probability of {remains:.0%}")
+        candidates = []
+        for room in rooms:
+            numbers = {"clearance": (room, "m"), "movement": (room / MARGIN, "m")}
+            candidates.append(Candidate(numbers, (self._trial(one, room),)))
+        return Proposal(tuple(candidates))
+
+    def _trial(self, one: Deficiency, room: float) -> Trial:
+        return Trial(self.change(one.scene, {"clearance": room}))
+
+    def _rooms(self, one: Deficiency) -> tuple[float, ...] | str:
+        """Return the rooms to try, rising [m]; in words why there are none."""
+        if any(not settled_by_room(f.model) and not (f.utilisation or 0.0) <= 1.0 for f in one.findings):
+            return "room does not help: it fails otherwise than by moving"
         moving = [f for f in one.findings if settled_by_room(f.model)]
         if not moving or not known_to_swing(one.scene):
-            return refused("room helps only what moves, and what hangs only where it is recorded how")
+            return "room helps only what moves, and what hangs only where it is recorded how"
         best = max(f.demand or 0.0 for f in moving)
         hangs = one.scene.support in (Support.HUNG, Support.SUSPENDED)
-        allowed = self.row.limit_high if hangs else self.row.limit
-        rooms = dict.fromkeys(round_up(MARGIN * best * step) for step in STEPS)
-        tried = [room for room in rooms if 0.0 < room <= allowed]
-        if not tried:
-            least = min(rooms)
-            return refused(f"it would need {100 * least:.0f} cm of room, more than the {100 * allowed:.0f} cm allowed")
-        candidates = []
-        for room in tried:
-            numbers = {"clearance": (room, "m"), "movement": (room / MARGIN, "m")}
-            candidates.append(Candidate(numbers, (Trial(self.in_place(one, numbers)),)))
-        return Proposal(tuple(candidates))
+        allowed = self.row.limit_high if hangs else min(self.row.limit, _spared(one.scene))
+        rooms = tuple(dict.fromkeys(round_up(MARGIN * best * step) for step in STEPS))
+        tried = tuple(room for room in rooms if 0.0 < room <= allowed)
+        if tried:
+            return tried
+        return f"it would need {100 * rooms[0]:.0f} cm of room, more than the {100 * allowed:.0f} cm that it can have"
+
+
+def _spared(scene: Scene) -> float:
+    """Return how much room a display spares on each side of an object at most: as much as it is wide [m]."""
+    sides = [side for side in (scene.item.width_m, scene.item.depth_m) if side]
+    half = scene.parameters.get("half_width")
+    return max(HAND, *sides, 2.0 * half.value if half is not None else 0.0)

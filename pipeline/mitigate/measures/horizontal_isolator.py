@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
 
+from pipeline.analysis.stakes import proportion
 from pipeline.mitigate.isolation import IsolatorResponse
 from pipeline.mitigate.measures.base import (
     DAMPING,
@@ -27,6 +28,11 @@ GENERIC = "a horizontal isolator (a generic one: ask a maker for a product like 
 
 PLATFORM, LOAD = "Lifting of the isolator's platform", "Load on the isolator"
 """What an isolator is asked besides its own model, in the words of a report."""
+
+OUT_OF_PROPORTION = refused(
+    "an isolator is out of proportion: neither its class of value, as recorded, nor the danger of its fall is worth one"
+)
+"""Of what counts less than an isolator does (tables/stakes.csv)."""
 
 STEP = 0.05
 """To which the width of a platform is rounded up [m]."""
@@ -79,6 +85,8 @@ class HorizontalIsolator(Measure):
             refusal = _unsuited(one.scene)
             if refusal:
                 return refused(refusal if len(objects) == 1 else f"{one.number} shares its case: {refusal}")
+        if runner.aims and proportion(one.scene for one in objects) < 1.0:
+            return OUT_OF_PROPORTION
         load, candidates, why = Load.of([one.scene for one in objects]), [], ""
         for response in runner.isolated(self.isolator):
             isolator = response.isolator
