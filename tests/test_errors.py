@@ -27,6 +27,7 @@ INSIDE = {
     "motions/site.py",
     "night/publication.py",
     "operations/report_status.py",
+    "planning/efforts.py",
     "report/files/manifest.py",
     "supports/__init__.py",
     "supports/polygon.py",

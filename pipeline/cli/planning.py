@@ -11,9 +11,9 @@ from pipeline.cli.options import Options, as_json, dry_run, say_dry
 from pipeline.quantities import counted
 
 if TYPE_CHECKING:
-    from pipeline.planning.choice import Limits
-    from pipeline.planning.efforts import Span
-    from pipeline.planning.plan import Plan
+    from pipeline.planning.choice import EffortLimits
+    from pipeline.planning.efforts import EffortSpan
+    from pipeline.planning.plan import ErrandPlan
     from pipeline.tools.planning import Planned
 
 _LISTED = 40
@@ -77,8 +77,8 @@ def plan(
         say_dry(as_json)
 
 
-def _limits(hours: tuple[str, ...], cost: float | None, *, removals: bool) -> "Limits":
-    from pipeline.planning.choice import Limits
+def _limits(hours: tuple[str, ...], cost: float | None, *, removals: bool) -> "EffortLimits":
+    from pipeline.planning.choice import EffortLimits
     from pipeline.planning.efforts import TRADES
 
     whole: float | None = None
@@ -97,7 +97,7 @@ def _limits(hours: tuple[str, ...], cost: float | None, *, removals: bool) -> "L
             trades[trade.strip()] = value
         else:
             raise click.UsageError(f"--hours {text!r}: there is no such trade; use one of {', '.join(TRADES)}")
-    return Limits(whole, cost, trades, removals)
+    return EffortLimits(whole, cost, trades, removals)
 
 
 def _lines(found: "Planned", *, dry: bool) -> list[str]:
@@ -126,7 +126,7 @@ def _lines(found: "Planned", *, dry: bool) -> list[str]:
     return lines
 
 
-def _together(plan: "Plan") -> list[tuple[str, str]]:
+def _together(plan: "ErrandPlan") -> list[tuple[str, str]]:
     """Return what to do as lines with their galleries: in walking order, or best first where nothing is limited.
 
     What is done in one gallery, or in one case of it, by one measure is one line.
@@ -176,5 +176,5 @@ def _document(found: "Planned") -> dict[str, Any]:
     }
 
 
-def _span(span: "Span") -> dict[str, float]:
+def _span(span: "EffortSpan") -> dict[str, float]:
     return {"value": span.value, "low": span.low, "high": span.high}

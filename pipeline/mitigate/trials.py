@@ -260,7 +260,7 @@ class TrialRunner:
             return not remaining
         names = [level.name for level in self._floor]
         return all(
-            all(name in one for one in remaining) and sum(one[name].probability for one in remaining) < self._aim.target
+            all(name in one for one in remaining) and sum(one[name].expected for one in remaining) < self._aim.target
             for name in names
         )
 

@@ -3,7 +3,7 @@
 from typing import TypedDict
 
 from pipeline.operations.workspace import Workspace
-from pipeline.planning.plan import Terms
+from pipeline.planning.plan import PlanTerms
 from pipeline.report import Language, Units, language
 from pipeline.settings import Settings
 
@@ -38,6 +38,6 @@ def presentation(settings: Settings) -> Presentation:
     return {"units": Units(length=asked.length), "language": language(asked.language, folder)}
 
 
-def terms_of(workspace: Workspace) -> Terms | None:
+def terms_of(workspace: Workspace) -> PlanTerms | None:
     """Return what the plan of a report rests on; None where nobody asks how likely harm is: there is no plan then."""
     return workspace.plan_terms if workspace.settings.likelihood.samples else None

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pipeline.collection.object_index import ObjectIndex
     from pipeline.mitigate import MeasureCatalogue
     from pipeline.motions.site import Site
-    from pipeline.planning.plan import Terms
+    from pipeline.planning.plan import PlanTerms
     from pipeline.settings import Settings
     from pipeline.tables.assumed import AssumedValues
 
@@ -131,7 +131,7 @@ class Workspace:
         )
 
     @cached_property
-    def plan_terms(self) -> "Terms":
+    def plan_terms(self) -> "PlanTerms":
         """What the plan rests on: what the museum's measures take, and what there is by its settings.
 
         Raises
@@ -141,13 +141,13 @@ class Workspace:
         TableError
             For one that cannot be used.
         """
-        from pipeline.planning.choice import Limits
+        from pipeline.planning.choice import EffortLimits
         from pipeline.planning.efforts import efforts
-        from pipeline.planning.plan import Terms
+        from pipeline.planning.plan import PlanTerms
 
         wanted = self.settings.plan
         own = self._own(wanted.efforts, "[plan] efforts names the file of what measures take you")
-        return Terms(efforts(own, self.measures), Limits(wanted.hours or None, wanted.cost or None))
+        return PlanTerms(efforts(own, self.measures), EffortLimits(wanted.hours or None, wanted.cost or None))
 
     def object_index(self) -> "ObjectIndex":
         """Return the objects of the inventory as it is now."""

@@ -41,7 +41,7 @@ _HAIR = 1e-9
 
 
 @dataclass(frozen=True)
-class Limits:
+class EffortLimits:
     """What there is; None where nothing limits it.
 
     Attributes
@@ -82,7 +82,7 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Choice:
+class ErrandChoice:
     """Errands that were chosen.
 
     Attributes
@@ -109,7 +109,7 @@ class Choice:
         return missing / self.bound if missing > 1e-6 * self.bound > 0.0 else 0.0
 
 
-class Work:
+class ErrandWork:
     """Visits and errands as the nodes of a forest: an errand needs its visit, and what has to be done first.
 
     Parameters
@@ -159,7 +159,7 @@ class Work:
             depth[node] = 0 if parent < 0 else depth[parent] + 1
         return [np.flatnonzero(depth == one) for one in range(int(depth.max(initial=-1)) + 1)]
 
-    def limited(self, limits: Limits) -> tuple[Array, Array]:
+    def limited(self, limits: EffortLimits) -> tuple[Array, Array]:
         """Return what every node takes of what is limited (limits, nodes), and how much of it there is (limits,)."""
         rows, most = [], []
         for taken, limit in ((self.hours, limits.hours), (self.costs, limits.cost)):
@@ -171,17 +171,17 @@ class Work:
             most.append(limit)
         return np.array(rows).reshape(len(rows), len(self.parents)), np.array(most)
 
-    def choice(self, taken: Taken, bound: float) -> Choice:
+    def choice(self, taken: Taken, bound: float) -> ErrandChoice:
         """Return the nodes that are taken as errands."""
         number = len(self.galleries)
         nodes = np.flatnonzero(taken).tolist()
         errands = frozenset(self.places[node - number] for node in nodes if node >= number)
         visited = frozenset(self.errands[at].gallery for at in errands)
         avoided = fsum(self.gains[node] for node in nodes)
-        return Choice(errands, visited, avoided, max(bound, avoided))
+        return ErrandChoice(errands, visited, avoided, max(bound, avoided))
 
 
-def choose(work: Work, limits: Limits) -> Choice:
+def choose(work: ErrandWork, limits: EffortLimits) -> ErrandChoice:
     """Return the errands that avoid the most within the limits.
 
     A 0/1 problem of which every errand needs its visit, and may need another: up to `EXACT` of them it is solved by
@@ -191,14 +191,14 @@ def choose(work: Work, limits: Limits) -> Choice:
 
     Parameters
     ----------
-    work : Work
+    work : ErrandWork
         What there is to do.
-    limits : Limits
+    limits : EffortLimits
         What there is to do it with.
 
     Returns
     -------
-    Choice
+    ErrandChoice
     """
     taking, most = work.limited(limits)
     useful = _useful(work, taking, most)
@@ -215,7 +215,7 @@ def choose(work: Work, limits: Limits) -> Choice:
     return work.choice(found if found is not None and better else greedy, bound)
 
 
-def _useful(work: Work, taking: Array, most: Array) -> Taken:
+def _useful(work: ErrandWork, taking: Array, most: Array) -> Taken:
     """Return the nodes that avoid something and are within the limits together with all they need, and these."""
     whole = taking.copy()
     for node, parent in enumerate(work.parents):
@@ -228,7 +228,7 @@ def _useful(work: Work, taking: Array, most: Array) -> Taken:
     return useful
 
 
-def _filled(work: Work, useful: Taken, taking: Array, most: Array, order: Sequence[Bundle]) -> Taken:
+def _filled(work: ErrandWork, useful: Taken, taking: Array, most: Array, order: Sequence[Bundle]) -> Taken:
     """Return the choice that takes whatever still fits, bundle by bundle in some order and then one by one."""
     taken = np.zeros(useful.size, dtype=bool)
     room = most * (1.0 + _HAIR)
@@ -245,12 +245,12 @@ def _filled(work: Work, useful: Taken, taking: Array, most: Array, order: Sequen
     return taken
 
 
-def _lacks(work: Work, node: int, taken: Taken, wanted: Sequence[int]) -> bool:
+def _lacks(work: ErrandWork, node: int, taken: Taken, wanted: Sequence[int]) -> bool:
     parent = work.parents[node]
     return parent >= 0 and not taken[parent] and parent not in wanted
 
 
-def _relaxed(work: Work, useful: Taken, taking: Array, most: Array) -> tuple[Array, float]:
+def _relaxed(work: ErrandWork, useful: Taken, taking: Array, most: Array) -> tuple[Array, float]:
     r"""Return the prices of what is limited at which the least could be gained, and what no choice gains more than.
 
     With a price :math:`\lambda_k` on each limited thing, of which an errand takes :math:`r_k` and there is
@@ -292,7 +292,7 @@ def _relaxed(work: Work, useful: Taken, taking: Array, most: Array) -> tuple[Arr
     return weights / np.where(most > 0.0, most, 1.0), best
 
 
-def _largest(work: Work, values: Array) -> tuple[Taken, float]:
+def _largest(work: ErrandWork, values: Array) -> tuple[Taken, float]:
     """Return the choice with the largest sum of values (nodes,) where only what is needed first binds it, and that."""
     parents = np.array(work.parents)
     held = values.copy()
@@ -304,7 +304,7 @@ def _largest(work: Work, values: Array) -> tuple[Taken, float]:
     return taken, float(np.maximum(held[work.levels[0]], 0.0).sum())
 
 
-def _needs(work: Work) -> csr_array:
+def _needs(work: ErrandWork) -> csr_array:
     """Return the rows that say that nothing is done before what it needs: each times the choice is at most 0."""
     nodes = np.flatnonzero(np.array(work.parents) >= 0)
     rows = np.arange(nodes.size)
@@ -313,7 +313,9 @@ def _needs(work: Work) -> csr_array:
     return csr_array((np.r_[ones, -ones], at), shape=(nodes.size, len(work.parents)))
 
 
-def _searched(work: Work, useful: Taken, taking: Array, most: Array, reached: float) -> tuple[Taken | None, float]:
+def _searched(
+    work: ErrandWork, useful: Taken, taking: Array, most: Array, reached: float
+) -> tuple[Taken | None, float]:
     """Return the best choice that the search finds, None where it finds none, and what no choice gains more than.
 
     reached : what some choice gains, for the scale

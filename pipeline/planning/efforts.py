@@ -32,16 +32,16 @@ Share = Annotated[Number, Field(ge=0.0, le=1.0)]
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class EffortSpan:
     """An amount with its range: what is expected, and between which ends it lies."""
 
     value: float = 0.0
     low: float = 0.0
     high: float = 0.0
 
-    def __add__(self, other: "Span") -> "Span":
+    def __add__(self, other: "EffortSpan") -> "EffortSpan":
         """Return the sum of both, each end with its like: as if all turned out so together."""
-        return Span(self.value + other.value, self.low + other.low, self.high + other.high)
+        return EffortSpan(self.value + other.value, self.low + other.low, self.high + other.high)
 
 
 class EffortRow(TableRow):
@@ -95,15 +95,15 @@ class EffortRow(TableRow):
     def _cost_in_order(cls, high: float, info: ValidationInfo) -> float | None:
         return in_order(high, info, "cost_low", "cost")
 
-    def hours_of(self, objects: int) -> Span:
+    def hours_of(self, objects: int) -> EffortSpan:
         """Return the hours of an errand for some objects."""
         times = 1.0 + (objects - 1) * self.hours_further
-        return Span(times * self.hours, times * self.hours_low, times * self.hours_high)
+        return EffortSpan(times * self.hours, times * self.hours_low, times * self.hours_high)
 
-    def cost_of(self, objects: int) -> Span:
+    def cost_of(self, objects: int) -> EffortSpan:
         """Return the cost of an errand for some objects."""
         times = 1.0 + (objects - 1) * self.cost_further
-        return Span(times * self.cost, times * self.cost_low, times * self.cost_high)
+        return EffortSpan(times * self.cost, times * self.cost_low, times * self.cost_high)
 
 
 @dataclass(frozen=True)

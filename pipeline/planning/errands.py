@@ -7,7 +7,7 @@ from math import fsum
 
 from pipeline.analysis.stakes import expected_loss
 from pipeline.mitigate.search import ANCHORED
-from pipeline.planning.efforts import Efforts, Span
+from pipeline.planning.efforts import Efforts, EffortSpan
 from pipeline.records import Assessment, Recommendation
 
 
@@ -118,7 +118,7 @@ class Errand:
         Who does it.
     objects : tuple of Advised
         What it is done for; of furniture that is only fastened for what is done in it, what that is done for.
-    hours, cost : Span
+    hours, cost : EffortSpan
         What it takes.
     needs : int or None
         Place in the list of the errand that has to be done first.
@@ -134,8 +134,8 @@ class Errand:
     title: str
     trade: str
     objects: tuple[Advised, ...]
-    hours: Span
-    cost: Span
+    hours: EffortSpan
+    cost: EffortSpan
     needs: int | None = None
     prepares: bool = False
     away: bool = False

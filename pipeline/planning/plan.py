@@ -5,31 +5,31 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from math import fsum
 
-from pipeline.planning.choice import Choice, Limits, Work, choose
-from pipeline.planning.efforts import TRADES, Efforts, Span
+from pipeline.planning.choice import EffortLimits, ErrandChoice, ErrandWork, choose
+from pipeline.planning.efforts import TRADES, Efforts, EffortSpan
 from pipeline.planning.errands import Advised, Errand, errands_of
 
-NO_SPAN = Span()
+NO_SPAN = EffortSpan()
 
 
 @dataclass(frozen=True)
-class Terms:
+class PlanTerms:
     """What a plan rests on besides what was found: what measures take, and what there is.
 
     Parameters
     ----------
     efforts : Efforts
         What measures take.
-    limits : Limits
+    limits : EffortLimits
         What there is.
     """
 
     efforts: Efforts
-    limits: Limits = field(default_factory=Limits)
+    limits: EffortLimits = field(default_factory=EffortLimits)
 
 
 @dataclass(frozen=True)
-class Corner:
+class EffortCorner:
     """A corner of the curve of what is left against effort: hours, cost, and what is avoided up to there."""
 
     hours: float
@@ -38,32 +38,32 @@ class Corner:
 
 
 @dataclass(frozen=True)
-class Plan:
+class ErrandPlan:
     """The errands of a museum, and which of them to do.
 
     Attributes
     ----------
     errands : tuple of Errand
         All, in walking order.
-    choice : Choice
+    choice : ErrandChoice
         What to do.
     ranks : mapping of int to int
         Of each errand that may be chosen, its place from 1 in the order of what avoids most for an hour.
-    curve : tuple of Corner
+    curve : tuple of EffortCorner
         What that order avoids, from nothing on: no choice avoids more for its hours.
     loss : float
         What is expected to be lost as everything stands, in objects of class C; of all objects on display of which it
         is known how likely harm is, advised or not.
-    terms : Terms
+    terms : PlanTerms
         What it rests on.
     """
 
     errands: tuple[Errand, ...]
-    choice: Choice
+    choice: ErrandChoice
     ranks: Mapping[int, int]
-    curve: tuple[Corner, ...]
+    curve: tuple[EffortCorner, ...]
     loss: float
-    terms: Terms
+    terms: PlanTerms
 
     @cached_property
     def chosen(self) -> tuple[Errand, ...]:
@@ -99,28 +99,28 @@ class Plan:
         return self.curve[-1].avoided / self.loss if self.loss > 0.0 else 0.0
 
     @property
-    def visits(self) -> Span:
+    def visits(self) -> EffortSpan:
         """Hours of setting out in the galleries."""
         once = self.terms.efforts.visit.hours_of(1)
         times = len(self.choice.galleries)
-        return Span(times * once.value, times * once.low, times * once.high)
+        return EffortSpan(times * once.value, times * once.low, times * once.high)
 
     @cached_property
-    def hours(self) -> Span:
+    def hours(self) -> EffortSpan:
         """What the plan takes of hours, setting out included."""
         return summed((self.visits, *(one.hours for one in self.chosen)))
 
     @cached_property
-    def cost(self) -> Span:
+    def cost(self) -> EffortSpan:
         """What it costs."""
         once = self.terms.efforts.visit.cost_of(1)
         times = len(self.choice.galleries)
         return summed(
-            (Span(times * once.value, times * once.low, times * once.high), *(one.cost for one in self.chosen))
+            (EffortSpan(times * once.value, times * once.low, times * once.high), *(one.cost for one in self.chosen))
         )
 
     @cached_property
-    def by_trade(self) -> dict[str, Span]:
+    def by_trade(self) -> dict[str, EffortSpan]:
         """Hours by trade; those that nothing is asked of are left out."""
         found = {
             trade: [one.hours for one in self.chosen if one.trade == trade]
@@ -130,13 +130,15 @@ class Plan:
         return {trade: summed(spans) for trade, spans in found.items() if summed(spans).high > 0.0}
 
 
-def summed(spans: Iterable[Span]) -> Span:
+def summed(spans: Iterable[EffortSpan]) -> EffortSpan:
     """Return the sum of some amounts."""
     listed = list(spans)
-    return Span(fsum(one.value for one in listed), fsum(one.low for one in listed), fsum(one.high for one in listed))
+    return EffortSpan(
+        fsum(one.value for one in listed), fsum(one.low for one in listed), fsum(one.high for one in listed)
+    )
 
 
-def plan_of(found: Iterable[Advised], loss: float, order: Mapping[str, int], terms: Terms) -> Plan:
+def plan_of(found: Iterable[Advised], loss: float, order: Mapping[str, int], terms: PlanTerms) -> ErrandPlan:
     """Return the plan for some objects.
 
     Parameters
@@ -147,22 +149,22 @@ def plan_of(found: Iterable[Advised], loss: float, order: Mapping[str, int], ter
         What is expected to be lost of all objects, in objects of class C.
     order : mapping of str to int
         Place of each gallery on the way.
-    terms : Terms
+    terms : PlanTerms
         What measures take, and what there is.
 
     Returns
     -------
-    Plan
+    ErrandPlan
     """
     errands = errands_of(found, terms.efforts, order)
-    work = Work(errands, terms.efforts.visit, away=terms.limits.away)
+    work = ErrandWork(errands, terms.efforts.visit, away=terms.limits.away)
     ranks, curve = _ordered(work)
-    return Plan(errands, choose(work, terms.limits), ranks, curve, loss, terms)
+    return ErrandPlan(errands, choose(work, terms.limits), ranks, curve, loss, terms)
 
 
-def _ordered(work: Work) -> tuple[dict[int, int], tuple[Corner, ...]]:
+def _ordered(work: ErrandWork) -> tuple[dict[int, int], tuple[EffortCorner, ...]]:
     ranks: dict[int, int] = {}
-    corners = [Corner(0.0, 0.0, 0.0)]
+    corners = [EffortCorner(0.0, 0.0, 0.0)]
     visits = len(work.galleries)
     for one in work.bundles:
         for node in one.nodes:
@@ -171,7 +173,7 @@ def _ordered(work: Work) -> tuple[dict[int, int], tuple[Corner, ...]]:
         if one.gain > 0.0:
             last = corners[-1]
             costs = fsum(work.costs[node] for node in one.nodes)
-            corners.append(Corner(last.hours + one.effort, last.cost + costs, last.avoided + one.gain))
+            corners.append(EffortCorner(last.hours + one.effort, last.cost + costs, last.avoided + one.gain))
     return ranks, tuple(corners)
 
 

@@ -116,7 +116,9 @@ class Fragility:
         """The chance of it within YEARS, and the ends of its range; None where there is no rate."""
         if self.annual_rate is None or self.rate_low is None or self.rate_high is None:
             return None
-        chance, low, high = (-expm1(-YEARS * rate) for rate in (self.annual_rate, self.rate_low, self.rate_high))
+        chance, low, high = (
+            -expm1(-YEARS * max(0.0, rate)) for rate in (self.annual_rate, self.rate_low, self.rate_high)
+        )
         return chance, low, high
 
     def probability(self, intensity: float) -> float:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from pipeline.planning.plan import Terms
+from pipeline.planning.plan import PlanTerms
 from pipeline.records import Assessment, Found, Page, RunChanges, RunRecord, Spacing
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.report_writer import ReportWriter, link_to, page_key
@@ -25,7 +25,7 @@ def render(
     language: Language | None = None,
     changes: RunChanges | None = None,
     doubts: Doubts | None = None,
-    terms: Terms | None = None,
+    terms: PlanTerms | None = None,
 ) -> Path:
     """Write a whole report: pages and exports.  The same record gives the same bytes.
 
@@ -49,7 +49,7 @@ def draw_all(
     changes: RunChanges | None,
     beside: Mapping[str, str] | None = None,
     doubts: Doubts | None = None,
-    terms: Terms | None = None,
+    terms: PlanTerms | None = None,
 ) -> Path:
     """Draw every page of a run that is over into a report, one at a time, and finish it.
 

@@ -114,9 +114,18 @@ class AssumedValues:
         return tuple(_matching(self.damping, wall_surface, back_surface))
 
 
+_FINISH = re.compile(
+    r"\b(?:\w+-|(?:tin|lead|salt|silver|copper|iron)\s+)(?=glaze)"
+    r"|\b\w+-(?:plated|coated|painted|leafed|fired|colou?red|toned|inlaid|trimmed|mounted|lined)\b",
+    re.IGNORECASE,
+)
+
+
 @lru_cache(maxsize=65536)
 def _material_in(values: AssumedValues, text: str) -> Material | None:
-    found = [(match.start(), one) for pattern, one in values._words if (match := pattern.search(text))]
+    # What something is only glazed or plated with is not what it is made of: "tin-glazed earthenware" is no tin.
+    bare = _FINISH.sub("", text)
+    found = [(match.start(), one) for pattern, one in values._words if (match := pattern.search(bare))]
     return min(found, key=lambda pair: pair[0])[1] if found else None
 
 

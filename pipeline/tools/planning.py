@@ -6,8 +6,8 @@ from pathlib import Path
 
 from pipeline.operations.presentation import presentation
 from pipeline.operations.workspace import UsageError, Workspace, near
-from pipeline.planning.choice import Limits
-from pipeline.planning.plan import Plan
+from pipeline.planning.choice import EffortLimits
+from pipeline.planning.plan import ErrandPlan
 from pipeline.records import Page, RunRecord
 from pipeline.report.files.plan_files import Gathered, gathered, write_plan_sheet, write_plan_table
 from pipeline.report.pages.compose import page_head
@@ -30,20 +30,20 @@ class Planned:
     ----------
     head : RunRecord
         The run without its objects.
-    plan : Plan
+    plan : ErrandPlan
         The plan.
     path : Path or None
         The file; None where none was asked for.
     """
 
     head: RunRecord
-    plan: Plan
+    plan: ErrandPlan
     path: Path | None = None
 
 
 def plan_museum(
     workspace: Workspace,
-    limits: Limits,
+    limits: EffortLimits,
     *,
     galleries: Sequence[str] = (),
     path: Path | None = None,
@@ -55,7 +55,7 @@ def plan_museum(
     ----------
     workspace : Workspace
         Whose run it is.
-    limits : Limits
+    limits : EffortLimits
         What there is; hours and cost that it leaves out are those of the settings.
     galleries : sequence of str
         Only these; none named means all.
@@ -112,7 +112,7 @@ def _gathered(workspace: Workspace, head: RunRecord, pages: Sequence[Page], gall
         return gathered(loaded, head.decisions, presentation(workspace.settings)["units"])
 
 
-def _write(workspace: Workspace, head: RunRecord, plan: Plan, path: Path) -> None:
+def _write(workspace: Workspace, head: RunRecord, plan: ErrandPlan, path: Path) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     match path.suffix.lower():
         case ".xlsx":

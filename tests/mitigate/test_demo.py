@@ -129,7 +129,7 @@ def test_each_object_to_act_on_has_one_advice_and_each_advice_a_reason(record: R
 def test_more_than_one_kind_of_measure_is_needed(record: RunRecord) -> None:
     kinds = Counter(r.measure for a in record.assessments for r in a.recommendations)
     assert {"wax", "ties", "clamps", "fasten", "brackets", "remove"} <= set(kinds), kinds
-    rerun = {"clearance", "grip_pad", "wide_base", "fasten", "brace", "restrain", "remove", *FIXINGS}
+    rerun = {"clearance", "surface", "grip_pad", "wide_base", "fasten", "brace", "restrain", "remove", *FIXINGS}
     assert set(kinds) <= rerun, "a measure that no test here runs again"
     # An isolator was once advised for every tenth object, and removal for every fiftieth.
     assert kinds["horizontal_isolator"] == 0
@@ -160,8 +160,9 @@ def test_clearances(record: RunRecord, motions: tuple[Motion, ...]) -> None:
 
 def test_rougher_surfaces(record: RunRecord, motions: tuple[Motion, ...]) -> None:
     """On the pad it slides no farther than is told, within the room that it has, by the best estimates."""
-    assert advised(record, "grip_pad")
-    for assessment, recommended in advised(record, "grip_pad"):
+    rougher = [*advised(record, "grip_pad"), *advised(record, "surface")]
+    assert rougher
+    for assessment, recommended in rougher:
         friction = recommended.parameters["friction"]
         moved = worst(felt(assessment, motions)[:1], lambda one: slid(one, friction))  # noqa: B023 - called here
         assert moved <= 1.005 * recommended.parameters["movement"] <= assessment.scene.parameters["clearance"].value

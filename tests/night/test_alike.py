@@ -46,9 +46,7 @@ def like(**changes: object) -> object:
         {"gallery": "Room 2"},
         {"title": "A cup"},
         {"position_x_m": 1.0, "position_y_m": 2.0},
-        {"value_class": "A"},
         {"value": 5e6},
-        {"irreplaceable": True},
         {"on_loan": True},
         {"provenance": (Provenance("height_m", Origin.MEASURED, "10 cm"),)},
     ],
@@ -191,11 +189,13 @@ def test_where_several_work_what_is_alike_is_still_worked_on_once(tmp_path: Path
 
 def test_a_kind_is_what_the_record_says_but_for_what_is_the_objects_own() -> None:
     assert assessment_digest_of(CUP) == assessment_digest_of(
-        replace(CUP, object_number="2", gallery="R", value_class="A", problems=(Problem("a", "b"),))
+        replace(CUP, object_number="2", gallery="R", value=4e4, on_loan=True, problems=(Problem("a", "b"),))
     )
     others = [replace(CUP, height_m=0.11), replace(CUP, medium="glass"), replace(CUP, on_display=False)]
+    # What it is worth decides whether an isolator is in proportion.
+    others += [replace(CUP, value_class="A"), replace(CUP, irreplaceable=True)]
     kinds = {assessment_digest_of(one) for one in (CUP, *others)}
-    assert len(kinds) == 4
+    assert len(kinds) == 6
 
 
 def test_pads_have_a_chart_where_many_works_hang_on_walls(tmp_path: Path) -> None:

@@ -222,8 +222,8 @@ def told(settings: Settings) -> dict[str, Any]:
 
 
 STAGES = {
-    "classify": "0", "assess": "1", "advise": "2", "measurement_requests": "4", "neighbours": "5", "anonymous": "6",
-    "fragilities": "8", "draw": "9",
+    "classify": "0", "assess": "1", "advise": "2", "telling_requests": "4", "neighbours": "5", "anonymous": "6",
+    "sampled_fragilities": "8", "draw": "9",
 }  # fmt: skip
 """Steps of the work on many objects, and the object that each is made to fail on."""
 
@@ -268,7 +268,7 @@ def test_a_fault_of_ours_costs_one_object_its_answer_for_one_night(
         assert words in logged[number]
         assert words in pages
         # What came of it before it failed is kept.
-        assert failed[number].assessed is (name in ("measurement_requests", "neighbours", "draw"))
+        assert failed[number].assessed is (name in ("telling_requests", "neighbours", "draw"))
     with monkeypatch.context() as broken:
         broken.setattr(assessing, "classify", failing("classify", assessing.classify))
         looked = {one.what: one for one in diagnose(tmp_path / "kouros.toml")}["objects"]

@@ -201,11 +201,11 @@ def place(museum: Changing) -> None:
 
 
 def value(museum: Changing) -> None:
-    museum.rows[1]["value_class"] = "A"
+    museum.rows[1]["value"] = "40000"
 
 
 def loan(museum: Changing) -> None:
-    museum.rows[1] |= {"value": "40000", "irreplaceable": "yes", "on_loan": "yes"}
+    museum.rows[1] |= {"value": "40000", "on_loan": "yes"}
 
 
 def in_a_case(museum: Changing) -> None:

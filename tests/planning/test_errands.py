@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from pipeline.analysis.stakes import expected_loss
-from pipeline.planning.choice import Limits
+from pipeline.planning.choice import EffortLimits
 from pipeline.planning.efforts import efforts
 from pipeline.planning.errands import advised as advised_of
 from pipeline.planning.errands import deciding, errands_of, loss_left
-from pipeline.planning.plan import Terms, plan_of
+from pipeline.planning.plan import PlanTerms, plan_of
 from pipeline.quantities import G
 from pipeline.records import Assessment, Band, Estimate, Item, Likelihood, Origin, Recommendation, Scene, Support
 from pipeline.tables import FOLDER
@@ -86,8 +86,8 @@ def test_furniture_that_has_to_be_fastened_first_is_an_errand_that_others_need()
 def test_a_plan_pays_for_the_furniture_that_it_fastens() -> None:
     found = [advised("1", "wax", 1.0, case="A", anchored=True)]
     needed = HAVE.visit.hours + HAVE.of("anchor").hours + HAVE.of("wax").hours
-    assert plan_of(found, 1.0, {}, Terms(HAVE, Limits(needed - 0.01))).chosen == ()
-    plan = plan_of(found, 1.0, {}, Terms(HAVE, Limits(needed)))
+    assert plan_of(found, 1.0, {}, PlanTerms(HAVE, EffortLimits(needed - 0.01))).chosen == ()
+    plan = plan_of(found, 1.0, {}, PlanTerms(HAVE, EffortLimits(needed)))
     assert [one.measure for one in plan.chosen] == ["anchor", "wax"]
     assert plan.hours.value == pytest.approx(needed)
     assert set(plan.by_trade) == {"handler", "engineer"}
@@ -136,7 +136,7 @@ def test_what_is_lost_and_avoided_is_what_a_simulation_of_earthquakes_finds() ->
     ]
     found = [one for one in (advised_of(a, "Do it.") for a in objects) if one is not None]
     assert [one.measure for one in found] == ["wax", "clamps", "ties", "fasten", "remove"]
-    plan = plan_of(found, sum(map(expected_loss, objects)), {}, Terms(HAVE))
+    plan = plan_of(found, sum(map(expected_loss, objects)), {}, PlanTerms(HAVE))
     with (FOLDER / "stakes.csv").open(encoding="utf-8", newline="") as stream:
         weights = {row["name"]: float(row["value"]) for row in csv.DictReader(stream)}
     random, times = np.random.default_rng(1), 400_000

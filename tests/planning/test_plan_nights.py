@@ -11,7 +11,7 @@ import pytest
 from lxml import html
 
 from pipeline.operations.workspace import UsageError, open_workspace
-from pipeline.planning.choice import Limits
+from pipeline.planning.choice import EffortLimits
 from pipeline.records import DecisionKind
 from pipeline.report.files.plan_files import gathered_from
 from pipeline.settings import Settings, load_settings
@@ -86,10 +86,10 @@ def test_an_unchanged_night_takes_the_plan_over_and_other_limits_make_another(se
 
 def test_the_command_says_what_the_report_says(settings: Settings, report: Path, tmp_path: Path) -> None:
     out = tmp_path / "sheets" / "plan.csv"
-    planned = plan_museum(open_workspace(settings), Limits(), path=out)
+    planned = plan_museum(open_workspace(settings), EffortLimits(), path=out)
     assert rows(out) == rows(report / "plan.csv")
     assert planned.plan.loss == pytest.approx(gathered_from(report).plan(planned.plan.terms).loss, rel=1e-12)
-    one = plan_museum(open_workspace(settings), Limits(), galleries=("Room 1",))
+    one = plan_museum(open_workspace(settings), EffortLimits(), galleries=("Room 1",))
     assert {errand.gallery for errand in one.plan.errands} == {"Room 1"}
     assert one.plan.loss < planned.plan.loss
 
@@ -120,9 +120,9 @@ def test_the_command_prints_and_writes(settings: Settings, report: Path, tmp_pat
 def test_what_cannot_be_asked(settings: Settings, report: Path, tmp_path: Path) -> None:
     workspace = open_workspace(settings)
     with pytest.raises(UsageError, match=r"there is no gallery 'Room 9'.*did you mean 'Room"):
-        plan_museum(workspace, Limits(), galleries=("Room 9",))
+        plan_museum(workspace, EffortLimits(), galleries=("Room 9",))
     with pytest.raises(UsageError, match=r"give the file one of these endings"):
-        plan_museum(workspace, Limits(), path=tmp_path / "plan.pdf")
+        plan_museum(workspace, EffortLimits(), path=tmp_path / "plan.pdf")
     for words, said in ((("--hours", "many"), "give a number, such as 40"), (("--hours", "cook=3"), "no such trade")):
         done = kouros("plan", *words, folder=settings.home)
         assert done.returncode == 2
@@ -132,7 +132,7 @@ def test_what_cannot_be_asked(settings: Settings, report: Path, tmp_path: Path) 
 def test_before_the_first_night_the_remedy_is_told(tmp_path: Path) -> None:
     fresh = museum_of(tmp_path / "museum", vases())
     with pytest.raises(StoreError, match=r"no finished run of the whole collection.*kouros run"):
-        plan_museum(open_workspace(fresh), Limits())
+        plan_museum(open_workspace(fresh), EffortLimits())
     (fresh.home / "kouros.toml").write_text(
         (fresh.home / "kouros.toml").read_text(encoding="utf-8").replace('efforts = ""', 'efforts = "ours.csv"'),
         encoding="utf-8",
@@ -153,7 +153,7 @@ def test_a_night_that_asks_for_no_probabilities_has_no_plan(tmp_path: Path) -> N
     assert not (summary.report.parent / "plan.html").exists()
     assert "plan.html" not in summary.report.read_text(encoding="utf-8")
     with pytest.raises(UsageError, match=r"does not know how likely harm is.*samples"):
-        plan_museum(open_workspace(load_settings(made.home / "kouros.toml")), Limits())
+        plan_museum(open_workspace(load_settings(made.home / "kouros.toml")), EffortLimits())
 
 
 def test_what_people_accepted_is_no_errand_and_a_report_drawn_again_has_the_same_plan(tmp_path: Path) -> None:

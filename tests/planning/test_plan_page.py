@@ -14,10 +14,10 @@ import pytest
 from babel.messages.mofile import write_mo
 from lxml import html
 
-from pipeline.planning.choice import Limits
+from pipeline.planning.choice import EffortLimits
 from pipeline.planning.efforts import efforts
 from pipeline.planning.errands import Advised
-from pipeline.planning.plan import Plan, Terms, plan_of
+from pipeline.planning.plan import ErrandPlan, PlanTerms, plan_of
 from pipeline.report import Language
 from pipeline.report.files.plan_files import PLAN_COLUMNS, write_plan_sheet, write_plan_table
 from pipeline.report.pages.compose import PageHead
@@ -32,11 +32,11 @@ TITLES = {row["measure"]: row["title"] for row in table("measures")}
 HEAD = PageHead("Museum <b>", "1", "2031-01-01T00:00:00", "0", "", demonstration=False)
 
 
-def planned(found: list[Advised], limits: Limits | None = None) -> Plan:
-    return plan_of(found, 1.2 * sum(one.loss for one in found), {}, Terms(efforts(), limits or Limits()))
+def planned(found: list[Advised], limits: EffortLimits | None = None) -> ErrandPlan:
+    return plan_of(found, 1.2 * sum(one.loss for one in found), {}, PlanTerms(efforts(), limits or EffortLimits()))
 
 
-def shown(plan: Plan, *, alone: bool = False) -> html.HtmlElement:
+def shown(plan: ErrandPlan, *, alone: bool = False) -> html.HtmlElement:
     return html.fromstring(plan_page(plan, HEAD, Language(), alone=alone))
 
 
@@ -86,7 +86,7 @@ def test_hostile_texts_are_text_on_the_sheet(tmp_path: Path) -> None:
 
 def test_the_first_layer_says_what_there_is_and_what_that_avoids() -> None:
     found = collection(40, 3)
-    limits = Limits(40.0, 5_000.0, {"mount-maker": 12.0})
+    limits = EffortLimits(40.0, 5_000.0, {"mount-maker": 12.0})
     plan = planned(found, limits)
     page = shown(plan)
     lede = words(page.xpath("//p[@class='lede']")[0])
@@ -136,7 +136,7 @@ def test_all_words_of_the_page_can_be_translated() -> None:
     file.seek(0)
     tongue = Language("it", GNUTranslations(file))
     found = [replace(one, measure_title=TITLES[one.measure]) for one in collection(400, 9, galleries=8, removed=0.1)]
-    for limits in (Limits(), Limits(90.0, 4_000.0, {"handler": 20.0, "engineer": 50.0})):
+    for limits in (EffortLimits(), EffortLimits(90.0, 4_000.0, {"handler": 20.0, "engineer": 50.0})):
         page = html.fromstring(plan_page(planned(found, limits), HEAD, tongue))
         for element in page.xpath("//head|//style|//bdi|//*[@class='code']"):
             element.drop_tree()
@@ -146,11 +146,11 @@ def test_all_words_of_the_page_can_be_translated() -> None:
 
 def test_nothing_to_plan_is_said() -> None:
     assert "Nothing is advised" in words(shown(planned([])))
-    assert "nothing can be done" in words(shown(planned([advised("1", "wax", 1.0)], Limits(0.0))))
+    assert "nothing can be done" in words(shown(planned([advised("1", "wax", 1.0)], EffortLimits(0.0))))
 
 
 def test_the_same_plan_is_the_same_bytes() -> None:
-    once, twice = (plan_page(planned(collection(80, 6), Limits(30.0)), HEAD, Language()) for _ in range(2))
+    once, twice = (plan_page(planned(collection(80, 6), EffortLimits(30.0)), HEAD, Language()) for _ in range(2))
     assert once == twice
 
 

@@ -13,7 +13,7 @@ from pipeline.records import Item, Origin, Verdict
 from pipeline.report import Units, render
 from pipeline.report.pages.floor_plan import needed_clearance
 from pipeline.report.pages.museum_views import GalleryView
-from pipeline.report.pages.plan_views import PlanView
+from pipeline.report.pages.plan_views import GalleryPlanView
 
 from . import builder
 from .shown import shown
@@ -24,13 +24,13 @@ def gallery(units: Units | None = None) -> GalleryView:
     return next(g for g in museum.galleries if g.name == builder.GREEK)
 
 
-def plan(units: Units | None = None) -> PlanView:
+def plan(units: Units | None = None) -> GalleryPlanView:
     found = gallery(units).plan
     assert found is not None
     return found
 
 
-def shapes(view: PlanView) -> dict[str, etree._Element]:
+def shapes(view: GalleryPlanView) -> dict[str, etree._Element]:
     """The link of each object on the plan, by the object's number in the museum."""
     root = etree.fromstring(view.svg)
     by_anchor = {p.object.anchor: p.object.number for p in view.places}
@@ -43,7 +43,7 @@ def centre(link: etree._Element) -> tuple[float, float]:
     return x + w / 2, y + h / 2
 
 
-def metre(view: PlanView) -> float:
+def metre(view: GalleryPlanView) -> float:
     """Pixels of a metre, read off the drawn scale bar as a person with a ruler does."""
     root = etree.fromstring(view.svg)
     bar = next(e.get("d") or "" for e in root.iter("path") if e.get("class") == "pb")

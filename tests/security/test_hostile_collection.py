@@ -50,6 +50,7 @@ EXPORTS = {
         "reading.csv",
         "reading.html",
         "plan.csv",
+        "fragility_classes.csv",
         "plan.html",
     ),
 }

@@ -9,7 +9,7 @@ from typing import Any
 
 from pipeline.analysis.stakes import expected_loss
 from pipeline.planning.errands import Advised, Errand, advised, deciding, loss_left
-from pipeline.planning.plan import Plan, Terms, gallery_order, plan_of
+from pipeline.planning.plan import ErrandPlan, PlanTerms, gallery_order, plan_of
 from pipeline.records import DecisionStatus, Found, Page
 from pipeline.report.files.exports import sentence_of
 from pipeline.report.files.sheet_cells import headed, to_fill_in, write_cell
@@ -65,7 +65,7 @@ class Gathered:
         if loss is not None:
             self.losses.append(loss)
 
-    def plan(self, terms: Terms) -> Plan:
+    def plan(self, terms: PlanTerms) -> ErrandPlan:
         """Return the plan on some terms."""
         return plan_of(self.advised, fsum(self.losses), gallery_order(self.counts), terms)
 
@@ -142,7 +142,7 @@ def gathered(
     return out
 
 
-def write_plan_table(file: Path, plan: Plan) -> None:
+def write_plan_table(file: Path, plan: ErrandPlan) -> None:
     """Write all errands of a plan as CSV, in walking order; as in other exports no text is a formula.
 
     Raises
@@ -158,12 +158,12 @@ def write_plan_table(file: Path, plan: Plan) -> None:
             writer.writerow([_cell(row[name]) for name in PLAN_COLUMNS])
 
 
-def errand_row(plan: Plan, at: int, one: Errand) -> dict[str, Any]:
+def errand_row(plan: ErrandPlan, at: int, one: Errand) -> dict[str, Any]:
     """Return an errand as a row of the list, by `PLAN_COLUMNS`.
 
     Parameters
     ----------
-    plan : Plan
+    plan : ErrandPlan
         That it is of.
     at : int
         Its place.
@@ -211,7 +211,7 @@ _HEADS = (
 )  # fmt: skip
 
 
-def write_plan_sheet(file: Path, plan: Plan) -> None:
+def write_plan_sheet(file: Path, plan: ErrandPlan) -> None:
     """Write a workbook to print and tick off: what to do in walking order, and what takes objects from view.
 
     Raises
@@ -234,7 +234,7 @@ def write_plan_sheet(file: Path, plan: Plan) -> None:
         aside.write_bytes(saved(book))
 
 
-def _listed(sheet: Any, plan: Plan, places: Sequence[int]) -> None:
+def _listed(sheet: Any, plan: ErrandPlan, places: Sequence[int]) -> None:
     from openpyxl.styles import Alignment
 
     numbered = {at: row for row, at in enumerate(places, start=2)}

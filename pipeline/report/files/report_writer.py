@@ -14,7 +14,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from pipeline.planning.plan import Terms
+from pipeline.planning.plan import PlanTerms
 from pipeline.records import DecisionStatus, Page, RunChanges, RunRecord, Tally
 from pipeline.report.errors import ReportError
 from pipeline.report.files.concatenation import concatenate, ranked
@@ -144,7 +144,7 @@ class ReportWriter:
         links: Mapping[str, Pointer],
         beside: Mapping[str, str] | None = None,
         doubts: Doubts | None = None,
-        terms: Terms | None = None,
+        terms: PlanTerms | None = None,
     ) -> Path:
         """Write the exports, the index and the pages that all share, and give the report its name.
 
@@ -162,7 +162,7 @@ class ReportWriter:
             Further files of the report, by name.
         doubts : callable, optional
             Gives what reading refused and doubts, if that is known.
-        terms : Terms, optional
+        terms : PlanTerms, optional
             What the plan rests on; without it there is none, as where nobody knows how likely harm is.
 
         Returns
@@ -235,7 +235,7 @@ class ReportWriter:
         self._write(page, text.encode())
         return key
 
-    def _plan(self, head: RunRecord, terms: Terms) -> str:
+    def _plan(self, head: RunRecord, terms: PlanTerms) -> str:
         """Write the page and the list of errands, or take those of the earlier report."""
         key = _key(self.renderer, [page.key for page in self._pages], terms)
         if key == self._previous.manifest.plan and self._previous.has(*PLAN_FILES):

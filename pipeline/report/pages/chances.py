@@ -62,12 +62,12 @@ def left_over(advice: Recommendation) -> str:
     """Say how likely harm is that a measure leaves; "" where its checks exclude it, and where nobody drew it."""
     if advice.remaining is None:
         return ""
-    said_so = _("Of what is uncertain %(share)s remains in which it still comes to harm.")
+    said_so = _("A chance of %(share)s remains that it comes to harm.")
     return " " + said_so % {"share": _percent(advice.remaining)}
 
 
 def _percent(probability: float) -> str:
-    return f"{probability:.0%}" if probability >= _LEAST else _("below 1 %")
+    return f"{100.0 * probability:.0f} %" if probability >= _LEAST else _("below 1 %")
 
 
 def open_for(assessment: Assessment) -> str:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from pipeline.mitigate.search import ANCHORED
-from pipeline.planning.efforts import TRADES, Span
+from pipeline.planning.efforts import TRADES, EffortSpan
 from pipeline.planning.errands import Advised, Errand
-from pipeline.planning.plan import Plan
+from pipeline.planning.plan import ErrandPlan
 from pipeline.report.language import Language, _, ngettext, said, speaking
 from pipeline.report.pages.compose import PageHead
 from pipeline.report.pages.environment import environment, fill
@@ -107,12 +107,12 @@ class PlanView:
     curve: Markup
 
 
-def plan_page(plan: Plan, head: PageHead, language: Language, *, alone: bool = False) -> str:
+def plan_page(plan: ErrandPlan, head: PageHead, language: Language, *, alone: bool = False) -> str:
     """Return the page of a plan as HTML.
 
     Parameters
     ----------
-    plan : Plan
+    plan : ErrandPlan
         What it shows.
     head : PageHead
         Of what run.
@@ -127,12 +127,12 @@ def plan_page(plan: Plan, head: PageHead, language: Language, *, alone: bool = F
         return fill(environment(language), "plan.html", context)
 
 
-def plan_view(plan: Plan, *, linked: bool = True, sentences: bool = True) -> PlanView:
+def plan_view(plan: ErrandPlan, *, linked: bool = True, sentences: bool = True) -> PlanView:
     """Return what the page of a plan shows.
 
     Parameters
     ----------
-    plan : Plan
+    plan : ErrandPlan
         The plan.
     linked : bool
         Whether objects lead to their entries.
@@ -184,7 +184,7 @@ def number(value: float) -> str:
     return count(round(value)) if value >= 99.5 else significant(value, 3 if value >= 10.0 else 2)
 
 
-def spanned(span: Span) -> str:
+def spanned(span: EffortSpan) -> str:
     """Write an amount with its range."""
     if span.low == span.high:
         return number(span.value)
@@ -195,7 +195,7 @@ def spanned(span: Span) -> str:
     }
 
 
-def _errand(plan: Plan, at: int, *, linked: bool, sentences: bool) -> ErrandView:
+def _errand(plan: ErrandPlan, at: int, *, linked: bool, sentences: bool) -> ErrandView:
     one = plan.errands[at]
     named = one.objects[:NAMED]
     told = said_of(one)
@@ -218,7 +218,7 @@ def _errand(plan: Plan, at: int, *, linked: bool, sentences: bool) -> ErrandView
     )
 
 
-def _begun(plan: Plan, places: Sequence[int], *, linked: bool) -> BeginView:
+def _begun(plan: ErrandPlan, places: Sequence[int], *, linked: bool) -> BeginView:
     some = [plan.errands[at] for at in places]
     objects = [one for errand in some for one in errand.objects]
     return BeginView(
@@ -245,7 +245,7 @@ def _brief(sentence: str) -> str:
     return _CLAUSE.split(text, maxsplit=1)[0].rstrip(".") + "."
 
 
-def _ratio(avoided: float, plan: Plan) -> float:
+def _ratio(avoided: float, plan: ErrandPlan) -> float:
     return avoided / plan.loss if plan.loss > 0.0 else 0.0
 
 
@@ -256,7 +256,7 @@ def _share(share: float) -> str:
     return f"{share:.0%}".replace("%", " %") if share >= 0.095 else f"{significant(100.0 * share, 2)} %"
 
 
-def _lede(plan: Plan) -> str:
+def _lede(plan: ErrandPlan) -> str:
     limits, avoided = plan.terms.limits, _share(plan.share)
     if not plan.errands:
         return _("Nothing is advised, so there is nothing to plan.")
@@ -289,7 +289,7 @@ def _joined(parts: Sequence[str]) -> str:
     return _("%(parts)s and %(last)s") % {"parts": ", ".join(parts[:-1]), "last": parts[-1]}
 
 
-def _takes(plan: Plan) -> str:
+def _takes(plan: ErrandPlan) -> str:
     if not plan.chosen:
         return ""
     phrase = ngettext(
@@ -308,7 +308,7 @@ def _takes(plan: Plan) -> str:
     }
 
 
-def _half(plan: Plan) -> str:
+def _half(plan: ErrandPlan) -> str:
     if not plan.terms.limits.open or plan.choice.avoided <= 0.0:
         return ""
     at = next(corner for corner in plan.curve if corner.avoided >= 0.5 * plan.choice.avoided)
@@ -316,14 +316,14 @@ def _half(plan: Plan) -> str:
     return told % {"hours": number(at.hours), "cost": number(at.cost)}
 
 
-def _gap(plan: Plan) -> str:
+def _gap(plan: ErrandPlan) -> str:
     if plan.choice.gap <= 0.0:
         return ""
     told = _("No other choice avoids more than %(share)s of this beyond it.")
     return told % {"share": _share(plan.choice.gap)}
 
 
-def _left(plan: Plan) -> str:
+def _left(plan: ErrandPlan) -> str:
     if plan.loss <= 0.0:
         return ""
     told = _(
@@ -332,7 +332,7 @@ def _left(plan: Plan) -> str:
     return told % {"most": _share(plan.most)}
 
 
-def _curve(plan: Plan) -> Markup:
+def _curve(plan: ErrandPlan) -> Markup:
     if len(plan.curve) < 2 or plan.loss <= 0.0:
         return Markup("")
     hours, limit = plan.hours, plan.terms.limits.hours

@@ -11,7 +11,7 @@ from pipeline.quantities import LENGTHS
 from pipeline.records import Assessment, Item
 from pipeline.report.language import _, ngettext
 from pipeline.report.pages.judging import SpacingView
-from pipeline.report.pages.plan_views import PlaceView, PlanView
+from pipeline.report.pages.plan_views import GalleryPlanView, PlaceView
 from pipeline.report.pages.views import STATES, Judged, ObjectView, State
 from pipeline.report.plots import svg
 from pipeline.report.plots.panel import Panel
@@ -57,7 +57,7 @@ class _Place:
 
 def plan_view(
     pairs: Sequence[tuple[Assessment, ObjectView]], spacings: Sequence[SpacingView], units: Units
-) -> PlanView | None:
+) -> GalleryPlanView | None:
     """Return the plan of the objects whose positions are recorded.
 
     Parameters
@@ -71,7 +71,7 @@ def plan_view(
 
     Returns
     -------
-    PlanView or None
+    GalleryPlanView or None
         None where no position is recorded.
     """
     stand = [(a, view) for a, view in pairs if a.scene.item.on_display and _position(a.scene.item) is not None]
@@ -82,7 +82,7 @@ def plan_view(
     standing = Counter(p.view.number for p in places)
     # Of a number that stands twice nobody knows which is meant.
     tight = tuple(s for s in _tight(spacings) if standing[s.first] == standing[s.second] == 1)
-    return PlanView(_draw(places, tight, units), rows, len(pairs) - len(stand), tight)
+    return GalleryPlanView(_draw(places, tight, units), rows, len(pairs) - len(stand), tight)
 
 
 def needed_clearance(assessment: Assessment) -> float:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pipeline.report.pages.class_curves import ClassCurveView
 from pipeline.report.pages.judging import RoomView, ShakingView, SpacingView
 from pipeline.report.pages.numerics import DecidedView
-from pipeline.report.pages.plan_views import PlanView
+from pipeline.report.pages.plan_views import GalleryPlanView
 from pipeline.report.pages.reading import ReadingView
 from pipeline.report.pages.selftest import SelfTestView
 from pipeline.report.pages.views import (
@@ -42,7 +42,7 @@ class GalleryView:
     several_levels: bool
     survey: tuple[SurveyView, ...] = ()
     surveyed: bool = False
-    plan: PlanView | None = None
+    plan: GalleryPlanView | None = None
     spacings: tuple[SpacingView, ...] = ()
     rooms: tuple[RoomView, ...] = ()
     shaking: ShakingView | None = None

@@ -20,7 +20,7 @@ class PlaceView:
 
 
 @dataclass(frozen=True, slots=True)
-class PlanView:
+class GalleryPlanView:
     """A gallery to scale: the drawing, its legend in rows, and how many objects have no recorded position.
 
     tight : the neighbours between which a line is drawn, for they may meet: each pair once, as it is at its worst level
