@@ -161,21 +161,20 @@ def _found(
     assessments = tuple(assessment for assessment, _ in every)
     asked: dict[str, list[MeasurementRequest]] = {}
     began = perf_counter()
-    if context.surveyed and context.sampling.samples:
-        chances = [one.likelihoods for one in assessments]
-        for wish in telling_requests([one.scene for one in assessments], chances):
-            asked.setdefault(wish.object_number, []).append(wish)
-    elif context.surveyed:
-        # Each trial is asked once: a chart would not pay.
+    if context.surveyed:
         numerics = context.analysis.numerics
+        # Each trial is asked once: a chart would not pay.
         uncharted = Context(working.executor, charts=ChartCache(admitted=frozenset()))
         finely = numerics if numerics.fidelity == AUTO else numerics.integrated
-        assessments, several = each_apart(
-            assessments,
-            lambda scenes, found: measurement_requests(scenes, found, floor.shaking, uncharted, finely),
-            "what is worth measuring on it is not known",
-            faults,
-        )
+        chances = {one.scene.item.object_number: one.likelihoods for one in assessments}
+
+        def asked_of(scenes: Sequence[Scene], findings: Sequence[Sequence[Finding]]) -> Sequence[MeasurementRequest]:
+            if context.sampling.samples:
+                return telling_requests(scenes, [chances[scene.item.object_number] for scene in scenes])
+            return measurement_requests(scenes, findings, floor.shaking, uncharted, finely)
+
+        told = "what is worth measuring on it is not known"
+        assessments, several = each_apart(assessments, asked_of, told, faults)
         for wish in several:
             asked.setdefault(wish.object_number, []).append(wish)
     seconds = 0.0 if context.sampling.samples or not context.surveyed else perf_counter() - began
