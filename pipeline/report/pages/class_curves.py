@@ -7,6 +7,7 @@ import csv
 import io
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
@@ -112,7 +113,18 @@ def curve_sums(shown: Iterable[Assessment]) -> dict[str, dict[str, int]]:
     return out
 
 
+def _sound(f: Fragility) -> bool:
+    """Say whether its numbers are those of a curve: of what was stored by whatever version nothing else is added up."""
+    rates = (one for one in (f.annual_rate, f.rate_low, f.rate_high) if one is not None)
+    counted = all(0.0 < at < inf and 0 <= hurt <= there and there > 0 for at, there, hurt in f.stripes)
+    return 0.0 < f.median < inf and 0.0 < f.dispersion < inf and all(0.0 <= one < inf for one in rates) and counted
+
+
 def _shares(f: Fragility) -> dict[str, int]:
+    if not _sound(f):
+        return {OBJECTS: 1, CURVES: 0, TOLD: 0, HARMED: 0} | {
+            key: 0 for at in range(len(GRID)) for key in (str(at), f"n{at}")
+        }
     chances = f.chances
     out = {OBJECTS: 1, CURVES: int(not f.bound), TOLD: int(chances is not None)}
     out[HARMED] = 0 if chances is None else round(chances[0] * UNIT)
