@@ -345,8 +345,6 @@ def settled(scene: Scene) -> Scene:
 
 def _best_levels(levels: Sequence[LevelMotions], furniture: FurnitureFilter | None) -> tuple[LevelMotions, ...]:
     """Return levels as furniture passes them on by the best estimates; None: what feels them already."""
-    out = []
-    for level in levels:
-        felt = best_furnished(level.motions, furniture)
-        out.append(replace(level, motions=felt, others=(), site=level.told))
-    return tuple(out)
+    return tuple(
+        replace(level, others=()).through(lambda motion: best_furnished((motion,), furniture)) for level in levels
+    )

@@ -19,9 +19,16 @@ fixed and held.
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
 
-from pipeline.mitigate.measures.base import NOT_FREE, UNKNOWN_SECTION, Measure, held, knows_section, with_parameters
+from pipeline.mitigate.measures.base import (
+    NOT_FREE,
+    UNKNOWN_SECTION,
+    Measure,
+    held,
+    knows_section,
+    multiplied,
+    with_parameters,
+)
 from pipeline.mitigate.proposals import Candidate, Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.records import Estimate, Scene, Support
@@ -48,9 +55,9 @@ class Brace(Measure):
     def change(self, scene: Scene, parameters: Mapping[str, float]) -> Scene:  # noqa: ARG002
         """Return it held at its base, its section bending a quarter as much, and swaying faster."""
         scene = held(scene)
-        found = {"lever": _times(scene.parameters["lever"], LEVER)}
+        found = {"lever": _braced(scene.parameters["lever"], LEVER)}
         if "frequency" in scene.parameters:
-            found["frequency"] = _times(scene.parameters["frequency"], STIFFER)
+            found["frequency"] = _braced(scene.parameters["frequency"], STIFFER)
         return with_parameters(scene, **found)
 
     def propose(self, one: Deficiency, runner: TrialRunner) -> Proposal:
@@ -74,12 +81,5 @@ class Brace(Measure):
         return Proposal(tuple(Candidate(numbers, (trial,), at_best=at_best) for at_best in (False, True)))
 
 
-def _times(estimate: Estimate, factors: tuple[float, float, float]) -> Estimate:
-    low, best, high = factors
-    return replace(
-        estimate,
-        value=best * estimate.value,
-        low=low * estimate.low,
-        high=high * estimate.high,
-        note=f"{estimate.note}, with the brace" if estimate.note else "",
-    )
+def _braced(estimate: Estimate, factors: tuple[float, float, float]) -> Estimate:
+    return multiplied(estimate, *factors, f"{estimate.note}, with the brace" if estimate.note else "")

@@ -11,6 +11,7 @@ from pipeline.mitigate.measures.base import (
     Measure,
     held,
     knows_section,
+    multiplied,
     round_up,
     with_parameters,
 )
@@ -18,7 +19,7 @@ from pipeline.mitigate.measures.fixings import HOLDS, force_and_moment
 from pipeline.mitigate.proposals import Deficiency, Proposal, refused
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.quantities import G, Quantity
-from pipeline.records import Estimate, Scene, Support
+from pipeline.records import Scene, Support
 
 MODULI = ("section_modulus", "section_modulus_width", "section_modulus_depth")
 
@@ -42,7 +43,7 @@ class Strengthen(Measure):
         times = parameters["enlargement"]
         powers = {"area": 2, **dict.fromkeys(MODULI, 3)}
         known = {name: power for name, power in powers.items() if name in scene.parameters}
-        found = {name: _times(scene.parameters[name], times**power) for name, power in known.items()}
+        found = {name: multiplied(scene.parameters[name], *(times**power,) * 3) for name, power in known.items()}
         if "frequency" in scene.parameters:
             # With the root of the second moment, the fourth power, if all that bends is made thicker; less if not.
             f = scene.parameters["frequency"]
@@ -71,9 +72,3 @@ class Strengthen(Measure):
             return refused(f"its section would have to be {times:.2g} times as large; {self.row.limit:g} is allowed")
         numbers = {"enlargement": (times, "-"), "section_modulus": (times**3 * modulus.value, "m3")}
         return self.one_trial(one, numbers, finish=partial(force_and_moment, scene, runner))
-
-
-def _times(estimate: Estimate, factor: float) -> Estimate:
-    return replace(
-        estimate, value=factor * estimate.value, low=factor * estimate.low, high=factor * estimate.high, note=""
-    )
