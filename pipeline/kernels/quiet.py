@@ -75,6 +75,40 @@ def block_maxima(values: Array) -> Array:
     return out
 
 
+@kernel
+def largest_ratio(push: Array, z: Array, sign: float) -> float:
+    r"""Return the largest push over the weight that there is, in one sense.
+
+    .. math::
+
+        \max_t \frac{\max(0, \pm a)}{\max(0, g + a_z)}
+
+    Parameters
+    ----------
+    push : ndarray, shape (n,)
+        Along one direction, or the length of two [m/s2].
+    z : ndarray, shape (n,)
+        Vertical acceleration [m/s2].
+    sign : float
+        1, or -1 for the other sense of a direction.
+
+    Returns
+    -------
+    float
+        [-]; infinite where the weight is lost under a push, or beside one: between two samples they meet.
+    """
+    n, best = push.shape[0], 0.0
+    for i in range(n):
+        weight, here = G + z[i], sign * push[i]
+        if weight > 0.0:
+            best = max(best, here / weight)
+        else:
+            before, after = sign * push[max(i - 1, 0)], sign * push[min(i + 1, n - 1)]
+            if max(here, before, after) > 0.0:
+                return math.inf
+    return best
+
+
 @bare
 def next_above(values: Array, maxima: Array, start: int, limit: float) -> int:
     """Return the first index from a start on whose value exceeds the limit.

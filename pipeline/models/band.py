@@ -46,14 +46,14 @@ two points of the grid.  Of the same bands the least was by 2.7 % at most, the l
 LOWEST, HIGHEST = -2, 3
 """Powers of ten between which the grid lies [Hz]: beyond 1 kHz an object feels the acceleration of its base."""
 
-PIECES = 5
-"""Pieces of a decade, each worked out where a band touches it: a few dozen points, which run side by side."""
+PIECES = 2
+"""Pieces of a decade, each worked out where a band touches it: a hundred points or two, kept in one file."""
 
 _GRAIN = 2.0**30
 """Steps to the peak in which shaking is told apart, so that what is only scaled has the same spectrum, scaled."""
 
-_KEPT = 65536
-"""Pieces of spectra that are remembered, of 2 kB as a rule: without what they are spectra of."""
+_KEPT = 32768
+"""Pieces of spectra that are remembered, of 5 kB as a rule: without what they are spectra of."""
 
 
 _KNOWN = 256

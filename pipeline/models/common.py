@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from pipeline.kernels import flags, samples
-from pipeline.kernels.quiet import block_maxima, demand_ratio
+from pipeline.kernels.quiet import block_maxima, demand_ratio, largest_ratio
 from pipeline.quantities import Array, G
 from pipeline.records import Curve, Excitation, Scene, Support
 
@@ -224,22 +224,12 @@ def lift_ratios(motion: Excitation) -> tuple[float, float]:
     to_positive, to_negative : float
         [-]; for two directions both are the largest |a_h| / N.  Infinite where contact is lost under a push.
     """
-    weight = np.maximum(0.0, G + motion.z)
+    z = samples(motion.z)
     if motion.y is not None:
-        worst = _ratio(np.hypot(motion.x, motion.y), weight)
+        worst = largest_ratio(np.hypot(motion.x, motion.y), z, 1.0)
         return worst, worst
-    return _ratio(-motion.x, weight), _ratio(motion.x, weight)
-
-
-def _ratio(push: Array, weight: Array) -> float:
-    push = np.maximum(push, 0.0)
-    # A push at a neighbouring sample is a push at the instant at which the weight is lost between them.
-    nearby = push.copy()
-    nearby[1:] = np.maximum(nearby[1:], push[:-1])
-    nearby[:-1] = np.maximum(nearby[:-1], push[1:])
-    if ((weight == 0.0) & (nearby > 0.0)).any():
-        return float("inf")
-    return float(np.max(np.divide(push, weight, out=np.zeros_like(push), where=weight > 0.0)))
+    x = samples(motion.x)
+    return largest_ratio(x, z, -1.0), largest_ratio(x, z, 1.0)
 
 
 def curve(label: str, x: Sequence[float] | Array, y: Sequence[float] | Array) -> Curve:

@@ -52,6 +52,9 @@ ACTS = 2
 PART = 8
 """Samples that one who works runs in one go."""
 
+_REMEMBERED = 24 * FEWEST
+"""Shakings of samples that are remembered, of 0.3 MB each as a rule: of a piece of furniture with all isolators."""
+
 Groups = Mapping[tuple[FurnitureFilter | None, Transfer | None], Sequence["_Analyses"]]
 """Analyses by what their shaking passes through."""
 
@@ -254,16 +257,25 @@ def sampled(
     return total, harmed
 
 
-@lru_cache(maxsize=2 * FIRST)
 def _felt(
     motions: tuple[Motion, ...], furniture: FurnitureFilter | None, isolator: Transfer | None, draw: Draw
 ) -> tuple[Motion, bool]:
-    # Measures are tried under the first samples again and again.
+    # Measures are tried under the first samples again and again, under later ones hardly ever.
+    find = _felt_before if draw.number < FEWEST else _shaken
+    return find(motions, furniture, isolator, draw)
+
+
+def _shaken(
+    motions: tuple[Motion, ...], furniture: FurnitureFilter | None, isolator: Transfer | None, draw: Draw
+) -> tuple[Motion, bool]:
     felt, falls = through(drawn_motion(motions, draw), furniture, draw)
     if isolator is None:
         return felt, falls
     # What slips jumps between samples.
     return transmit(isolator[0], felt, refine=max(1, ceil(felt.dt / FINEST - 1e-9)), **dict(isolator[1])), falls
+
+
+_felt_before = lru_cache(maxsize=_REMEMBERED)(_shaken)
 
 
 def _uncertain(analyses: Iterable["_Analyses"], count: int) -> dict[str, NDArray[np.bool_]]:
