@@ -26,8 +26,9 @@ from pipeline.quantities import Array
 PHASE = 0.25
 """Largest w (1 + 2 zeta) times the span that is searched at once: a longest resultant is alone in it."""
 
-HALVINGS = 40
-"""How often the bracket of the time of a longest resultant is halved: to 1e-12 of its span."""
+TRIES, CLOSE = 60, 1e-8
+"""How often the time of a longest resultant is looked for, and the share of its span to which it is: a length that has
+its peak there is off by the square of that."""
 
 # How many rows there are of coefficients and of the lanes' state.
 FACTORS, STATES = np.int64(15), np.int64(7)
@@ -168,16 +169,24 @@ def _longest(
     w, zeta = factor[W, k], factor[ZETA, k]
     end_ux, end_vx = advance(ux, vx, -ax, -rise_x, w, zeta, span)
     end_uy, end_vy = advance(uy, vy, -ay, -rise_y, w, zeta, span)
-    if ux * vx + uy * vy > 0.0 and end_ux * end_vx + end_uy * end_vy < 0.0:
-        first, last = 0.0, span
-        for _ in range(HALVINGS):
-            middle = 0.5 * (first + last)
+    first, last, before = 0.0, span, span
+    rising, falling = ux * vx + uy * vy, end_ux * end_vx + end_uy * end_vy
+    if rising > 0.0 and falling < 0.0:
+        # By false position; the end that stays counts half (Illinois).
+        stays = 0
+        for _ in range(TRIES):
+            middle = first + (last - first) * rising / (rising - falling)
             end_ux, end_vx = advance(ux, vx, -ax, -rise_x, w, zeta, middle)
             end_uy, end_vy = advance(uy, vy, -ay, -rise_y, w, zeta, middle)
-            if end_ux * end_vx + end_uy * end_vy > 0.0:
-                first = middle
+            if abs(middle - before) <= CLOSE * span:
+                break
+            rate, before = end_ux * end_vx + end_uy * end_vy, middle
+            if rate > 0.0:
+                first, rising = middle, rate
+                falling, stays = falling * 0.5 if stays > 0 else falling, 1
             else:
-                last = middle
+                last, falling = middle, rate
+                rising, stays = rising * 0.5 if stays < 0 else rising, -1
     size = math.hypot(end_ux, end_uy)
     if size > known[SIZE]:
         known[SIZE], known[AT_X], known[AT_Y] = size, end_ux, end_uy
@@ -187,6 +196,7 @@ def _longest(
 def _search(
     ax: Array,
     ay: Array,
+    push: Array,
     begin: int,
     end: int,
     dt: float,
@@ -208,13 +218,14 @@ def _search(
         stretch[part, BEGIN_VY, k],
     )
     spans = max(1, math.ceil(w * dt * (1.0 + twice) / PHASE))
-    size = math.hypot(ux, uy)
+    # Roots of squares, as the lanes have them: hypot costs five times as much, and this is walked often.
+    size = math.sqrt(ux * ux + uy * uy)
     for s in range(begin, end):
         x0, x1, y0, y1 = ax[s], ax[s + 1], ay[s], ay[s + 1]
         next_ux, next_vx = next_state(ux, vx, x0, x1, uu, uv, u0, u1, vu, vv, v0, v1)
         next_uy, next_vy = next_state(uy, vy, y0, y1, uu, uv, u0, u1, vu, vv, v0, v1)
-        next_size = math.hypot(next_ux, next_uy)
-        near, longest = max(size, next_size), max(math.hypot(x0, y0), math.hypot(x1, y1))
+        next_size = math.sqrt(next_ux * next_ux + next_uy * next_uy)
+        near, longest = max(size, next_size), max(push[s], push[s + 1])
         # First with what the whole stretch grants, then with what this interval does.
         if near + stretch[part, GAP, k] >= known[SIZE] and longest + stretch[part, ROOM, k] >= b * known[SIZE]:
             energy = interval_energy(x0 + (c * vx + b * ux), vx, x1 - x0, w, twice, ramp)
@@ -304,6 +315,9 @@ def resultant_batch(
     ax[n], ay[n] = base_x[n - 1], base_y[n - 1]
     length = CHUNK * ((n - 2) // (CHUNK * STRETCHES) + 1)
     parts = (n - 2) // length + 1
+    push = np.empty(n + 1)
+    for i in range(n + 1):
+        push[i] = math.hypot(ax[i], ay[i])
     outline, stretch, known = np.empty((parts, 3)), np.empty((parts, 7, LANES)), np.empty(3)
     _outline(ax, ay, n, length, outline)
     factor, state = lanes(FACTORS), lanes(STATES)
@@ -320,6 +334,6 @@ def resultant_batch(
             for part in range(parts):
                 if 0.0 < stretch[part, REACH, k] >= known[SIZE]:
                     start = part * length
-                    _search(ax, ay, start, min(n - 1, start + length), dt, stretch, part, factor, k, known)
+                    _search(ax, ay, push, start, min(n - 1, start + length), dt, stretch, part, factor, k, known)
             _coast(state[UX, k], state[VX, k], state[UY, k], state[VY, k], factor, k, tail, known)
             most[begin + k], angle[begin + k] = known[SIZE], math.atan2(known[AT_Y], known[AT_X])
