@@ -15,13 +15,15 @@ if TYPE_CHECKING:
     from pipeline.motions.errors import MotionError
     from pipeline.motions.intensity import measures
     from pipeline.motions.manifest import Manifest, load_manifest, manifest_schema
-    from pipeline.motions.site import Level, Site, SiteMotion, read_motion, read_site, summaries
+    from pipeline.motions.site import Level, Site, SiteMotion, read_motion, read_site
+    from pipeline.motions.summary import summaries
 
 _HOMES = {
     "MotionError": "errors",
     "measures": "intensity",
     **dict.fromkeys(("Manifest", "load_manifest", "manifest_schema"), "manifest"),
-    **dict.fromkeys(("Level", "Site", "SiteMotion", "read_motion", "read_site", "summaries"), "site"),
+    **dict.fromkeys(("Level", "Site", "SiteMotion", "read_motion", "read_site"), "site"),
+    "summaries": "summary",
 }
 
 __all__ = [

@@ -9,7 +9,8 @@ from statistics import fmean
 from pipeline.analysis.fragility.objects import Stripe
 from pipeline.analysis.verdicts import EAST, LevelMotions
 from pipeline.motions.manifest import GROUND_FLOOR, FloorTable
-from pipeline.motions.site import Level, Site, levels_at, summaries
+from pipeline.motions.site import Level, Site, levels_at
+from pipeline.motions.summary import summaries
 from pipeline.records import Item, MotionSummary
 from pipeline.records.hazard import HazardCurve
 from pipeline.settings import Floors, Settings, SettingsError

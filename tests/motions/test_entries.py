@@ -14,7 +14,7 @@ from pipeline.motions.entries import entries
 from pipeline.motions.inspection import inspect
 from pipeline.motions.manifest import manifest_file
 from pipeline.motions.record import NO_VERTICAL
-from pipeline.motions.site import summaries
+from pipeline.motions.summary import summaries
 from pipeline.night.prepare import _level_note
 from pipeline.report.pages.ground import motion_view
 from pipeline.report.pages.record_words import processing
