@@ -41,7 +41,7 @@ FINEST = 0.005
 """Seconds between samples of what slides, at most."""
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=256)
 def passed_on(motion: Motion, body: LooseBody) -> Motion:
     """Return the motion of what stands in furniture that is not fastened.
 

@@ -42,9 +42,9 @@ from pipeline.store.results import KeptResult, Made, Stored, copy, fetch, forget
 FEW = 1_000
 """Objects to be assessed or shown for which other processes do not pay: they take seconds to start."""
 
-BATCH = 25_000
+BATCH = 16_000
 """Units, about, that one worker assesses together at most: each model is called once for all of them under each
-motion, of which furniture makes fifteen of one.  Four times as many take 0.5 GB more of each worker."""
+motion, of which furniture makes fifteen of one.  Six times as many take 0.5 GB more of each worker."""
 
 _SECONDS = 5.0
 """Longest time for which results wait to be stored together."""

@@ -52,8 +52,8 @@ ACTS = 2
 PART = 8
 """Samples that one who works runs in one go."""
 
-_REMEMBERED = 24 * FEWEST
-"""Shakings of samples that are remembered, of 0.3 MB each as a rule: of a piece of furniture with all isolators."""
+_REMEMBERED = 4 * FEWEST
+"""Shakings of samples that are remembered, of 0.3 MB each as a rule: of what measures are tried in."""
 
 Groups = Mapping[tuple[FurnitureFilter | None, Transfer | None], Sequence["_Analyses"]]
 """Analyses by what their shaking passes through."""
@@ -260,8 +260,8 @@ def sampled(
 def _felt(
     motions: tuple[Motion, ...], furniture: FurnitureFilter | None, isolator: Transfer | None, draw: Draw
 ) -> tuple[Motion, bool]:
-    # Measures are tried under the first samples again and again, under later ones hardly ever.
-    find = _felt_before if draw.number < FEWEST else _shaken
+    # Measures are tried under the first samples again and again, on an isolator or under later ones hardly ever.
+    find = _felt_before if isolator is None and draw.number < FEWEST else _shaken
     return find(motions, furniture, isolator, draw)
 
 
