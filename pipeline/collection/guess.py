@@ -1,48 +1,43 @@
-"""A first mapping for a museum's file, guessed from its columns: a proposal to look at, never used unseen."""
+"""A first mapping for a museum's file or database, guessed from its columns: to be looked at, never used unseen."""
 
 from __future__ import annotations
 
-import csv
-import re
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
-from functools import cache, cached_property
 from itertools import islice
 from pathlib import Path
-from typing import Annotated, cast
-from unicodedata import normalize
+from typing import Any, cast
 
 import tomlkit
-from pydantic import AfterValidator
 
-from pipeline.collection.dimensions import parse
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.mapping import MAPPABLE, WRITTEN, Mapping
+from pipeline.collection.guessing.columns import Column, candidates, columns_of
+from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
+from pipeline.collection.guessing.fields import Question, decimal_of, mapped
+from pipeline.collection.guessing.long_rows import long_form_of
+from pipeline.collection.guessing.text_files import LOOKED_AT, delimiter_of, encoding_of, first_lines, head_of
+from pipeline.collection.guessing.words import stores_among
+from pipeline.collection.mapping import MAPPABLE, PRESETS, load_mapping, preset_names
+from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.opening import open_source
-from pipeline.collection.record import units_of
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.files import unreadable
+from pipeline.collection.sources.long_form import gathered
 from pipeline.collection.sources.registry import is_address, recognised
 from pipeline.collection.sources.rows import Row
-from pipeline.errors import InputError
-from pipeline.tables import table
-from pipeline.tables.rows import Entries, checked
 
-LOOKED_AT = 2000
+READ = 2000
 """Rows that the guess is made from."""
-
-FEWEST = 5
-"""Numbers in eighths or sixteenths from which a column is taken to be in inches."""
 
 SNIFFED = 1 << 18
 """Bytes from which encoding and delimiter are told."""
 
-_UNIT = re.compile(r"[\s_(\[]+(mm|cm|m|in|inch|inches|ft|kg|g|lb|lbs|oz)[\s)\]]*$", re.IGNORECASE)
-_UNITS = {"inch": "in", "inches": "in", "lbs": "lb"}
-_NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
-_TENTHS = re.compile(r"\d*[.,][1-46-9]")
-_SIXTEENTHS = re.compile(r"\d*[.,](?:0625|125|1875|3125|375|4375|5625|625|6875|8125|875|9375)")
+MOST_STORES = 200
+"""Places that are listed as stores at most."""
+
+_TABLES = ("csv", "tsv", "xlsx", "sql")
+"""Formats whose columns are the museum's own; all others have columns that Kouros names."""
 
 
 @dataclass(frozen=True)
@@ -57,36 +52,30 @@ class Guess:
         The same, ready to read with.
     doubts : tuple of str
         What was guessed without a sign of it in the file.
+    questions : tuple of Question
+        What may be chosen otherwise, by the key that the choice has.
+    sure : tuple of str
+        What the source itself says.
     """
 
     text: str
-    mapping: Mapping
+    mapping: Proposal
     doubts: tuple[str, ...]
+    questions: tuple[Question, ...] = ()
+    sure: tuple[str, ...] = ()
 
 
 @dataclass
-class _Column:
-    """A column, whole when it is asked about."""
+class _Told:
+    """What is said of a guess on its way."""
 
-    name: str
-    values: list[str] = field(default_factory=list)
-
-    @cached_property
-    def filled(self) -> list[str]:
-        return [value.strip() for value in self.values if value.strip()]
-
-    @cached_property
-    def numbers(self) -> list[str]:
-        return [value for value in self.filled if _NUMBER.fullmatch(value)]
-
-    @cached_property
-    def dimensional(self) -> float:
-        """Share of its texts that hold a dimension with a unit."""
-        some = self.filled[:200]
-        return sum(any(p.unit for p in parse(text).parts) for text in some) / len(some) if some else 0.0
+    choices: Mapping[str, str]
+    doubts: list[str] = field(default_factory=list)
+    questions: list[Question] = field(default_factory=list)
+    sure: list[str] = field(default_factory=list)
 
 
-def guess(where: str | Path, table: str | None = None) -> Guess:
+def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str] | None = None) -> Guess:
     """Propose a mapping for a museum's file or database.
 
     Parameters
@@ -94,8 +83,11 @@ def guess(where: str | Path, table: str | None = None) -> Guess:
     where : str or Path
         Path of a file, or the URL of a database, which is only read.
     table : str or None
-        The sheet of a workbook, or the table, view or SELECT of a database; may be left out where there is one, and of
-        several sheets the one that looks most like an inventory is taken.
+        The sheet of a workbook, or the table, view or SELECT of a database; where it is left out, the one that looks
+        most like an inventory is taken, and a database's dimensions and places are joined to it.
+    choices : mapping of str to str
+        What a person has chosen: a field and its column ("object_number": "Inv."; "-" for none), a field's unit
+        ("height_m.unit": "cm"), "header_row", "header_rows", "encoding", "delimiter", "decimal".
 
     Returns
     -------
@@ -105,101 +97,153 @@ def guess(where: str | Path, table: str | None = None) -> Guess:
     Raises
     ------
     CollectionError
-        For a source that cannot be read, that shows no column with the objects' numbers, or of whose tables one must be
-        named.
+        For a source that cannot be read, that shows no column with the objects' numbers, and for a choice that cannot
+        be; with the option that helps.
     """
-    doubts: list[str] = []
+    told = _Told(dict(choices or {}))
+    _check_choices(told.choices)
     if is_address(where):
         name = expand_secrets(str(where)).shown
-        source, columns = _of_database(str(where), name, table)
+        source, columns = _of_database(str(where), name, table, told)
     else:
         path = Path(where)
         name = path.name
-        source = _source(path)
+        source = _source(path, told)
         if source["format"] == "xlsx":
-            source, columns = _of_workbook(path, table, doubts)
+            source, columns = _of_workbook(path, table, told)
         elif table is not None:
             raise CollectionError(f"{name}: has neither sheets nor tables; leave --table out")
+        elif source["format"] not in _TABLES:
+            return _of_records(path, str(source["format"]), told)
         else:
             columns = _columns(path, source)
-    decimal = "," if _commas(columns) and source.get("delimiter") != "," else "."
-    if decimal == ",":
-        source["decimal"] = decimal
-    found = _fields(columns)
-    if "object_number" not in found:
-        found["object_number"] = _unique(name, columns)
-        doubts.append(f"object numbers are taken from {found['object_number'].name!r}, where each row has another one")
-    document = tomlkit.document()
-    document.add(tomlkit.comment(f"Guessed from the columns of {_line(name)}. Look at every line; units above all."))
-    document["source"] = source
-    document["museum"] = {"name": "Our museum"}
-    document["columns"] = _mapped(found, doubts)
-    texts = _texts_of_dimensions(columns, found)
-    if texts:
-        document["dimensions"] = {"columns": texts}
-    text = tomlkit.dumps(document)
-    mapping = Mapping.model_validate(document.unwrap())
-    return Guess(text, mapping, tuple(doubts))
-
-
-def _line(text: str) -> str:
-    return " ".join(text.split())
-
-
-def _of_database(url: str, name: str, table: str | None) -> tuple[dict[str, str], list[_Column]]:
-    """Return how a database is read, and its columns."""
-    from pipeline.collection.sources.sql import read_database, tables
-
-    if table is None:
-        there = tables(url)
-        if len(there) != 1:
-            known = ", ".join(map(repr, there[:50])) or "none"
-            raise CollectionError(
-                f"{name}: say by --table which of its tables holds the objects, or give a SELECT there; it has {known}"
-                + (f" and {len(there) - 50} more" if len(there) > 50 else "")
-            )
-        table = there[0]
-    is_query = len(table.split()) > 1 and table.split()[0].lower() in ("select", "with")
-    source = {"format": "sql", "query" if is_query else "table": table}
-    rows = read_database(url, query=table if is_query else None, table=None if is_query else table)
-    with closing(cast(Generator[Row], rows)):
-        return source, _filled(name, rows)
-
-
-def _of_workbook(path: Path, sheet: str | None, doubts: list[str]) -> tuple[dict[str, str], list[_Column]]:
-    """Return how a workbook is read, and the columns of its sheet: the one named, or most like an inventory."""
-    from pipeline.collection.sources.xlsx import visible_sheets
-
-    there = visible_sheets(path)
-    if sheet is None and len(there) == 1:
-        return {"format": "xlsx"}, _columns(path, {"format": "xlsx"})
-    if sheet is not None:
-        source = {"format": "xlsx", "sheet": sheet}
-        return source, _columns(path, source)
-    best: tuple[tuple[bool, int, int], str, list[_Column]] | None = None
-    fault: CollectionError | None = None
-    for title in there:
-        try:
-            columns = _columns(path, {"format": "xlsx", "sheet": title})
-        except CollectionError as problem:
-            fault = fault or problem
-            continue
-        fields = _fields(columns)
-        likeness = "object_number" in fields, len(fields), max((len(c.values) for c in columns), default=0)
-        if best is None or likeness > best[0]:
-            best = likeness, title, columns
-    if best is None:
-        raise fault or CollectionError(
-            f"{path.name}: no sheet of the workbook is visible; show the one with the objects"
+    if not any(column.values for column in columns):
+        raise CollectionError(
+            f"{name}: no rows of data stand below the names of columns; export it again, or say where the names stand: "
+            "--choose header_row=NUMBER"
         )
-    others = ", ".join(repr(title) for title in there if title != best[1])
-    doubts.append(
-        f"of {len(there)} sheets {best[1]!r} looks most like the inventory and is read; --table takes another: {others}"
+    columns = _gathered(name, source, columns, told)
+    decimal = told.choices.get("decimal") or decimal_of(columns)
+    if decimal == "," and source.get("delimiter") != ",":
+        source["decimal"] = decimal
+        told.sure.append("decimal comma, as most numbers have it")
+    return _written(name, source, columns, told)
+
+
+def _check_choices(choices: Mapping[str, str]) -> None:
+    own = ("header_row", "header_rows", "encoding", "delimiter", "decimal", "dimensions")
+    for key in choices:
+        if key not in own and key.removesuffix(".unit") not in MAPPABLE:
+            raise CollectionError(
+                f"--choose {key}: there is no such choice; choose a field of the record (such as gallery=COLUMN), its "
+                f"unit (height_m.unit=cm), or one of {', '.join(own)}"
+            )
+
+
+def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told: _Told) -> Guess:
+    found = _chosen(name, columns, candidates(columns), told)
+    document = tomlkit.document()
+    document.add(
+        tomlkit.comment(f"Guessed from the columns of {' '.join(name.split())}. Look at every line; units above all.")
     )
-    return {"format": "xlsx", "sheet": best[1]}, best[2]
+    document["source"] = {key: value for key, value in source.items() if key != "long"}
+    if "long" in source:
+        document["source"]["long"] = source["long"]
+    document["museum"] = {"name": "Our museum"}
+    fields, used = mapped(found, columns, told.choices, told.doubts, told.questions)
+    document["columns"] = fields
+    texts = texts_among(columns, used)
+    wanted = told.choices.get("dimensions")
+    if wanted is not None:
+        texts = [] if wanted == "-" else [_column(name, columns, "dimensions", wanted)]
+    if texts:
+        document["dimensions"] = {"columns": [column.name for column in texts]}
+    gallery = found.get("gallery")
+    stores = stores_among(gallery.distinct) if gallery is not None else []
+    if stores:
+        document["display"] = {"not_on_display": stores[:MOST_STORES]}
+        shown = ", ".join(map(repr, stores[:5])) + (", ..." if len(stores) > 5 else "")
+        told.doubts.append(f"{len(stores)} places are taken for stores, by their names: {shown}")
+    if "on_display" not in fields and not stores:
+        told.doubts.append(
+            "nothing tells what is on display: all objects are taken to be; --choose on_display=COLUMN names a column "
+            "that says it, and [display] not_on_display in the mapping names stores"
+        )
+    if not texts and not {"height_m", "width_m", "depth_m", "diameter_m"} & set(fields):
+        told.doubts.append(
+            "no column with sizes was found; --choose height_m=COLUMN (and so on), or --choose dimensions=COLUMN for "
+            "texts such as 12 x 5 cm"
+        )
+    text = tomlkit.dumps(document)
+    proposal = Proposal.model_validate(document.unwrap())
+    return Guess(text, proposal, tuple(told.doubts), tuple(told.questions), tuple(told.sure))
 
 
-def _source(path: Path) -> dict[str, str]:
+def _chosen(name: str, columns: Sequence[Column], able: Mapping[str, list[Column]], told: _Told) -> dict[str, Column]:
+    """Return the column of each field: the one that was chosen, or the likeliest."""
+    found = {fieldname: those[0] for fieldname, those in able.items() if fieldname in MAPPABLE}
+    for key, wanted in told.choices.items():
+        if key in MAPPABLE:
+            found.pop(key, None)
+            if wanted != "-":
+                found[key] = _column(name, columns, key, wanted)
+    for fieldname, those in able.items():
+        if len(those) > 1 and fieldname in found and fieldname not in told.choices:
+            names = tuple(column.name for column in those)
+            told.questions.append(Question(fieldname, f"which column is {fieldname}?", names, names[0]))
+    number = found.get("object_number")
+    if number is None:
+        found["object_number"] = number = _unique(name, columns)
+        told.doubts.append(f"object numbers are taken from {number.name!r}, where each row has another one")
+        likely = tuple(c.name for c in columns if len(set(c.filled)) > 0.9 * len(c.values))
+        told.questions.append(Question("object_number", "which column has the object numbers?", likely, number.name))
+    elif len(able.get("object_number", ())) > 1 and "object_number" not in told.choices:
+        others = ", ".join(repr(column.name) for column in able["object_number"][1:4])
+        told.doubts.append(
+            f"object numbers are taken from {number.name!r}, and not from {others}; --choose object_number=COLUMN "
+            "takes another"
+        )
+    repeated = len(number.filled) - len(set(number.filled))
+    if repeated:
+        told.doubts.append(
+            f"column {number.name!r} repeats {repeated} object numbers: only the first row of each is kept"
+        )
+    if len(number.filled) < len(number.values):
+        told.doubts.append(
+            f"column {number.name!r} is empty in {len(number.values) - len(number.filled)} rows, which are refused"
+        )
+    return found
+
+
+def _column(name: str, columns: Sequence[Column], key: str, wanted: str) -> Column:
+    for column in columns:
+        if column.name == wanted:
+            return column
+    there = ", ".join(repr(column.name) for column in columns[:80])
+    raise CollectionError(f"{name}: --choose {key}: there is no column {wanted!r}; its columns are {there}")
+
+
+def _unique(name: str, columns: Sequence[Column]) -> Column:
+    for column in columns:
+        if column.filled and len(set(column.filled)) == len(column.values):
+            return column
+    there = ", ".join(repr(column.name) for column in columns[:30])
+    raise CollectionError(
+        f"{name}: no column looks like object numbers. Its columns are {there}. Say which has them: --choose "
+        "object_number=COLUMN; or where the names of the columns stand: --choose header_row=NUMBER"
+    )
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Files
+
+
+def _source(path: Path, told: _Told) -> dict[str, Any]:
+    if path.is_dir():
+        kind = recognised(str(path), b"")
+        if kind is not None:
+            return {"format": kind.name}
+        raise CollectionError(f"{path}: a folder without records; name the museum's export itself")
     try:
         with path.open("rb") as stream:
             head = stream.read(SNIFFED)
@@ -208,166 +252,207 @@ def _source(path: Path) -> dict[str, str]:
     kind = recognised(str(path), head)
     if kind is not None:
         return {"format": kind.name}
-    encoding = _encoding(head)
-    # A character that the end of what was read cuts in two is no fault.
-    text = head.decode(encoding, "ignore")
-    delimiter = _delimiter(text)
-    if delimiter == "\t":
-        return {"format": "tsv", "encoding": encoding}
-    return {"format": "csv", "encoding": encoding, "delimiter": delimiter}
-
-
-def _encoding(head: bytes) -> str:
-    if head.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return "utf-16"
+    if head.lstrip(b"\xef\xbb\xbf\xff\xfe \t\r\n\x00").startswith(b"<"):
+        raise CollectionError(
+            f"{path.name}: XML of a kind that Kouros does not know; it knows LIDO, Adlib XML and MuseumPlus RIA. "
+            "Export it as one of these, or as CSV or Excel, and try again"
+        )
+    encoding = told.choices.get("encoding") or encoding_of(head)
     try:
-        head.decode("utf-8")
-    except UnicodeDecodeError as problem:
-        if problem.start < len(head) - 4:
-            return "cp1252"
-    return "utf-8"
+        # A character that the end of what was read cuts in two is no fault.
+        text = head.decode(encoding, "ignore")
+    except LookupError as problem:
+        raise CollectionError(f"--choose encoding: there is no encoding {encoding!r}; try utf-8 or cp1252") from problem
+    delimiter = told.choices.get("delimiter", "").replace("tab", "\t") or delimiter_of(text)
+    source: dict[str, Any] = {"format": "tsv", "encoding": encoding}
+    if delimiter != "\t":
+        source = {"format": "csv", "encoding": encoding, "delimiter": delimiter}
+    told.sure.append(f"{encoding}, cells parted by {delimiter!r}")
+    _set_head(source, first_lines(text, delimiter, LOOKED_AT + 60), told)
+    return source
 
 
-def _delimiter(text: str) -> str:
+def _set_head(source: dict[str, Any], rows: Sequence[tuple[int, list[str]]], told: _Told) -> None:
+    """Say where the columns are named, where that is not the first row alone."""
+    head = head_of(rows)
+    row, many = head.row, head.rows
     try:
-        return csv.Sniffer().sniff(text[:65536], ",;\t|").delimiter
-    except csv.Error:
-        header = text.partition("\n")[0]
-        return max(",;\t|", key=header.count)
+        row = int(told.choices.get("header_row", row))
+        many = int(told.choices.get("header_rows", many if row == head.row else 1))
+    except ValueError as problem:
+        raise CollectionError(
+            "--choose header_row (and header_rows): needs a number, such as header_row=4"
+        ) from problem
+    # A first row may come late only where blank lines stand above it, which are passed over anyway.
+    if row != 1 and (row != rows[0][0] if rows else True):
+        source["header_row"] = row
+        told.sure.append(f"the columns are named in row {row}, below titles")
+    if many > 1:
+        source["header_rows"] = many
+        told.sure.append(f"{many} rows name the columns together")
+    if head.known < 2 and "header_row" not in told.choices:
+        told.doubts.append(
+            f"row {row} is taken for the names of the columns, of which few are known here; --choose header_row=NUMBER "
+            "names another row"
+        )
+        options = tuple(str(number) for number, cells in rows[:10] if sum(map(bool, cells)) > 1)
+        told.questions.append(Question("header_row", "which row names the columns?", options, str(row)))
 
 
-def _columns(path: Path, source: dict[str, str]) -> list[_Column]:
-    plain = Mapping.model_validate(
+def _of_workbook(path: Path, sheet: str | None, told: _Told) -> tuple[dict[str, Any], list[Column]]:
+    """Return how a workbook is read, and the columns of its sheet: the one named, or most like an inventory."""
+    from pipeline.collection.sources.xlsx import first_rows, visible_sheets
+
+    def read(title: str | None, quietly: _Told) -> tuple[dict[str, Any], list[Column]]:
+        source: dict[str, Any] = {"format": "xlsx"} | ({} if title is None else {"sheet": title})
+        numbered = enumerate(first_rows(path, title, LOOKED_AT + 60), start=1)
+        _set_head(source, [(number, cells) for number, cells in numbered if any(map(str.strip, cells))], quietly)
+        return source, _columns(path, source)
+
+    there = visible_sheets(path)
+    if sheet is not None or len(there) == 1:
+        return read(sheet, told)
+    best: tuple[tuple[bool, int, int], str, dict[str, Any], list[Column], _Told] | None = None
+    fault: CollectionError | None = None
+    for title in there:
+        quietly = _Told(told.choices)
+        try:
+            source, columns = read(title, quietly)
+        except CollectionError as problem:
+            fault = fault or problem
+            continue
+        fields = candidates(columns)
+        likeness = "object_number" in fields, len(fields), max((len(c.values) for c in columns), default=0)
+        if best is None or likeness > best[0]:
+            best = likeness, title, source, columns, quietly
+    if best is None:
+        raise fault or CollectionError(
+            f"{path.name}: no sheet of the workbook is visible; show the one with the objects"
+        )
+    _, title, source, columns, quietly = best
+    others = ", ".join(repr(one) for one in there if one != title)
+    told.doubts.append(
+        f"of {len(there)} sheets {title!r} looks most like the inventory and is read; --table takes another: {others}"
+    )
+    told.doubts += quietly.doubts
+    told.questions += quietly.questions
+    told.sure += quietly.sure
+    return source, columns
+
+
+def _of_records(path: Path, format_name: str, told: _Told) -> Guess:
+    """Return the preset of a format whose columns Kouros names itself, and what its records leave empty."""
+    name = next(n for n in preset_names() if n.replace("museumplus_ria", "museumplus") == format_name)
+    text = (PRESETS / f"{name}.toml").read_text(encoding="utf-8")
+    proposal = load_mapping(name)
+    columns = {column.name: column for column in _columns(path, {"format": format_name})}
+    filled = {column for column in columns if columns[column].filled}
+    told.sure.append(f"{path.name} is of the format {format_name}, whose preset {name!r} is taken")
+    for key, what, remedy in (
+        ("object_number", "object numbers", "export them"),
+        ("gallery", "where an object is", "export the current location, or put a constant for [columns.gallery]"),
+    ):
+        if key not in filled:
+            told.doubts.append(f"no record tells {what}: {remedy}")
+    sized = [c for c in filled if c in ("height", "width", "depth", "diameter", "dimensions")]
+    if not sized:
+        told.doubts.append("no record tells sizes: export the dimensions too")
+    known = columns.get("gallery")
+    stores = stores_among(known.distinct) if known is not None else []
+    if stores:
+        document = tomlkit.parse(text)
+        document["display"] = {"not_on_display": stores[:MOST_STORES]}
+        text = tomlkit.dumps(document)
+        shown = ", ".join(map(repr, stores[:5])) + (", ..." if len(stores) > 5 else "")
+        told.doubts.append(f"{len(stores)} places are taken for stores, by their names: {shown}")
+    elif "on_display" not in filled:
+        told.doubts.append("nothing tells what is on display: name stores in the mapping, [display] not_on_display")
+    proposal = Proposal.model_validate(tomlkit.parse(text).unwrap())
+    return Guess(text, proposal, tuple(told.doubts), (), tuple(told.sure))
+
+
+def _columns(path: Path, source: Mapping[str, Any]) -> list[Column]:
+    with open_source(path, _plain_mapping(source)) as opened:
+        return _filled(path.name, opened.rows)
+
+
+def _plain_mapping(source: Mapping[str, Any]) -> Proposal:
+    return Proposal.model_validate(
         {
-            "source": source,
+            "source": dict(source),
             "museum": {"name": "-"},
             "columns": {"object_number": {"column": "-"}, "gallery": {"column": "-"}},
         }
     )
-    with open_source(path, plain) as opened:
-        return _filled(path.name, opened.rows)
 
 
-def _filled(name: str, rows: Iterator[Row]) -> list[_Column]:
+def _filled(name: str, rows: Iterator[Row]) -> list[Column]:
     header = next(rows, None)
     if header is None:
         raise CollectionError(f"{name}: empty: there is no header to guess from")
-    columns = [_Column(cell.strip()) for cell in header.cells]
-    for row in islice(rows, LOOKED_AT):
-        if not row.fault[0]:
-            for column, cell in zip(columns, row.cells, strict=True):
-                column.values.append(cell)
-    return [column for column in columns if column.name]
+    return columns_of(header.cells, (row.cells for row in islice(rows, READ) if not row.fault[0]))
 
 
-def _plain(name: str) -> str:
-    spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", normalize("NFC", name))
-    return re.sub(r"[\s_.:\-]+", " ", spaced).strip().casefold()
-
-
-def _mappable(field: str) -> str:
-    if field not in (*MAPPABLE, "dimensions"):
-        raise InputError(f"is {field!r}, which is no field that a column can be mapped to")
-    return field
-
-
-@dataclass(frozen=True, slots=True)
-class _ColumnNames:
-    field: Annotated[str, AfterValidator(_mappable)]
-    names: Entries
-
-
-@cache
-def _names() -> dict[str, str]:
-    rows = checked(_ColumnNames, table("column_names"), "column_names.csv", named="field")
-    return {_plain(name): row.field for row in rows for name in row.names}
-
-
-def _fields(columns: Sequence[_Column]) -> dict[str, _Column]:
-    """Return the fields whose columns are told by their names; of two for one field, the one that is filled more."""
-    found: dict[str, _Column] = {}
-    for column in columns:
-        bare = _UNIT.sub("", column.name)
-        own = column.name if column.name in MAPPABLE else None
-        name = own or _names().get(_plain(column.name)) or _names().get(_plain(bare))
-        if name is None or name == "dimensions":
-            continue
-        if name not in found or len(column.filled) > len(found[name].filled):
-            found[name] = column
-    return found
-
-
-def _unique(name: str, columns: Sequence[_Column]) -> _Column:
-    for column in columns:
-        if column.filled and len(set(column.filled)) == len(column.values):
-            return column
-    raise CollectionError(
-        f"{name}: no column looks like object numbers; write a mapping by hand, from a copy of one that "
-        "`kouros import --presets` lists"
+def _gathered(name: str, source: dict[str, Any], columns: list[Column], told: _Told) -> list[Column]:
+    """Return the columns of objects, where those that are there are of single measurements."""
+    long = long_form_of(columns)
+    if long is None:
+        return columns
+    source["long"] = long.model_dump(exclude_none=True)
+    told.sure.append(
+        f"each measurement has a row of its own: {long.type!r} says which, {long.value!r} how much; they are gathered "
+        f"by {long.object!r}"
     )
+    if long.unit is None:
+        told.doubts.append(f"no column tells the unit of {long.value!r}: its numbers are refused where they name none")
+    rows = [
+        Row(number, number, list(cells))
+        for number, cells in enumerate(zip(*(column.values for column in columns), strict=True), start=1)
+    ]
+    return _filled(name, gathered(iter([Row(0, 0, [column.name for column in columns]), *rows]), long, name))
 
 
-def _commas(columns: Sequence[_Column]) -> bool:
-    numbers = [number for column in columns for number in column.numbers]
-    return sum("," in n for n in numbers) > sum("." in n for n in numbers)
+# ---------------------------------------------------------------------------------------------------------------------
+# Databases
 
 
-def _mapped(found: dict[str, _Column], doubts: list[str]) -> tomlkit.items.Table:
-    out = tomlkit.table()
-    for name in MAPPABLE:
-        if name == "gallery" and name not in found:
-            out[name] = {"constant": "Location not recorded"}
-            doubts.append("no column tells where an object is: all are in one gallery until you name one")
-        column = found.get(name)
-        if column is None:
-            continue
-        entry = tomlkit.table()
-        entry["column"] = column.name
-        units = units_of(name)
-        if units:
-            unit = _unit(column, units, doubts)
-            if unit is None:
-                continue
-            entry["unit"] = unit
-            if any(float(n.replace(",", ".")) == 0.0 for n in column.numbers):
-                entry["missing"] = [0.0]
-        if name == "aat":
-            entry = tomlkit.table()
-            entry["columns"] = [column.name]
-        out[name] = entry
-    return out
+def _of_database(url: str, name: str, table: str | None, told: _Told) -> tuple[dict[str, Any], list[Column]]:
+    """Return how a database is read, and its columns."""
+    from pipeline.collection.guessing.database import joined, object_tables
+    from pipeline.collection.guessing.presets import preset_for
+    from pipeline.collection.sources.schema import tables_of
+    from pipeline.collection.sources.sql import read_database
 
-
-def _unit(column: _Column, units: object, doubts: list[str]) -> str | None:
-    told = _UNIT.search(column.name)
-    unit = _UNITS.get(told[1].lower(), told[1].lower()) if told else None
-    if unit is not None and unit in units:  # type: ignore[operator]
-        return unit
-    filled = column.filled
-    if filled and len(column.numbers) < 0.5 * len(filled):
-        if column.dimensional > 0.5:
-            return WRITTEN
-        doubts.append(f"column {column.name!r} holds neither numbers nor lengths with units: left out")
-        return None
-    if "kg" in units:  # type: ignore[operator]
-        doubts.append(f"column {column.name!r} tells no unit: kilograms are taken")
-        return "kg"
-    sixteenths = sum(bool(_SIXTEENTHS.fullmatch(n)) for n in column.numbers)
-    tenths = sum(bool(_TENTHS.fullmatch(n)) for n in column.numbers)
-    inches = sixteenths >= FEWEST and sixteenths > 3 * tenths
-    doubts.append(
-        f"column {column.name!r} tells no unit: "
-        + ("inches are taken, for it has eighths and sixteenths" if inches else "centimetres are taken")
-    )
-    return "in" if inches else "cm"
-
-
-def _texts_of_dimensions(columns: Sequence[_Column], found: dict[str, _Column]) -> list[str]:
-    """Return the columns called dimensions that hold some; else the one whose texts are mostly such."""
-    free = [column for column in columns if column.name not in {used.name for used in found.values()}]
-    named = [c.name for c in free if _names().get(_plain(c.name)) == "dimensions" and c.dimensional > 0.2]
-    if named:
-        return named
-    texts = [c for c in free if len(c.filled) > 0.2 * len(c.values) and len(c.numbers) < 0.5 * len(c.filled)]
-    best = max(texts, key=lambda c: c.dimensional, default=None)
-    return [best.name] if best is not None and best.dimensional > 0.6 else []
+    is_query = table is not None and len(table.split()) > 1 and table.split()[0].lower() in ("select", "with")
+    query = table if is_query else None
+    if not is_query:
+        there = tables_of(url)
+        preset = preset_for(there) if table is None else None
+        if preset is not None:
+            query = load_mapping(preset).source.query  # type: ignore[attr-defined]
+            told.sure.append(f"its tables are those of the preset {preset!r}, whose query is taken")
+        else:
+            able = object_tables(there)
+            known = ", ".join(repr(one.shown) for one in there[:50]) or "none"
+            known += f" and {len(there) - 50} more" if len(there) > 50 else ""
+            if table is None and not able and len(there) != 1:
+                raise CollectionError(
+                    f"{name}: no table names object numbers; say by --table which of its tables holds the objects, or "
+                    f"give a SELECT there; it has {known}"
+                )
+            objects = next((one for one in there if table in (one.shown, one.name)), None)
+            if table is None:
+                objects = (able or list(there))[0]
+                table = objects.shown
+                if len(able) > 1:
+                    others = ", ".join(repr(one.shown) for one in able[1:20])
+                    told.doubts.append(f"table {table!r} looks most like the objects; --table takes another: {others}")
+            if objects is not None:
+                made = joined(url, there, objects)
+                if made is not None:
+                    query = made.query
+                    told.doubts += made.said
+    source = {"format": "sql", **({"query": query} if query is not None else {"table": table})}
+    rows = read_database(url, query=query, table=None if query is not None else table)
+    with closing(cast(Generator[Row], rows)):
+        return source, _filled(name, rows)

@@ -1,0 +1,159 @@
+"""Names of columns, in eight languages and in Japanese -> fields of the record."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from typing import Annotated
+from unicodedata import combining, normalize
+
+from pydantic import AfterValidator
+
+from pipeline.collection.mapping import MAPPABLE
+from pipeline.errors import InputError
+from pipeline.tables import table
+from pipeline.tables.rows import Entries, checked
+
+TEXTS = "dimensions"
+"""What a column of texts with dimensions is called here; it is no field of the record."""
+
+LENGTH = "length_m"
+"""The same of a length: it is the width, or else the depth, whichever has no column."""
+
+_INTERNAL = "identifier"
+"""The first of the names of object numbers that are a database's own."""
+
+_UNITS = r"mm|cm|m|in|inch|inches|ft|kg|g|gr|lb|lbs|oz"
+_ENCLOSED = re.compile(rf"[(\[]\s*(?:in\s+|en\s+)?({_UNITS})\.?\s*[)\]]", re.IGNORECASE)
+_TRAILING = re.compile(rf"(?:[\s_,/]+(?:in|en)\s+|[\s_,/]+)({_UNITS})\.?\s*$", re.IGNORECASE)
+_UNIT = {"inch": "in", "inches": "in", "lbs": "lb", "gr": "g"}
+_NUMBER_WORDS = frozenset(["n", "no", "nr", "nº", "num", "numero", "number", "nummer", "numar"])
+_STOP = frozenset(
+    {
+        *("of", "the", "von", "van", "der", "die", "den", "das", "de", "d", "del", "della", "dello", "di", "du", "des"),
+        *("la", "le", "il", "el", "l", "do", "da", "dos"),
+    }
+)
+_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_OTHER = re.compile(r"[^\w]+|_")
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """What the name of a column says.
+
+    Attributes
+    ----------
+    field : str
+        A field of the record, TEXTS or LENGTH.
+    rank : int
+        How far down in the table the name stands: of two columns the lower rank is meant rather.
+    internal : bool
+        Whether it is the name of a number that only a database knows.
+    """
+
+    field: str
+    rank: int
+    internal: bool = False
+
+
+def _mappable(field: str) -> str:
+    if field not in (*MAPPABLE, TEXTS, LENGTH):
+        raise InputError(f"is {field!r}, which is no field that a column can be mapped to")
+    return field
+
+
+@dataclass(frozen=True, slots=True)
+class _ColumnNames:
+    field: Annotated[str, AfterValidator(_mappable)]
+    names: Entries
+
+
+@cache
+def _names() -> dict[str, Named]:
+    rows = checked(_ColumnNames, table("column_names"), "column_names.csv", named="field")
+    found: dict[str, Named] = {}
+    for row in rows:
+        internal = False
+        for rank, name in enumerate(row.names):
+            internal = internal or (row.field == "object_number" and name == _INTERNAL)
+            found.setdefault(plain(name), Named(row.field, rank, internal))
+    return found
+
+
+def plain(name: str) -> str:
+    """Return a name as it is compared: no capitals, accents, marks and articles, "no" for every word for number."""
+    bare = "".join(c for c in normalize("NFKD", _CAMEL.sub(" ", normalize("NFC", name))) if not combining(c))
+    # NFKD takes the voicing marks off Japanese signs; they are put together again.
+    words = _OTHER.sub(" ", normalize("NFC", bare).casefold()).split()
+    kept = ["no" if word in _NUMBER_WORDS else word for word in words if word not in _STOP]
+    return " ".join(kept or words)
+
+
+def unit_in(name: str) -> tuple[str, str | None]:
+    """Return a name without the unit that stands in it, and the unit: "Höhe in cm" as ("Höhe", "cm").
+
+    Parameters
+    ----------
+    name : str
+        Of a column.
+
+    Returns
+    -------
+    (str, str or None)
+        None where there is none.
+    """
+    for found in (_ENCLOSED.search(name), _TRAILING.search(name)):
+        if found is not None and (name[: found.start()] + name[found.end() :]).strip():
+            unit = found[1].casefold()
+            return f"{name[: found.start()]} {name[found.end() :]}".strip(), _UNIT.get(unit, unit)
+    return name, None
+
+
+def bare(name: str) -> str:
+    """Return a name without its unit and without what is said of all sizes: "Maße (cm) H" as "H"."""
+    rest = unit_in(name)[0].strip()
+    words = rest.split()
+    if len(words) > 1:
+        first = _names().get(plain(words[0]))
+        if first is not None and first.field == TEXTS:
+            return " ".join(words[1:])
+    return rest
+
+
+def named(name: str) -> Named | None:
+    """Return what the name of a column says; None for a name that no table has.
+
+    Parameters
+    ----------
+    name : str
+        As it stands in the head.
+
+    Returns
+    -------
+    Named or None
+        One letter says nothing by itself: see `columns`.
+    """
+    if name in MAPPABLE:
+        return Named(name, 0)
+    for form in _forms(name):
+        found = _names().get(form)
+        if found is not None:
+            return found
+    return None
+
+
+def _forms(name: str) -> Iterator[str]:
+    yield plain(name)
+    yield plain(unit_in(name)[0])
+    yield plain(bare(name))
+    # "Objeto/Documento", "Titel | title": what either half says.
+    halves = [half for half in re.split(r"[/|,;]| - |\n", unit_in(name)[0]) if half.strip()]
+    if len(halves) > 1:
+        yield from map(plain, halves)
+    # What stands in brackets may be a language.
+    outside = re.sub(r"[(\[].*?[)\]]", " ", name)
+    if outside.strip() and outside != name:
+        yield plain(outside)
