@@ -23,9 +23,11 @@ from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.opening import open_source
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.files import unreadable
+from pipeline.collection.sources.long_form import COLUMNS as LONG_COLUMNS
 from pipeline.collection.sources.long_form import gathered
 from pipeline.collection.sources.registry import is_address, recognised
 from pipeline.collection.sources.rows import Row
+from pipeline.quantities import counted
 
 READ = 2000
 """Rows that the guess is made from."""
@@ -37,7 +39,10 @@ MOST_STORES = 200
 """Places that are listed as stores at most."""
 
 _TABLES = ("csv", "tsv", "xlsx", "sql")
-"""Formats whose columns are the museum's own; all others have columns that Kouros names."""
+"""Formats whose columns are the museum's own."""
+
+_FORMATS = {"lido": "lido", "adlib": "adlib", "museumplus_ria": "museumplus", "linked_art": "linked_art"}
+"""Preset -> the format of which it reads any file, for Kouros itself names the columns."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +109,9 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
     _check_choices(told.choices)
     if is_address(where):
         name = expand_secrets(str(where)).shown
-        source, columns = _of_database(str(where), name, table, told)
+        preset, source, columns = _of_database(str(where), name, table, told)
+        if preset is not None:
+            return _of_preset(preset, columns, told)
     else:
         path = Path(where)
         name = path.name
@@ -114,7 +121,12 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
         elif table is not None:
             raise CollectionError(f"{name}: has neither sheets nor tables; leave --table out")
         elif source["format"] not in _TABLES:
-            return _of_records(path, str(source["format"]), told)
+            kind = str(source["format"])
+            preset = next((one for one in preset_names() if _FORMATS.get(one) == kind), None)
+            columns = _columns(path, source)
+            if preset is not None:
+                told.sure.append(f"{name} is of the format {kind}, whose preset {preset!r} is taken")
+                return _of_preset(preset, columns, told)
         else:
             columns = _columns(path, source)
     if not any(column.values for column in columns):
@@ -147,6 +159,8 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         tomlkit.comment(f"Guessed from the columns of {' '.join(name.split())}. Look at every line; units above all.")
     )
     document["source"] = {key: value for key, value in source.items() if key != "long"}
+    if "query" in source:
+        document["source"]["query"] = tomlkit.string(f"\n{source['query']}\n", multiline=True)
     if "long" in source:
         document["source"]["long"] = source["long"]
     document["museum"] = {"name": "Our museum"}
@@ -162,8 +176,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     stores = stores_among(gallery.distinct) if gallery is not None else []
     if stores:
         document["display"] = {"not_on_display": stores[:MOST_STORES]}
-        shown = ", ".join(map(repr, stores[:5])) + (", ..." if len(stores) > 5 else "")
-        told.doubts.append(f"{len(stores)} places are taken for stores, by their names: {shown}")
+        told.doubts.append(_said_of(stores))
     if "on_display" not in fields and not stores:
         told.doubts.append(
             "nothing tells what is on display: all objects are taken to be; --choose on_display=COLUMN names a column "
@@ -340,35 +353,47 @@ def _of_workbook(path: Path, sheet: str | None, told: _Told) -> tuple[dict[str, 
     return source, columns
 
 
-def _of_records(path: Path, format_name: str, told: _Told) -> Guess:
-    """Return the preset of a format whose columns Kouros names itself, and what its records leave empty."""
-    name = next(n for n in preset_names() if n.replace("museumplus_ria", "museumplus") == format_name)
+def _of_preset(name: str, columns: Sequence[Column], told: _Told) -> Guess:
+    """Return a preset, and what the source leaves empty of what it reads."""
     text = (PRESETS / f"{name}.toml").read_text(encoding="utf-8")
     proposal = load_mapping(name)
-    columns = {column.name: column for column in _columns(path, {"format": format_name})}
-    filled = {column for column in columns if columns[column].filled}
-    told.sure.append(f"{path.name} is of the format {format_name}, whose preset {name!r} is taken")
-    for key, what, remedy in (
-        ("object_number", "object numbers", "export them"),
-        ("gallery", "where an object is", "export the current location, or put a constant for [columns.gallery]"),
-    ):
-        if key not in filled:
-            told.doubts.append(f"no record tells {what}: {remedy}")
-    sized = [c for c in filled if c in ("height", "width", "depth", "diameter", "dimensions")]
-    if not sized:
+    filled = {column.name for column in columns if column.filled}
+
+    def tells(*fields: str) -> bool:
+        read = [proposal.columns[one] for one in fields if one in proposal.columns]
+        return any(one.constant is not None or filled & set(one.sources) for one in read)
+
+    if not tells("object_number"):
+        told.doubts.append("no record tells object numbers: export them")
+    if not tells("gallery"):
+        told.doubts.append(
+            "no record tells where an object is: export the current location, or put a constant in [columns.gallery]"
+        )
+    texts = () if proposal.dimensions is None else proposal.dimensions.columns
+    if not tells("height_m", "width_m", "depth_m", "diameter_m") and not filled & set(texts):
         told.doubts.append("no record tells sizes: export the dimensions too")
-    known = columns.get("gallery")
-    stores = stores_among(known.distinct) if known is not None else []
+    places = proposal.columns["gallery"].sources
+    stores = stores_among(_joined(columns, places, proposal.columns["gallery"].separator))
     if stores:
         document = tomlkit.parse(text)
         document["display"] = {"not_on_display": stores[:MOST_STORES]}
         text = tomlkit.dumps(document)
-        shown = ", ".join(map(repr, stores[:5])) + (", ..." if len(stores) > 5 else "")
-        told.doubts.append(f"{len(stores)} places are taken for stores, by their names: {shown}")
-    elif "on_display" not in filled:
+        told.doubts.append(_said_of(stores))
+    elif not tells("on_display"):
         told.doubts.append("nothing tells what is on display: name stores in the mapping, [display] not_on_display")
-    proposal = Proposal.model_validate(tomlkit.parse(text).unwrap())
-    return Guess(text, proposal, tuple(told.doubts), (), tuple(told.sure))
+    return Guess(text, Proposal.model_validate(tomlkit.parse(text).unwrap()), tuple(told.doubts), (), tuple(told.sure))
+
+
+def _joined(columns: Sequence[Column], names: Sequence[str], separator: str) -> list[str]:
+    """Return the different texts that some columns give together."""
+    read = [next(column for column in columns if column.name == name) for name in names]
+    rows = zip(*(column.values for column in read), strict=True)
+    return list(dict.fromkeys(separator.join(filter(None, map(str.strip, row))) for row in rows))
+
+
+def _said_of(stores: Sequence[str]) -> str:
+    shown = ", ".join(map(repr, stores[:5])) + (", ..." if len(stores) > 5 else "")
+    return f"{counted(len(stores), 'place')} counted as stores, by their names: {shown}"
 
 
 def _columns(path: Path, source: Mapping[str, Any]) -> list[Column]:
@@ -409,15 +434,18 @@ def _gathered(name: str, source: dict[str, Any], columns: list[Column], told: _T
         Row(number, number, list(cells))
         for number, cells in enumerate(zip(*(column.values for column in columns), strict=True), start=1)
     ]
-    return _filled(name, gathered(iter([Row(0, 0, [column.name for column in columns]), *rows]), long, name))
+    read = _filled(name, gathered(iter([Row(0, 0, [column.name for column in columns]), *rows]), long, name))
+    return [column for column in read if column.filled or column.name not in LONG_COLUMNS]
 
 
 # ---------------------------------------------------------------------------------------------------------------------
 # Databases
 
 
-def _of_database(url: str, name: str, table: str | None, told: _Told) -> tuple[dict[str, Any], list[Column]]:
-    """Return how a database is read, and its columns."""
+def _of_database(
+    url: str, name: str, table: str | None, told: _Told
+) -> tuple[str | None, dict[str, Any], list[Column]]:
+    """Return the preset that reads a database, or else how it is read; and its columns."""
     from pipeline.collection.guessing.database import joined, object_tables
     from pipeline.collection.guessing.presets import preset_for
     from pipeline.collection.sources.schema import tables_of
@@ -429,8 +457,9 @@ def _of_database(url: str, name: str, table: str | None, told: _Told) -> tuple[d
         there = tables_of(url)
         preset = preset_for(there) if table is None else None
         if preset is not None:
-            query = load_mapping(preset).source.query  # type: ignore[attr-defined]
-            told.sure.append(f"its tables are those of the preset {preset!r}, whose query is taken")
+            told.sure.append(f"its tables are those of the preset {preset!r}, which is taken")
+            with open_source(url, load_mapping(preset)) as opened:
+                return preset, {}, _filled(name, opened.rows)
         else:
             able = object_tables(there)
             known = ", ".join(repr(one.shown) for one in there[:50]) or "none"
@@ -455,4 +484,4 @@ def _of_database(url: str, name: str, table: str | None, told: _Told) -> tuple[d
     source = {"format": "sql", **({"query": query} if query is not None else {"table": table})}
     rows = read_database(url, query=query, table=None if query is not None else table)
     with closing(cast(Generator[Row], rows)):
-        return source, _filled(name, rows)
+        return None, source, _filled(name, rows)

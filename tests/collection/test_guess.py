@@ -140,9 +140,10 @@ def test_a_table_of_a_text_file_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_preset_names_its_file_which_can_be_copied_and_used(tmp_path: Path) -> None:
-    for name, (museum, file) in presets().items():
+    for name, preset in presets().items():
         copy = tmp_path / "ours.toml"
-        copy.write_bytes(file.read_bytes())
+        copy.write_bytes(preset.file.read_bytes())
         ours = load_mapping(copy)
         assert ours.columns == load_mapping(name).columns
-        assert ours.museum.name == museum
+        assert ours.museum.name == preset.about
+        assert len(preset.expects) > 20

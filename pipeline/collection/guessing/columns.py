@@ -172,7 +172,7 @@ def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> li
         In the order of the source.
     """
     taken = {id(column) for column in used}
-    free = [column for column in columns if id(column) not in taken]
+    free = [column for column in columns if id(column) not in taken and column.name != "other_measurements"]
     called = [c for c in free if (what := named(c.name)) is not None and what.field == TEXTS and c.dimensional > 0.2]
     if called:
         return called

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from pipeline.collection.guessing.columns import NUMBER, Column, candidates, columns_of
 from pipeline.collection.guessing.long_rows import VALUES
-from pipeline.collection.guessing.names import named, plain
+from pipeline.collection.guessing.names import named, of_table, plain, same_stem
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.measurement_terms import kind_of, part_of, unit_of
 from pipeline.collection.sources.schema import Table
@@ -107,7 +106,8 @@ def object_tables(tables: Sequence[Table]) -> list[Table]:
         return own, called in _OBJECTS, len(found), sum(_refers(other, table) is not None for other in tables)
 
     able = [table for table in tables if "object_number" in _named(table)]
-    return sorted(able, key=likeness, reverse=True)
+    own = [table for table in able if not _is_internal(_named(table)["object_number"])]
+    return sorted(own or able, key=likeness, reverse=True)
 
 
 def joined(url: str, tables: Sequence[Table], objects: Table) -> Joined | None:
@@ -136,7 +136,8 @@ def joined(url: str, tables: Sequence[Table], objects: Table) -> Joined | None:
 
 def _named(table: Table) -> dict[str, str]:
     """Field -> column, as the names alone tell."""
-    return {name: found[0].name for name, found in candidates([Column(c) for c in table.columns]).items()}
+    able = [Column(c) for c in table.columns if plain(c).split()[-1:] != ["id"] or _is_internal(c)]
+    return {name: found[0].name for name, found in candidates(able).items()}
 
 
 def _is_internal(column: str) -> bool:
@@ -153,19 +154,20 @@ def _refers(table: Table, other: Table) -> tuple[str, str] | None:
             return column, there
     if len(other.key) == 1:
         key = other.key[0]
-        stem = re.sub(r"\s*\bid$", "", plain(other.name + " id")).replace(" ", "")
-        singular = stem.removesuffix("s") if not stem.endswith("ies") else stem[:-3] + "y"
         for column in table.columns:
-            if (column,) == table.key or (column in table.key and len(table.key) == 1):
+            if (column,) == table.key:
                 continue
-            bare = plain(column).replace(" ", "")
-            if bare == plain(key).replace(" ", "") and bare != "id":
+            words = plain(column).split()
+            if words == plain(key).split() and words != ["id"]:
                 return column, key
-            if bare.endswith("id") and bare[:-2] and (bare[:-2].endswith((stem, singular))):
-                return column, key
+            ended = words[-1:] == ["id"] or (len(words) == 1 and words[0].endswith("id"))
+            if ended:
+                stem = words[:-1] if words[-1] == "id" else [words[0][:-2]]
+                if stem and (same_stem("".join(stem), other.name) or same_stem(stem[-1], other.name)):
+                    return column, key
     # Without keys: a column of the same name that is the other's number.
     number = _named(other).get("object_number")
-    if number is not None and number in table.columns:
+    if number is not None and number in table.columns and not _is_internal(number):
         return number, number
     return None
 
@@ -207,7 +209,10 @@ class _Joiner:
         statement = select(*self._selected).select_from(self._from).order_by(order)
         dialect = create_mock_engine(expand_secrets(self._url).url, lambda *_: None).dialect
         query = str(statement.compile(dialect=dialect, compile_kwargs={"literal_binds": True}))
-        return Joined("\n".join(line.rstrip() for line in query.splitlines()), tuple(self._said))
+        lines = (
+            query.replace(" LEFT OUTER JOIN ", "\nLEFT OUTER JOIN ").replace(" ORDER BY ", "\nORDER BY ").splitlines()
+        )
+        return Joined("\n".join(line.rstrip() for line in lines), tuple(self._said))
 
     # What tables hold
 
@@ -316,8 +321,8 @@ class _Joiner:
             if way is None or other is self._objects:
                 continue
             own = next((c for c in other.columns if _field(c) == "gallery"), None)
-            if (own is None and _field(other.name) == "gallery") or _field(other.name.removesuffix("s")) == "gallery":
-                own = own or self._name_of(other)
+            if own is None and of_table(other.name, "gallery"):
+                own = self._name_of(other)
             if own is not None:
                 words = set(plain(way[0]).split())
                 found.append((not words & _CURRENT, len(words & {"home", "normal", "usual", "permanent"}), other, own))
@@ -338,8 +343,8 @@ class _Joiner:
             if other is self._objects or other.shown in self._clauses:
                 continue
             column = next((c for c in other.columns if _field(c) == field and c not in other.key), None)
-            if (column is None and _field(other.name) == field) or _field(other.name.removesuffix("s")) == field:
-                column = column or self._name_of(other)
+            if column is None and of_table(other.name, field):
+                column = self._name_of(other)
             if column is None or self._is_reference(other, column):
                 continue
             if _refers(self._objects, other) is not None or (field == "title" and _refers(other, self._objects)):
@@ -412,7 +417,8 @@ class _Joiner:
 
 def _field(name: str) -> str | None:
     what = named(name)
-    return None if what is None else what.field
+    # The number of a place is not its name.
+    return None if what is None or plain(name).split()[-1:] == ["id"] else what.field
 
 
 def _known(column: Column, tells: Callable[[str], object]) -> float:

@@ -178,6 +178,8 @@ def _measured(
     questions: list[Question],
 ) -> tomlkit.items.Table | None:
     entry = tomlkit.table()
+    if not column.filled:
+        return None
     unit, beside = _unit(name, column, columns, choices, doubts, questions)
     if unit is None:
         return None

@@ -12,6 +12,7 @@ from unicodedata import combining, normalize
 from pydantic import AfterValidator
 
 from pipeline.collection.mapping import MAPPABLE
+from pipeline.collection.sources.heads import BETWEEN
 from pipeline.errors import InputError
 from pipeline.tables import table
 from pipeline.tables.rows import Entries, checked
@@ -32,12 +33,37 @@ _UNIT = {"inch": "in", "inches": "in", "lbs": "lb", "gr": "g"}
 _NUMBER_WORDS = frozenset(["n", "no", "nr", "nº", "num", "numero", "number", "nummer", "numar"])
 _STOP = frozenset(
     {
-        *("of", "the", "von", "van", "der", "die", "den", "das", "de", "d", "del", "della", "dello", "di", "du", "des"),
-        *("la", "le", "il", "el", "l", "do", "da", "dos"),
+        *("of", "the", "von", "van", "der", "die", "den", "das", "de", "del", "della", "dello", "di", "du", "des"),
+        *("la", "le", "il", "el", "do", "da", "dos"),
     }
 )
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_ELIDED = re.compile(r"\b(?:d|l|dell|nell|all)['’]", re.IGNORECASE)
 _OTHER = re.compile(r"[^\w]+|_")
+_WEAK = 1000
+"""Rank of a name that is only part of what stands in the head."""
+
+_FORMER = frozenset(
+    {
+        *(
+            "former",
+            "previous",
+            "old",
+            "other",
+            "home",
+            "normal",
+            "usual",
+            "default",
+            "alt",
+            "alte",
+            "altes",
+            "fruhere",
+        ),
+        *("fruherer", "ancien", "ancienne", "anciens", "vecchio", "vecchia", "precedente", "anterior", "antiguo"),
+        *("antigo", "oud", "oude", "vorige", "vechi", "veche", "lender", "leihgeber", "donor", "loan"),
+    }
+)
+"""Words that say that something else is meant than the object's own number and place now."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +111,9 @@ def _names() -> dict[str, Named]:
 
 def plain(name: str) -> str:
     """Return a name as it is compared: no capitals, accents, marks and articles, "no" for every word for number."""
-    bare = "".join(c for c in normalize("NFKD", _CAMEL.sub(" ", normalize("NFC", name))) if not combining(c))
+    bare = "".join(
+        c for c in normalize("NFKD", _ELIDED.sub(" ", _CAMEL.sub(" ", normalize("NFC", name)))) if not combining(c)
+    )
     # NFKD takes the voicing marks off Japanese signs; they are put together again.
     words = _OTHER.sub(" ", normalize("NFC", bare).casefold()).split()
     kept = ["no" if word in _NUMBER_WORDS else word for word in words if word not in _STOP]
@@ -105,6 +133,13 @@ def unit_in(name: str) -> tuple[str, str | None]:
     (str, str or None)
         None where there is none.
     """
+    upper, between, lower = name.rpartition(BETWEEN)
+    if between:
+        for first, second in ((upper, lower), (lower, upper)):
+            rest, unit = unit_in(first)
+            if unit is not None:
+                return (f"{rest}{BETWEEN}{second}" if first is upper else f"{second}{BETWEEN}{rest}"), unit
+        return name, None
     for found in (_ENCLOSED.search(name), _TRAILING.search(name)):
         if found is not None and (name[: found.start()] + name[found.end() :]).strip():
             unit = found[1].casefold()
@@ -115,12 +150,16 @@ def unit_in(name: str) -> tuple[str, str | None]:
 def bare(name: str) -> str:
     """Return a name without its unit and without what is said of all sizes: "Maße (cm) H" as "H"."""
     rest = unit_in(name)[0].strip()
+    upper, between, lower = rest.rpartition(BETWEEN)
+    if between and _says(upper) == TEXTS:
+        return lower.strip()
     words = rest.split()
-    if len(words) > 1:
-        first = _names().get(plain(words[0]))
-        if first is not None and first.field == TEXTS:
-            return " ".join(words[1:])
-    return rest
+    return " ".join(words[1:]) if len(words) > 1 and _says(words[0]) == TEXTS else rest
+
+
+def _says(name: str) -> str | None:
+    found = _names().get(plain(unit_in(name)[0]))
+    return None if found is None else found.field
 
 
 def named(name: str) -> Named | None:
@@ -142,18 +181,48 @@ def named(name: str) -> Named | None:
         found = _names().get(form)
         if found is not None:
             return found
-    return None
+    return _within(name)
+
+
+def same_stem(word: str, table: str) -> bool:
+    """Whether a word is the name of a table, but for its ending: "objekt" of "Objekte", "category" of "categories"."""
+    name = plain(table).replace(" ", "").removeprefix("tbl")
+    short, long = sorted((word.removesuffix("y"), name.removesuffix("ies")), key=len)
+    return len(short) >= 3 and long.startswith(short) and len(long) - len(short) <= 2
+
+
+def of_table(table: str, field: str) -> bool:
+    """Whether the name of a table is that of a field, in the plural perhaps: "Standorte" of the gallery."""
+    return any(found.field == field and same_stem(name.replace(" ", ""), table) for name, found in _names().items())
 
 
 def _forms(name: str) -> Iterator[str]:
+    upper, between, lower = name.rpartition(BETWEEN)
+    if between and _says(upper) == TEXTS:
+        # A letter below "Dimensions" is no dimension text.
+        yield plain(unit_in(lower)[0])
+        return
     yield plain(name)
     yield plain(unit_in(name)[0])
     yield plain(bare(name))
-    # "Objeto/Documento", "Titel | title": what either half says.
+    # "Objeto/Documento", "Titel | title": what either half says; of two rows of a head the lower one first.
     halves = [half for half in re.split(r"[/|,;]| - |\n", unit_in(name)[0]) if half.strip()]
     if len(halves) > 1:
-        yield from map(plain, halves)
+        yield from map(plain, reversed(halves) if between else halves)
     # What stands in brackets may be a language.
     outside = re.sub(r"[(\[].*?[)\]]", " ", name)
     if outside.strip() and outside != name:
         yield plain(outside)
+
+
+def _within(name: str) -> Named | None:
+    """Return what the last or the first words of a name say: "Akt. Standort"; of numbers, places and materials only."""
+    words = plain(unit_in(name)[0]).split()
+    if _FORMER & set(words):
+        return None
+    for many in range(min(len(words) - 1, 3), 0, -1):
+        for part in (words[-many:], words[:many]):
+            found = _names().get(" ".join(part))
+            if found is not None and found.field in ("object_number", "gallery", "medium") and not found.internal:
+                return Named(found.field, _WEAK + found.rank)
+    return None

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
+BETWEEN = " / "
+"""What stands between an upper and a lower name."""
+
 
 def joined_heads(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return the names that rows of a head give together: "Size (cm)" above "H", "W" is "Size (cm) H", "Size (cm) W".
+    """Return the names that rows of a head give together: "Size (cm)" above "H" is "Size (cm) / H".
 
     An upper name holds for the empty cells to its right, as long as a lower name stands below each.
 
@@ -24,7 +27,7 @@ def joined_heads(rows: Sequence[Sequence[str]]) -> list[str]:
     Examples
     --------
     >>> joined_heads([["No.", "Size (cm)", "", "Place"], ["", "H", "W", ""]])
-    ['No.', 'Size (cm) H', 'Size (cm) W', 'Place']
+    ['No.', 'Size (cm) / H', 'Size (cm) / W', 'Place']
     """
     width = max(map(len, rows))
     cells = [[*(" ".join(cell.split()) for cell in row), *[""] * (width - len(row))] for row in rows]
@@ -37,4 +40,4 @@ def joined_heads(rows: Sequence[Sequence[str]]) -> list[str]:
                 upper[at] = group
             else:
                 group = ""
-    return [" ".join(dict.fromkeys(filter(None, (row[at] for row in cells)))) for at in range(width)]
+    return [BETWEEN.join(dict.fromkeys(filter(None, (row[at] for row in cells)))) for at in range(width)]

@@ -479,10 +479,7 @@ def test_records_are_forgotten_and_large_files_read() -> None:
     sheet = record(sizes=measurements(measured("height", "1")), more=element("junk", "x" * 1_000))
     content = wrap(*[sheet] * 10_000)
     assert len(content) > 20e6
-    held = [
-        len(found.getroottree().getroot())
-        for found in lido._records(io.BytesIO(content), "museum.xml")
-    ]
+    held = [len(found.getroottree().getroot()) for found in lido._records(io.BytesIO(content), "museum.xml")]
     assert len(held) == 10_000
     assert max(held) < 50
 
