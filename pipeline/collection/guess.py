@@ -14,8 +14,9 @@ import tomlkit
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, candidates, columns_of
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
-from pipeline.collection.guessing.fields import Question, decimal_of, mapped
+from pipeline.collection.guessing.fields import Fields, Question, decimal_of
 from pipeline.collection.guessing.long_rows import long_form_of
+from pipeline.collection.guessing.names import bare
 from pipeline.collection.guessing.text_files import LOOKED_AT, delimiter_of, encoding_of, first_lines, head_of
 from pipeline.collection.guessing.words import stores_among
 from pipeline.collection.mapping import MAPPABLE, PRESETS, load_mapping, preset_names
@@ -129,11 +130,6 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
                 return _of_preset(preset, columns, told)
         else:
             columns = _columns(path, source)
-    if not any(column.values for column in columns):
-        raise CollectionError(
-            f"{name}: no rows of data stand below the names of columns; export it again, or say where the names stand: "
-            "--choose header_row=NUMBER"
-        )
     columns = _gathered(name, source, columns, told)
     decimal = told.choices.get("decimal") or decimal_of(columns)
     if decimal == "," and source.get("delimiter") != ",":
@@ -143,7 +139,7 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
 
 
 def _check_choices(choices: Mapping[str, str]) -> None:
-    own = ("header_row", "header_rows", "encoding", "delimiter", "decimal", "dimensions")
+    own = ("header_row", "header_rows", "encoding", "delimiter", "decimal", "dimensions", "unit")
     for key in choices:
         if key not in own and key.removesuffix(".unit") not in MAPPABLE:
             raise CollectionError(
@@ -164,7 +160,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if "long" in source:
         document["source"]["long"] = source["long"]
     document["museum"] = {"name": "Our museum"}
-    fields, used = mapped(found, columns, told.choices, told.doubts, told.questions)
+    fields, used = Fields(columns, told.choices, told.doubts, told.questions).mapped(found)
     document["columns"] = fields
     texts = texts_among(columns, used)
     wanted = told.choices.get("dimensions")
@@ -201,9 +197,13 @@ def _chosen(name: str, columns: Sequence[Column], able: Mapping[str, list[Column
             if wanted != "-":
                 found[key] = _column(name, columns, key, wanted)
     for fieldname, those in able.items():
-        if len(those) > 1 and fieldname in found and fieldname not in told.choices:
+        if len({bare(column.name) for column in those}) > 1 and fieldname in found and fieldname not in told.choices:
             names = tuple(column.name for column in those)
-            told.questions.append(Question(fieldname, f"which column is {fieldname}?", names, names[0]))
+            told.questions.append(
+                Question(
+                    fieldname, f"which column is {fieldname.removesuffix('_m').removesuffix('_kg')}?", names, names[0]
+                )
+            )
     number = found.get("object_number")
     if number is None:
         found["object_number"] = number = _unique(name, columns)
@@ -415,7 +415,19 @@ def _filled(name: str, rows: Iterator[Row]) -> list[Column]:
     header = next(rows, None)
     if header is None:
         raise CollectionError(f"{name}: empty: there is no header to guess from")
-    return columns_of(header.cells, (row.cells for row in islice(rows, READ) if not row.fault[0]))
+    whole: list[list[str]] = []
+    fault = ("no rows of data stand below the names of columns", "export it again")
+    for row in islice(rows, READ):
+        if row.fault[0]:
+            fault = (f"line {row.line}: {row.fault[0]}", row.fault[1])
+        else:
+            whole.append(row.cells)
+    if not whole:
+        raise CollectionError(
+            f"{name}: no row can be used. {fault[0]}; {fault[1]}. Where the columns are named elsewhere, say it: --choose "
+            "header_row=NUMBER; or how cells are parted: --choose delimiter=tab"
+        )
+    return columns_of(header.cells, whole)
 
 
 def _gathered(name: str, source: dict[str, Any], columns: list[Column], told: _Told) -> list[Column]:

@@ -14,6 +14,7 @@ from pipeline.collection.sources.measurement_terms import kind_of, unit_of
 NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
 """A cell that holds a number and nothing else."""
 
+_SIZE = re.compile(r"\d.*[^\W\d]|[^\W\d].*\d", re.DOTALL)
 _SOME = 200
 """Cells from which it is told what a column holds."""
 
@@ -53,6 +54,12 @@ class Column:
         """Share of its texts that hold a dimension with a unit."""
         some = self.filled[:_SOME]
         return sum(any(p.unit for p in parse(text).parts) for text in some) / len(some) if some else 0.0
+
+    @cached_property
+    def sized(self) -> float:
+        """Share of its texts that hold a number and a word: a size, perhaps in words that are not understood."""
+        some = self.filled[:_SOME]
+        return sum(bool(_SIZE.search(text)) for text in some) / len(some) if some else 0.0
 
     @cached_property
     def kinds(self) -> float:
@@ -173,7 +180,7 @@ def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> li
     """
     taken = {id(column) for column in used}
     free = [column for column in columns if id(column) not in taken and column.name != "other_measurements"]
-    called = [c for c in free if (what := named(c.name)) is not None and what.field == TEXTS and c.dimensional > 0.2]
+    called = [c for c in free if (what := named(c.name)) is not None and what.field == TEXTS and c.sized > 0.2]
     if called:
         return called
     texts = [c for c in free if len(c.filled) > 0.2 * len(c.values) and len(c.numbers) < 0.5 * len(c.filled)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from statistics import median
 
 import tomlkit
 
@@ -18,6 +19,10 @@ from pipeline.collection.sources.measurement_terms import unit_of
 
 FEWEST = 5
 """Numbers in eighths or sixteenths from which a column is taken to be in inches."""
+
+USUAL_MM = 150
+"""Median of whole numbers from which lengths are taken to be in millimetres: half of all objects are no metre and a
+half."""
 
 MOST_WORDS = 30
 """Different texts that a column of flags has at most."""
@@ -64,183 +69,175 @@ def decimal_of(columns: Sequence[Column]) -> str:
     return "," if commas > points else "."
 
 
-def mapped(
-    found: Mapping[str, Column],
-    columns: Sequence[Column],
-    choices: Mapping[str, str],
-    doubts: list[str],
-    questions: list[Question],
-) -> tuple[tomlkit.items.Table, list[Column]]:
-    """Return the section [columns], and the columns that it reads.
+@dataclass
+class Fields:
+    """Writes the section [columns] of a mapping.
 
-    Parameters
+    Attributes
     ----------
-    found : mapping of str to Column
-        Field -> column.
     columns : sequence of Column
         All of the source: units may stand in a column of their own.
     choices : mapping of str to str
         What a person has chosen.
     doubts, questions : list
-        What is added to.
-
-    Returns
-    -------
-    (tomlkit table, list of Column)
+        What is to be looked at, and what may be decided; grows.
     """
-    out = tomlkit.table()
-    used: list[Column] = []
-    for name in MAPPABLE:
-        column = found.get(name)
-        if column is None:
-            if name == "gallery":
-                out[name] = {"constant": "Location not recorded"}
-                doubts.append(
-                    "no column tells where an object is: all are in one gallery until --choose gallery=COLUMN names one"
-                )
-            continue
-        entry = _entry(name, column, columns, choices, doubts, questions)
-        if entry is not None:
-            out[name] = entry
-            used.append(column)
-    return out, used
 
+    columns: Sequence[Column]
+    choices: Mapping[str, str]
+    doubts: list[str]
+    questions: list[Question]
 
-def _entry(
-    name: str,
-    column: Column,
-    columns: Sequence[Column],
-    choices: Mapping[str, str],
-    doubts: list[str],
-    questions: list[Question],
-) -> tomlkit.items.Table | None:
-    entry = tomlkit.table()
-    entry["column"] = column.name
-    kind = KINDS.get(name, "number")
-    if units_of(name):
-        return _measured(name, column, columns, choices, doubts, questions)
-    if name == "aat":
+    def mapped(self, found: Mapping[str, Column]) -> tuple[tomlkit.items.Table, list[Column]]:
+        """Return the section, and the columns that it reads.
+
+        Parameters
+        ----------
+        found : mapping of str to Column
+            Field -> column.
+
+        Returns
+        -------
+        (tomlkit table, list of Column)
+        """
+        out = tomlkit.table()
+        used: list[Column] = []
+        untold = {
+            name: column
+            for name, column in found.items()
+            if "m" in units_of(name) and column.numeric and not any(self._told_unit(name, column))
+        }
+        unit = self._common_unit(untold) if untold else ""
+        for name in MAPPABLE:
+            column = found.get(name)
+            if column is None:
+                if name == "gallery":
+                    out[name] = {"constant": "Location not recorded"}
+                    self.doubts.append(
+                        "no column tells where an object is: all are in one gallery until --choose gallery=COLUMN names "
+                        "one"
+                    )
+                continue
+            entry = self._measured(name, column, unit) if units_of(name) else self._entry(name, column)
+            if entry is not None:
+                out[name] = entry
+                used.append(column)
+        return out, used
+
+    def _entry(self, name: str, column: Column) -> tomlkit.items.Table | None:
         entry = tomlkit.table()
-        entry["columns"] = [column.name]
-    elif kind == "flag":
-        return _flag(name, column, entry, doubts)
-    elif kind == "choice":
-        words = {one.value for one in CHOICES[name]}
-        if sum(text.casefold() in words for text in column.distinct) < 0.5 * len(column.distinct):
-            doubts.append(
-                f"column {column.name!r} is left out: it may be {name}, but in other words than "
-                f"{', '.join(sorted(words))}; give their meanings in the mapping, [columns.{name}] values"
+        entry["column"] = column.name
+        kind = KINDS.get(name, "number")
+        if name == "aat":
+            entry = tomlkit.table()
+            entry["columns"] = [column.name]
+        elif kind == "flag":
+            return self._flag(name, column, entry)
+        elif kind == "choice":
+            words = {one.value for one in CHOICES[name]}
+            if sum(text.casefold() in words for text in column.distinct) < 0.5 * len(column.distinct):
+                self._leave_out(name, column, f"in other words than {', '.join(sorted(words))}")
+                return None
+        elif kind in ("number", "integer") and column.filled and not column.numeric:
+            self.doubts.append(
+                f"column {column.name!r} is left out: it may be {name}, but most of its cells are no numbers"
             )
             return None
-    elif kind in ("number", "integer") and column.filled and not column.numeric:
-        doubts.append(f"column {column.name!r} is left out: it may be {name}, but most of its cells are no numbers")
-        return None
-    return entry
+        return entry
 
-
-def _flag(name: str, column: Column, entry: tomlkit.items.Table, doubts: list[str]) -> tomlkit.items.Table | None:
-    words = column.distinct
-    if len(words) > MOST_WORDS:
-        doubts.append(
-            f"column {column.name!r} is left out: it may be {name}, but holds {len(words)} different texts; give their "
-            f"meanings in the mapping, [columns.{name}] values"
+    def _leave_out(self, name: str, column: Column, why: str) -> None:
+        self.doubts.append(
+            f"column {column.name!r} is left out: it may be {name}, but {why}; give the meanings in the mapping, "
+            f"[columns.{name}] values"
         )
-        return None
-    known = {word: meaning for word in words if (meaning := shown(word)) is not None}
-    unknown = [word for word in words if word not in known]
-    if not known:
-        doubts.append(
-            f"column {column.name!r} is left out: it may be {name}, but none of its words is known "
-            f"({', '.join(map(repr, words[:8]))}); give their meanings in the mapping, [columns.{name}] values"
-        )
-        return None
-    values = tomlkit.inline_table()
-    seen = set()
-    for word, meaning in known.items():
-        if word.casefold() not in seen:
-            seen.add(word.casefold())
-            values[word] = meaning
-    entry["values"] = values
-    if unknown:
-        doubts.append(
-            f"column {column.name!r}: what is meant by {', '.join(map(repr, unknown[:8]))}? Add it to [columns.{name}] "
-            'values = { "..." = true } (or false)'
-        )
-    return entry
 
+    def _flag(self, name: str, column: Column, entry: tomlkit.items.Table) -> tomlkit.items.Table | None:
+        words = column.distinct
+        if len(words) > MOST_WORDS:
+            self._leave_out(name, column, f"holds {len(words)} different texts")
+            return None
+        known = {word: meaning for word in words if (meaning := shown(word)) is not None}
+        unknown = ", ".join([repr(word) for word in words if word not in known][:8])
+        if not known:
+            self._leave_out(name, column, f"none of its words is known ({unknown})" if words else "it is empty")
+            return None
+        values = tomlkit.inline_table()
+        seen = set()
+        for word, meaning in known.items():
+            if word.casefold() not in seen:
+                seen.add(word.casefold())
+                values[word] = meaning
+        entry["values"] = values
+        if unknown:
+            self.doubts.append(
+                f"column {column.name!r}: what is meant by {unknown}? Add it to [columns.{name}] values, as true or false"
+            )
+        return entry
 
-def _measured(
-    name: str,
-    column: Column,
-    columns: Sequence[Column],
-    choices: Mapping[str, str],
-    doubts: list[str],
-    questions: list[Question],
-) -> tomlkit.items.Table | None:
-    entry = tomlkit.table()
-    if not column.filled:
-        return None
-    unit, beside = _unit(name, column, columns, choices, doubts, questions)
-    if unit is None:
-        return None
-    if beside is None:
-        entry["column"] = column.name
-    else:
-        entry["columns"] = [column.name, beside.name]
-    entry["unit"] = unit
-    if any(float(n.replace(",", ".")) == 0.0 for n in column.numbers):
-        # The unit that is joined makes a text of it.
-        zeros = [0.0] if unit != WRITTEN else sorted({n for n in column.numbers if float(n.replace(",", ".")) == 0.0})
-        entry["missing"] = zeros
-    return entry
+    def _measured(self, name: str, column: Column, common: str) -> tomlkit.items.Table | None:
+        """Return the entry of a length or a mass; ``common`` is the unit of lengths that tell none."""
+        if not column.filled:
+            return None
+        units = units_of(name)
+        unit, beside = self._told_unit(name, column)
+        if unit is None and not column.numeric:
+            if column.dimensional <= 0.5:
+                self.doubts.append(
+                    f"column {column.name!r} holds neither numbers nor lengths with units: left out; --choose "
+                    f"{name}.unit=cm takes it nevertheless"
+                )
+                return None
+            unit = WRITTEN
+        if unit is None and "kg" in units:
+            unit = "kg"
+            self.doubts.append(
+                f"column {column.name!r} tells no unit: kilograms are taken; --choose {name}.unit=g takes another"
+            )
+            self.questions.append(Question(f"{name}.unit", f"in which unit is {column.name!r}?", tuple(units), unit))
+        entry = tomlkit.table()
+        if beside is None:
+            entry["column"] = column.name
+        else:
+            entry["columns"] = [column.name, beside.name]
+        entry["unit"] = unit or common
+        zeros = sorted({number for number in column.numbers if float(number.replace(",", ".")) == 0.0})
+        if zeros:
+            # The unit that is joined makes a text of it.
+            entry["missing"] = [0.0] if unit != WRITTEN else zeros
+        return entry
 
-
-def _unit(
-    name: str,
-    column: Column,
-    columns: Sequence[Column],
-    choices: Mapping[str, str],
-    doubts: list[str],
-    questions: list[Question],
-) -> tuple[str | None, Column | None]:
-    """Return the unit of a column, and the column that tells it cell by cell."""
-    units = units_of(name)
-    chosen = choices.get(f"{name}.unit")
-    if chosen is not None:
-        if chosen not in (*units, WRITTEN):
-            raise CollectionError(f"--choose {name}.unit: {chosen!r} is none of {', '.join((*units, WRITTEN))}")
-        return chosen, None
-    told = unit_in(column.name)[1]
-    if told is not None and told in units:
-        return told, None
-    if column.filled and not column.numeric:
-        if column.dimensional > 0.5:
-            return WRITTEN, None
-        doubts.append(
-            f"column {column.name!r} holds neither numbers nor lengths with units: left out; --choose {name}.unit=cm "
-            "takes it nevertheless"
-        )
-        return None, None
-    beside = _unit_column(column, columns, units)
-    if beside is not None:
+    def _told_unit(self, name: str, column: Column) -> tuple[str | None, Column | None]:
+        """Return the unit that was chosen, or that the name or another column tells, and that other column."""
+        units = units_of(name)
+        chosen = self.choices.get(f"{name}.unit") or (self.choices.get("unit") if "m" in units else None)
+        if chosen is not None:
+            if chosen not in (*units, WRITTEN):
+                raise CollectionError(f"--choose {name}.unit: {chosen!r} is none of {', '.join((*units, WRITTEN))}")
+            return chosen, None
+        told = unit_in(column.name)[1]
+        if told is not None and told in units:
+            return told, None
+        beside = _unit_column(column, self.columns, units) if column.numeric else None
+        if beside is None:
+            return None, None
         same = {unit_of(text) for text in beside.distinct}
-        if len(same) == 1:
-            return same.pop(), None
-        return WRITTEN, beside
-    if "kg" in units:
-        doubts.append(
-            f"column {column.name!r} tells no unit: kilograms are taken; --choose {name}.unit=g takes another"
-        )
-        questions.append(Question(f"{name}.unit", f"in which unit is {column.name!r}?", tuple(units), "kg"))
-        return "kg", None
-    sixteenths = sum(bool(_SIXTEENTHS.fullmatch(n)) for n in column.numbers)
-    tenths = sum(bool(_TENTHS.fullmatch(n)) for n in column.numbers)
-    inches = sixteenths >= FEWEST and sixteenths > 3 * tenths
-    unit = "in" if inches else "cm"
-    why = "inches are taken, for it has eighths and sixteenths" if inches else "centimetres are taken"
-    doubts.append(f"column {column.name!r} tells no unit: {why}; --choose {name}.unit=mm takes another")
-    questions.append(Question(f"{name}.unit", f"in which unit is {column.name!r}?", tuple(units), unit))
-    return unit, None
+        return (same.pop(), None) if len(same) == 1 else (WRITTEN, beside)
+
+    def _common_unit(self, untold: Mapping[str, Column]) -> str:
+        """Return the unit of the lengths that tell none, which one file has in common, and ask about it."""
+        numbers = [number for column in untold.values() for number in column.numbers]
+        sixteenths = sum(bool(_SIXTEENTHS.fullmatch(n)) for n in numbers)
+        tenths = sum(bool(_TENTHS.fullmatch(n)) for n in numbers)
+        whole = sum(n.isdecimal() for n in numbers)
+        unit, why = "cm", "centimetres are taken"
+        if sixteenths >= FEWEST and sixteenths > 3 * tenths:
+            unit, why = "in", "inches are taken, for they have eighths and sixteenths"
+        elif whole > 0.98 * len(numbers) and median(float(n.replace(",", ".")) for n in numbers) >= USUAL_MM:
+            unit, why = "mm", "millimetres are taken, for they are large and whole"
+        names = ", ".join(repr(column.name) for column in untold.values())
+        self.doubts.append(f"no unit is told for {names}: {why}; --choose unit=mm (cm, in, ...) takes another")
+        self.questions.append(Question("unit", f"in which unit are {names}?", tuple(units_of("height_m")), unit))
+        return unit
 
 
 def _unit_column(column: Column, columns: Sequence[Column], units: Mapping[str, float]) -> Column | None:

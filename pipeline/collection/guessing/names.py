@@ -37,7 +37,7 @@ _STOP = frozenset(
         *("la", "le", "il", "el", "do", "da", "dos"),
     }
 )
-_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _ELIDED = re.compile(r"\b(?:d|l|dell|nell|all)['’]", re.IGNORECASE)
 _OTHER = re.compile(r"[^\w]+|_")
 _WEAK = 1000
@@ -61,6 +61,8 @@ _FORMER = frozenset(
         ),
         *("fruherer", "ancien", "ancienne", "anciens", "vecchio", "vecchia", "precedente", "anterior", "antiguo"),
         *("antigo", "oud", "oude", "vorige", "vechi", "veche", "lender", "leihgeber", "donor", "loan"),
+        *("date", "year", "datum", "jahr", "annee", "anno", "data", "fecha", "ano", "jaar", "anul", "method", "type"),
+        *("art", "mode", "modo", "status", "source", "value", "notes", "remarks", "by", "insurance"),
     }
 )
 """Words that say that something else is meant than the object's own number and place now."""
@@ -203,6 +205,8 @@ def _forms(name: str) -> Iterator[str]:
         yield plain(unit_in(lower)[0])
         return
     yield plain(name)
+    # What looks like two words may be one: "MoMANumber".
+    yield plain(name.casefold())
     yield plain(unit_in(name)[0])
     yield plain(bare(name))
     # "Objeto/Documento", "Titel | title": what either half says; of two rows of a head the lower one first.

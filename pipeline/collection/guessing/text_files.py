@@ -60,12 +60,14 @@ def _likeness(head: bytes, encoding: str) -> float:
     for at, sign in enumerate(text):
         if sign < "\x80":
             continue
-        before = text[at - 1] if at else " "
+        before, after = text[at - 1 : at], text[at + 1 : at + 2]
+        in_word = before.isalpha() or after.isalpha()
         if sign in _COMMON:
-            # A capital within a word is hardly one.
-            score += -1.0 if sign.isupper() and before.islower() else 1.0
+            # A capital within a word is hardly one; a letter by itself, as between two numbers, neither.
+            wrong = not in_word and sign not in "ØøàÀ"
+            score += -1.0 if wrong or (sign.isupper() and before.islower()) else 1.0
         elif sign in _SIGNS:
-            score += 0.2 if not before.islower() or sign in "’°ºª²³»”…´" else -0.5
+            score += 0.5 if sign in "’´" or not (before.isalpha() and after.isalpha()) else -0.5
         else:
             score -= 1.0
     return score
