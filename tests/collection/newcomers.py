@@ -71,7 +71,7 @@ def _things(
 
 
 def german_workbook(folder: Path) -> Newcomer:
-    """A list of MuseumPlus in Excel: two lines of title, a blank one, sizes in columns, yes and no, a sheet of notes."""
+    """A list of MuseumPlus in Excel: titles above the head, sizes in columns, yes and no, and a sheet of notes."""
     things = _things(
         "I ",
         [("Gemälde", "Öl auf Leinwand"), ("Vase", "Porzellan"), ("Büste", "Marmor"), ("Schrank", "Eichenholz")],
@@ -87,13 +87,17 @@ def german_workbook(folder: Path) -> Newcomer:
     sheet.append(["Objektliste für Dr. Weber", None, "Stand: März 2024"])
     sheet.append([])
     sheet.append(
-        ["Lfd. Nr.", "Inv.-Nr.", "Sachbegriff", "Titel", "Material/Technik", "Akt. Standort", "Ausgestellt"]
-        + ["Höhe (cm)", "Breite (cm)", "Tiefe (cm)", "Gewicht (kg)"]
+        [
+            *("Lfd. Nr.", "Inv.-Nr.", "Sachbegriff", "Titel", "Material/Technik", "Akt. Standort", "Ausgestellt"),
+            *("Höhe (cm)", "Breite (cm)", "Tiefe (cm)", "Gewicht (kg)"),
+        ]
     )
     for at, one in enumerate(things, start=1):
         sheet.append(
-            [at, one.number, one.name, one.title, one.medium, one.place, "ja" if one.shown else "nein"]
-            + [one.height, one.width, one.depth, one.mass]
+            [
+                *(at, one.number, one.name, one.title, one.medium, one.place, "ja" if one.shown else "nein"),
+                *(one.height, one.width, one.depth, one.mass),
+            ]
         )
     path = folder / "Objektliste_Weber.xlsx"
     book.save(path)
@@ -111,8 +115,10 @@ def italian_csv(folder: Path) -> Newcomer:
     stream = io.StringIO()
     writer = csv.writer(stream, delimiter=";", lineterminator="\r\n")
     writer.writerow(
-        ["ID", "N. inventario", "Oggetto", "Titolo", "Materia e tecnica", "Collocazione attuale", "Esposto"]
-        + ["Altezza", "Larghezza", "Profondità", "Unità", "Peso (kg)"]
+        [
+            *("ID", "N. inventario", "Oggetto", "Titolo", "Materia e tecnica", "Collocazione attuale", "Esposto"),
+            *("Altezza", "Larghezza", "Profondità", "Unità", "Peso (kg)"),
+        ]
     )
     for at, one in enumerate(things, start=1):
         writer.writerow(
@@ -182,8 +188,8 @@ def tms_like_database(folder: Path) -> Newcomer:
             CREATE TABLE ObjComponents (ComponentID INTEGER PRIMARY KEY, ObjectID INTEGER, ComponentNumber TEXT,
                 CurrentObjLocID INTEGER, HomeLocationID INTEGER);
             CREATE TABLE ObjLocations (ObjLocationID INTEGER PRIMARY KEY, ComponentID INTEGER, LocationID INTEGER);
-            CREATE TABLE Locations (LocationID INTEGER PRIMARY KEY, Site TEXT, Room TEXT, UnitType TEXT, UnitNumber TEXT,
-                UnitPosition TEXT);
+            CREATE TABLE Locations (LocationID INTEGER PRIMARY KEY, Site TEXT, Room TEXT, UnitType TEXT,
+                UnitNumber TEXT, UnitPosition TEXT);
             CREATE TABLE DimItemElemXrefs (DimItemElemXrefID INTEGER PRIMARY KEY, TableID INTEGER, ID INTEGER,
                 ElementID INTEGER, DisplayDimensions TEXT);
             CREATE TABLE DimensionElements (ElementID INTEGER PRIMARY KEY, Element TEXT);
@@ -221,7 +227,8 @@ def tms_like_database(folder: Path) -> Newcomer:
                     )
             # The image alone, which is not the object.
             db.execute(
-                "INSERT INTO Dimensions (DimItemElemXrefID, DimensionTypeID, Dimension, PrimaryUnitID) VALUES (?, 1, 3, 1)",
+                "INSERT INTO Dimensions (DimItemElemXrefID, DimensionTypeID, Dimension, PrimaryUnitID) "
+                "VALUES (?, 1, 3, 1)",
                 (2000 + at,),
             )
     return Newcomer(f"sqlite:///{path}", things)
@@ -357,6 +364,74 @@ def linked_art_lines(folder: Path) -> Newcomer:
     return Newcomer(str(path), things)
 
 
+def spanish_csv(folder: Path) -> Newcomer:
+    """A list of DOMUS: titles above the head, UTF-8 with its mark, sizes as a text with semicolons in it."""
+    things = _things(
+        "CE",
+        [("Cuadro", "Lienzo"), ("Ánfora", "Cerámica"), ("Busto", "Bronce"), ("Arca", "Madera de nogal")],
+        ["Sala 1", "Sala 2 - Edad del Hierro", "Sala 5 Vitrina 3"],
+        "Almacén 2, estantería 4",
+    )
+    stream = io.StringIO()
+    writer = csv.writer(stream, delimiter=";", lineterminator="\r\n")
+    writer.writerow(["Museo Provincial", *[""] * 10])
+    writer.writerow(["Listado de bienes culturales", *[""] * 10])
+    writer.writerow(["Fecha: 12/03/2024", *[""] * 10])
+    writer.writerow([""] * 11)
+    writer.writerow(
+        [
+            *("Museo", "Nº Inventario", "Clasificación Genérica", "Objeto/Documento", "Título", "Materia/Soporte"),
+            *("Técnica", "Dimensiones", "Datación", "Ubicación actual", "Expuesto"),
+        ]
+    )
+    for one in things:
+        sizes = ("Altura", one.height), ("Anchura", one.width), ("Profundidad", one.depth)
+        text = "; ".join(f"{kind} = {_number(value, ',')} cm" for kind, value in sizes if value is not None)
+        writer.writerow(
+            [
+                *("Museo Provincial", one.number, "", one.name, one.title, one.medium, "", text, "s. XVIII", one.place),
+                "Sí" if one.shown else "No",
+            ]
+        )
+    path = folder / "listado.csv"
+    path.write_bytes(stream.getvalue().encode("utf-8-sig"))
+    return Newcomer(str(path), things)
+
+
+def dutch_adlib(folder: Path) -> Newcomer:
+    """Adlib XML, grouped: a dimension is an element of part, type, value and unit."""
+    things = _things(
+        "1931-",
+        [("schilderij", "olieverf op doek"), ("vaas", "aardewerk"), ("kast", "eikenhout"), ("kan", "tin")],
+        ["Zaal 1.03", "Zaal 2.11 vitrine 4"],
+        "Depot A rek 3",
+    )
+    records = []
+    for at, one in enumerate(things):
+        sizes = ("hoogte", one.height, "cm"), ("breedte", one.width, "cm"), ("diepte", one.depth, "cm")
+        dimensions = "".join(
+            "<Dimension><dimension.part>geheel</dimension.part>"
+            f"<dimension.type>{kind}</dimension.type><dimension.value>{value:g}</dimension.value>"
+            f"<dimension.unit>{unit}</dimension.unit></Dimension>"
+            for kind, value, unit in (*sizes, ("gewicht", one.mass, "kg"))
+            if value is not None
+        )
+        records.append(
+            f'<record priref="{4000 + at}" created="2011-02-01T10:00:00"><priref>{4000 + at}</priref>'
+            f"<object_number>{one.number}</object_number><Object_name><object_name>{one.name}</object_name>"
+            f"</Object_name><Title><title>{one.title}</title></Title><Material><material>{one.medium}</material>"
+            f"</Material>{dimensions}<current_location>{one.place}</current_location></record>"
+        )
+    path = folder / "adlib.xml"
+    path.write_text(
+        '<?xml version="1.0" encoding="utf-8"?>\n<adlibXML><recordList>'
+        + "\n".join(records)
+        + "</recordList><diagnostic><hits>40</hits><xmltype>Grouped</xmltype></diagnostic></adlibXML>",
+        encoding="utf-8",
+    )
+    return Newcomer(str(path), things)
+
+
 ALL: tuple[Callable[[Path], Newcomer], ...] = (
     german_workbook,
     italian_csv,
@@ -365,4 +440,6 @@ ALL: tuple[Callable[[Path], Newcomer], ...] = (
     own_database,
     portuguese_long_form,
     linked_art_lines,
+    spanish_csv,
+    dutch_adlib,
 )

@@ -116,8 +116,10 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
         if what is not None:
             found.setdefault(what.field, []).append((what, column))
     out: dict[str, list[Column]] = {}
-    for name, pairs in found.items():
-        most = max(len(column.filled) for _, column in pairs)
+    for name, able in found.items():
+        most = max(len(column.filled) for _, column in able)
+        # An empty column tells nothing where another one tells something.
+        pairs = [pair for pair in able if pair[1].filled or not most]
         out[name] = [
             column
             for _, column in sorted(

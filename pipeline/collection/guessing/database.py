@@ -45,6 +45,7 @@ _CURRENT = frozenset(
         "present",
     }
 )
+_USUAL = frozenset({"home", "normal", "usual", "permanent", "default"})
 _FLAGS = frozenset(f"is {word}" for word in _CURRENT) | _CURRENT | {"active", "iscurrent", "current location"}
 _NAMES = (
     "name",
@@ -146,30 +147,40 @@ def _is_internal(column: str) -> bool:
 
 
 def _refers(table: Table, other: Table) -> tuple[str, str] | None:
-    """Return the columns by which a table refers to another: as declared, or as their names tell."""
+    """Return the columns by which a table refers to another: as declared or as named; a current one first."""
+    found = list(_references(table, other))
+
+    def rank(way: tuple[str, str]) -> tuple[bool, bool]:
+        words = set(plain(way[0]).split())
+        return not words & _CURRENT, bool(words & _USUAL)
+
+    return min(found, key=rank) if found else None
+
+
+def _references(table: Table, other: Table) -> Iterator[tuple[str, str]]:
     if table is other:
-        return None
+        return
     for column, (name, there) in table.refers.items():
         if name in (other.shown, other.name):
-            return column, there
+            yield column, there
     if len(other.key) == 1:
         key = other.key[0]
         for column in table.columns:
-            if (column,) == table.key:
+            if (column,) == table.key or column in table.refers:
                 continue
             words = plain(column).split()
             if words == plain(key).split() and words != ["id"]:
-                return column, key
+                yield column, key
+                continue
             ended = words[-1:] == ["id"] or (len(words) == 1 and words[0].endswith("id"))
             if ended:
                 stem = words[:-1] if words[-1] == "id" else [words[0][:-2]]
                 if stem and (same_stem("".join(stem), other.name) or same_stem(stem[-1], other.name)):
-                    return column, key
+                    yield column, key
     # Without keys: a column of the same name that is the other's number.
     number = _named(other).get("object_number")
     if number is not None and number in table.columns and not _is_internal(number):
-        return number, number
-    return None
+        yield number, number
 
 
 class _Joiner:
@@ -321,11 +332,11 @@ class _Joiner:
             if way is None or other is self._objects:
                 continue
             own = next((c for c in other.columns if _field(c) == "gallery"), None)
-            if own is None and of_table(other.name, "gallery"):
-                own = self._name_of(other)
+            if of_table(other.name, "gallery"):
+                own = self._called(other) or own or self._name_of(other)
             if own is not None:
                 words = set(plain(way[0]).split())
-                found.append((not words & _CURRENT, len(words & {"home", "normal", "usual", "permanent"}), other, own))
+                found.append((not words & _CURRENT, bool(words & _USUAL), other, own))
         found.sort(key=lambda one: one[:2])
         return (found[0][2], found[0][3]) if found else None
 
@@ -353,12 +364,17 @@ class _Joiner:
                 self._said.append(f"{label} is {column!r} of {other.shown!r}")
                 return
 
-    def _name_of(self, table: Table) -> str | None:
+    @staticmethod
+    def _called(table: Table) -> str | None:
+        """Return the column of a table that is called its name."""
         plains = {plain(c): c for c in table.columns if c not in table.key}
-        for name in _NAMES:
-            for found, column in plains.items():
-                if found.split()[-1:] == [name]:
-                    return column
+        ended = (column for name in _NAMES for found, column in plains.items() if found.split()[-1:] == [name])
+        return next(ended, None)
+
+    def _name_of(self, table: Table) -> str | None:
+        called = self._called(table)
+        if called is not None:
+            return called
         texts = [c for c in self._columns(table) if c.filled and not c.numeric and c.name not in table.key]
         return texts[0].name if texts else None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
 
@@ -23,6 +23,9 @@ FEWEST = 5
 USUAL_MM = 150
 """Median of whole numbers from which lengths are taken to be in millimetres: half of all objects are no metre and a
 half."""
+
+LONGEST_YES = 5
+"""Letters of the longest word that means just yes or no."""
 
 MOST_WORDS = 30
 """Different texts that a column of flags has at most."""
@@ -67,6 +70,29 @@ def decimal_of(columns: Sequence[Column]) -> str:
                 commas += len(_COMMA.findall(text))
                 points += len(_POINT.findall(text))
     return "," if commas > points else "."
+
+
+def flag_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:
+    """Return the column all of whose words say whether an object is on display, and not yes and no alone.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    used : iterable of Column
+        Those that are fields already.
+
+    Returns
+    -------
+    Column or None
+    """
+    taken = {id(column) for column in used}
+    for column in columns:
+        words = column.distinct
+        flags = 1 < len(words) <= MOST_WORDS and all(shown(word) is not None for word in words)
+        if id(column) not in taken and flags and any(len(word) > LONGEST_YES for word in words):
+            return column
+    return None
 
 
 @dataclass
@@ -114,8 +140,8 @@ class Fields:
                 if name == "gallery":
                     out[name] = {"constant": "Location not recorded"}
                     self.doubts.append(
-                        "no column tells where an object is: all are in one gallery until --choose gallery=COLUMN names "
-                        "one"
+                        "no column tells where an object is: all are in one gallery until --choose gallery=COLUMN "
+                        "names one"
                     )
                 continue
             entry = self._measured(name, column, unit) if units_of(name) else self._entry(name, column)
@@ -169,9 +195,7 @@ class Fields:
                 values[word] = meaning
         entry["values"] = values
         if unknown:
-            self.doubts.append(
-                f"column {column.name!r}: what is meant by {unknown}? Add it to [columns.{name}] values, as true or false"
-            )
+            self.doubts.append(f"column {column.name!r}: what is meant by {unknown}? Add it to [columns.{name}] values")
         return entry
 
     def _measured(self, name: str, column: Column, common: str) -> tomlkit.items.Table | None:

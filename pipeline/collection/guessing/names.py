@@ -45,24 +45,11 @@ _WEAK = 1000
 
 _FORMER = frozenset(
     {
-        *(
-            "former",
-            "previous",
-            "old",
-            "other",
-            "home",
-            "normal",
-            "usual",
-            "default",
-            "alt",
-            "alte",
-            "altes",
-            "fruhere",
-        ),
-        *("fruherer", "ancien", "ancienne", "anciens", "vecchio", "vecchia", "precedente", "anterior", "antiguo"),
-        *("antigo", "oud", "oude", "vorige", "vechi", "veche", "lender", "leihgeber", "donor", "loan"),
+        *("former", "previous", "old", "other", "alt", "alte", "altes", "fruhere", "fruherer", "ancien", "ancienne"),
+        *("anciens", "vecchio", "vecchia", "precedente", "anterior", "antiguo", "antigo", "oud", "oude", "vorige"),
+        *("vechi", "veche", "lender", "leihgeber", "donor", "loan", "art", "mode", "modo", "status", "source", "value"),
         *("date", "year", "datum", "jahr", "annee", "anno", "data", "fecha", "ano", "jaar", "anul", "method", "type"),
-        *("art", "mode", "modo", "status", "source", "value", "notes", "remarks", "by", "insurance"),
+        *("notes", "remarks", "by", "insurance"),
     }
 )
 """Words that say that something else is meant than the object's own number and place now."""
@@ -79,12 +66,16 @@ class Named:
     rank : int
         How far down in the table the name stands: of two columns the lower rank is meant rather.
     internal : bool
-        Whether it is the name of a number that only a database knows.
+        Whether it is the name of a number that only a database knows, or of a place that is only usual.
     """
 
     field: str
     rank: int
     internal: bool = False
+
+
+_USUAL = frozenset({"home", "normal", "usual", "default", "permanent", "stamm", "habituel", "abituale", "habitual"})
+"""Words of a place where an object mostly is: used where no column tells where it is now."""
 
 
 def _mappable(field: str) -> str:
@@ -222,11 +213,14 @@ def _forms(name: str) -> Iterator[str]:
 def _within(name: str) -> Named | None:
     """Return what the last or the first words of a name say: "Akt. Standort"; of numbers, places and materials only."""
     words = plain(unit_in(name)[0]).split()
-    if _FORMER & set(words):
+    if _FORMER & set(words) or words[-1:] == ["id"]:
         return None
+    usual = bool(_USUAL & set(words))
     for many in range(min(len(words) - 1, 3), 0, -1):
         for part in (words[-many:], words[:many]):
             found = _names().get(" ".join(part))
-            if found is not None and found.field in ("object_number", "gallery", "medium") and not found.internal:
-                return Named(found.field, _WEAK + found.rank)
+            if found is None or found.internal or found.field not in ("object_number", "gallery", "medium"):
+                continue
+            if found.field == "gallery" or not usual:
+                return Named(found.field, _WEAK + found.rank, internal=usual)
     return None

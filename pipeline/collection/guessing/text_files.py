@@ -62,7 +62,10 @@ def _likeness(head: bytes, encoding: str) -> float:
             continue
         before, after = text[at - 1 : at], text[at + 1 : at + 2]
         in_word = before.isalpha() or after.isalpha()
-        if sign in _COMMON:
+        if sign in "ãă":
+            # One byte in two encodings: ã stands before o and e (Portuguese), ă elsewhere (Romanian).
+            score += 1.0 if (after in ("o", "e")) == (sign == "ã") else 0.2
+        elif sign in _COMMON:
             # A capital within a word is hardly one; a letter by itself, as between two numbers, neither.
             wrong = not in_word and sign not in "ØøàÀ"
             score += -1.0 if wrong or (sign.isupper() and before.islower()) else 1.0
@@ -175,7 +178,8 @@ def head_of(rows: Sequence[tuple[int, list[str]]]) -> Head:
     """
     best: Head | None = None
     for at, (number, cells) in enumerate(rows[:LOOKED_AT]):
-        if sum(bool(cell.strip()) for cell in cells) < 2:
+        numbers = sum(bool(NUMBER.fullmatch(cell.strip())) for cell in cells)
+        if sum(bool(cell.strip()) for cell in cells) < 2 or numbers > 0.2 * len(cells):
             continue
         for many in (1, 2, 3):
             taken = [row for _, row in rows[at : at + many]]
