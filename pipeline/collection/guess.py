@@ -134,8 +134,8 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
         tomlkit.comment(f"Guessed from the columns of {' '.join(name.split())}. Look at every line; units above all.")
     )
     document["source"] = {key: value for key, value in source.items() if key != "long"}
-    if "query" in source:
-        document["source"]["query"] = tomlkit.string(f"\n{source['query']}\n", multiline=True)
+    if "\n" in source.get("query", ""):
+        document["source"]["query"] = tomlkit.string(source["query"], multiline=True)
     if "long" in source:
         document["source"]["long"] = source["long"]
     document["museum"] = {"name": "Our museum"}

@@ -351,7 +351,8 @@ class _Joiner:
     def _word(self, field: str, label: str) -> None:
         """Join the table of words, or of titles, that tells a field."""
         for other in self._tables:
-            if other is self._objects or other.shown in self._clauses:
+            number = _named(other).get("object_number")
+            if other is self._objects or other.shown in self._clauses or (number and not _is_internal(number)):
                 continue
             column = next((c for c in other.columns if _field(c) == field and c not in other.key), None)
             if column is None and of_table(other.name, field):
