@@ -4,6 +4,7 @@ import json
 import os
 import shlex
 import sys
+import textwrap
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,7 +18,7 @@ from pipeline.quantities import counted
 if TYPE_CHECKING:
     from pipeline.collection.inventory import Difference
     from pipeline.collection.reading import Reading
-    from pipeline.night.importing import Imported
+    from pipeline.night.importing import Imported, Proposed
 
 
 @click.command("import")
@@ -27,6 +28,12 @@ if TYPE_CHECKING:
 @dry_run("Read, and say what would change, or be refused")
 @click.option("--guess", is_flag=True, help="Propose a mapping from the columns, and show ten rows as understood.")
 @click.option("--table", metavar="NAME", help="With --guess: the workbook's sheet, or the database's table or SELECT.")
+@click.option(
+    "--choose",
+    multiple=True,
+    metavar="KEY=WHAT",
+    help="With --guess: a field's column (gallery=Standort), its unit (height_m.unit=mm), or header_row=4.",
+)
 @click.option("--write", type=click.Path(dir_okay=False, path_type=Path), help="With --guess: write it here, unasked.")
 @click.option(
     "--sheet",
@@ -46,6 +53,7 @@ def import_(
     dry_run: bool,
     guess: bool,
     table: str | None,
+    choose: tuple[str, ...],
     write: Path | None,
     sheet: bool,
     presets: bool,
@@ -55,7 +63,8 @@ def import_(
 ) -> None:
     """Read the museum's records into Kouros's inventory, by a mapping.
 
-    SOURCE is a file (CSV, TSV, XLSX, LIDO) or the URL of a database; ${NAME} in a URL is taken from the environment.
+    SOURCE is a file (CSV, TSV, XLSX, LIDO, Adlib XML, MuseumPlus RIA XML, Linked Art) or the URL of a database; ${NAME}
+    in a URL is taken from the environment.
 
     \b
     Example: kouros import export.csv --mapping carnegie --dry-run
@@ -66,6 +75,8 @@ def import_(
         raise click.UsageError("give a SOURCE, or one of --presets, --versions, --return-to VERSION")
     if table is not None and not guess:
         raise click.UsageError("--table is for --guess; a mapping says in its [source] which sheet or table is read")
+    if choose and not guess:
+        raise click.UsageError("--choose is for --guess; in a mapping, change the line itself")
     if guess and sheet:
         raise click.UsageError("--sheet reads a survey's sheet by its own mapping, and --guess proposes one: give one")
     if presets:
@@ -75,7 +86,7 @@ def import_(
     elif return_to is not None:
         _return(options, return_to, dry_run, as_json)
     elif source is not None and guess:
-        _guess(source, table, write, dry_run, as_json)
+        _guess(source, table, _choices(choose), write, dry_run, as_json)
     elif source is not None and sheet:
         _sheet(options, source, dry_run, as_json)
     elif source is not None:
@@ -89,15 +100,16 @@ def _presets(wanted_json: bool) -> None:
 
     found = presets()
     if wanted_json:
-        plain = {name: {"for": about, "file": str(file)} for name, (about, file) in found.items()}
-        click.echo(json.dumps(plain, indent=2))
+        plain = {name: {"for": p.about, "expects": p.expects, "file": str(p.file)} for name, p in found.items()}
+        click.echo(json.dumps(plain, indent=2, ensure_ascii=False))
         return
-    for name, (about, _) in found.items():
-        click.echo(f"{name:<18} {about}")
+    for name, preset in found.items():
+        click.echo(f"{name:<18} {preset.about}")
+        click.echo(textwrap.fill(preset.expects, 100, initial_indent=" " * 19, subsequent_indent=" " * 19))
     click.echo("\ntheir files, to begin your own from:")
-    for name, (_, file) in found.items():
-        click.echo(f"{name:<18} {file}")
-    _, example = next(iter(found.values()))
+    for name, preset in found.items():
+        click.echo(f"{name:<18} {preset.file}")
+    example = next(iter(found.values())).file
     copy = "copy" if os.name == "nt" else "cp"
     click.echo(
         f"\ncopy one ({copy} {shlex.quote(str(example))} ours.toml), change what differs, "
@@ -123,29 +135,40 @@ def _versions(options: Options, wanted_json: bool) -> None:
         )
 
 
-def _guess(source: str, table: str | None, target: Path | None, dry_run: bool, wanted_json: bool) -> None:
+def _choices(given: tuple[str, ...]) -> dict[str, str]:
+    found = {}
+    for one in given:
+        key, sign, what = one.partition("=")
+        if not (key.strip() and sign and what.strip()):
+            raise click.UsageError(f"--choose {one!r}: needs KEY=WHAT, such as gallery=Standort or height_m.unit=mm")
+        found[key.strip()] = what.strip()
+    return found
+
+
+def _guess(
+    source: str, table: str | None, choices: dict[str, str], target: Path | None, dry_run: bool, wanted_json: bool
+) -> None:
     from pipeline.night.importing import proposed
 
     if dry_run and target is not None:
         raise click.UsageError("--write writes the mapping, and --dry-run writes nothing: leave one of them out")
-    found = proposed(source, table)
+    found = proposed(source, table, choices=choices)
+    asking = target is None and not (wanted_json or dry_run) and sys.stdin.isatty()
+    if asking and found.guess.questions:
+        found = proposed(source, table, choices=choices | _answers(found))
     if wanted_json:
         answer = {
             "mapping": found.guess.text,
             "doubts": found.guess.doubts,
+            "questions": [asdict(question) for question in found.guess.questions],
+            "sure": found.guess.sure,
             "rows": found.rows,
             "examples": found.examples,
         }
         click.echo(json.dumps(answer, indent=2, ensure_ascii=False))
     else:
-        click.echo(found.guess.text)
-        shown = counted(len(found.examples), "of them", "of them")
-        click.echo(f"{counted(found.rows, 'row')}, {counted(found.items, 'object')}; {shown} as understood:")
-        for line in found.examples:
-            click.echo(f"  {line}")
-        listed("to look at", list(found.guess.doubts))
-        listed("suspicion", [f"{s.message}; {s.remedy}" for s in found.suspicions])
-    if target is None and not (wanted_json or dry_run) and sys.stdin.isatty():
+        _show(found)
+    if asking:
         name = f"{found.name}.toml"
         if click.confirm(f"Is that right? Write it to {name}?"):
             target = Path(name)
@@ -155,6 +178,37 @@ def _guess(source: str, table: str | None, target: Path | None, dry_run: bool, w
         click.echo(f"written: {target}; now: kouros import {found.shown} --mapping {target} --dry-run", err=wanted_json)
     elif not (wanted_json or dry_run):
         click.echo("nothing was written; --write FILE writes it")
+
+
+def _answers(found: "Proposed") -> dict[str, str]:
+    """Ask a person at a terminal what the source does not tell; an empty answer takes what was guessed."""
+    answers = {}
+    for question in found.guess.questions:
+        for number, option in enumerate(question.options, start=1):
+            click.echo(f"  {number}  {option}")
+        at = question.options.index(question.taken) + 1 if question.taken in question.options else 1
+        chosen = click.prompt(question.text, type=click.IntRange(1, len(question.options)), default=at)
+        answers[question.key] = question.options[chosen - 1]
+    return answers
+
+
+def _show(found: "Proposed") -> None:
+    click.echo(found.guess.text)
+    shown = counted(len(found.examples), "of them", "of them")
+    click.echo(f"{counted(found.rows, 'row')}, {counted(found.items, 'object')}; {shown} as understood:")
+    for line in found.examples:
+        click.echo(f"  {line}")
+    listed("sure", list(found.guess.sure))
+    listed("to look at", list(found.guess.doubts))
+    listed(
+        "to choose",
+        [
+            f"{question.text} {question.taken!r} is taken; --choose {question.key}="
+            f"{'|'.join(option for option in question.options if option != question.taken)} takes another"
+            for question in found.guess.questions
+        ],
+    )
+    listed("suspicion", [f"{s.message}; {s.remedy}" for s in found.suspicions])
 
 
 def _sheet(options: Options, source: str, dry_run: bool, wanted_json: bool) -> None:

@@ -72,7 +72,8 @@ class Cells:
         if _missing(text, column):
             return None
         if column.unit == WRITTEN:
-            return self._written(name, column, text)
+            # A unit may stand in a column of its own.
+            return self._written(name, column, " ".join([text, *(t.strip(_SPACE) for t in texts[1:])]).strip())
         value = self._parse(name, column, text)
         if value is None or any(value == m for m in column.missing if not isinstance(m, str)):
             return None

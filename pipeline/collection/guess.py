@@ -1,48 +1,38 @@
-"""A first mapping for a museum's file, guessed from its columns: a proposal to look at, never used unseen."""
+"""A first mapping for a museum's file or database, guessed from its columns: to be looked at, never used unseen."""
 
 from __future__ import annotations
 
-import csv
-import re
-from collections.abc import Generator, Iterator, Sequence
-from contextlib import closing
-from dataclasses import dataclass, field
-from functools import cache, cached_property
-from itertools import islice
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, cast
-from unicodedata import normalize
+from typing import Any
 
 import tomlkit
-from pydantic import AfterValidator
 
-from pipeline.collection.dimensions import parse
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.mapping import MAPPABLE, WRITTEN, Mapping
-from pipeline.collection.opening import open_source
-from pipeline.collection.record import units_of
+from pipeline.collection.guessing.columns import Column, candidates
+from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
+from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among
+from pipeline.collection.guessing.names import bare
+from pipeline.collection.guessing.source import Told, columns_in, database, objects_of, source_of, workbook
+from pipeline.collection.guessing.words import stores_among
+from pipeline.collection.mapping import MAPPABLE, PRESETS, load_mapping, preset_names
+from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.sources.address import expand_secrets
-from pipeline.collection.sources.files import unreadable
-from pipeline.collection.sources.registry import is_address, recognised
-from pipeline.collection.sources.rows import Row
-from pipeline.errors import InputError
-from pipeline.tables import table
-from pipeline.tables.rows import Entries, checked
+from pipeline.collection.sources.registry import is_address
+from pipeline.quantities import counted
 
-LOOKED_AT = 2000
-"""Rows that the guess is made from."""
+MOST_REPEATED = 0.1
+"""Share of object numbers that may be repeated or missing before another column of numbers is looked for."""
 
-FEWEST = 5
-"""Numbers in eighths or sixteenths from which a column is taken to be in inches."""
+MOST_STORES = 200
+"""Places that are listed as stores at most."""
 
-SNIFFED = 1 << 18
-"""Bytes from which encoding and delimiter are told."""
+_TABLES = ("csv", "tsv", "xlsx", "sql")
+"""Formats whose columns are the museum's own."""
 
-_UNIT = re.compile(r"[\s_(\[]+(mm|cm|m|in|inch|inches|ft|kg|g|lb|lbs|oz)[\s)\]]*$", re.IGNORECASE)
-_UNITS = {"inch": "in", "inches": "in", "lbs": "lb"}
-_NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
-_TENTHS = re.compile(r"\d*[.,][1-46-9]")
-_SIXTEENTHS = re.compile(r"\d*[.,](?:0625|125|1875|3125|375|4375|5625|625|6875|8125|875|9375)")
+_FORMATS = {"lido": "lido", "adlib": "adlib", "museumplus_ria": "museumplus", "linked_art": "linked_art"}
+"""Preset -> the format of which it reads any file, for Kouros itself names the columns."""
 
 
 @dataclass(frozen=True)
@@ -57,36 +47,20 @@ class Guess:
         The same, ready to read with.
     doubts : tuple of str
         What was guessed without a sign of it in the file.
+    questions : tuple of Question
+        What may be chosen otherwise, by the key that the choice has.
+    sure : tuple of str
+        What the source itself says.
     """
 
     text: str
-    mapping: Mapping
+    mapping: Proposal
     doubts: tuple[str, ...]
+    questions: tuple[Question, ...] = ()
+    sure: tuple[str, ...] = ()
 
 
-@dataclass
-class _Column:
-    """A column, whole when it is asked about."""
-
-    name: str
-    values: list[str] = field(default_factory=list)
-
-    @cached_property
-    def filled(self) -> list[str]:
-        return [value.strip() for value in self.values if value.strip()]
-
-    @cached_property
-    def numbers(self) -> list[str]:
-        return [value for value in self.filled if _NUMBER.fullmatch(value)]
-
-    @cached_property
-    def dimensional(self) -> float:
-        """Share of its texts that hold a dimension with a unit."""
-        some = self.filled[:200]
-        return sum(any(p.unit for p in parse(text).parts) for text in some) / len(some) if some else 0.0
-
-
-def guess(where: str | Path, table: str | None = None) -> Guess:
+def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str] | None = None) -> Guess:
     """Propose a mapping for a museum's file or database.
 
     Parameters
@@ -94,8 +68,11 @@ def guess(where: str | Path, table: str | None = None) -> Guess:
     where : str or Path
         Path of a file, or the URL of a database, which is only read.
     table : str or None
-        The sheet of a workbook, or the table, view or SELECT of a database; may be left out where there is one, and of
-        several sheets the one that looks most like an inventory is taken.
+        The sheet of a workbook, or the table, view or SELECT of a database; where it is left out, the one that looks
+        most like an inventory is taken, and a database's dimensions and places are joined to it.
+    choices : mapping of str to str
+        What a person has chosen: a field and its column ("object_number": "Inv."; "-" for none), a field's unit
+        ("height_m.unit": "cm"), "header_row", "header_rows", "encoding", "delimiter", "decimal".
 
     Returns
     -------
@@ -105,269 +82,213 @@ def guess(where: str | Path, table: str | None = None) -> Guess:
     Raises
     ------
     CollectionError
-        For a source that cannot be read, that shows no column with the objects' numbers, or of whose tables one must be
-        named.
+        For a source that cannot be read, that shows no column with the objects' numbers, and for a choice that cannot
+        be; with the option that helps.
     """
-    doubts: list[str] = []
+    told = Told(dict(choices or {}))
+    _check_choices(told.choices)
     if is_address(where):
         name = expand_secrets(str(where)).shown
-        source, columns = _of_database(str(where), name, table)
+        preset, source, columns = database(str(where), name, table, told)
+        if preset is not None:
+            return _of_preset(preset, columns, told)
     else:
         path = Path(where)
         name = path.name
-        source = _source(path)
+        source = source_of(path, told)
         if source["format"] == "xlsx":
-            source, columns = _of_workbook(path, table, doubts)
+            source, columns = workbook(path, table, told)
         elif table is not None:
             raise CollectionError(f"{name}: has neither sheets nor tables; leave --table out")
+        elif source["format"] not in _TABLES:
+            kind = str(source["format"])
+            preset = next((one for one in preset_names() if _FORMATS.get(one) == kind), None)
+            columns = columns_in(path, source)
+            if preset is not None:
+                told.sure.append(f"{name} is of the format {kind}, whose preset {preset!r} is taken")
+                return _of_preset(preset, columns, told)
         else:
-            columns = _columns(path, source)
-    decimal = "," if _commas(columns) and source.get("delimiter") != "," else "."
-    if decimal == ",":
+            columns = columns_in(path, source)
+    columns = objects_of(name, source, columns, told)
+    decimal = told.choices.get("decimal") or decimal_of(columns)
+    if decimal == "," and source.get("delimiter") != ",":
         source["decimal"] = decimal
-    found = _fields(columns)
-    if "object_number" not in found:
-        found["object_number"] = _unique(name, columns)
-        doubts.append(f"object numbers are taken from {found['object_number'].name!r}, where each row has another one")
-    document = tomlkit.document()
-    document.add(tomlkit.comment(f"Guessed from the columns of {_line(name)}. Look at every line; units above all."))
-    document["source"] = source
-    document["museum"] = {"name": "Our museum"}
-    document["columns"] = _mapped(found, doubts)
-    texts = _texts_of_dimensions(columns, found)
-    if texts:
-        document["dimensions"] = {"columns": texts}
-    text = tomlkit.dumps(document)
-    mapping = Mapping.model_validate(document.unwrap())
-    return Guess(text, mapping, tuple(doubts))
+        told.sure.append("decimal comma, as most numbers have it")
+    return _written(name, source, columns, told)
 
 
-def _line(text: str) -> str:
-    return " ".join(text.split())
-
-
-def _of_database(url: str, name: str, table: str | None) -> tuple[dict[str, str], list[_Column]]:
-    """Return how a database is read, and its columns."""
-    from pipeline.collection.sources.sql import read_database, tables
-
-    if table is None:
-        there = tables(url)
-        if len(there) != 1:
-            known = ", ".join(map(repr, there[:50])) or "none"
+def _check_choices(choices: Mapping[str, str]) -> None:
+    own = ("header_row", "header_rows", "encoding", "delimiter", "decimal", "dimensions", "unit")
+    for key in choices:
+        if key not in own and key.removesuffix(".unit") not in MAPPABLE:
             raise CollectionError(
-                f"{name}: say by --table which of its tables holds the objects, or give a SELECT there; it has {known}"
-                + (f" and {len(there) - 50} more" if len(there) > 50 else "")
+                f"--choose {key}: there is no such choice; choose a field of the record (such as gallery=COLUMN), its "
+                f"unit (height_m.unit=cm), or one of {', '.join(own)}"
             )
-        table = there[0]
-    is_query = len(table.split()) > 1 and table.split()[0].lower() in ("select", "with")
-    source = {"format": "sql", "query" if is_query else "table": table}
-    rows = read_database(url, query=table if is_query else None, table=None if is_query else table)
-    with closing(cast(Generator[Row], rows)):
-        return source, _filled(name, rows)
 
 
-def _of_workbook(path: Path, sheet: str | None, doubts: list[str]) -> tuple[dict[str, str], list[_Column]]:
-    """Return how a workbook is read, and the columns of its sheet: the one named, or most like an inventory."""
-    from pipeline.collection.sources.xlsx import visible_sheets
-
-    there = visible_sheets(path)
-    if sheet is None and len(there) == 1:
-        return {"format": "xlsx"}, _columns(path, {"format": "xlsx"})
-    if sheet is not None:
-        source = {"format": "xlsx", "sheet": sheet}
-        return source, _columns(path, source)
-    best: tuple[tuple[bool, int, int], str, list[_Column]] | None = None
-    fault: CollectionError | None = None
-    for title in there:
-        try:
-            columns = _columns(path, {"format": "xlsx", "sheet": title})
-        except CollectionError as problem:
-            fault = fault or problem
-            continue
-        fields = _fields(columns)
-        likeness = "object_number" in fields, len(fields), max((len(c.values) for c in columns), default=0)
-        if best is None or likeness > best[0]:
-            best = likeness, title, columns
-    if best is None:
-        raise fault or CollectionError(
-            f"{path.name}: no sheet of the workbook is visible; show the one with the objects"
+def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told: Told) -> Guess:
+    found = _chosen(name, columns, candidates(columns), told)
+    document = tomlkit.document()
+    document.add(
+        tomlkit.comment(f"Guessed from the columns of {' '.join(name.split())}. Look at every line; units above all.")
+    )
+    document["source"] = {key: value for key, value in source.items() if key != "long"}
+    if "\n" in source.get("query", ""):
+        document["source"]["query"] = tomlkit.string(source["query"], multiline=True)
+    if "long" in source:
+        document["source"]["long"] = source["long"]
+    document["museum"] = {"name": "Our museum"}
+    if "on_display" not in found and "on_display" not in told.choices:
+        flag = flag_among(columns, found.values())
+        if flag is not None:
+            found["on_display"] = flag
+            told.doubts.append(f"column {flag.name!r} is taken to say what is on display, by its words")
+    fields, used = Fields(columns, told.choices, told.doubts, told.questions).mapped(found)
+    document["columns"] = fields
+    texts = texts_among(columns, used)
+    wanted = told.choices.get("dimensions")
+    if wanted is not None:
+        texts = [] if wanted == "-" else [_column(name, columns, "dimensions", wanted)]
+    if texts:
+        document["dimensions"] = {"columns": [column.name for column in texts]}
+    gallery = found.get("gallery")
+    stores = stores_among(gallery.distinct) if gallery is not None else []
+    if stores:
+        document["display"] = {"not_on_display": stores[:MOST_STORES]}
+        told.doubts.append(_said_of(stores))
+    if "on_display" not in fields and not stores:
+        told.doubts.append(
+            "nothing tells what is on display: all objects that have a place are; --choose on_display=COLUMN names one "
+            "that says it, and [display] not_on_display in the mapping names stores"
         )
-    others = ", ".join(repr(title) for title in there if title != best[1])
-    doubts.append(
-        f"of {len(there)} sheets {best[1]!r} looks most like the inventory and is read; --table takes another: {others}"
-    )
-    return {"format": "xlsx", "sheet": best[1]}, best[2]
+    if not texts and not {"height_m", "width_m", "depth_m", "diameter_m"} & set(fields):
+        told.doubts.append(
+            "no column with sizes was found; --choose height_m=COLUMN (and so on), or --choose dimensions=COLUMN for "
+            "texts such as 12 x 5 cm"
+        )
+    text = tomlkit.dumps(document)
+    proposal = Proposal.model_validate(document.unwrap())
+    return Guess(text, proposal, tuple(told.doubts), tuple(told.questions), tuple(told.sure))
 
 
-def _source(path: Path) -> dict[str, str]:
-    try:
-        with path.open("rb") as stream:
-            head = stream.read(SNIFFED)
-    except OSError as problem:
-        raise unreadable(path, problem) from problem
-    kind = recognised(str(path), head)
-    if kind is not None:
-        return {"format": kind.name}
-    encoding = _encoding(head)
-    # A character that the end of what was read cuts in two is no fault.
-    text = head.decode(encoding, "ignore")
-    delimiter = _delimiter(text)
-    if delimiter == "\t":
-        return {"format": "tsv", "encoding": encoding}
-    return {"format": "csv", "encoding": encoding, "delimiter": delimiter}
-
-
-def _encoding(head: bytes) -> str:
-    if head.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return "utf-16"
-    try:
-        head.decode("utf-8")
-    except UnicodeDecodeError as problem:
-        if problem.start < len(head) - 4:
-            return "cp1252"
-    return "utf-8"
-
-
-def _delimiter(text: str) -> str:
-    try:
-        return csv.Sniffer().sniff(text[:65536], ",;\t|").delimiter
-    except csv.Error:
-        header = text.partition("\n")[0]
-        return max(",;\t|", key=header.count)
-
-
-def _columns(path: Path, source: dict[str, str]) -> list[_Column]:
-    plain = Mapping.model_validate(
-        {
-            "source": source,
-            "museum": {"name": "-"},
-            "columns": {"object_number": {"column": "-"}, "gallery": {"column": "-"}},
-        }
-    )
-    with open_source(path, plain) as opened:
-        return _filled(path.name, opened.rows)
-
-
-def _filled(name: str, rows: Iterator[Row]) -> list[_Column]:
-    header = next(rows, None)
-    if header is None:
-        raise CollectionError(f"{name}: empty: there is no header to guess from")
-    columns = [_Column(cell.strip()) for cell in header.cells]
-    for row in islice(rows, LOOKED_AT):
-        if not row.fault[0]:
-            for column, cell in zip(columns, row.cells, strict=True):
-                column.values.append(cell)
-    return [column for column in columns if column.name]
-
-
-def _plain(name: str) -> str:
-    spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", normalize("NFC", name))
-    return re.sub(r"[\s_.:\-]+", " ", spaced).strip().casefold()
-
-
-def _mappable(field: str) -> str:
-    if field not in (*MAPPABLE, "dimensions"):
-        raise InputError(f"is {field!r}, which is no field that a column can be mapped to")
-    return field
-
-
-@dataclass(frozen=True, slots=True)
-class _ColumnNames:
-    field: Annotated[str, AfterValidator(_mappable)]
-    names: Entries
-
-
-@cache
-def _names() -> dict[str, str]:
-    rows = checked(_ColumnNames, table("column_names"), "column_names.csv", named="field")
-    return {_plain(name): row.field for row in rows for name in row.names}
-
-
-def _fields(columns: Sequence[_Column]) -> dict[str, _Column]:
-    """Return the fields whose columns are told by their names; of two for one field, the one that is filled more."""
-    found: dict[str, _Column] = {}
-    for column in columns:
-        bare = _UNIT.sub("", column.name)
-        own = column.name if column.name in MAPPABLE else None
-        name = own or _names().get(_plain(column.name)) or _names().get(_plain(bare))
-        if name is None or name == "dimensions":
+def _chosen(name: str, columns: Sequence[Column], able: Mapping[str, list[Column]], told: Told) -> dict[str, Column]:
+    """Return the column of each field: the one that was chosen, or the likeliest."""
+    found = {fieldname: those[0] for fieldname, those in able.items() if fieldname in MAPPABLE}
+    for key, wanted in told.choices.items():
+        if key in MAPPABLE:
+            found.pop(key, None)
+            if wanted != "-":
+                found[key] = _column(name, columns, key, wanted)
+    for fieldname, those in able.items():
+        # The numbers of objects are asked about below, with their reason; sizes in two units need no question.
+        if fieldname in (*told.choices, "object_number") or fieldname not in found:
             continue
-        if name not in found or len(column.filled) > len(found[name].filled):
-            found[name] = column
+        if len({bare(column.name) for column in those}) > 1:
+            names = tuple(column.name for column in those)
+            words = fieldname.removesuffix("_m").removesuffix("_kg").replace("_", " ")
+            told.questions.append(Question(fieldname, f"which column is the {words}?", names, names[0]))
+    _settle_number(able.get("object_number", ()), found, told)
+    number = found.get("object_number")
+    if number is None:
+        found["object_number"] = number = _unique(name, columns)
+        told.doubts.append(f"object numbers are taken from {number.name!r}, where each row has another one")
+        likely = tuple(c.name for c in columns if len(set(c.filled)) > 0.9 * len(c.values))
+        told.questions.append(Question("object_number", "which column has the object numbers?", likely, number.name))
+    elif len(able.get("object_number", ())) > 1 and "object_number" not in told.choices:
+        likely = tuple(column.name for column in able["object_number"])
+        told.questions.append(Question("object_number", "which column has the object numbers?", likely, number.name))
+        others = ", ".join(repr(column.name) for column in able["object_number"] if column is not number)
+        told.doubts.append(
+            f"object numbers are taken from {number.name!r}, and not from {others}; --choose object_number=COLUMN "
+            "takes another"
+        )
+    repeated = len(number.filled) - len(set(number.filled))
+    if repeated:
+        told.doubts.append(
+            f"column {number.name!r} repeats {repeated} object numbers: only the first row of each is kept"
+        )
+    if len(number.filled) < len(number.values):
+        told.doubts.append(
+            f"column {number.name!r} is empty in {len(number.values) - len(number.filled)} rows, which are refused"
+        )
     return found
 
 
-def _unique(name: str, columns: Sequence[_Column]) -> _Column:
+def _settle_number(able: Sequence[Column], found: dict[str, Column], told: Told) -> None:
+    """Take the next column of numbers where the likeliest repeats them, as the number of an accession of many does."""
+    if "object_number" in told.choices or not able:
+        return
+    least = min(_repeated(column) for column in able)
+    if _repeated(able[0]) > MOST_REPEATED >= least:
+        found["object_number"] = next(column for column in able if _repeated(column) <= MOST_REPEATED)
+        told.doubts.append(
+            f"{able[0].name!r} gives many objects one number: {found['object_number'].name!r} is taken for theirs"
+        )
+
+
+def _repeated(column: Column) -> float:
+    """Share of a column's cells that repeat another, or are empty."""
+    return 1.0 - len(column.distinct) / len(column.values) if column.values else 1.0
+
+
+def _column(name: str, columns: Sequence[Column], key: str, wanted: str) -> Column:
+    for column in columns:
+        if column.name == wanted:
+            return column
+    there = ", ".join(repr(column.name) for column in columns[:80])
+    raise CollectionError(f"{name}: --choose {key}: there is no column {wanted!r}; its columns are {there}")
+
+
+def _unique(name: str, columns: Sequence[Column]) -> Column:
     for column in columns:
         if column.filled and len(set(column.filled)) == len(column.values):
             return column
+    there = ", ".join(repr(column.name) for column in columns[:30])
     raise CollectionError(
-        f"{name}: no column looks like object numbers; write a mapping by hand, from a copy of one that "
-        "`kouros import --presets` lists"
+        f"{name}: no column looks like object numbers. Its columns are {there}. Say which has them: --choose "
+        "object_number=COLUMN; or where the names of the columns stand: --choose header_row=NUMBER"
     )
 
 
-def _commas(columns: Sequence[_Column]) -> bool:
-    numbers = [number for column in columns for number in column.numbers]
-    return sum("," in n for n in numbers) > sum("." in n for n in numbers)
+def _of_preset(name: str, columns: Sequence[Column], told: Told) -> Guess:
+    """Return a preset, and what the source leaves empty of what it reads."""
+    text = (PRESETS / f"{name}.toml").read_text(encoding="utf-8")
+    proposal = load_mapping(name)
+    filled = {column.name for column in columns if column.filled}
+
+    def tells(*fields: str) -> bool:
+        read = [proposal.columns[one] for one in fields if one in proposal.columns]
+        return any(one.constant is not None or filled & set(one.sources) for one in read)
+
+    if not tells("object_number"):
+        told.doubts.append("no record tells object numbers: export them")
+    if not tells("gallery"):
+        told.doubts.append(
+            "no record tells where an object is: export the current location, or put a constant in [columns.gallery]"
+        )
+    texts = () if proposal.dimensions is None else proposal.dimensions.columns
+    if not tells("height_m", "width_m", "depth_m", "diameter_m") and not filled & set(texts):
+        told.doubts.append("no record tells sizes: export the dimensions too")
+    places = proposal.columns["gallery"].sources
+    stores = stores_among(_joined(columns, places, proposal.columns["gallery"].separator))
+    if stores:
+        document = tomlkit.parse(text)
+        document["display"] = {"not_on_display": stores[:MOST_STORES]}
+        text = tomlkit.dumps(document)
+        told.doubts.append(_said_of(stores))
+    elif not tells("on_display"):
+        told.doubts.append("nothing tells what is on display: name stores in the mapping, [display] not_on_display")
+    return Guess(text, Proposal.model_validate(tomlkit.parse(text).unwrap()), tuple(told.doubts), (), tuple(told.sure))
 
 
-def _mapped(found: dict[str, _Column], doubts: list[str]) -> tomlkit.items.Table:
-    out = tomlkit.table()
-    for name in MAPPABLE:
-        if name == "gallery" and name not in found:
-            out[name] = {"constant": "Location not recorded"}
-            doubts.append("no column tells where an object is: all are in one gallery until you name one")
-        column = found.get(name)
-        if column is None:
-            continue
-        entry = tomlkit.table()
-        entry["column"] = column.name
-        units = units_of(name)
-        if units:
-            unit = _unit(column, units, doubts)
-            if unit is None:
-                continue
-            entry["unit"] = unit
-            if any(float(n.replace(",", ".")) == 0.0 for n in column.numbers):
-                entry["missing"] = [0.0]
-        if name == "aat":
-            entry = tomlkit.table()
-            entry["columns"] = [column.name]
-        out[name] = entry
-    return out
+def _joined(columns: Sequence[Column], names: Sequence[str], separator: str) -> list[str]:
+    """Return the different texts that some columns give together."""
+    read = [next(column for column in columns if column.name == name) for name in names]
+    rows = zip(*(column.values for column in read), strict=True)
+    return list(dict.fromkeys(separator.join(filter(None, map(str.strip, row))) for row in rows))
 
 
-def _unit(column: _Column, units: object, doubts: list[str]) -> str | None:
-    told = _UNIT.search(column.name)
-    unit = _UNITS.get(told[1].lower(), told[1].lower()) if told else None
-    if unit is not None and unit in units:  # type: ignore[operator]
-        return unit
-    filled = column.filled
-    if filled and len(column.numbers) < 0.5 * len(filled):
-        if column.dimensional > 0.5:
-            return WRITTEN
-        doubts.append(f"column {column.name!r} holds neither numbers nor lengths with units: left out")
-        return None
-    if "kg" in units:  # type: ignore[operator]
-        doubts.append(f"column {column.name!r} tells no unit: kilograms are taken")
-        return "kg"
-    sixteenths = sum(bool(_SIXTEENTHS.fullmatch(n)) for n in column.numbers)
-    tenths = sum(bool(_TENTHS.fullmatch(n)) for n in column.numbers)
-    inches = sixteenths >= FEWEST and sixteenths > 3 * tenths
-    doubts.append(
-        f"column {column.name!r} tells no unit: "
-        + ("inches are taken, for it has eighths and sixteenths" if inches else "centimetres are taken")
-    )
-    return "in" if inches else "cm"
-
-
-def _texts_of_dimensions(columns: Sequence[_Column], found: dict[str, _Column]) -> list[str]:
-    """Return the columns called dimensions that hold some; else the one whose texts are mostly such."""
-    free = [column for column in columns if column.name not in {used.name for used in found.values()}]
-    named = [c.name for c in free if _names().get(_plain(c.name)) == "dimensions" and c.dimensional > 0.2]
-    if named:
-        return named
-    texts = [c for c in free if len(c.filled) > 0.2 * len(c.values) and len(c.numbers) < 0.5 * len(c.filled)]
-    best = max(texts, key=lambda c: c.dimensional, default=None)
-    return [best.name] if best is not None and best.dimensional > 0.6 else []
+def _said_of(stores: Sequence[str]) -> str:
+    shown = ", ".join(map(repr, stores[:5])) + (", ..." if len(stores) > 5 else "")
+    return f"{counted(len(stores), 'place')} counted as stores, by their names: {shown}"

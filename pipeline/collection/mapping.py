@@ -380,7 +380,7 @@ def _fault(field: str, column: ColumnMap) -> str:
         return f'a {"length" if units is LENGTHS else "mass"} {given}; add unit = "..." with one of {", ".join(units)}'
     if not units and column.unit is not None:
         return f"unit is for lengths ({', '.join(LENGTHS)}) and masses ({', '.join(MASSES)}) only; leave it out"
-    if column.columns and kind != "text":
+    if column.columns and kind != "text" and column.unit != WRITTEN:
         return f"only texts can be joined from several columns, this is a {kind}; name one column"
     if kind == "polygon" and (column.values or column.unit == WRITTEN):
         return f"a polygon needs a unit of {', '.join(LENGTHS)}, and no values; leave out {WRITTEN!r} and values"
@@ -405,7 +405,9 @@ def _fault(field: str, column: ColumnMap) -> str:
 
 
 def _constant_fault(field: str, kind: str, column: ColumnMap) -> str:
-    if kind != "text" or field == "object_number":
+    if kind == "flag" and column.constant not in ("true", "false"):
+        return 'the constant of a flag is "true" or "false"'
+    if kind not in ("text", "flag") or field == "object_number":
         return "a constant is for texts that all objects share, such as the gallery; name a column"
     if column.unit is not None or column.missing or column.values or column.optional:
         return "a constant needs no unit, missing, values or optional; leave them out"

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.limits import STANDARD, Limits
 from pipeline.collection.mapping import Mapping
 from pipeline.collection.sources.base import HEAD, Opened, Request, Source
+from pipeline.collection.sources.long_form import gathered
 from pipeline.collection.sources.registry import is_address, recognised, source_named
 
 
@@ -51,8 +53,9 @@ def open_source(where: str | Path, mapping: Mapping, limits: Limits = STANDARD) 
         key_column=mapping.columns["object_number"].sources[0],
         limits=limits,
     )
+    long = mapping.source.long
     with source.open(request) as opened:
-        yield opened
+        yield opened if long is None else replace(opened, rows=gathered(opened.rows, long, opened.name))
 
 
 def _check(where: str | Path, mapping: Mapping, source: Source) -> None:

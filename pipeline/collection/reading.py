@@ -262,7 +262,11 @@ class RowReader:
         texts = mapping.dimensions
         self._texts = texts and [names.index(source) for source in texts.columns if source in names]
         self._mapping = mapping
-        self._constants = {f: c.constant for f, c in mapping.columns.items() if c.constant is not None}
+        self._constants: dict[str, str | bool] = {
+            f: c.constant == "true" if KINDS.get(f) == "flag" else c.constant
+            for f, c in mapping.columns.items()
+            if c.constant is not None
+        }
         self._header = bytes.fromhex(row_digest(b"", header.cells))
         self._known = known
         self._again: set[str] = set()

@@ -3,9 +3,10 @@
 import csv
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from heapq import merge
+from itertools import takewhile
 from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -61,9 +62,24 @@ def bundled_collection() -> Path:
     return Path(__file__).resolve().parents[1] / "collection" / "data" / "carnegie_2000.csv"
 
 
-def presets() -> dict[str, tuple[str, Path]]:
-    """Return the mappings that come with Kouros, by name: the museum or the system that they are for, and the file."""
-    return {name: (load_mapping(name).museum.name, preset_file(name)) for name in preset_names()}
+@dataclass(frozen=True)
+class Preset:
+    """A mapping that comes with Kouros: the museum or the system that it is for, what it expects, and its file."""
+
+    about: str
+    expects: str
+    file: Path
+
+
+def presets() -> dict[str, Preset]:
+    """Return the mappings that come with Kouros, by name; what each expects is the first sentence of its file."""
+    found = {}
+    for name in preset_names():
+        file = preset_file(name)
+        lines = takewhile(lambda line: line.startswith("# "), file.read_text(encoding="utf-8").splitlines())
+        words = " ".join(line.removeprefix("# ") for line in lines)
+        found[name] = Preset(load_mapping(name).museum.name, re.split(r"(?<=[a-z)])\. ", words)[0].rstrip("."), file)
+    return found
 
 
 @dataclass(frozen=True)
@@ -83,15 +99,17 @@ class Proposed:
     suspicions: tuple[Suspicion, ...]
 
 
-def proposed(source: str, table: str | None = None, most: int = 10) -> Proposed:
+def proposed(
+    source: str, table: str | None = None, most: int = 10, choices: Mapping[str, str] | None = None
+) -> Proposed:
     """Guess a mapping for a file or a database and read it with that; nothing is written.
 
-    table  : see `guess`
+    table, choices : see `guess`
     raises : CollectionError for a source that cannot be read
     """
     from pipeline.collection.guess import guess
 
-    found = guess(source, table)
+    found = guess(source, table, choices)
     reading = read_items(source, found.mapping)
     step = max(len(reading.items) // most, 1)
     examples = tuple(_in_words(item) for item in reading.items[::step][:most])

@@ -11,6 +11,9 @@ from sqlalchemy import create_engine, text
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guess import guess
+from pipeline.collection.guessing.names import named
+from pipeline.collection.guessing.text_files import Head, encoding_of, head_of
+from pipeline.collection.guessing.words import stores_among
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.night.importing import presets, proposed
@@ -57,7 +60,7 @@ def test_the_only_table_of_a_database_is_guessed_from(url: str) -> None:
     assert [item.height_m for item in read_items(url, found.guess.mapping).items] == [0.205, 0.08]
 
 
-def test_of_several_tables_one_must_be_named(url: str) -> None:
+def test_of_several_tables_the_likeliest_is_taken_and_the_others_named(url: str) -> None:
     fill(url, "objects", "loans")
     schema = url.startswith("postgresql")
     if schema:
@@ -66,10 +69,10 @@ def test_of_several_tables_one_must_be_named(url: str) -> None:
             connection.execute(text("CREATE SCHEMA tms"))
         engine.dispose()
         fill(url, "tms.things")
-    with pytest.raises(CollectionError) as asked:
-        guess(url)
-    assert "say by --table which of its tables holds the objects" in str(asked.value)
-    assert str(asked.value).endswith("it has 'loans', 'objects'" + (", 'tms.things'" if schema else ""))
+    found = guess(url)
+    assert found.mapping.source.table == "objects"
+    others = "'loans'" + (", 'tms.things'" if schema else "")
+    assert f"table 'objects' looks most like the objects; --table takes another: {others}" in found.doubts
     with pytest.raises(CollectionError, match="has no table or view 'object'"):
         guess(url, "object")
     assert guess(url, "loans").mapping.source.table == "loans"
@@ -140,9 +143,143 @@ def test_a_table_of_a_text_file_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_preset_names_its_file_which_can_be_copied_and_used(tmp_path: Path) -> None:
-    for name, (museum, file) in presets().items():
+    for name, preset in presets().items():
         copy = tmp_path / "ours.toml"
-        copy.write_bytes(file.read_bytes())
+        copy.write_bytes(preset.file.read_bytes())
         ours = load_mapping(copy)
         assert ours.columns == load_mapping(name).columns
-        assert ours.museum.name == museum
+        assert ours.museum.name == preset.about
+        assert len(preset.expects) > 20
+
+
+def test_tables_without_numbers_of_objects_are_listed(tmp_path: Path) -> None:
+    where = f"sqlite:///{tmp_path / 'other.sqlite'}"
+    engine = create_engine(where)
+    with engine.begin() as connection:
+        connection.execute(text("CREATE TABLE people (name TEXT)"))
+        connection.execute(text("CREATE TABLE letters (written TEXT)"))
+    engine.dispose()
+    with pytest.raises(CollectionError, match=r"say by --table which of its tables .*it has 'letters', 'people'"):
+        guess(where)
+
+
+TITLED = "Museum of Things,,,\nList of 2024,,,\n\nNo.,Place,Size,Flag\n1,Hall,12 cm,ja\n2,Store 1,13 cm,nein\n"
+
+
+def test_what_was_chosen_is_taken_and_what_cannot_be_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "list.csv"
+    path.write_text(TITLED, encoding="utf-8")
+    chosen = {"header_row": "4", "object_number": "No.", "gallery": "Place", "on_display": "Flag", "dimensions": "Size"}
+    found = guess(path, choices=chosen)
+    assert found.mapping.source.header_row == 4
+    assert {name: m.column for name, m in found.mapping.columns.items()} == {
+        "object_number": "No.",
+        "gallery": "Place",
+        "on_display": "Flag",
+    }
+    assert found.mapping.dimensions is not None
+    assert found.mapping.display.not_on_display == ("Store 1",)
+    assert [item.on_display for item in read_items(path, found.mapping).items] == [True, False]
+    for choice, said in (
+        ({"gallery": "Room"}, "--choose gallery: there is no column 'Room'; its columns are"),
+        ({"colour": "Room"}, "--choose colour: there is no such choice; choose a field"),
+        ({"header_row": "four"}, "needs a number, such as header_row=4"),
+        ({"encoding": "ebcdic-x"}, "there is no encoding 'ebcdic-x'; try utf-8"),
+    ):
+        with pytest.raises(CollectionError) as refused:
+            guess(path, choices=chosen | choice)
+        assert said in str(refused.value)
+
+
+WORDS = {
+    "cp1252": "Höhe und Größe; Église d’été – salle à côté; Óleo sobre lienzo, sección; João, coleção de açúcar",
+    "mac-roman": "Pâte de verre émaillée, déposée à l’hôtel – Noël; Böcklin, Gemälde über Kühe; señora, città più là",
+    "cp1250": "ceramică, înălțime; cană, oală; Muzeul Național al Satului, sală, țesătură".replace("ț", "ţ"),
+    "utf-8": "Höhe, Église, înălțime, 高さ",
+    "utf-16": "Höhe, Église, înălțime, 高さ",
+    "shift-jis": "資料番号は展示室にあります。高さと幅をはかる",
+    "euc-jp": "資料番号は展示室にあります。高さと幅をはかる",
+}
+
+
+@pytest.mark.parametrize("encoding", WORDS)
+def test_texts_come_back_as_they_were_written(encoding: str) -> None:
+    """What counts is the text, not the name: two encodings may write the same letters with the same bytes."""
+    wanted = WORDS[encoding]
+    content = wanted.encode(encoding)
+    assert content.decode(encoding_of(content)) == wanted
+
+
+def test_where_columns_are_named() -> None:
+    """Titles above, two rows of a merged head, and a table that begins with its head: each as a person sees it."""
+    plain = [(1, ["Inv. no.", "Title", "Height (cm)"]), (2, ["1", "Vase", "12"]), (3, ["2", "Bowl", "7"])]
+    assert head_of(plain) == Head(1, 1, 3)
+    titled = [(1, ["Museum", "", ""]), *((number + 4, cells) for number, cells in plain)]
+    assert head_of(titled) == Head(5, 1, 3)
+    merged = [
+        (1, ["Inventarnr.", "Titel", "Maße (mm)", "", ""]),
+        (2, ["", "", "H", "B", "T"]),
+        (3, ["1", "Vase", "120", "80", "70"]),
+        (4, ["2", "Krug", "220", "80", "75"]),
+    ]
+    found = head_of(merged)
+    assert (found.row, found.rows) == (1, 2)
+
+
+@pytest.mark.parametrize(
+    ("name", "field"),
+    [
+        ("N° d’inventaire", "object_number"),
+        ("Inv.-Nr.", "object_number"),
+        ("Número de inventário", "object_number"),
+        ("Nr. inventar", "object_number"),
+        ("Alte Inv.-Nr.", None),
+        ("AccessionDate", None),
+        ("Akt. Standort", "gallery"),
+        ("Ubicación actual", "gallery"),
+        ("Localização", "gallery"),
+        ("Höhe in cm", "height_m"),
+        ("altezza [mm]", "height_m"),
+        ("Înălțime", "height_m"),
+        ("Dimensions (cm) / Hauteur", "height_m"),
+        ("Objeto/Documento", "object_name"),
+        ("材質", "medium"),
+        ("Tentoongesteld", "on_display"),
+        ("Provenance", None),
+    ],
+)
+def test_names_of_columns_in_eight_languages(name: str, field: str | None) -> None:
+    found = named(name)
+    assert (None if found is None else found.field) == field
+
+
+def test_a_store_is_no_visible_storage() -> None:
+    places = ["Depot A, rek 3", "Schaudepot", "Réserve 2", "Open storage 4", "Salle 3", "収蔵庫2", "Depotstraße-Saal"]
+    assert stores_among(places) == ["Depot A, rek 3", "Réserve 2", "収蔵庫2"]
+
+
+def test_joins_are_proposed_for_a_database_with_declared_keys(url: str) -> None:
+    """Of two places the current one; measurements in a unit of each row; on either kind of database."""
+    engine = create_engine(url.replace("postgresql://", "postgresql+psycopg://"))
+    with engine.begin() as connection:
+        for statement in (
+            "CREATE TABLE locations (id INTEGER PRIMARY KEY, name TEXT, building TEXT)",
+            "CREATE TABLE units (id INTEGER PRIMARY KEY, symbol TEXT)",
+            "CREATE TABLE artworks (id INTEGER PRIMARY KEY, accession_number TEXT, title TEXT, home_location_id "
+            "INTEGER REFERENCES locations(id))",
+            "CREATE TABLE movements (id INTEGER PRIMARY KEY, artwork_id INTEGER REFERENCES artworks(id), location_id "
+            "INTEGER REFERENCES locations(id), is_current BOOLEAN)",
+            "CREATE TABLE measurements (id INTEGER PRIMARY KEY, artwork_id INTEGER REFERENCES artworks(id), kind TEXT, "
+            "value DOUBLE PRECISION, unit_id INTEGER REFERENCES units(id))",
+            "INSERT INTO locations VALUES (1, 'Gallery 1', 'Main'), (2, 'Gallery 2', 'Main')",
+            "INSERT INTO units VALUES (1, 'cm'), (2, 'in'), (3, 'kg')",
+            "INSERT INTO artworks VALUES (1, 'A.1', 'Vase', 2), (2, 'A.2', 'Bowl', 2)",
+            "INSERT INTO movements VALUES (1, 1, 2, FALSE), (2, 1, 1, TRUE), (3, 2, 2, TRUE)",
+            "INSERT INTO measurements VALUES (1, 1, 'height', 20.5, 1), (2, 1, 'width', 10, 2), (3, 2, 'weight', 3, 3)",
+        ):
+            connection.execute(text(statement))
+    engine.dispose()
+    found = guess(url, "artworks")
+    first, second = read_items(url, found.mapping).items
+    assert (first.object_number, first.height_m, first.width_m) == ("A.1", 0.205, 0.254)
+    assert (second.object_number, second.height_m, second.mass_kg) == ("A.2", None, 3.0)

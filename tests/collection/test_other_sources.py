@@ -133,7 +133,10 @@ def test_a_source_of_another_package_is_imported_and_a_night_is_run_with_it(outs
 
 def test_without_the_package_its_mapping_says_what_there_is(tmp_path: Path) -> None:
     (tmp_path / "mapping.toml").write_text(MAPPING, encoding="utf-8")
-    with pytest.raises(MappingError, match=r"source: there is no format 'jsonl'.*Known are csv, tsv, xlsx, lido, sql"):
+    with pytest.raises(
+        MappingError,
+        match=r"source: there is no format 'jsonl'.*Known are csv, tsv, xlsx, lido, adlib, museumplus, linked_art, sql",
+    ):
         load_mapping(tmp_path / "mapping.toml")
 
 
@@ -151,7 +154,16 @@ def test_what_is_no_source_is_told(value: object, message: str) -> None:
 
 
 def test_each_kind_has_its_own_name_and_settings() -> None:
-    assert [one.name for one in SOURCES.own] == ["csv", "tsv", "xlsx", "lido", "sql"]
+    assert [one.name for one in SOURCES.own] == [
+        "csv",
+        "tsv",
+        "xlsx",
+        "lido",
+        "adlib",
+        "museumplus",
+        "linked_art",
+        "sql",
+    ]
     for one in SOURCES.own:
         assert one.Settings.model_fields["format"].annotation.__args__ == (one.name,)  # type: ignore[union-attr]
 

@@ -26,6 +26,18 @@ HEAD = 4096
 """Bytes of the beginning of a file by which a source may recognise it."""
 
 
+class LongForm(BaseModel):
+    """A source in long form: several rows an object, each with one of its measurements."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    object: Name = Field(description="The column with the object's number; an empty cell is of the object above.")
+    type: Name = Field(description="The column that says what was measured, such as height or Breite.")
+    value: Name = Field(description="The column with the numbers.")
+    unit: Name | None = Field(default=None, description="The column with their units.")
+    part: Name | None = Field(default=None, description="The column that says of which part, such as whole or frame.")
+
+
 class SourceSettings(BaseModel):
     """The section [source] of a mapping: what every source takes; each adds fields of its own in a subclass."""
 
@@ -35,6 +47,12 @@ class SourceSettings(BaseModel):
     decimal: Literal[".", ","] = Field(default=".", description="The decimal mark of numbers that stand in texts.")
     unmapped_columns: Literal["ignore", "refuse"] = Field(
         default="ignore", description="What to do with a column that no field is mapped to."
+    )
+    long: LongForm | None = Field(
+        default=None,
+        description="Where each measurement has a row of its own: which columns tell it. They become the columns "
+        '"height", "width", "depth", "diameter", "weight" and others, "base height", "frame width", with their units '
+        "as written.",
     )
 
 

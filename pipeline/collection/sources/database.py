@@ -55,7 +55,7 @@ class Database(Source):
             request.where,
             query=wanted.query,
             table=wanted.table,
-            columns=request.columns if wanted.table else None,
+            columns=request.columns if wanted.table and wanted.long is None else None,
             optional=request.optional,
             order_by=request.key_column if wanted.table else None,
             timeout_seconds=min(wanted.timeout_seconds or TIMEOUT, request.limits.seconds),

@@ -15,6 +15,7 @@ from pydantic import Field, model_validator
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import FileSource, Request, SourceSettings
+from pipeline.collection.sources.heads import joined_heads
 from pipeline.collection.sources.rows import Row
 from pipeline.errors import InputError
 
@@ -166,8 +167,12 @@ class _Table:
         return out
 
 
-def read_delimited(binary: BufferedReader, file: str, delimiter: str, encoding: str) -> Iterator[Row]:
+def read_delimited(
+    binary: BufferedReader, file: str, delimiter: str, encoding: str, header_row: int = 1, header_rows: int = 1
+) -> Iterator[Row]:
     """Yield the header (number 0) of a CSV file and then every row that is not blank, whole or broken.
+
+    A row whose cells are all empty is blank.
 
     Parameters
     ----------
@@ -179,6 +184,10 @@ def read_delimited(binary: BufferedReader, file: str, delimiter: str, encoding: 
         The one character between two cells.
     encoding : str
         How its letters are coded.
+    header_row : int
+        The line from which on the columns are named; what stands above it is left out.
+    header_rows : int
+        How many rows name them together (`heads.joined_heads`).
 
     Yields
     ------
@@ -193,17 +202,25 @@ def read_delimited(binary: BufferedReader, file: str, delimiter: str, encoding: 
     """
     table = _Table(binary, file, delimiter, encoding)
     number = width = 0
+    heads: list[list[str]] = []
     while some := table.some():
-        for start, cells, found in some:
-            fault = found
+        for start, read, found in some:
+            cells, fault = read, found
+            if start < header_row or not (fault[0] or any(map(str.strip, cells))):
+                continue
             if number == 0:
                 if fault[0]:
                     raise CollectionError(f"{file}, line {start}: the header cannot be read: {fault[0]}; {fault[1]}")
+                heads.append(cells)
+                if len(heads) < header_rows:
+                    continue
+                cells = heads[0] if header_rows == 1 else joined_heads(heads)
                 width = len(cells)
             elif not fault[0] and len(cells) != width:
                 fault = (
                     f"{len(cells)} cells, the header has {width}",
-                    "see whether a cell with a delimiter lacks its quotation marks, or cells were shifted",
+                    "see whether a cell with a delimiter lacks its quotation marks, or cells were shifted; where "
+                    "titles stand above the names of the columns, name their line: [source] header_row",
                 )
             yield Row(number, start, cells, fault)
             number += 1
@@ -257,7 +274,18 @@ def _cell_fault(cells: list[str], encoding: str) -> tuple[str, str]:
     return "", ""
 
 
-class CsvSettings(SourceSettings):
+class HeadedSettings(SourceSettings):
+    """How the names of columns stand in a table."""
+
+    header_row: int | None = Field(
+        default=None, ge=1, le=100, description="The row (or line) of the column names, below titles; 1."
+    )
+    header_rows: int | None = Field(
+        default=None, ge=1, le=4, description="How many rows name the columns together, as where cells are merged; 1."
+    )
+
+
+class CsvSettings(HeadedSettings):
     """How a CSV file is read."""
 
     format: Literal["csv"] = Field(description="The kind of source.")
@@ -273,7 +301,7 @@ class CsvSettings(SourceSettings):
         return self
 
 
-class TsvSettings(SourceSettings):
+class TsvSettings(HeadedSettings):
     """How a file with tabs between its cells is read."""
 
     format: Literal["tsv"] = Field(description="The kind of source.")
@@ -304,7 +332,8 @@ class Csv(FileSource):
         Row
             First the header.
         """
-        return read_delimited(binary, file, request.settings.delimiter, request.settings.encoding)
+        own = request.settings
+        return read_delimited(binary, file, own.delimiter, own.encoding, own.header_row or 1, own.header_rows or 1)
 
 
 class Tsv(Csv):
@@ -327,4 +356,5 @@ class Tsv(Csv):
         Row
             First the header.
         """
-        return read_delimited(binary, file, "\t", request.settings.encoding)
+        own = request.settings
+        return read_delimited(binary, file, "\t", own.encoding, own.header_row or 1, own.header_rows or 1)

@@ -35,18 +35,11 @@ from pydantic import Field
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import HEAD, FileSource, Name, Request, SourceSettings
-from pipeline.collection.sources.delimited import RECORD_LIMIT
 from pipeline.collection.sources.files import stream_of
-from pipeline.collection.sources.lido_terms import (
-    FORMER,
-    KIND_CONCEPTS,
-    KINDS,
-    LANGUAGES,
-    PARTS,
-    PRODUCTION,
-    UNIT_CONCEPTS,
-)
+from pipeline.collection.sources.lido_terms import FORMER, LANGUAGES, PRODUCTION
+from pipeline.collection.sources.measurement_terms import KIND_CONCEPTS, KINDS, PARTS, UNIT_CONCEPTS
 from pipeline.collection.sources.rows import Row
+from pipeline.collection.sources.xml_records import XmlRecords
 
 COLUMNS = (
     "object_number",
@@ -76,7 +69,6 @@ _WIKIDATA = re.compile(r"https?://(?:www\.)?wikidata\.org/(?:entity|wiki)/(Q[0-9
 _OWN_NUMBER = re.compile("inventor|inventar|inventaire|accession|lido00113", re.I)
 _KIND_OF = {name.casefold(): kind for kind, names in KINDS.items() for name in names}
 _PART_OF = {name.casefold(): part for part, names in PARTS.items() for name in names}
-_EXPORT_AGAIN = "export the file again, and see whether it was cut off on its way"
 
 
 def read_records(source: str | Path | BinaryIO, file: str, *, languages: Sequence[str] = ("en",)) -> Iterator[Row]:
@@ -108,66 +100,21 @@ def read_records(source: str | Path | BinaryIO, file: str, *, languages: Sequenc
         stream = stream_of(source, file, stack)
         yield Row(0, 1, list(COLUMNS))
         preferred = tuple(_language(code) for code in languages)
-        for number, record in enumerate(_records(_Bounded(stream, file), file), start=1):
+        for number, record in enumerate(_records(stream, file), start=1):
             cells = _Record(record, preferred).cells()
             yield Row(number, record.sourceline, [cells.get(column, "") for column in COLUMNS])
 
 
-class _Bounded:
-    """A stream that ends in an error where RECORD_LIMIT bytes go by without a whole record: the tree stays small."""
-
-    def __init__(self, stream: BinaryIO, file: str) -> None:
-        self._stream = stream
-        self._file = file
-        self.since_record = 0
-
-    def read(self, size: int = -1) -> bytes:
-        block = self._stream.read(size)
-        self.since_record += len(block)
-        if self.since_record > RECORD_LIMIT:
-            raise CollectionError(
-                f"{self._file}: {RECORD_LIMIT:,} bytes without a whole LIDO record; see whether this is the right file"
-            )
-        return block
-
-
-def _records(stream: _Bounded, file: str) -> Iterator[Any]:
-    from lxml import etree
-
-    events = etree.iterparse(
-        stream,
-        events=("start", "end"),
-        tag=[f"{_LIDO}lido", _TOKEN],
-        resolve_entities=False,
-        no_network=True,
-        load_dtd=False,
-        huge_tree=False,
-        remove_comments=True,
-        remove_pis=True,
+def _records(stream: BinaryIO, file: str) -> Iterator[Any]:
+    found = XmlRecords(
+        file,
+        tag=f"{_LIDO}lido",
+        what="LIDO record",
+        none="holds no LIDO record (lido:lido of http://www.lido-schema.org), its root is {root}; export it as LIDO "
+        "1.0 or 1.1",
+        also=_TOKEN,
     )
-    seen = 0
-    while True:
-        try:
-            event, element = next(events)
-        except StopIteration:
-            break
-        except etree.XMLSyntaxError as problem:
-            raise CollectionError(
-                f"{file}, line {problem.lineno or 1}: not well-formed XML after {seen} records: "
-                f"{str(problem)[:200]}; {_EXPORT_AGAIN}"
-            ) from problem
-        except OSError as problem:
-            raise CollectionError(
-                f"{file}: reading stopped after {seen} records: {problem.strerror or problem}; see whether the disk or "
-                "the network share is there and import again"
-            ) from problem
-        if event == "start":
-            if element.getroottree().docinfo.doctype:
-                raise CollectionError(
-                    f"{file}: declares a document type or entities, which LIDO never needs and can hide harm; remove "
-                    "the line that begins with <!DOCTYPE"
-                )
-            continue
+    for element in found.read(stream):
         if element.tag == _TOKEN:
             if (element.text or "").strip():
                 raise CollectionError(
@@ -175,25 +122,7 @@ def _records(stream: _Bounded, file: str) -> Iterator[Any]:
                     "one file without resumptionToken"
                 )
             continue
-        if any(above.tag == element.tag for above in element.iterancestors()):
-            raise CollectionError(f"{file}, line {element.sourceline}: a record within a record; {_EXPORT_AGAIN}")
-        seen += 1
         yield element
-        stream.since_record = 0
-        _forget(element)
-    if not seen:
-        root = events.root.tag if events.root is not None else "nothing"
-        raise CollectionError(
-            f"{file}: holds no LIDO record (lido:lido of http://www.lido-schema.org), its root is {root[:100]}; export "
-            "it as LIDO 1.0 or 1.1"
-        )
-
-
-def _forget(element: Any) -> None:
-    element.clear()
-    for place in (element, *element.iterancestors()):
-        while (before := place.getprevious()) is not None:
-            before.getparent().remove(before)
 
 
 class _Record:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from pipeline.collection.sources.adlib import Adlib
 from pipeline.collection.sources.base import Source, SourceSettings
 from pipeline.collection.sources.database import Database
 from pipeline.collection.sources.delimited import Csv, Tsv
 from pipeline.collection.sources.lido import Lido
+from pipeline.collection.sources.linked_art import LinkedArt
+from pipeline.collection.sources.museumplus import MuseumPlus
 from pipeline.collection.sources.xlsx import Xlsx
 from pipeline.errors import InputError
 from pipeline.extensions import Registry
@@ -33,7 +36,9 @@ def _source(value: object) -> Source:
     return found
 
 
-SOURCES: Registry[Source] = Registry("kouros.sources", (Csv(), Tsv(), Xlsx(), Lido(), Database()), _source)
+SOURCES: Registry[Source] = Registry(
+    "kouros.sources", (Csv(), Tsv(), Xlsx(), Lido(), Adlib(), MuseumPlus(), LinkedArt(), Database()), _source
+)
 """All kinds of sources, in the order in which they are asked whether they recognise one."""
 
 

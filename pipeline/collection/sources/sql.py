@@ -14,7 +14,7 @@ import time
 import uuid
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -44,9 +44,6 @@ FETCH = 200
 
 LOCK_SECONDS = 10.0
 """How long a locked SQLite file is waited for."""
-
-_OWN_SCHEMAS = ("information_schema", "pg_", "mysql", "performance_schema", "sys")
-"""How the schemas begin that a server keeps for itself."""
 
 _STEPS = 10_000
 """Instructions of SQLite between two looks at the clock."""
@@ -150,8 +147,11 @@ def read_database(
         raise _explained(problem, address, reached, timeout_seconds) from None
 
 
-def tables(url: str, *, timeout_seconds: float = 60.0, environment: Mapping[str, str] | None = None) -> tuple[str, ...]:
-    """Return the tables and views that a museum's database lists.
+@contextmanager
+def inspected(
+    url: str, *, timeout_seconds: float = 60.0, environment: Mapping[str, str] | None = None
+) -> Iterator[Inspector]:
+    """Open a museum's database to see which tables it has.
 
     Parameters
     ----------
@@ -162,10 +162,10 @@ def tables(url: str, *, timeout_seconds: float = 60.0, environment: Mapping[str,
     environment : mapping of str to str, or None
         Where ${NAME} is looked up, the process's own unless given.
 
-    Returns
-    -------
-    tuple of str
-        Of the default schema by name, then schema.name.
+    Yields
+    ------
+    Inspector
+        SQLAlchemy's own.
 
     Raises
     ------
@@ -176,14 +176,7 @@ def tables(url: str, *, timeout_seconds: float = 60.0, environment: Mapping[str,
     try:
         with ExitStack() as stack, warnings.catch_warnings():
             warnings.simplefilter("ignore")  # on types that SQLAlchemy does not know, which do not matter here
-            inspector = inspect(_open(address, _Clock(timeout_seconds), stack))
-            found = sorted({*inspector.get_table_names(), *inspector.get_view_names()})
-            if address.url.get_backend_name() != "sqlite":
-                for schema in sorted(inspector.get_schema_names()):
-                    if schema != inspector.default_schema_name and not schema.startswith(_OWN_SCHEMAS):
-                        names = {*inspector.get_table_names(schema), *inspector.get_view_names(schema)}
-                        found += sorted(f"{schema}.{name}" for name in names)
-            return tuple(found)
+            yield inspect(_open(address, _Clock(timeout_seconds), stack))
     except (SQLAlchemyError, OSError, UnicodeError, ImportError, _TimedOutError) as problem:
         raise _explained(problem, address, 0, timeout_seconds) from None
 

@@ -16,10 +16,20 @@ from typing import Any, BinaryIO, Literal
 from pydantic import Field
 
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.sources.base import FileSource, Name, Request, SourceSettings
+from pipeline.collection.sources.base import FileSource, Name, Request
+from pipeline.collection.sources.delimited import HeadedSettings
 from pipeline.collection.sources.files import stream_of
+from pipeline.collection.sources.heads import joined_heads
 from pipeline.collection.sources.rows import Row, as_text
-from pipeline.collection.sources.workbook import SAVE_AGAIN, Range, Survey, check_archive, check_kind, survey
+from pipeline.collection.sources.workbook import (
+    COLUMN_LIMIT,
+    SAVE_AGAIN,
+    Range,
+    Survey,
+    check_archive,
+    check_kind,
+    survey,
+)
 
 _DAMAGE = (
     ArithmeticError,
@@ -44,7 +54,12 @@ _ZEROS = re.compile("0{2,20}")
 
 
 def read_sheet(
-    source: str | Path | BinaryIO, file: str, *, sheet: str | None = None, header_row: int = 1
+    source: str | Path | BinaryIO,
+    file: str,
+    *,
+    sheet: str | None = None,
+    header_row: int = 1,
+    header_rows: int = 1,
 ) -> Iterator[Row]:
     """Yield the header (number 0) and then every row of a sheet that is not blank; a row's line is its number there.
 
@@ -65,6 +80,8 @@ def read_sheet(
         The sheet's name; may be left out where only one sheet is visible.
     header_row : int
         The row (from 1) that names the columns; what stands above it is left out.
+    header_rows : int
+        How many rows name them together (`heads.joined_heads`); cells that are merged there are no fault.
 
     Yields
     ------
@@ -95,7 +112,7 @@ def read_sheet(
         if found.last_row and found.last_row < header_row:
             raise CollectionError(f"{file}: {page.title!r} ends in row {found.last_row}; say which row is the header")
         if found.last_row:
-            yield from _rows(page, file, header_row, found)
+            yield from _rows(page, file, header_row, header_rows, found)
 
 
 def visible_sheets(path: Path) -> tuple[str, ...]:
@@ -126,6 +143,50 @@ def visible_sheets(path: Path) -> tuple[str, ...]:
             raise
         except _DAMAGE as problem:
             raise _damaged(path.name, problem) from problem
+
+
+def first_rows(path: Path, sheet: str | None, most: int) -> list[list[str]]:
+    """Return the texts of a sheet's first rows as they stand, merged or not, to see which of them is the header.
+
+    Parameters
+    ----------
+    path : Path
+        The workbook.
+    sheet : str or None
+        The sheet's name; may be left out where only one is visible.
+    most : int
+        Rows.
+
+    Returns
+    -------
+    list of list of str
+        What is no text, number or date is empty.
+
+    Raises
+    ------
+    CollectionError
+        As `read_sheet` for the workbook itself.
+    """
+    with ExitStack() as stack:
+        try:
+            stream = stream_of(path, path.name, stack)
+            check_kind(stream, path.name)
+            check_archive(stack.enter_context(zipfile.ZipFile(stream)), path.name)
+            page = _page(_load(stream, path.name), path.name, sheet)
+            page.reset_dimensions()
+            out = []
+            for row in page.iter_rows(min_row=1, max_row=most, max_col=COLUMN_LIMIT):
+                cells, faults = [""] * len(row), dict[int, tuple[str, str]]()
+                for place, cell in enumerate(row):
+                    if cell.value is not None:
+                        _take(cell, place, cells, faults)
+                out.append(cells)
+        except CollectionError:
+            raise
+        except _DAMAGE as problem:
+            raise _damaged(path.name, problem) from problem
+        else:
+            return out
 
 
 def _load(stream: BinaryIO, file: str) -> Any:
@@ -194,13 +255,14 @@ def _name(there: Range) -> str:
     return f"{letter(there[1])}{there[0]}:{letter(there[3])}{there[2]}"
 
 
-def _rows(page: Any, file: str, header_row: int, found: Survey) -> Iterator[Row]:
+def _rows(page: Any, file: str, header_row: int, header_rows: int, found: Survey) -> Iterator[Row]:
     last, width = found.last_row, found.last_column
     filled = _Ranges(found.computed, file, width, but_first=False)
     hidden = _Ranges(found.merged, file, width, but_first=True)
     rows = page.iter_rows(min_row=header_row, max_row=last, max_col=width)
     names = 0
     number = 0
+    heads: list[list[str]] = []
     for line in range(header_row, last + 1):
         cells, faults = [""] * width, dict[int, tuple[str, str]]()
         try:
@@ -215,10 +277,15 @@ def _rows(page: Any, file: str, header_row: int, found: Survey) -> Iterator[Row]
             cells[place], faults[place] = "", _formula(f"belongs to the formula of {where}")
         used = max((place + 1 for place in range(width) if place in faults or cells[place].strip()), default=0)
         for place, where in hidden.columns(line).items():
-            cells[place], faults[place] = "", _hidden(where)
-        if line == header_row:
-            names = _header_width(file, line, cells, faults)
-            yield Row(0, line, cells[:names])
+            if line >= header_row + header_rows or header_rows == 1:
+                cells[place], faults[place] = "", _hidden(where)
+        if line < header_row + header_rows:
+            heads.append(cells)
+            names = max(names, _header_width(file, line, cells, faults))
+            if len(heads) == header_rows:
+                yield Row(
+                    0, header_row, joined_heads([row[:names] for row in heads]) if header_rows > 1 else cells[:names]
+                )
         elif used:
             number += 1
             fault = ("", "")
@@ -234,7 +301,8 @@ def _header_width(file: str, line: int, cells: list[str], faults: dict[int, tupl
     if faults:
         place = min(faults)
         raise CollectionError(
-            f"{file}, row {line}: the header cannot be read: cell {place + 1} {faults[place][0]}; {faults[place][1]}"
+            f"{file}, row {line}: the header cannot be read: cell {place + 1} {faults[place][0]}; {faults[place][1]}; "
+            "or say in the mapping's [source] which row names the columns (header_row) and how many do (header_rows)"
         )
     width = max((place + 1 for place, cell in enumerate(cells) if cell.strip()), default=0)
     if not width:
@@ -279,17 +347,19 @@ def _formula(what: str) -> tuple[str, str]:
 
 
 def _hidden(where: str) -> tuple[str, str]:
-    return f"is one of the merged cells {where}", "unmerge them, and fill in every row and column"
+    return (
+        f"is one of the merged cells {where}",
+        "unmerge them, and fill in every row and column",
+    )
 
 
-class XlsxSettings(SourceSettings):
+class XlsxSettings(HeadedSettings):
     """How a workbook is read."""
 
     format: Literal["xlsx"] = Field(description="The kind of source.")
     sheet: Name | None = Field(
         default=None, description="The name of the sheet; needed where more than one is visible."
     )
-    header_row: int | None = Field(default=None, ge=1, le=100, description="The row of the column names; 1.")
 
 
 class Xlsx(FileSource):
@@ -316,4 +386,7 @@ class Xlsx(FileSource):
         Row
             First the header.
         """
-        return read_sheet(binary, file, sheet=request.settings.sheet, header_row=request.settings.header_row or 1)
+        own = request.settings
+        return read_sheet(
+            binary, file, sheet=own.sheet, header_row=own.header_row or 1, header_rows=own.header_rows or 1
+        )

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.collection.errors import CollectionError
-from pipeline.collection.sources import lido
+from pipeline.collection.sources import lido, xml_records
 from pipeline.collection.sources.lido import COLUMNS, read_records
 from pipeline.collection.sources.rows import Row
 
@@ -465,7 +465,7 @@ def test_entities_neither_grow_nor_fetch(tmp_path: Path) -> None:
 
 
 def test_what_is_never_a_whole_record_does_not_fill_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(lido, "RECORD_LIMIT", 100_000)
+    monkeypatch.setattr(xml_records, "RECORD_LIMIT", 100_000)
     refused(wrap("<junk/>" * 50_000, record()), "100,000 bytes without a whole LIDO record")
     refused(wrap(record(title="x" * 200_000)), "100,000 bytes without a whole LIDO record")
 
@@ -479,10 +479,7 @@ def test_records_are_forgotten_and_large_files_read() -> None:
     sheet = record(sizes=measurements(measured("height", "1")), more=element("junk", "x" * 1_000))
     content = wrap(*[sheet] * 10_000)
     assert len(content) > 20e6
-    held = [
-        len(found.getroottree().getroot())
-        for found in lido._records(lido._Bounded(io.BytesIO(content), "museum.xml"), "museum.xml")
-    ]
+    held = [len(found.getroottree().getroot()) for found in lido._records(io.BytesIO(content), "museum.xml")]
     assert len(held) == 10_000
     assert max(held) < 50
 

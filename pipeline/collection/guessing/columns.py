@@ -1,0 +1,190 @@
+"""Columns of a source with what they hold, and which of them is which field."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from pipeline.collection.dimensions import parse
+from pipeline.collection.guessing.names import LENGTH, TEXTS, Named, bare, named
+from pipeline.collection.sources.measurement_terms import kind_of, unit_of
+
+NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
+"""A cell that holds a number and nothing else."""
+
+_SIZE = re.compile(r"\d.*[^\W\d]|[^\W\d].*\d", re.DOTALL)
+_SOME = 200
+"""Cells from which it is told what a column holds."""
+
+
+@dataclass(eq=False)
+class Column:
+    """A column, whole when it is asked about.
+
+    Attributes
+    ----------
+    name : str
+        Of the head.
+    values : list of str
+        Its cells.
+    """
+
+    name: str
+    values: list[str] = field(default_factory=list)
+
+    @cached_property
+    def filled(self) -> list[str]:
+        """The cells that hold anything."""
+        return [value.strip() for value in self.values if value.strip()]
+
+    @cached_property
+    def numbers(self) -> list[str]:
+        """Those that hold a number alone."""
+        return [value for value in self.filled if NUMBER.fullmatch(value)]
+
+    @cached_property
+    def distinct(self) -> list[str]:
+        """What it holds, each once, in order."""
+        return list(dict.fromkeys(self.filled))
+
+    @cached_property
+    def dimensional(self) -> float:
+        """Share of its texts that hold a dimension with a unit."""
+        some = self.filled[:_SOME]
+        return sum(any(p.unit for p in parse(text).parts) for text in some) / len(some) if some else 0.0
+
+    @cached_property
+    def sized(self) -> float:
+        """Share of its texts that hold a number and a word: a size, perhaps in words that are not understood."""
+        some = self.filled[:_SOME]
+        return sum(bool(_SIZE.search(text)) for text in some) / len(some) if some else 0.0
+
+    @cached_property
+    def kinds(self) -> float:
+        """Share of its texts that name a kind of measurement."""
+        return _share(self.filled, kind_of)
+
+    @cached_property
+    def units(self) -> float:
+        """Share of its texts that name a unit."""
+        return _share(self.filled, unit_of)
+
+    @property
+    def numeric(self) -> bool:
+        """Whether most of what it holds are numbers."""
+        return bool(self.filled) and len(self.numbers) >= 0.5 * len(self.filled)
+
+
+def _share(texts: Sequence[str], known: object) -> float:
+    some = texts[:_SOME]
+    return sum(known(text) is not None for text in some) / len(some) if some else 0.0  # type: ignore[operator]
+
+
+def columns_of(header: Iterable[str], rows: Iterable[Sequence[str]]) -> list[Column]:
+    """Return the columns of some rows; those without a name are left out."""
+    out = [Column(cell.strip()) for cell in header]
+    for row in rows:
+        for column, cell in zip(out, row, strict=False):
+            column.values.append(cell)
+    return [column for column in out if column.name]
+
+
+def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
+    """Return the columns that may be a field, by field, the likeliest first.
+
+    Of two, the one that is filled much more is meant (twice as often); else the one whose name stands first in the
+    table: an accession number before the number of a database, a current location before a usual one.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+
+    Returns
+    -------
+    dict of str to list of Column
+        Fields of the record, `names.TEXTS` among them.
+    """
+    said = {id(column): named(column.name) for column in columns}
+    for column, meant in _letters(columns, said):
+        said[id(column)] = meant
+    found: dict[str, list[tuple[Named, Column]]] = {}
+    for column in columns:
+        what = said[id(column)]
+        if what is not None:
+            found.setdefault(what.field, []).append((what, column))
+    out: dict[str, list[Column]] = {}
+    for name, able in found.items():
+        most = max(len(column.filled) for _, column in able)
+        # An empty column tells nothing where another one tells something.
+        pairs = [pair for pair in able if pair[1].filled or not most]
+        out[name] = [
+            column
+            for _, column in sorted(
+                pairs, key=lambda pair: (2 * len(pair[1].filled) <= most and most > 0, pair[0].internal, pair[0].rank)
+            )
+        ]
+    for column in out.pop(LENGTH, []):
+        free = next((name for name in ("width_m", "depth_m") if name not in out), None)
+        if free is not None:
+            out[free] = [column]
+    return out
+
+
+def internal(column: Column) -> bool:
+    """Whether a column's name is that of a number that only a database knows."""
+    what = named(column.name)
+    return what is not None and what.internal
+
+
+def _letters(columns: Sequence[Column], said: Mapping[int, Named | None]) -> list[tuple[Column, Named]]:
+    """Return what single letters mean beside each other: L is a width beside H and P, a length beside H and B."""
+    short = {bare(c.name).strip(" .:"): c for c in columns if said[id(c)] is None and c.numeric}
+    short = {
+        letter: column for letter, column in short.items() if (len(letter) == 1 and letter.isalpha()) or letter == "Ø"
+    }
+    if not short:
+        return []
+    folded = {letter.casefold() for letter in short}
+    told = {what.field for what in said.values() if what is not None}
+    if not folded & {"h", "l", "b", "w"} or not (len(folded) > 1 or told & {"height_m", "width_m"}):
+        return []
+    out = []
+    for letter, column in short.items():
+        meaning = {"h": "height_m", "w": "width_m", "b": "width_m", "t": "depth_m", "p": "depth_m", "ø": "diameter_m"}
+        name = meaning.get(letter.casefold())
+        if letter.casefold() == "l":
+            both = "l" in short and "L" in short
+            name = LENGTH if folded & {"b", "w"} or (both and letter == "L") else "width_m"
+        elif letter.casefold() == "d":
+            name = "depth_m" if folded & {"b", "w"} and not folded & {"t", "p"} else "diameter_m"
+        if name is not None:
+            out.append((column, Named(name, 99)))
+    return out
+
+
+def texts_of_dimensions(columns: Sequence[Column], used: Iterable[Column]) -> list[Column]:
+    """Return the columns called dimensions that hold some; else the one whose texts are mostly such.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    used : iterable of Column
+        Those that are fields already.
+
+    Returns
+    -------
+    list of Column
+        In the order of the source.
+    """
+    taken = {id(column) for column in used}
+    free = [column for column in columns if id(column) not in taken and column.name != "other_measurements"]
+    called = [c for c in free if (what := named(c.name)) is not None and what.field == TEXTS and c.sized > 0.2]
+    if called:
+        return called
+    texts = [c for c in free if len(c.filled) > 0.2 * len(c.values) and len(c.numbers) < 0.5 * len(c.filled)]
+    best = max(texts, key=lambda c: c.dimensional, default=None)
+    return [best] if best is not None and best.dimensional > 0.6 else []

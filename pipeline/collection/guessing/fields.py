@@ -1,0 +1,273 @@
+"""Columns that are fields -> the section [columns] of a mapping: units, flags, and what is left out, and why."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from statistics import median
+
+import tomlkit
+
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.guessing.columns import Column
+from pipeline.collection.guessing.names import unit_in
+from pipeline.collection.guessing.words import shown
+from pipeline.collection.mapping import MAPPABLE, WRITTEN
+from pipeline.collection.record import CHOICES, KINDS, units_of
+from pipeline.collection.sources.measurement_terms import unit_of
+
+FEWEST = 5
+"""Numbers in eighths or sixteenths from which a column is taken to be in inches."""
+
+USUAL_MM = 150
+"""Median of whole numbers from which lengths are taken to be in millimetres: half of all objects are no metre and a
+half."""
+
+LONGEST_YES = 5
+"""Letters of the longest word that means just yes or no."""
+
+MOST_WORDS = 30
+"""Different texts that a column of flags has at most."""
+
+_TENTHS = re.compile(r"\d*[.,][1-46-9]")
+_SIXTEENTHS = re.compile(r"\d*[.,](?:0625|125|1875|3125|375|4375|5625|625|6875|8125|875|9375)")
+_COMMA = re.compile(r"(?<![\d,.])\d+,\d{1,2}(?![\d,.])", re.ASCII)
+_POINT = re.compile(r"(?<![\d,.])\d+\.\d{1,2}(?![\d,.])", re.ASCII)
+
+
+@dataclass(frozen=True)
+class Question:
+    """What a person may decide.
+
+    Attributes
+    ----------
+    key : str
+        By which the choice is given: ``--choose key=...``.
+    text : str
+        The question.
+    options : tuple of str
+        What may be chosen; the first ones are the likeliest.
+    taken : str
+        What is taken where nobody answers.
+    """
+
+    key: str
+    text: str
+    options: tuple[str, ...]
+    taken: str
+
+
+def decimal_of(columns: Sequence[Column]) -> str:
+    """Return the decimal mark that most numbers have, of cells and of dimension texts."""
+    commas = points = 0
+    for column in columns:
+        for number in column.numbers:
+            commas += "," in number
+            points += "." in number
+        if not column.numeric and column.dimensional > 0.2:
+            for text in column.filled:
+                commas += len(_COMMA.findall(text))
+                points += len(_POINT.findall(text))
+    return "," if commas > points else "."
+
+
+def flag_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:
+    """Return the column all of whose words say whether an object is on display, and not yes and no alone.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    used : iterable of Column
+        Those that are fields already.
+
+    Returns
+    -------
+    Column or None
+    """
+    taken = {id(column) for column in used}
+    for column in columns:
+        words = column.distinct
+        flags = 1 < len(words) <= MOST_WORDS and all(shown(word) is not None for word in words)
+        if id(column) not in taken and flags and any(len(word) > LONGEST_YES for word in words):
+            return column
+    return None
+
+
+@dataclass
+class Fields:
+    """Writes the section [columns] of a mapping.
+
+    Attributes
+    ----------
+    columns : sequence of Column
+        All of the source: units may stand in a column of their own.
+    choices : mapping of str to str
+        What a person has chosen.
+    doubts, questions : list
+        What is to be looked at, and what may be decided; grows.
+    """
+
+    columns: Sequence[Column]
+    choices: Mapping[str, str]
+    doubts: list[str]
+    questions: list[Question]
+
+    def mapped(self, found: Mapping[str, Column]) -> tuple[tomlkit.items.Table, list[Column]]:
+        """Return the section, and the columns that it reads.
+
+        Parameters
+        ----------
+        found : mapping of str to Column
+            Field -> column.
+
+        Returns
+        -------
+        (tomlkit table, list of Column)
+        """
+        out = tomlkit.table()
+        used: list[Column] = []
+        untold = {
+            name: column
+            for name, column in found.items()
+            if "m" in units_of(name) and column.numeric and not any(self._told_unit(name, column))
+        }
+        unit = self._common_unit(untold) if untold else ""
+        for name in MAPPABLE:
+            column = found.get(name)
+            if column is None:
+                if name == "gallery":
+                    out[name] = {"constant": "Location not recorded"}
+                    self.doubts.append(
+                        "no column tells where an object is: all are in one gallery until --choose gallery=COLUMN "
+                        "names one"
+                    )
+                continue
+            entry = self._measured(name, column, unit) if units_of(name) else self._entry(name, column)
+            if entry is not None:
+                out[name] = entry
+                used.append(column)
+        return out, used
+
+    def _entry(self, name: str, column: Column) -> tomlkit.items.Table | None:
+        entry = tomlkit.table()
+        entry["column"] = column.name
+        kind = KINDS.get(name, "number")
+        if name == "aat":
+            entry = tomlkit.table()
+            entry["columns"] = [column.name]
+        elif kind == "flag":
+            return self._flag(name, column, entry)
+        elif kind == "choice":
+            words = {one.value for one in CHOICES[name]}
+            if sum(text.casefold() in words for text in column.distinct) < 0.5 * len(column.distinct):
+                self._leave_out(name, column, f"in other words than {', '.join(sorted(words))}")
+                return None
+        elif kind in ("number", "integer") and column.filled and not column.numeric:
+            self.doubts.append(
+                f"column {column.name!r} is left out: it may be {name}, but most of its cells are no numbers"
+            )
+            return None
+        return entry
+
+    def _leave_out(self, name: str, column: Column, why: str) -> None:
+        self.doubts.append(
+            f"column {column.name!r} is left out: it may be {name}, but {why}; give the meanings in the mapping, "
+            f"[columns.{name}] values"
+        )
+
+    def _flag(self, name: str, column: Column, entry: tomlkit.items.Table) -> tomlkit.items.Table | None:
+        words = column.distinct
+        if len(words) > MOST_WORDS:
+            self._leave_out(name, column, f"holds {len(words)} different texts")
+            return None
+        known = {word: meaning for word in words if (meaning := shown(word)) is not None}
+        unknown = ", ".join([repr(word) for word in words if word not in known][:8])
+        if not known:
+            self._leave_out(name, column, f"none of its words is known ({unknown})" if words else "it is empty")
+            return None
+        values = tomlkit.inline_table()
+        seen = set()
+        for word, meaning in known.items():
+            if word.casefold() not in seen:
+                seen.add(word.casefold())
+                values[word] = meaning
+        entry["values"] = values
+        if unknown:
+            self.doubts.append(f"column {column.name!r}: what is meant by {unknown}? Add it to [columns.{name}] values")
+        return entry
+
+    def _measured(self, name: str, column: Column, common: str) -> tomlkit.items.Table | None:
+        """Return the entry of a length or a mass; ``common`` is the unit of lengths that tell none."""
+        if not column.filled:
+            return None
+        units = units_of(name)
+        unit, beside = self._told_unit(name, column)
+        if unit is None and not column.numeric:
+            if column.dimensional <= 0.5:
+                self.doubts.append(
+                    f"column {column.name!r} holds neither numbers nor lengths with units: left out; --choose "
+                    f"{name}.unit=cm takes it nevertheless"
+                )
+                return None
+            unit = WRITTEN
+        if unit is None and "kg" in units:
+            unit = "kg"
+            self.doubts.append(
+                f"column {column.name!r} tells no unit: kilograms are taken; --choose {name}.unit=g takes another"
+            )
+            self.questions.append(Question(f"{name}.unit", f"in which unit is {column.name!r}?", tuple(units), unit))
+        entry = tomlkit.table()
+        if beside is None:
+            entry["column"] = column.name
+        else:
+            entry["columns"] = [column.name, beside.name]
+        entry["unit"] = unit or common
+        zeros = sorted({number for number in column.numbers if float(number.replace(",", ".")) == 0.0})
+        if zeros:
+            # The unit that is joined makes a text of it.
+            entry["missing"] = [0.0] if unit != WRITTEN else zeros
+        return entry
+
+    def _told_unit(self, name: str, column: Column) -> tuple[str | None, Column | None]:
+        """Return the unit that was chosen, or that the name or another column tells, and that other column."""
+        units = units_of(name)
+        chosen = self.choices.get(f"{name}.unit") or (self.choices.get("unit") if "m" in units else None)
+        if chosen is not None:
+            if chosen not in (*units, WRITTEN):
+                raise CollectionError(f"--choose {name}.unit: {chosen!r} is none of {', '.join((*units, WRITTEN))}")
+            return chosen, None
+        told = unit_in(column.name)[1]
+        if told is not None and told in units:
+            return told, None
+        beside = _unit_column(column, self.columns, units) if column.numeric else None
+        if beside is None:
+            return None, None
+        same = {unit_of(text) for text in beside.distinct}
+        return (same.pop(), None) if len(same) == 1 else (WRITTEN, beside)
+
+    def _common_unit(self, untold: Mapping[str, Column]) -> str:
+        """Return the unit of the lengths that tell none, which one file has in common, and ask about it."""
+        numbers = [number for column in untold.values() for number in column.numbers]
+        sixteenths = sum(bool(_SIXTEENTHS.fullmatch(n)) for n in numbers)
+        tenths = sum(bool(_TENTHS.fullmatch(n)) for n in numbers)
+        whole = sum(n.isdecimal() for n in numbers)
+        unit, why = "cm", "centimetres are taken"
+        if sixteenths >= FEWEST and sixteenths > 3 * tenths:
+            unit, why = "in", "inches are taken, for they have eighths and sixteenths"
+        elif whole > 0.98 * len(numbers) and median(float(n.replace(",", ".")) for n in numbers) >= USUAL_MM:
+            unit, why = "mm", "millimetres are taken, for they are large and whole"
+        names = ", ".join(repr(column.name) for column in untold.values())
+        self.doubts.append(f"no unit is told for {names}: {why}; --choose unit=mm (cm, in, ...) takes another")
+        self.questions.append(Question("unit", f"in which unit are {names}?", tuple(units_of("height_m")), unit))
+        return unit
+
+
+def _unit_column(column: Column, columns: Sequence[Column], units: Mapping[str, float]) -> Column | None:
+    """Return the column that tells the units of another: the next one to its right of which that holds."""
+    after = list(columns)[[c is column for c in columns].index(True) + 1 :]
+    for other in after:
+        if other.units >= 0.9 and {unit_of(text) for text in other.distinct} <= set(units) | {None}:
+            return other
+    return None

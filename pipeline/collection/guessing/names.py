@@ -1,0 +1,226 @@
+"""Names of columns, in eight languages and in Japanese -> fields of the record."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from typing import Annotated
+from unicodedata import combining, normalize
+
+from pydantic import AfterValidator
+
+from pipeline.collection.mapping import MAPPABLE
+from pipeline.collection.sources.heads import BETWEEN
+from pipeline.errors import InputError
+from pipeline.tables import table
+from pipeline.tables.rows import Entries, checked
+
+TEXTS = "dimensions"
+"""What a column of texts with dimensions is called here; it is no field of the record."""
+
+LENGTH = "length_m"
+"""The same of a length: it is the width, or else the depth, whichever has no column."""
+
+_INTERNAL = "identifier"
+"""The first of the names of object numbers that are a database's own."""
+
+_UNITS = r"mm|cm|m|in|inch|inches|ft|kg|g|gr|lb|lbs|oz"
+_ENCLOSED = re.compile(rf"[(\[]\s*(?:in\s+|en\s+)?({_UNITS})\.?\s*[)\]]", re.IGNORECASE)
+_TRAILING = re.compile(rf"(?:[\s_,/]+(?:in|en)\s+|[\s_,/]+)({_UNITS})\.?\s*$", re.IGNORECASE)
+_UNIT = {"inch": "in", "inches": "in", "lbs": "lb", "gr": "g"}
+_NUMBER_WORDS = frozenset(["n", "no", "nr", "nº", "num", "numero", "number", "nummer", "numar"])
+_STOP = frozenset(
+    {
+        *("of", "the", "von", "van", "der", "die", "den", "das", "de", "del", "della", "dello", "di", "du", "des"),
+        *("la", "le", "il", "el", "do", "da", "dos"),
+    }
+)
+_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+_ELIDED = re.compile(r"\b(?:d|l|dell|nell|all)['’]", re.IGNORECASE)
+_OTHER = re.compile(r"[^\w]+|_")
+_WEAK = 1000
+"""Rank of a name that is only part of what stands in the head."""
+
+_FORMER = frozenset(
+    {
+        *("former", "previous", "old", "other", "alt", "alte", "altes", "fruhere", "fruherer", "ancien", "ancienne"),
+        *("anciens", "vecchio", "vecchia", "precedente", "anterior", "antiguo", "antigo", "oud", "oude", "vorige"),
+        *("vechi", "veche", "lender", "leihgeber", "donor", "loan", "art", "mode", "modo", "status", "source", "value"),
+        *("date", "year", "datum", "jahr", "annee", "anno", "data", "fecha", "ano", "jaar", "anul", "method", "type"),
+        *("notes", "remarks", "by", "insurance"),
+    }
+)
+"""Words that say that something else is meant than the object's own number and place now."""
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """What the name of a column says.
+
+    Attributes
+    ----------
+    field : str
+        A field of the record, TEXTS or LENGTH.
+    rank : int
+        How far down in the table the name stands: of two columns the lower rank is meant rather.
+    internal : bool
+        Whether it is the name of a number that only a database knows, or of a place that is only usual.
+    """
+
+    field: str
+    rank: int
+    internal: bool = False
+
+
+_USUAL = frozenset({"home", "normal", "usual", "default", "permanent", "stamm", "habituel", "abituale", "habitual"})
+"""Words of a place where an object mostly is: used where no column tells where it is now."""
+
+
+def _mappable(field: str) -> str:
+    if field not in (*MAPPABLE, TEXTS, LENGTH):
+        raise InputError(f"is {field!r}, which is no field that a column can be mapped to")
+    return field
+
+
+@dataclass(frozen=True, slots=True)
+class _ColumnNames:
+    field: Annotated[str, AfterValidator(_mappable)]
+    names: Entries
+
+
+@cache
+def _names() -> dict[str, Named]:
+    rows = checked(_ColumnNames, table("column_names"), "column_names.csv", named="field")
+    found: dict[str, Named] = {}
+    for row in rows:
+        internal = False
+        for rank, name in enumerate(row.names):
+            internal = internal or (row.field == "object_number" and name == _INTERNAL)
+            found.setdefault(plain(name), Named(row.field, rank, internal))
+    return found
+
+
+def plain(name: str) -> str:
+    """Return a name as it is compared: no capitals, accents, marks and articles, "no" for every word for number."""
+    bare = "".join(
+        c for c in normalize("NFKD", _ELIDED.sub(" ", _CAMEL.sub(" ", normalize("NFC", name)))) if not combining(c)
+    )
+    # NFKD takes the voicing marks off Japanese signs; they are put together again.
+    words = _OTHER.sub(" ", normalize("NFC", bare).casefold()).split()
+    kept = ["no" if word in _NUMBER_WORDS else word for word in words if word not in _STOP]
+    return " ".join(kept or words)
+
+
+def unit_in(name: str) -> tuple[str, str | None]:
+    """Return a name without the unit that stands in it, and the unit: "Höhe in cm" as ("Höhe", "cm").
+
+    Parameters
+    ----------
+    name : str
+        Of a column.
+
+    Returns
+    -------
+    (str, str or None)
+        None where there is none.
+    """
+    upper, between, lower = name.rpartition(BETWEEN)
+    if between:
+        for first, second in ((upper, lower), (lower, upper)):
+            rest, unit = unit_in(first)
+            if unit is not None:
+                return (f"{rest}{BETWEEN}{second}" if first is upper else f"{second}{BETWEEN}{rest}"), unit
+        return name, None
+    for found in (_ENCLOSED.search(name), _TRAILING.search(name)):
+        if found is not None and (name[: found.start()] + name[found.end() :]).strip():
+            unit = found[1].casefold()
+            return f"{name[: found.start()]} {name[found.end() :]}".strip(), _UNIT.get(unit, unit)
+    return name, None
+
+
+def bare(name: str) -> str:
+    """Return a name without its unit and without what is said of all sizes: "Maße (cm) H" as "H"."""
+    rest = unit_in(name)[0].strip()
+    upper, between, lower = rest.rpartition(BETWEEN)
+    if between and _says(upper) == TEXTS:
+        return lower.strip()
+    words = rest.split()
+    return " ".join(words[1:]) if len(words) > 1 and _says(words[0]) == TEXTS else rest
+
+
+def _says(name: str) -> str | None:
+    found = _names().get(plain(unit_in(name)[0]))
+    return None if found is None else found.field
+
+
+def named(name: str) -> Named | None:
+    """Return what the name of a column says; None for a name that no table has.
+
+    Parameters
+    ----------
+    name : str
+        As it stands in the head.
+
+    Returns
+    -------
+    Named or None
+        One letter says nothing by itself: see `columns`.
+    """
+    if name in MAPPABLE:
+        return Named(name, 0)
+    for form in _forms(name):
+        found = _names().get(form)
+        if found is not None:
+            return found
+    return _within(name)
+
+
+def same_stem(word: str, table: str) -> bool:
+    """Whether a word is the name of a table, but for its ending: "objekt" of "Objekte", "category" of "categories"."""
+    name = plain(table).replace(" ", "").removeprefix("tbl")
+    short, long = sorted((word.removesuffix("y"), name.removesuffix("ies")), key=len)
+    return len(short) >= 3 and long.startswith(short) and len(long) - len(short) <= 2
+
+
+def of_table(table: str, field: str) -> bool:
+    """Whether the name of a table is that of a field, in the plural perhaps: "Standorte" of the gallery."""
+    return any(found.field == field and same_stem(name.replace(" ", ""), table) for name, found in _names().items())
+
+
+def _forms(name: str) -> Iterator[str]:
+    upper, between, lower = name.rpartition(BETWEEN)
+    if between and _says(upper) == TEXTS:
+        # A letter below "Dimensions" is no dimension text.
+        yield plain(unit_in(lower)[0])
+        return
+    yield plain(name)
+    # What looks like two words may be one: "MoMANumber".
+    yield plain(name.casefold())
+    yield plain(unit_in(name)[0])
+    yield plain(bare(name))
+    # "Objeto/Documento", "Titel | title": what either half says; of two rows of a head the lower one first.
+    halves = [half for half in re.split(r"[/|,;]| - |\n", unit_in(name)[0]) if half.strip()]
+    if len(halves) > 1:
+        yield from map(plain, reversed(halves) if between else halves)
+    # What stands in brackets may be a language.
+    outside = re.sub(r"[(\[].*?[)\]]", " ", name)
+    if outside.strip() and outside != name:
+        yield plain(outside)
+
+
+def _within(name: str) -> Named | None:
+    """Return what the last or the first words of a name say: "Akt. Standort"; of numbers, places and materials only."""
+    words = plain(unit_in(name)[0]).split()
+    if _FORMER & set(words) or words[-1:] == ["id"]:
+        return None
+    usual = bool(_USUAL & set(words))
+    for many in range(min(len(words) - 1, 3), 0, -1):
+        for part in (words[-many:], words[:many]):
+            found = _names().get(" ".join(part))
+            if found is None or found.internal or found.field not in ("object_number", "gallery", "medium"):
+                continue
+            if found.field == "gallery" or not usual:
+                return Named(found.field, _WEAK + found.rank, internal=usual)
+    return None

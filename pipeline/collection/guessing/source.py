@@ -1,0 +1,299 @@
+"""How a source is read, as far as it shows it by itself, and the columns that it has then."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from itertools import islice
+from pathlib import Path
+from typing import Any, cast
+
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.guessing.columns import Column, candidates, columns_of
+from pipeline.collection.guessing.fields import Question
+from pipeline.collection.guessing.long_rows import long_form_of
+from pipeline.collection.guessing.text_files import LOOKED_AT, delimiter_of, encoding_of, first_lines, head_of
+from pipeline.collection.mapping import Mapping as Proposal
+from pipeline.collection.mapping import load_mapping
+from pipeline.collection.opening import open_source
+from pipeline.collection.sources.files import unreadable
+from pipeline.collection.sources.long_form import COLUMNS as LONG_COLUMNS
+from pipeline.collection.sources.long_form import gathered
+from pipeline.collection.sources.registry import recognised
+from pipeline.collection.sources.rows import Row
+
+READ = 2000
+"""Rows that the guess is made from."""
+
+SNIFFED = 1 << 18
+"""Bytes from which encoding and delimiter are told."""
+
+
+@dataclass
+class Told:
+    """What is said of a guess on its way.
+
+    Attributes
+    ----------
+    choices : mapping of str to str
+        What a person has chosen.
+    doubts, questions, sure : list
+        As `guess.Guess` has them; they grow.
+    """
+
+    choices: Mapping[str, str]
+    doubts: list[str] = field(default_factory=list)
+    questions: list[Question] = field(default_factory=list)
+    sure: list[str] = field(default_factory=list)
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Files
+
+
+def source_of(path: Path, told: Told) -> dict[str, Any]:
+    """Return how a file is read: the section [source] of its mapping.
+
+    Parameters
+    ----------
+    path : Path
+        The file, or a folder of records.
+    told : Told
+        What is said of it; grows.
+
+    Returns
+    -------
+    dict
+        Without the sheet of a workbook.
+
+    Raises
+    ------
+    CollectionError
+        For a file that cannot be read, or is of no kind that is known.
+    """
+    if path.is_dir():
+        kind = recognised(str(path), b"")
+        if kind is not None:
+            return {"format": kind.name}
+        raise CollectionError(f"{path}: a folder without records; name the museum's export itself")
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(SNIFFED)
+    except OSError as problem:
+        raise unreadable(path, problem) from problem
+    kind = recognised(str(path), head)
+    if kind is not None:
+        return {"format": kind.name}
+    if head.lstrip(b"\xef\xbb\xbf\xff\xfe \t\r\n\x00").startswith(b"<"):
+        raise CollectionError(
+            f"{path.name}: XML of a kind that Kouros does not know; it knows LIDO, Adlib XML and MuseumPlus RIA. "
+            "Export it as one of these, or as CSV or Excel, and try again"
+        )
+    if head.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"["):
+        raise CollectionError(
+            f"{path.name}: JSON of a kind that Kouros does not know; it knows Linked Art. Export it as that, or as CSV "
+            "or Excel, and try again"
+        )
+    encoding = told.choices.get("encoding") or encoding_of(head)
+    try:
+        # A character that the end of what was read cuts in two is no fault.
+        text = head.decode(encoding, "ignore")
+    except LookupError as problem:
+        raise CollectionError(f"--choose encoding: there is no encoding {encoding!r}; try utf-8 or cp1252") from problem
+    delimiter = told.choices.get("delimiter", "").replace("tab", "\t") or delimiter_of(text)
+    source: dict[str, Any] = {"format": "tsv", "encoding": encoding}
+    if delimiter != "\t":
+        source = {"format": "csv", "encoding": encoding, "delimiter": delimiter}
+    told.sure.append(f"{encoding}, cells parted by {delimiter!r}")
+    _set_head(source, first_lines(text, delimiter, LOOKED_AT + 60), told)
+    return source
+
+
+def _set_head(source: dict[str, Any], rows: Sequence[tuple[int, list[str]]], told: Told) -> None:
+    """Say where the columns are named, where that is not the first row alone."""
+    head = head_of(rows)
+    row, many = head.row, head.rows
+    try:
+        row = int(told.choices.get("header_row", row))
+        many = int(told.choices.get("header_rows", many if row == head.row else 1))
+    except ValueError as problem:
+        raise CollectionError(
+            "--choose header_row (and header_rows): needs a number, such as header_row=4"
+        ) from problem
+    # A first row may come late only where blank lines stand above it, which are passed over anyway.
+    if row != 1 and (row != rows[0][0] if rows else True):
+        source["header_row"] = row
+        told.sure.append(f"the columns are named in row {row}, below titles")
+    if many > 1:
+        source["header_rows"] = many
+        told.sure.append(f"{many} rows name the columns together")
+    if head.known < 2 and "header_row" not in told.choices:
+        told.doubts.append(
+            f"row {row} is taken for the names of the columns, of which few are known here; --choose header_row=NUMBER "
+            "names another row"
+        )
+        options = tuple(str(number) for number, cells in rows[:10] if sum(map(bool, cells)) > 1)
+        told.questions.append(Question("header_row", "which row names the columns?", options, str(row)))
+
+
+def workbook(path: Path, sheet: str | None, told: Told) -> tuple[dict[str, Any], list[Column]]:
+    """Return how a workbook is read, and the columns of its sheet: the one named, or most like an inventory."""
+    from pipeline.collection.sources.xlsx import first_rows, visible_sheets
+
+    def read(title: str | None, quietly: Told) -> tuple[dict[str, Any], list[Column]]:
+        source: dict[str, Any] = {"format": "xlsx"} | ({} if title is None else {"sheet": title})
+        numbered = enumerate(first_rows(path, title, LOOKED_AT + 60), start=1)
+        _set_head(source, [(number, cells) for number, cells in numbered if any(map(str.strip, cells))], quietly)
+        return source, columns_in(path, source)
+
+    there = visible_sheets(path)
+    if sheet is not None or len(there) == 1:
+        return read(sheet, told)
+    best: tuple[tuple[bool, int, int], str, dict[str, Any], list[Column], Told] | None = None
+    fault: CollectionError | None = None
+    for title in there:
+        quietly = Told(told.choices)
+        try:
+            source, columns = read(title, quietly)
+        except CollectionError as problem:
+            fault = fault or problem
+            continue
+        fields = candidates(columns)
+        likeness = "object_number" in fields, len(fields), max((len(c.values) for c in columns), default=0)
+        if best is None or likeness > best[0]:
+            best = likeness, title, source, columns, quietly
+    if best is None:
+        raise fault or CollectionError(
+            f"{path.name}: no sheet of the workbook is visible; show the one with the objects"
+        )
+    _, title, source, columns, quietly = best
+    others = ", ".join(repr(one) for one in there if one != title)
+    told.doubts.append(
+        f"of {len(there)} sheets {title!r} looks most like the inventory and is read; --table takes another: {others}"
+    )
+    told.doubts += quietly.doubts
+    told.questions += quietly.questions
+    told.sure += quietly.sure
+    return source, columns
+
+
+def columns_in(path: Path, source: Mapping[str, Any]) -> list[Column]:
+    """Return the columns of a file that is read in some way.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    source : mapping
+        The section [source].
+
+    Returns
+    -------
+    list of Column
+        With what their first READ rows hold.
+
+    Raises
+    ------
+    CollectionError
+        For a file without a row that can be used.
+    """
+    with open_source(path, _plain_mapping(source)) as opened:
+        return _filled(path.name, opened.rows)
+
+
+def _plain_mapping(source: Mapping[str, Any]) -> Proposal:
+    return Proposal.model_validate(
+        {
+            "source": dict(source),
+            "museum": {"name": "-"},
+            "columns": {"object_number": {"column": "-"}, "gallery": {"column": "-"}},
+        }
+    )
+
+
+def _filled(name: str, rows: Iterator[Row]) -> list[Column]:
+    header = next(rows, None)
+    if header is None:
+        raise CollectionError(f"{name}: empty: there is no header to guess from")
+    whole: list[list[str]] = []
+    fault: tuple[str, str] | None = None
+    for row in islice(rows, READ):
+        if row.fault[0]:
+            fault = fault or (f"line {row.line}: {row.fault[0]}", row.fault[1])
+        else:
+            whole.append(row.cells)
+    if not whole:
+        why, remedy = fault or ("no rows of data stand below the names of columns", "export it again")
+        raise CollectionError(
+            f"{name}: no row can be used. {why}; {remedy}. Where the columns are named elsewhere, say it: "
+            "--choose header_row=NUMBER; or how cells are parted: --choose delimiter=tab"
+        )
+    return columns_of(header.cells, whole)
+
+
+def objects_of(name: str, source: dict[str, Any], columns: list[Column], told: Told) -> list[Column]:
+    """Return the columns of objects, where those that are there are of single measurements."""
+    long = long_form_of(columns)
+    if long is None:
+        return columns
+    source["long"] = long.model_dump(exclude_none=True)
+    told.sure.append(
+        f"each measurement has a row of its own: {long.type!r} says which, {long.value!r} how much; they are gathered "
+        f"by {long.object!r}"
+    )
+    if long.unit is None:
+        told.doubts.append(f"no column tells the unit of {long.value!r}: its numbers are refused where they name none")
+    rows = [
+        Row(number, number, list(cells))
+        for number, cells in enumerate(zip(*(column.values for column in columns), strict=True), start=1)
+    ]
+    read = _filled(name, gathered(iter([Row(0, 0, [column.name for column in columns]), *rows]), long, name))
+    return [column for column in read if column.filled or column.name not in LONG_COLUMNS]
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Databases
+
+
+def database(url: str, name: str, table: str | None, told: Told) -> tuple[str | None, dict[str, Any], list[Column]]:
+    """Return the preset that reads a database, or else how it is read; and its columns."""
+    from pipeline.collection.guessing.database import joined, object_tables
+    from pipeline.collection.guessing.presets import preset_for
+    from pipeline.collection.sources.schema import tables_of
+    from pipeline.collection.sources.sql import read_database
+
+    is_query = table is not None and len(table.split()) > 1 and table.split()[0].lower() in ("select", "with")
+    query = table if is_query else None
+    if not is_query:
+        there = tables_of(url)
+        preset = preset_for(there) if table is None else None
+        if preset is not None:
+            told.sure.append(f"its tables are those of the preset {preset!r}, which is taken")
+            with open_source(url, load_mapping(preset)) as opened:
+                return preset, {}, _filled(name, opened.rows)
+        else:
+            able = object_tables(there)
+            known = ", ".join(repr(one.shown) for one in there[:50]) or "none"
+            known += f" and {len(there) - 50} more" if len(there) > 50 else ""
+            if table is None and not able and len(there) != 1:
+                raise CollectionError(
+                    f"{name}: no table names object numbers; say by --table which of its tables holds the objects, or "
+                    f"give a SELECT there; it has {known}"
+                )
+            objects = next((one for one in there if table in (one.shown, one.name)), None)
+            if table is None:
+                objects = (able or list(there))[0]
+                table = objects.shown
+                if len(able) > 1:
+                    others = ", ".join(repr(one.shown) for one in able[1:20])
+                    told.doubts.append(f"table {table!r} looks most like the objects; --table takes another: {others}")
+            if objects is not None:
+                made = joined(url, there, objects)
+                if made is not None:
+                    query = made.query
+                    told.doubts += made.said
+    source = {"format": "sql", **({"query": query} if query is not None else {"table": table})}
+    rows = read_database(url, query=query, table=None if query is not None else table)
+    with closing(cast(Generator[Row], rows)):
+        return None, source, _filled(name, rows)

@@ -1,0 +1,206 @@
+"""How a text file is written: encoding, delimiter, and which of its rows name the columns."""
+
+from __future__ import annotations
+
+import csv
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import islice
+from unicodedata import category
+
+from pipeline.collection.guessing.columns import NUMBER, candidates, columns_of
+from pipeline.collection.sources.heads import joined_heads
+
+LOOKED_AT = 40
+"""Rows at the beginning among which the header is looked for."""
+
+_DELIMITERS = ";,\t|"
+_SINGLE = ("cp1252", "mac-roman", "cp1250", "cp850")
+_DOUBLE = ("shift-jis", "euc-jp")
+# Letters of the eight languages beyond ASCII, and the signs that texts of museums have.
+_COMMON = frozenset("äöüßàâæçéèêëîïôœùûÿìíòóúñáãõășțşţłøåÄÖÜÀÂÆÇÉÈÊËÎÏÔŒÙÛÌÍÒÓÚÑÁÃÕĂȘȚŞŢŁØÅ")
+_SIGNS = frozenset("°ºª«»–—’‘“”„…©®²³½¼¾×±€£§·•¿¡\u00a0´")
+
+
+def encoding_of(head: bytes) -> str:
+    """Return the encoding of a text by its first bytes.
+
+    What is no Unicode is read in each of the usual single-byte encodings; the one counts in which the most bytes
+    beyond ASCII are letters of European languages in the midst of words.
+
+    Parameters
+    ----------
+    head : bytes
+        How the file begins.
+
+    Returns
+    -------
+    str
+        As [source] encoding has it.
+    """
+    if head.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16"
+    if head[1::2].count(0) > 0.4 * len(head) / 2 and not head[::2].count(0):
+        return "utf-16"
+    try:
+        head.decode("utf-8")
+    except UnicodeDecodeError as problem:
+        if problem.start < len(head) - 4:
+            japanese = [name for name in _DOUBLE if _kana(head, name) > 0.1]
+            if japanese:
+                return max(japanese, key=lambda name: _kana(head, name))
+            return max(_SINGLE, key=lambda name: _likeness(head, name))
+    return "utf-8"
+
+
+def _likeness(head: bytes, encoding: str) -> float:
+    text = head.decode(encoding, "replace")
+    score = 0.0
+    for at, sign in enumerate(text):
+        if sign < "\x80":
+            continue
+        before, after = text[at - 1 : at], text[at + 1 : at + 2]
+        in_word = before.isalpha() or after.isalpha()
+        if sign in "ãă":
+            # One byte in two encodings: ã stands before o and e (Portuguese), ă elsewhere (Romanian).
+            score += 1.0 if (after in ("o", "e")) == (sign == "ã") else 0.2
+        elif sign in _COMMON:
+            # A capital within a word is hardly one; a letter by itself, as between two numbers, neither.
+            wrong = not in_word and sign not in "ØøàÀ"
+            score += -1.0 if wrong or (sign.isupper() and before.islower()) else 1.0
+        elif sign in _SIGNS:
+            score += 0.5 if sign in "’´" or not (before.isalpha() and after.isalpha()) else -0.5
+        else:
+            score -= 1.0
+    return score
+
+
+def _kana(head: bytes, encoding: str) -> float:
+    """Share of the characters beyond ASCII that are Japanese, if all can be read."""
+    try:
+        text = head[: len(head) - 3].decode(encoding)
+    except UnicodeDecodeError as problem:
+        if problem.start < len(head) - 8:
+            return 0.0
+        text = head[: problem.start].decode(encoding)
+    beyond = [sign for sign in text if sign >= "\x80"]
+    kana = sum("\u3040" <= sign <= "\u30ff" or "\u4e00" <= sign <= "\u9fff" for sign in beyond)
+    half = sum("\uff61" <= sign <= "\uff9f" or category(sign) in ("Co", "Cn") for sign in beyond)
+    return (kana - 2 * half) / len(beyond) if beyond else 0.0
+
+
+def delimiter_of(text: str) -> str:
+    """Return what parts the cells of a text: where most rows have as many cells, and the most cells.
+
+    Parameters
+    ----------
+    text : str
+        How the file begins.
+
+    Returns
+    -------
+    str
+        One character.
+    """
+
+    def regular(delimiter: str) -> tuple[float, int]:
+        widths = [len(row) for _, row in first_lines(text, delimiter, 400)[:-1] or first_lines(text, delimiter, 400)]
+        if not widths:
+            return 0.0, 0
+        width, times = Counter(widths).most_common(1)[0]
+        return (times / len(widths), width) if width > 1 else (0.0, 0)
+
+    return max(_DELIMITERS, key=regular)
+
+
+def first_lines(text: str, delimiter: str, most: int) -> list[tuple[int, list[str]]]:
+    """Return the first rows of a text that are not blank, with the line where each begins.
+
+    Parameters
+    ----------
+    text : str
+        How the file begins.
+    delimiter : str
+        Between two cells.
+    most : int
+        Rows.
+
+    Returns
+    -------
+    list of (int, list of str)
+        Until one that cannot be read.
+    """
+    reader = csv.reader(text.lstrip("\ufeff").splitlines(keepends=True), delimiter=delimiter)
+    out = []
+    before = 0
+    try:
+        for row in islice(reader, most):
+            if any(map(str.strip, row)):
+                out.append((before + 1, row))
+            before = reader.line_num
+    except csv.Error:
+        pass
+    return out
+
+
+@dataclass(frozen=True)
+class Head:
+    """Where the columns of a table are named.
+
+    Attributes
+    ----------
+    row : int
+        The first row (or line) of their names.
+    rows : int
+        How many rows name them together.
+    known : int
+        How many fields the names tell.
+    """
+
+    row: int
+    rows: int
+    known: int
+
+
+def head_of(rows: Sequence[tuple[int, list[str]]]) -> Head:
+    """Return where the names of columns stand: where they tell the most fields, else where the table begins.
+
+    Parameters
+    ----------
+    rows : sequence of (int, list of str)
+        The first rows of a table, each with its number; blank ones left out.
+
+    Returns
+    -------
+    Head
+        Row 1 of a table that shows none.
+    """
+    best: Head | None = None
+    for at, (number, cells) in enumerate(rows[:LOOKED_AT]):
+        numbers = sum(bool(NUMBER.fullmatch(cell.strip())) for cell in cells)
+        if sum(bool(cell.strip()) for cell in cells) < 2 or numbers > 0.2 * len(cells):
+            continue
+        for many in (1, 2, 3):
+            taken = [row for _, row in rows[at : at + many]]
+            if len(taken) < many or len(rows) <= at + many:
+                continue
+            # The rows of a head follow each other, and none of them holds numbers.
+            if many > 1 and (rows[at + many - 1][0] - number != many - 1 or any(map(_numbered, taken[1:]))):
+                break
+            names = joined_heads(taken) if many > 1 else cells
+            known = len(candidates(columns_of(names, (row for _, row in rows[at + many : at + many + 20]))))
+            if best is None or known > best.known:
+                best = Head(number, many, known)
+    if best is not None and best.known > 1:
+        return best
+    widths = [sum(bool(cell.strip()) for cell in cells) for _, cells in rows[:LOOKED_AT]]
+    widest = max(widths, default=0)
+    for (number, cells), width in zip(rows, widths, strict=False):
+        if width == widest > 1 and not _numbered(cells):
+            return Head(number, 1, 0 if best is None else best.known)
+    return Head(rows[0][0] if rows else 1, 1, 0)
+
+
+def _numbered(cells: Sequence[str]) -> bool:
+    return any(NUMBER.fullmatch(cell.strip()) for cell in cells)

@@ -1,0 +1,43 @@
+"""Names of columns that stand in several rows, one above the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+BETWEEN = " / "
+"""What stands between an upper and a lower name."""
+
+
+def joined_heads(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return the names that rows of a head give together: "Size (cm)" above "H" is "Size (cm) / H".
+
+    An upper name holds for the empty cells to its right, as long as a lower name stands below each.
+
+    Parameters
+    ----------
+    rows : sequence of sequences of str
+        From the uppermost down.
+
+    Returns
+    -------
+    list of str
+        As many as the widest row has cells.
+
+    Examples
+    --------
+    >>> joined_heads([["No.", "Size (cm)", "", "Place"], ["", "H", "W", ""]])
+    ['No.', 'Size (cm) / H', 'Size (cm) / W', 'Place']
+    """
+    width = max(map(len, rows))
+    cells = [[*(" ".join(cell.split()) for cell in row), *[""] * (width - len(row))] for row in rows]
+    for upper, lower in pairwise(cells):
+        group = ""
+        for at in range(width):
+            if upper[at]:
+                group = upper[at] if lower[at] else ""
+            elif group and lower[at]:
+                upper[at] = group
+            else:
+                group = ""
+    return [BETWEEN.join(dict.fromkeys(filter(None, (row[at] for row in cells)))) for at in range(width)]

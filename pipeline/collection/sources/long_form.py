@@ -1,0 +1,118 @@
+"""Rows of one measurement each -> rows of one object each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.sources.base import LongForm
+from pipeline.collection.sources.measurement_terms import kind_of
+from pipeline.collection.sources.measurements import MEASURED, Measurements
+from pipeline.collection.sources.rows import Row
+
+COLUMNS = (*MEASURED, "other_measurements")
+"""What takes the place of the columns of type, value, unit and part."""
+
+_Fault = tuple[str, str]
+
+
+@dataclass
+class _Object:
+    """An object whose rows are gathered: the first of them, and the measurements of all."""
+
+    number: int
+    line: int
+    cells: list[str]
+    faults: dict[int, _Fault]
+    measured: Measurements
+
+
+def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
+    """Yield the header and then one row for each object, in the order of their first rows.
+
+    All objects are in memory, for rows of one object need not follow each other. A cell that is empty in an object's
+    first row is taken from the next one that fills it.
+
+    Parameters
+    ----------
+    rows : iterator of Row
+        The header first.
+    long : LongForm
+        Which columns tell the measurements.
+    file : str
+        The source's name in messages.
+
+    Yields
+    ------
+    Row
+        With COLUMNS behind the source's own columns. Rows that are broken come as they are.
+
+    Raises
+    ------
+    CollectionError
+        For a source without one of the columns.
+    """
+    header = next(rows, None)
+    if header is None:
+        return
+    names = [name.strip() for name in header.cells]
+    for key, name in (
+        ("object", long.object),
+        ("type", long.type),
+        ("value", long.value),
+        ("unit", long.unit),
+        ("part", long.part),
+    ):
+        if name is not None and name not in names:
+            raise CollectionError(
+                f"{file}: [source.long] {key}: there is no column {name!r}; its columns are "
+                f"{', '.join(map(repr, names[:80]))}. Name one of them in the mapping"
+            )
+    told = {names.index(name) for name in (long.type, long.value, long.unit, long.part) if name is not None}
+    kept = [at for at in range(len(names)) if at not in told]
+    yield Row(0, header.line, [header.cells[at] for at in kept] + list(COLUMNS))
+    number_at = names.index(long.object)
+    type_at, value_at = names.index(long.type), names.index(long.value)
+    unit_at = None if long.unit is None else names.index(long.unit)
+    part_at = None if long.part is None else names.index(long.part)
+    objects: dict[str, _Object] = {}
+    broken: list[Row] = []
+    above = ""
+    for row in rows:
+        if row.fault[0]:
+            broken.append(Row(0, row.line, [*row.cells][: len(kept)], row.fault))
+            continue
+        above = number = row.cells[number_at].strip() or above
+        found = objects.get(number)
+        if found is None:
+            faults = {
+                kept.index(at): why for at, why in row.faults.items() if at in kept and row.cells[number_at].strip()
+            }
+            found = _Object(len(objects) + 1, row.line, [row.cells[at] for at in kept], faults, Measurements())
+            objects[number] = found
+        for place, at in enumerate(kept):
+            if not found.cells[place] and row.cells[at]:
+                found.cells[place] = row.cells[at]
+                found.faults.pop(place, None)
+        _measure(found, row, type_at, value_at, unit_at, part_at)
+    width = len(kept)
+    last = 0
+    for found in objects.values():
+        measured = found.measured.cells()
+        faults = {**found.faults, **{width + at: why for at, why in found.measured.faults(COLUMNS).items()}}
+        last = found.number
+        yield Row(last, found.line, found.cells + [measured.get(column, "") for column in COLUMNS], faults=faults or {})
+    for place, row in enumerate(broken, start=last + 1):
+        yield Row(place, row.line, row.cells + [""] * (width + len(COLUMNS) - len(row.cells)), row.fault)
+
+
+def _measure(found: _Object, row: Row, type_at: int, value_at: int, unit_at: int | None, part_at: int | None) -> None:
+    said = row.cells[type_at].strip()
+    for at in (type_at, value_at):
+        if at in row.faults:
+            found.measured.refuse(kind_of(said) or "other_measurements", *row.faults[at])
+            return
+    unit = "" if unit_at is None else row.cells[unit_at]
+    part = "" if part_at is None else row.cells[part_at]
+    found.measured.add(said, row.cells[value_at], unit, part)

@@ -1,0 +1,134 @@
+"""Records of an XML file, one by one: no entities, nothing fetched, and no more in memory than one record."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, BinaryIO
+
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.sources.delimited import RECORD_LIMIT
+
+EXPORT_AGAIN = "export the file again, and see whether it was cut off on its way"
+"""What mends a file that ends too early."""
+
+
+class _Bounded:
+    """A stream that ends in an error where RECORD_LIMIT bytes go by without a whole record: the tree stays small."""
+
+    def __init__(self, stream: BinaryIO, file: str, what: str) -> None:
+        self._stream = stream
+        self._file = file
+        self._what = what
+        self.since_record = 0
+
+    def read(self, size: int = -1) -> bytes:
+        block = self._stream.read(size)
+        self.since_record += len(block)
+        if self.since_record > RECORD_LIMIT:
+            raise CollectionError(
+                f"{self._file}: {RECORD_LIMIT:,} bytes without a whole {self._what}; see whether this is the right file"
+            )
+        return block
+
+
+@dataclass(frozen=True)
+class XmlRecords:
+    """How the records of a kind of XML file are found.
+
+    Attributes
+    ----------
+    file : str
+        Its name in messages.
+    tag : str
+        Of a record.
+    what : str
+        A record in words.
+    none : str
+        What is said of a file without any; it may name {root}.
+    also : str
+        Tag of another element that is given in its place, such as a mark that more would follow.
+    """
+
+    file: str
+    tag: str
+    what: str
+    none: str
+    also: str = ""
+
+    def read(self, stream: BinaryIO) -> Iterator[Any]:
+        """Yield the elements; each is forgotten when the next one is asked for.
+
+        Parameters
+        ----------
+        stream : binary stream
+            The file, at its beginning.
+
+        Yields
+        ------
+        lxml element
+            Of ``tag`` or ``also``.
+
+        Raises
+        ------
+        CollectionError
+            For a file that is damaged, incomplete, without a record, or declares a document type.
+        """
+        from lxml import etree
+
+        bounded = _Bounded(stream, self.file, self.what)
+        events = etree.iterparse(
+            bounded,
+            events=("start", "end"),
+            tag=[tag for tag in (self.tag, self.also) if tag],
+            resolve_entities=False,
+            no_network=True,
+            load_dtd=False,
+            huge_tree=False,
+            remove_comments=True,
+            remove_pis=True,
+        )
+        seen = 0
+        while True:
+            try:
+                event, element = next(events)
+            except StopIteration:
+                break
+            except etree.XMLSyntaxError as problem:
+                raise CollectionError(
+                    f"{self.file}, line {problem.lineno or 1}: not well-formed XML after {seen} records: "
+                    f"{str(problem)[:200]}; {EXPORT_AGAIN}"
+                ) from problem
+            except OSError as problem:
+                raise CollectionError(
+                    f"{self.file}: reading stopped after {seen} records: {problem.strerror or problem}; see whether "
+                    "the disk or the network share is there and import again"
+                ) from problem
+            if event == "start":
+                if element.getroottree().docinfo.doctype:
+                    raise CollectionError(
+                        f"{self.file}: declares a document type or entities, which a {self.what} never needs and can "
+                        "hide harm; remove the line that begins with <!DOCTYPE"
+                    )
+                continue
+            if element.tag != self.tag:
+                yield element
+                continue
+            if any(above.tag == element.tag for above in element.iterancestors()):
+                raise CollectionError(
+                    f"{self.file}, line {element.sourceline}: a record within a record; {EXPORT_AGAIN}"
+                )
+            seen += 1
+            yield element
+            bounded.since_record = 0
+            _forget(element)
+        if not seen:
+            root = events.root.tag if events.root is not None else "nothing"
+            raise CollectionError(f"{self.file}: {self.none.format(root=root[:100])}")
+
+
+def _forget(element: Any) -> None:
+    element.clear()
+    for place in (element, *element.iterancestors()):
+        while (before := place.getprevious()) is not None:
+            before.getparent().remove(before)
