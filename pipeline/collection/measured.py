@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from pipeline.collection.cells import Cells
-from pipeline.collection.dimensions import Choice, Dimensions, agree, choose, parse
+from pipeline.collection.dimensions import Choice, Dimensions, agree, choose, doubts, parse
 from pipeline.collection.mapping import ColumnMap, Texts
 from pipeline.collection.measured_cell import written
 from pipeline.collection.record import TEXT_LIMIT
@@ -38,11 +38,20 @@ _SPELLED = re.compile(
 _PART = "weight of a part"
 """How the reason of a weight begins that is not the whole object's."""
 
+_LANGUAGE = 'say it in the mapping, [dimensions] language = "...", or write the word out'
+
+_NAMING = ("object_name", "title", "classification", "medium")
+"""Fields whose words name the object."""
+
 _WORTH_A_WORD = {
     "contradiction": "measure it again, and correct the text in the museum's database",
     "conversion": "measure it again, and correct the text in the museum's database",
     "missing_unit": 'write the unit into the text, or say it in the mapping, [dimensions] unit = "..."',
     "ambiguous": "write which number is which, such as H 10 x W 5 cm",
+    "label": _LANGUAGE,
+    "unused": "see which of them is the object's, and correct the text in the museum's database",
+    "part": "measure the whole object, or write which size is whose, such as Overall: H 10 x W 5 cm",
+    "remainder": "write it as in H 10 x W 5 x D 3 cm, or see that nothing in it matters",
     "truncated": "shorten it in the museum's database",
 }
 """Notes on a text that a person should mend, and how."""
@@ -102,7 +111,8 @@ def _fill_from(values: dict[str, Any], given: set[str], cells: Cells, read: Dime
                 values[field] = choice.value
                 cells.provenance.append(_provenance(field, what, choice, read))
     said = False
-    for note in read.notes:
+    about = " ".join(str(values.get(field) or "") for field in _NAMING)
+    for note in (*read.notes, *doubts(read, chosen, about)):
         if note.kind in _WORTH_A_WORD:
             said = True
             cells.problems.append(Problem("dimensions", note.message, _WORTH_A_WORD[note.kind]))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from pipeline.collection.dimensions.lexicon import units
+from pipeline.collection.dimensions.labels import labelled
+from pipeline.collection.dimensions.lexicon import languages, units
 from pipeline.collection.dimensions.quantities import DimensionQuantity, Group
 from pipeline.collection.dimensions.reader import Reader
 from pipeline.collection.dimensions.result import DimensionNote, DimensionPart, Dimensions
 from pipeline.collection.dimensions.tokens import tokens_of
+from pipeline.collection.dimensions.units_ahead import units_behind
 from pipeline.errors import InputError
 
 LONGEST = 2000
@@ -16,7 +18,7 @@ _ORDERS = {"": ("height", "width", "depth"), "length": ("width", "height", "dept
 _CONVENTION = "the order is taken as height x width x depth, the museums' convention; it is not written"
 
 
-def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> Dimensions:
+def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", language: str = "") -> Dimensions:
     """Read the text of a dimensions field.
 
     Parameters
@@ -27,6 +29,9 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> 
         The unit of lengths that none is written for, "cm" for instance; None leaves them without a value.
     decimal : {".", ","}
         The decimal mark where a number leaves it open ("1,234").
+    language : str
+        The language of the source, of two letters, which settles short labels such as L. and A.; "" leaves that to the
+        words of the text.
 
     Returns
     -------
@@ -36,7 +41,7 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> 
     Raises
     ------
     InputError
-        For an unknown default unit or decimal mark.
+        For an unknown default unit, decimal mark or language.
 
     References
     ----------
@@ -51,8 +56,13 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> 
             raise InputError(f"default_unit must be one of {known}, not {default_unit!r}")
     if decimal not in (".", ","):
         raise InputError(f'decimal must be "." or ",", not {decimal!r}')
+    if language and language not in languages():
+        raise InputError(f"language must be one of {', '.join(languages())}, not {language!r}")
     head = text[:LONGEST]
-    reader = Reader(head, tokens_of(head, decimal), default is not None)
+    told: list[DimensionNote] = []
+    tokens = units_behind(labelled(tokens_of(head, decimal), head, language, told))
+    reader = Reader(head, tokens, default is not None)
+    reader.notes += told
     reader.read()
     notes = reader.notes
     if len(text) > LONGEST:
@@ -71,6 +81,8 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> 
                 )
             elif q.unit is None:
                 notes.append(DimensionNote("missing_unit", "no unit is written, so there is no value", q.start, q.end))
+    for group in reader.groups:
+        _weighed(group, notes)
     parts = tuple(
         _part(group, number, q) for number, group in enumerate(_ordered(reader.groups, notes)) for q in group.quantities
     )
@@ -86,6 +98,15 @@ def _share_units(group: Group, notes: list[DimensionNote]) -> None:
         elif q.unit is None and unit is not None and q.dimension != "weight":
             q.unit = unit
             notes.append(DimensionNote("unit", f"the unit is that of the next number, {unit.name}", q.start, q.end))
+
+
+def _weighed(group: Group, notes: list[DimensionNote]) -> None:
+    """Refuse a weight in centimetres and a height in kilograms: the unit is believed, the label is not."""
+    for q in group.quantities:
+        if (q.dimension == "weight" and q.kind == "length") or (q.kind == "mass" and q.dimension not in ("", "weight")):
+            message = f"{q.dimension} in {q.unit.name if q.unit else ''}: the unit is believed, and not the label"
+            notes.append(DimensionNote("ambiguous", message, q.start, q.end))
+            q.dimension = "weight" if q.kind == "mass" else "unlabelled"
 
 
 def _ordered(groups: list[Group], notes: list[DimensionNote]) -> list[Group]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pipeline.collection.dimensions.pairing import agree, pair
+from pipeline.collection.dimensions.parts import is_base, is_detail
 from pipeline.collection.dimensions.phrases import Phrase, phrase_of
 from pipeline.collection.dimensions.quantities import DimensionQuantity, Group
 from pipeline.collection.dimensions.result import DimensionNote
@@ -29,6 +30,7 @@ from pipeline.collection.dimensions.tokens import (
 _LONGEST_REMARK = 20  # tokens; so that no text makes the reader look at its words again and again
 _BEHIND = ("with", "framed", "unframed")
 _STATES = frozenset({"folded", "unfolded", "open", "opened", "closed", "unopened", "assembled", "extended"})
+_VOLUMES = frozenset({"volum", "vol", "volume", "volumen", "volumul"})
 _STRAY = frozenset("'\"’”′″")
 _ASIDE = frozenset({OPEN, CLOSE, COLON, COMMA, DASH, DOT})
 
@@ -46,6 +48,7 @@ class Reader:
         self.open: list[DimensionQuantity] = []  # numbers of this clause that have no conversion yet
         self.fresh = True  # no number since the last line break
         self.runs = 0
+        self.current: Group | None = None  # the one that the last numbers went to
 
     def read(self) -> None:
         """Read the whole text."""
@@ -97,6 +100,8 @@ class Reader:
             return self._leave_out(at, behind, "neither a length nor a mass")
         if not self._measures(at, items, behind):
             return 0
+        if items[0].unit is None and len(items) == 1 and self._is_volume(items[0].word):
+            return self._leave_out(at, behind, "an area or a volume")
         if items[-1].unit is None and (tokens[behind].type == DASH or tokens[behind].word == "to"):
             other = run_at(tokens, behind + 1, self.text)  # 24 x 18 - 25 x 19 in.
             if other is not None and other[0][0].kind == "length":
@@ -115,6 +120,11 @@ class Reader:
         self.label = []
         self.fresh = False
         return self._conversions(behind, group)
+
+    def _is_volume(self, number: str) -> bool:
+        """Whether a decimal number stands behind "Vol.", as cubic metres do; "Volume 2" is a part."""
+        words = [self.tokens[at].word for at in self.label if self.tokens[at].type == WORD]
+        return bool(words) and words[-1] in _VOLUMES and not number.isdigit()
 
     def _measures(self, at: int, items: list[DimensionQuantity], behind: int) -> bool:
         """Say whether numbers measure something; a number without unit and partner may as well count or name a part."""
@@ -206,23 +216,35 @@ class Reader:
 
     def _group(self, phrase: Phrase, items: list[DimensionQuantity]) -> Group:
         """Return the group that numbers belong to: the last one where they go on with it, else a new one."""
-        if self.groups and not self.fresh and not phrase.name:
-            last = self.groups[-1]
-            named = {q.dimension for q in last.quantities if q.dimension}
-            continues = all(q.dimension and q.dimension not in named for q in items)
+        last = self._target(phrase)
+        if last is not None and not self.fresh:
+            named = last.named() if "height" in last.named() else {q.dimension for q in last.quantities if q.dimension}
+            spoken = [q.dimension or "".join(phrase.dimensions[-1:] if len(items) == 1 else "") for q in items]
+            continues = all(one and one not in named for one in spoken)
             aside = len(items) == 1 and any(self.tokens[at].type == COMMA for at in self.label)
             if items[0].kind == "mass" and (items[0].dimension or phrase.dimensions):
                 continues = last.name == "overall"  # "Weight: 20 kg" behind the base is the whole object's
             elif items[0].kind == "mass":
                 continues = True
-            if continues or aside or (len(items) == 1 and phrase.dimensions):
+            if continues or (not phrase.name and (aside or (len(items) == 1 and phrase.dimensions))):
                 last.qualifiers |= phrase.qualifiers
+                self.current = last
                 return last
         words = self.text[phrase.start : phrase.end].strip(" \t:,.-–—") if phrase.name else ""
         group = Group(phrase.name or "overall", words, set(phrase.qualifiers))
+        one = len(items) == 1 and (phrase.dimensions or not items[0].dimension)
+        group.aside = bool(one) and (is_base(group.name) or is_detail(group.name))
         self.groups.append(group)
+        self.current = group
         self.open = []
         return group
+
+    def _target(self, phrase: Phrase) -> Group | None:
+        """Return the group that a phrase's numbers may go on with: one of its name; without a name, the last whole."""
+        if phrase.name:
+            alike = self.current is not None and self.current.name == phrase.name and bool(phrase.dimensions)
+            return self.current if alike else None
+        return next((group for group in reversed(self.groups) if not group.aside), None)
 
     def _apply(self, phrase: Phrase, items: list[DimensionQuantity]) -> None:
         """Give numbers the dimensions that a phrase names: a legend to all, one dimension to a single number."""
@@ -291,7 +313,7 @@ class Reader:
 
     def _behind(self, phrase: Phrase) -> bool:
         """Apply a phrase that stands behind numbers to them; say whether there was any use for it."""
-        group = self.groups[-1]
+        group = self.current or self.groups[-1]
         use = False
         if phrase.dimensions:
             run = [q for q in group.quantities if q.run == group.quantities[-1].run]

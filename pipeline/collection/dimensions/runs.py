@@ -6,6 +6,7 @@ from pipeline.collection.dimensions.lexicon import LexiconUnit, unit_words, unit
 from pipeline.collection.dimensions.phrases import is_label_letter
 from pipeline.collection.dimensions.quantities import DimensionQuantity, fill_units, troy
 from pipeline.collection.dimensions.tokens import (
+    BREAK,
     CLOSE,
     COLON,
     COMMA,
@@ -13,6 +14,7 @@ from pipeline.collection.dimensions.tokens import (
     DIMENSION,
     DOT,
     DOTTED,
+    END,
     JOIN,
     NUMBER,
     OPEN,
@@ -22,6 +24,8 @@ from pipeline.collection.dimensions.tokens import (
     Token,
 )
 
+_UP_TO = frozenset({"to", "bis", "à", "a", "tot", "al", "até", "până", "から"})
+_ENDS = frozenset({END, BREAK, COMMA, CLOSE, OPEN, JOIN, DASH, DOT, OTHER, DIMENSION})
 _AREAS = frozenset({"sq", "square", "cubic", "cu", "quadrat"})
 
 
@@ -92,7 +96,7 @@ def quantity_at(tokens: list[Token], at: int, *, joined: bool, weighing: bool) -
     token = tokens[at]
     out = DimensionQuantity(token.num, token.den, token.start, token.end, token.word)
     at = _take_unit(tokens, at + 1, out, weighing)
-    second = tokens[at + 1] if tokens[at].type == DASH or tokens[at].word in ("to", "bis", "à") else None
+    second = tokens[at + 1] if tokens[at].type == DASH or tokens[at].word in _UP_TO else None
     if second is not None and second.type == NUMBER:
         end = DimensionQuantity(second.num, second.den, second.start, second.end, second.word)
         behind = _take_unit(tokens, at + 2, end, weighing)
@@ -133,6 +137,9 @@ def _smaller(tokens: list[Token], at: int, larger: DimensionQuantity) -> tuple[D
     out = DimensionQuantity(number.num, number.den, number.start, number.end, number.word)
     behind = _take_unit(tokens, at + (2 if comma else 1), out, False)
     if out.unit is None:
+        if larger.unit.name == "m" and not comma and number.den == 1 and _is_pair(number) and tokens[behind].type in _ENDS:
+            out.unit = units()["cm"]  # 1 m 20
+            return out, behind
         if larger.unit.name != "ft" or comma or number.num >= 12 * number.den:
             return None, at
         out.unit = units()["in"]
@@ -141,6 +148,11 @@ def _smaller(tokens: list[Token], at: int, larger: DimensionQuantity) -> tuple[D
     if out.unit.name != chain or (comma and larger.unit.kind == "length" and larger.unit.system == "metric"):
         return None, at
     return out, behind
+
+
+def _is_pair(number: Token) -> bool:
+    """Whether a number is written with two digits, as the centimetres behind metres are."""
+    return number.word.isdigit() and len(number.word) == 2
 
 
 def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[DimensionQuantity], int] | None:
