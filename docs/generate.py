@@ -41,6 +41,7 @@ TABLE_WORDS = {
     "contacts": "How much of a base that is only assumed may really bear.",
     "column_names": "Names of columns by which `kouros import --guess` knows a field.",
     "damping": "Damping of a hung object by wall and back (Table 4 of the paper).",
+    "dimension_labels": "Short labels of dimension texts by language.",
     "dimension_units": "Units of dimension texts.",
     "dimension_words": "Words of dimension texts.",
     "dispersion": "What a fragility curve's dispersion is made of.",

@@ -2,8 +2,20 @@
 
 from pipeline.collection.dimensions.choice import choose
 from pipeline.collection.dimensions.doubts import doubts
+from pipeline.collection.dimensions.lexicon import languages
 from pipeline.collection.dimensions.pairing import agree
 from pipeline.collection.dimensions.parsing import parse
 from pipeline.collection.dimensions.result import Choice, Chosen, DimensionNote, DimensionPart, Dimensions
 
-__all__ = ["Choice", "Chosen", "DimensionNote", "DimensionPart", "Dimensions", "agree", "choose", "doubts", "parse"]
+__all__ = [
+    "Choice",
+    "Chosen",
+    "DimensionNote",
+    "DimensionPart",
+    "Dimensions",
+    "agree",
+    "choose",
+    "doubts",
+    "languages",
+    "parse",
+]

@@ -10,6 +10,7 @@ from pipeline.collection.dimensions.result import Choice, Chosen, DimensionPart,
 
 _FACES = {"mount": 4, "mat": 4, "sheet": 5, "page": 5, "image": 6, "composition": 6, "plate": 6, "block": 6}
 _LAST = 9
+_LABELLED = frozenset({"height", "width", "depth", "diameter", "length", "thickness", "weight"})
 _FLAT = 0.5
 """First number of a base over its second from which both lie in plan; below it the first is the base's own height."""
 
@@ -43,10 +44,17 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
     best = min((_rank(g, hung) for g in bodies), default=_LAST)
     alike = [g for g in bodies if _rank(g, hung) == best < _LAST]
     if alike and not _is_lost(dimensions, alike):
-        chosen = max(alike, key=_size)
+        chosen = max(_telling(alike), key=_size)
         if dimensions.having("round"):
             chosen = [replace(part, dimension="diameter") if part.dimension == "depth" else part for part in chosen]
         out = _extents(chosen, _reason(chosen, len(alike), hung and best == 0))
+        if chosen[0].name.startswith("with ") and len(out) == 1:  # "height with base" beside width and depth without
+            own = [
+                g
+                for g in bodies
+                if g[0].name.startswith(("overall", "without ")) and all(p.dimension in _LABELLED for p in g)
+            ]
+            out = _extents(max(own, key=_size), "of the object itself") | out if own else out
     bases = [g for g in groups.values() if is_base(g[0].name)]
     if bases:
         out |= _base(max(bases, key=_size))
@@ -54,6 +62,20 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
     if mass is not None:
         out["mass"] = mass
     return Chosen(**out)
+
+
+def _telling(alike: list[list[DimensionPart]]) -> list[list[DimensionPart]]:
+    """Return the groups that say a height, if they are not far smaller than others; else those that say most."""
+    largest = max(map(_size, alike))
+    upright = [
+        g for g in alike if any(p.dimension == "height" and not p.assumed for p in g) and 2.0 * _size(g) >= largest
+    ]
+    if upright:
+        return upright
+    said = [{p.dimension for p in g} - {"unlabelled", "weight"} for g in alike]
+    if not any("height" in one or len(one) > 1 for one in said):
+        return alike
+    return [g for g, one in zip(alike, said, strict=True) if one]
 
 
 def _is_lost(dimensions: Dimensions, alike: list[list[DimensionPart]]) -> bool:
@@ -78,6 +100,8 @@ def _rank(group: list[DimensionPart], hung: bool) -> int:
         return 2
     if is_detail(name):
         return _LAST
+    if name.startswith("without "):
+        return 4
     faces = [_FACES[word] for word in words if word in _FACES]
     return min(faces) if faces else 3
 
@@ -122,7 +146,8 @@ def _extents(group: list[DimensionPart], reason: str) -> dict[str, Choice]:
         elif part.dimension == "circumference":
             take("diameter", part, "circumference divided by pi", 1.0 / pi)
     if not out or set(out) == {"diameter"}:
-        largest = max((p for p in group if p.dimension == "unlabelled"), key=lambda p: p.value or 0.0, default=None)
+        bare = [p for p in group if p.dimension == "unlabelled" and (not out or p.start < out["diameter"].start)]
+        largest = max(bare, key=lambda p: p.value or 0.0, default=None)
         if largest is not None:
             take("height", largest, "a number without a label, taken as the height")
     return out

@@ -1,20 +1,21 @@
-"""What a text says beyond the extents that were chosen: numbers that no field holds, and parts that stand for the whole."""
+"""What a text says beyond the extents that were chosen: numbers that no field holds, parts that stand for the whole."""
 
 from __future__ import annotations
 
 import re
 from functools import cache
 
-from pipeline.collection.dimensions.lexicon import meanings
+from pipeline.collection.dimensions.lexicon import label_words, meanings
 from pipeline.collection.dimensions.result import Chosen, DimensionNote, DimensionPart, Dimensions
 
-_CARRIERS = frozenset(
-    "page pages mat case slipcase cover portfolio box book album envelope folder volume panel canvas board block part "
-    "parts component components irregular various installation support mount approx stacked spread partial large".split()
-)
+_CARRIERS = frozenset({
+    "page", "pages", "mat", "case", "slipcase", "cover", "portfolio", "box", "book", "album", "envelope", "folder",
+    "volume", "panel", "canvas", "board", "block", "part", "parts", "component", "components", "irregular", "various",
+    "installation", "support", "mount", "approx", "stacked", "spread", "partial", "large",
+})  # fmt: skip
 """What a work on paper or in parts is made of and kept in: such sizes are the object's, as far as the text tells."""
 _LETTERS = re.compile(r"[^\W\d_]+")
-_OPEN = frozenset({"height", "width", "depth", "length"})
+_OPEN = frozenset({"height", "width", "depth", "length", "unlabelled"})
 
 
 def doubts(read: Dimensions, chosen: Chosen, about: str = "") -> tuple[DimensionNote, ...]:
@@ -43,6 +44,11 @@ def doubts(read: Dimensions, chosen: Chosen, about: str = "") -> tuple[Dimension
         for part in read.parts
         if part.group in groups and (part.start, part.end) not in used and part.dimension in _OPEN and part.value
     ]
+    out += [
+        DimensionNote("unused", f"what {part.words!r} means is not known", part.start, part.end)
+        for part in read.parts
+        if part.name in _labels() and part.value
+    ]
     for part in read.parts:
         if body is not None and (part.start, part.end) == (body.start, body.end) and is_strange(part.name, about):
             message = f"the size of {part.words!r} is taken for that of the whole object"
@@ -63,6 +69,12 @@ def is_strange(name: str, about: str) -> bool:
         len(word) > 2 and word not in meanings() and word not in _named() and _stem(word) not in own
         for word in _LETTERS.findall(name.casefold())
     )
+
+
+@cache
+def _labels() -> frozenset[str]:
+    """Return labels of some language that as the name of a part are labels that were not understood."""
+    return frozenset(label for label in label_words() if len(label) < 3) - frozenset("abcdefg")
 
 
 @cache

@@ -73,6 +73,7 @@ def labelled(tokens: list[Token], text: str, language: str, notes: list[Dimensio
     chosen = best[0]
     out = list(tokens)
     told: set[str] = set()
+    upright = any(tokens[at].word == "h" for at in places)
     for at in places:
         token = tokens[at]
         written = text[token.start : token.end]
@@ -83,6 +84,10 @@ def labelled(tokens: list[Token], text: str, language: str, notes: list[Dimensio
             return tokens
         if not meaning or (chosen.name == "en" and token.meaning == ("dimension", meaning)):
             continue
+        if written.lower() == "a" and meaning == "height" and upright:
+            meaning = "width"  # ancho, where the height is H
+            notes.append(DimensionNote("label", f"{written!r} beside H is taken as the width", token.start, token.end))
+            told.add(written)
         others = {other.meaning(written) for other in best[1:]} - {"", meaning}
         if written not in told and ("height" in others or (meaning == "height" and others)):
             message = f"{written!r} is taken as the {meaning}; in another language it is the {min(others)}"
@@ -121,13 +126,16 @@ def _likeliest(labels: set[str], words: set[str]) -> list[Language]:
 def _sized(meanings: list[str]) -> bool:
     """Whether labels alone, without a word, make a size: a height, and something in plan."""
     plan = _IN_PLAN.intersection(meanings)
-    return len(plan) > 1 or ("height" in meanings and bool(plan or "diameter" in meanings))
+    return len(plan) + len({"height", "diameter"}.intersection(meanings)) > 1
 
 
 def _is_diameter(tokens: list[Token], places: list[int]) -> bool:
     """Whether a D stands beside no width, length or unlabelled number, as the depth of a box would."""
-    if any(token.type == JOIN for token in tokens):
-        return False
+    inside = 0
+    for token in tokens:
+        inside += (token.type == OPEN) - (token.type == CLOSE)
+        if token.type == JOIN and inside < 1:
+            return False
     labels = {tokens[at].word for at in places}
     spoken = {token.meaning[1] for token in tokens if token.type == DIMENSION and token.meaning}
     return labels <= {"h", "d", "ht"} and spoken <= {"height", "depth", "weight"}
@@ -144,7 +152,8 @@ def _places(tokens: list[Token], text: str) -> Iterator[int]:
         before = tokens[at - 1] if at else tokens[-1]
         if before.type == NUMBER and token.unit is not None and token.type != DIMENSION:
             continue
-        if _before_number(tokens, at, text) or _in_legend(tokens, at):
+        inside = before.type == OPEN and tokens[at + 1].type == CLOSE and tokens[at - 2].type in (UNIT, NUMBER)
+        if inside or _before_number(tokens, at, text) or _in_legend(tokens, at):
             yield at
 
 

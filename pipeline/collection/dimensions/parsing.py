@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from pipeline.collection.dimensions.labels import labelled
 from pipeline.collection.dimensions.lexicon import languages, units
 from pipeline.collection.dimensions.quantities import DimensionQuantity, Group
@@ -14,6 +16,8 @@ from pipeline.errors import InputError
 LONGEST = 2000
 """Characters of a text that are read; what follows is noted, not read."""
 
+_SHOWN = re.compile(r"(?<![\d.,])\d+([.,])\d{1,2}(?![\d.,]|\s*/)")
+_POINTED = re.compile(r"\d{1,3}\.\d{3}")
 _ORDERS = {"": ("height", "width", "depth"), "length": ("width", "height", "depth")}
 _CONVENTION = "the order is taken as height x width x depth, the museums' convention; it is not written"
 
@@ -59,6 +63,7 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", lan
     if language and language not in languages():
         raise InputError(f"language must be one of {', '.join(languages())}, not {language!r}")
     head = text[:LONGEST]
+    decimal = _mark_of(head) or decimal
     told: list[DimensionNote] = []
     tokens = units_behind(labelled(tokens_of(head, decimal), head, language, told))
     reader = Reader(head, tokens, default is not None)
@@ -69,6 +74,7 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", lan
         notes.append(
             DimensionNote("truncated", f"{len(text):,} characters, of which {LONGEST:,} are read", LONGEST, len(text))
         )
+    _share_last(reader.groups, notes)
     for group in reader.groups:
         if all(q.unit is not None for q in group.quantities):
             continue
@@ -83,10 +89,31 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", lan
                 notes.append(DimensionNote("missing_unit", "no unit is written, so there is no value", q.start, q.end))
     for group in reader.groups:
         _weighed(group, notes)
+        for q in group.quantities:
+            if decimal == "," and _POINTED.fullmatch(q.word):
+                message = f"{q.word} is read as {q.num / q.den:.10g}, its point as a mark of thousands"
+                notes.append(DimensionNote("ambiguous", message, q.start, q.end))
     parts = tuple(
         _part(group, number, q) for number, group in enumerate(_ordered(reader.groups, notes)) for q in group.quantities
     )
     return Dimensions(text, parts, tuple(notes))
+
+
+def _share_last(groups: list[Group], notes: list[DimensionNote]) -> None:
+    """Carry the only unit of a text, behind its last number, back to the labelled numbers of all its parts."""
+    every = sorted((q for group in groups for q in group.quantities), key=lambda q: q.start)
+    if len(groups) < 2 or every[-1].kind != "length" or any(q.unit is not None for q in every[:-1]):
+        return
+    for q in every[:-1]:
+        if q.dimension not in ("", "weight"):
+            q.unit = every[-1].unit
+            notes.append(DimensionNote("unit", "the unit is that of the last number", q.start, q.end))
+
+
+def _mark_of(text: str) -> str:
+    """Return the decimal mark that a text itself shows by decimals of one or two digits; "" where it shows none."""
+    found = {match[1] for match in _SHOWN.finditer(text)}
+    return found.pop() if len(found) == 1 else ""
 
 
 def _share_units(group: Group, notes: list[DimensionNote]) -> None:

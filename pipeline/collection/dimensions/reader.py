@@ -108,6 +108,10 @@ class Reader:
                 for item in items:
                     item.unit = other[0][0].unit
         phrase = phrase_of(tokens, self.label, self.text)
+        if self.label and tokens[self.label[-1]].start == tokens[at].start:
+            phrase.dimensions.append(items[0].dimension)  # one word for both, such as 底径
+        inner = (tokens[i].meaning for i in range(at, behind))
+        phrase.qualifiers |= {meaning[1] for meaning in inner if meaning and meaning[0] == "qualifier"}
         group = self._group(phrase, items)
         for item in items:
             item.run = self.runs
@@ -177,6 +181,8 @@ class Reader:
                 if not behind:
                     return at
                 at = behind
+            elif tokens[place].type == DIMENSION and tokens[place - 1].type == CLOSE and self._labels(place, group):
+                at = place + 1
             elif tokens[place].type == JOIN:
                 behind = self._joined(place + 1, group)
                 if not behind:
@@ -184,6 +190,17 @@ class Reader:
                 at = behind
             else:
                 return at
+
+    def _labels(self, at: int, group: Group) -> bool:
+        """Give a number the label behind its conversion, as in '28 7/8 in. (73.3 cm) height x 10 in. (25 cm) diam.'."""
+        behind = at + 2 if self.tokens[at + 1].type == DOT else at + 1
+        last, meaning = group.quantities[-1], self.tokens[at].meaning
+        mates = [q for q in group.quantities if q.run == last.run and q is not last]
+        ends = self.tokens[behind].type in (JOIN, END, BREAK, COMMA)
+        if not ends or last.dimension or meaning is None or not all(q.dimension for q in mates):
+            return False
+        last.dimension = meaning[1]
+        return True
 
     def _same(self, at: int) -> int:
         """Take a run that repeats the open numbers in the other system and agrees with all; else return 0."""
@@ -221,7 +238,8 @@ class Reader:
             named = last.named() if "height" in last.named() else {q.dimension for q in last.quantities if q.dimension}
             spoken = [q.dimension or "".join(phrase.dimensions[-1:] if len(items) == 1 else "") for q in items]
             continues = all(one and one not in named for one in spoken)
-            aside = len(items) == 1 and any(self.tokens[at].type == COMMA for at in self.label)
+            weighs = items[0].kind == "mass" and bool(items[0].dimension or phrase.dimensions)
+            aside = len(items) == 1 and not weighs and any(self.tokens[at].type == COMMA for at in self.label)
             if items[0].kind == "mass" and (items[0].dimension or phrase.dimensions):
                 continues = last.name == "overall"  # "Weight: 20 kg" behind the base is the whole object's
             elif items[0].kind == "mass":
@@ -232,8 +250,11 @@ class Reader:
                 return last
         words = self.text[phrase.start : phrase.end].strip(" \t:,.-–—") if phrase.name else ""
         group = Group(phrase.name or "overall", words, set(phrase.qualifiers))
-        one = len(items) == 1 and (phrase.dimensions or not items[0].dimension)
-        group.aside = bool(one) and (is_base(group.name) or is_detail(group.name))
+        if len(items) == 1 and (is_base(group.name) or is_detail(group.name)):
+            group.aside = bool(phrase.dimensions) or not items[0].dimension
+        elif len(items) == 1 and phrase.name and phrase.dimensions:
+            state = group.name.startswith(_BEHIND)
+            group.aside = any(other.name == "overall" if state else not other.aside for other in self.groups)
         self.groups.append(group)
         self.current = group
         self.open = []
@@ -258,12 +279,20 @@ class Reader:
         """Read a remark in brackets right behind numbers, such as (irreg.), (h x w) or (framed)."""
         tokens = self.tokens
         end = at + 1
-        while tokens[end].type in (WORD, DIMENSION, DOT, COMMA, JOIN):
+        while tokens[end].type in (WORD, DIMENSION, DOT, COMMA, JOIN) or (
+            tokens[end].type == NUMBER and tokens[end + 1].type == WORD and tokens[end + 1].unit is None
+        ):
             end += 1
         following = tokens[end + 1].type if tokens[end].type == CLOSE else COLON
         phrase = phrase_of(tokens, list(range(at, end)), self.text)
         remark = phrase.qualifiers or phrase.dimensions or phrase.name
         ends = following in (END, BREAK, COMMA, DOT)
+        if following == COMMA and tokens[end + 2].type == DIMENSION and not phrase.known and phrase.name:
+            start, stop = tokens[at + 1].start, tokens[end - 1].end
+            self.notes.append(
+                DimensionNote("remainder", f"not understood: {self.text[start:stop][:80]!r}", start, stop)
+            )
+            return end + 1
         if following in (COLON, NUMBER) or not remark or (phrase.name and not (phrase.known and ends)):
             self.label.append(at)
             return at + 1

@@ -26,6 +26,8 @@ from pipeline.collection.dimensions.tokens import (
 
 _UP_TO = frozenset({"to", "bis", "à", "a", "tot", "al", "até", "până", "から"})
 _ENDS = frozenset({END, BREAK, COMMA, CLOSE, OPEN, JOIN, DASH, DOT, OTHER, DIMENSION})
+_AND = frozenset({"and", "und", "et", "en", "y", "e", "și"})
+_OF = frozenset({"de", "di", "in", "of", "da", "en"})
 _AREAS = frozenset({"sq", "square", "cubic", "cu", "quadrat"})
 
 
@@ -137,7 +139,13 @@ def _smaller(tokens: list[Token], at: int, larger: DimensionQuantity) -> tuple[D
     out = DimensionQuantity(number.num, number.den, number.start, number.end, number.word)
     behind = _take_unit(tokens, at + (2 if comma else 1), out, False)
     if out.unit is None:
-        if larger.unit.name == "m" and not comma and number.den == 1 and _is_pair(number) and tokens[behind].type in _ENDS:
+        if (
+            larger.unit.name == "m"
+            and not comma
+            and number.den == 1
+            and _is_pair(number)
+            and tokens[behind].type in _ENDS
+        ):
             out.unit = units()["cm"]  # 1 m 20
             return out, behind
         if larger.unit.name != "ft" or comma or number.num >= 12 * number.den:
@@ -181,7 +189,7 @@ def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[DimensionQuant
         if tokens[at].type == DIMENSION and meaning and not is_label_letter(tokens, at, text):
             label = meaning[1]
             at += 1
-            while tokens[at].type in (DOT, COLON) or tokens[at].word in ("of", "ca", "approx"):
+            while tokens[at].type in (DOT, COLON) or tokens[at].word == "of" or _qualifies(tokens[at]):
                 at += 1
         if tokens[at].type not in (NUMBER, DOTTED):
             at = start
@@ -202,6 +210,10 @@ def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[DimensionQuant
     return items, at
 
 
+def _qualifies(token: Token) -> bool:
+    return token.meaning is not None and token.meaning[0] == "qualifier"
+
+
 def _begins(tokens: list[Token], at: int) -> bool:
     """Say whether a number, or a dimension and a number, begin at a token."""
     if tokens[at].type == DIMENSION:
@@ -217,6 +229,8 @@ def _label_behind(tokens: list[Token], at: int, quantity: DimensionQuantity, tex
     bracket = tokens[place].type == OPEN
     if bracket:
         place += 1
+    if tokens[place].word in _OF and tokens[place + 1].type == DIMENSION and quantity.unit is not None:
+        place += 1  # 82 cm de alto
     token = tokens[place]
     if token.type != DIMENSION or token.meaning is None or is_label_letter(tokens, place, text):
         return at
@@ -227,7 +241,9 @@ def _label_behind(tokens: list[Token], at: int, quantity: DimensionQuantity, tex
         if tokens[behind].type != CLOSE:
             return at
         behind += 1
-    elif tokens[behind].type == COLON or (tokens[behind].type == WORD and tokens[behind].unit is None):
+    elif tokens[behind].type == COLON or (
+        tokens[behind].type == WORD and tokens[behind].unit is None and tokens[behind].word not in _AND
+    ):
         return at  # "3 in. diam. at rim" and "3 in. high back: ..." are phrases
     quantity.dimension = token.meaning[1]
     quantity.end = max(quantity.end, tokens[place].end)

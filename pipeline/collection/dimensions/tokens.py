@@ -152,9 +152,7 @@ def _is_legend(word: str) -> bool:
     return all(piece in label_words() for piece in pieces)
 
 
-def _legend(
-    word: str, start: int, known: dict[str, tuple[str, str]], by_word: dict[str, LexiconUnit]
-) -> list[Token]:
+def _legend(word: str, start: int, known: dict[str, tuple[str, str]], by_word: dict[str, LexiconUnit]) -> list[Token]:
     """Return the labels of a legend and the joins between them."""
     out: list[Token] = []
     for piece in word.split("x"):

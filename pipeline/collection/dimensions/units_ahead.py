@@ -88,7 +88,13 @@ def _is_ahead(tokens: list[Token], at: int, moved: dict[int, LexiconUnit]) -> bo
     while back >= 0 and tokens[back].type in (DOT, OPEN, DIMENSION, CLOSE):
         back -= 1
     announced = tokens[at - 1].word in _ANNOUNCING or tokens[at - 2].word == "misu" if at else False
-    if back >= 0 and tokens[back].type == NUMBER and back not in moved and not announced and tokens[at - 1].type != OPEN:
+    if (
+        back >= 0
+        and tokens[back].type == NUMBER
+        and back not in moved
+        and not announced
+        and tokens[at - 1].type != OPEN
+    ):
         return False
     if announced:
         return True
@@ -126,7 +132,13 @@ def _carry_back(tokens: list[Token], at: int, unit: LexiconUnit, moved: dict[int
         if one.unit is not None and one.type == UNIT and one.unit.kind == unit.kind:
             return
         weighs = one.type == NUMBER and _weighs(tokens, back)
-        if one.type == NUMBER and back not in moved and _is_bare(tokens, back) and weighs == (unit.kind == "mass"):
+        named = tokens[back + 1].meaning is not None
+        if (
+            one.type == NUMBER
+            and back not in moved
+            and (named or _is_bare(tokens, back))
+            and weighs == (unit.kind == "mass")
+        ):
             moved[back] = unit
 
 
@@ -147,10 +159,10 @@ def _weighs(tokens: list[Token], at: int) -> bool:
 
 def _is_labelled(tokens: list[Token], at: int) -> bool:
     """Whether a label stands before a number, in the same clause."""
-    for back in range(at - 1, max(at - 8, -1), -1):
+    for back in range(at - 1, max(at - _FARTHEST, -1), -1):
         one = tokens[back]
         if one.type == DIMENSION:
             return True
-        if one.type not in _BETWEEN:
+        if one.type not in _BETWEEN and (one.type != UNIT or tokens[back - 1].type == NUMBER):
             return False
     return False
