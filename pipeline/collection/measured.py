@@ -35,6 +35,8 @@ _NUMERALS = (
     "dos|tres|cuatro|cinco|seis|siete|ocho|nueve|diez|medio|um|uma|dois|duas|três|quatro|sete|oito|dez|meio|"
     "een|twee|drie|vijf|zes|zeven|negen|tien|unu|doi|două|trei|patru|cinci|șase|șapte|opt|nouă|zece"
 )
+_SPELLED_NUMBERS = frozenset(_NUMERALS.split("|"))
+_WORDS = re.compile(r"[^\W\d_]+")
 _NO_UNIT = frozenset({"in", "ins", "once", "oncia"})
 """Words of units that are other words as often."""
 
@@ -135,7 +137,8 @@ def _fill_from(values: dict[str, Any], given: set[str], cells: Cells, read: Dime
 
 def _tell(cells: Cells, read: Dimensions, notes: Sequence[DimensionNote], found: bool) -> None:
     """Make problems of what a person should see of a text: the doubts, what was not understood, or all of it."""
-    spelled = list(_spelled().finditer(read.text))
+    words = _WORDS.findall(read.text.casefold())
+    spelled = [] if _SPELLED_NUMBERS.isdisjoint(words) else list(_spelled().finditer(read.text))
     worth = [
         note
         for note in notes

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import hypot, pi
 
-from pipeline.collection.dimensions.parts import FRAMED, is_base, is_detail
+from pipeline.collection.dimensions.parts import DETAILS, FRAMED, is_base, is_detail
 from pipeline.collection.dimensions.result import Choice, Chosen, DimensionPart, Dimensions
 
 _FACES = {"mount": 4, "mat": 4, "sheet": 5, "page": 5, "image": 6, "composition": 6, "plate": 6, "block": 6}
@@ -94,7 +94,7 @@ def _rank(group: list[DimensionPart], hung: bool) -> int:
         return 6
     if FRAMED.intersection(words):
         return 0 if hung else 3
-    if name == "with base":
+    if name == "with base" or (name.startswith("with ") and DETAILS.intersection(words)):
         return 1
     if name.startswith("overall"):
         return 2

@@ -354,6 +354,8 @@ class Reader:
         name = phrase.name
         if name.endswith(" base") and not phrase.dimensions and not name.startswith("with"):
             name = "with base"  # "on wooden base" without numbers of its own
+        if phrase.known and (is_base(name) or is_detail(name)):
+            group = self._split(group, phrase)
         stands = phrase.known or name.startswith(_BEHIND)
         stands = stands or ("each" in phrase.qualifiers and not group.words)
         if name and stands and group.name == "overall":
@@ -369,6 +371,16 @@ class Reader:
             group.qualifiers |= phrase.qualifiers
             use = True
         return use
+
+    def _split(self, group: Group, phrase: Phrase) -> Group:
+        """Give the last number of a group one of its own: in "H. 12 cm, Diam. 8 cm (rim)" only it is the rim's."""
+        last = [q for q in group.quantities if q.run == group.quantities[-1].run]
+        if group.name != "overall" or len(last) == len(group.quantities) or len(last) > 1:
+            return group
+        group.quantities = [q for q in group.quantities if q not in last]
+        self.current = Group("overall", "", set(phrase.qualifiers), last, aside=True)
+        self.groups.append(self.current)
+        return self.current
 
     def _leave_out(self, at: int, behind: int, what: str) -> int:
         """Note something that is no dimension, with the words before it and its unit; return the token behind it."""
