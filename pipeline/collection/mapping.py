@@ -23,6 +23,7 @@ from pydantic import (
     model_validator,
 )
 
+from pipeline.collection.dimensions import languages
 from pipeline.collection.errors import MappingError
 from pipeline.collection.record import CHOICES, KINDS, REQUIRED, units_of
 from pipeline.collection.sources.base import Name, Source, SourceSettings
@@ -156,6 +157,11 @@ class Texts(_Part):
     unit: str | None = Field(
         default=None, description="Unit of numbers that have none; without it they are reported and not used."
     )
+    language: str = Field(
+        default="",
+        description="Language of the texts (en, fr, de, nl, it, es, pt, ro), which settles short labels such as L. and "
+        "D.; without it the words of each text do.",
+    )
     framed: bool = Field(default=True, description="Whether works in frames hang in them: then the frame counts.")
     optional: bool = Field(default=False, description="The source may lack these columns.")
 
@@ -165,6 +171,13 @@ class Texts(_Part):
         if unit is not None and unit not in LENGTHS:
             raise InputError(f"{unit!r} is no unit of length; use one of {', '.join(LENGTHS)}")
         return unit
+
+    @field_validator("language")
+    @classmethod
+    def _spoken(cls, language: str) -> str:
+        if language and language not in languages():
+            raise InputError(f"{language!r} is no language of dimension texts; use one of {', '.join(languages())}")
+        return language
 
 
 class Display(_Part):

@@ -8,7 +8,8 @@ from functools import cache
 from typing import Any
 
 from pipeline.collection.cells import Cells
-from pipeline.collection.dimensions import Choice, Dimensions, agree, choose, parse
+from pipeline.collection.dimensions import Choice, DimensionNote, Dimensions, agree, choose, doubts, parse
+from pipeline.collection.dimensions.lexicon import unit_words
 from pipeline.collection.mapping import ColumnMap, Texts
 from pipeline.collection.measured_cell import written
 from pipeline.collection.record import TEXT_LIMIT
@@ -25,24 +26,47 @@ FIELDS: Mapping[str, tuple[str, ...]] = {
 }
 """What a text says -> the fields that it fills, in the order in which they are filled."""
 
-_WORD = (
+_NUMERALS = (
     "half|one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|fifteen|twenty|thirty|forty|fifty|sixty|"
-    "seventy|eighty|ninety|hundred"
+    "seventy|eighty|ninety|hundred|"
+    "ein|eine|einen|zwei|drei|vier|fünf|sechs|sieben|acht|neun|zehn|zwölf|halber|anderthalb|"
+    "un|une|deux|trois|quatre|cinq|sept|huit|neuf|dix|douze|vingt|trente|demi|"
+    "uno|una|due|tre|quattro|cinque|sei|sette|otto|nove|dieci|mezzo|"
+    "dos|tres|cuatro|cinco|seis|siete|ocho|nueve|diez|medio|um|uma|dois|duas|três|quatro|sete|oito|dez|meio|"
+    "een|twee|drie|vijf|zes|zeven|negen|tien|unu|doi|două|trei|patru|cinci|șase|șapte|opt|nouă|zece"
 )
-_SPELLED = re.compile(
-    rf"(?i)\b(?:{_WORD})(?:[\s-]+(?:and|a|an|quarter|{_WORD}))*[\s-]+"
-    r"(?:mm|cm|ft|kg|lbs?|oz|(?:milli|centi)?met(?:er|re)s?|inch(?:es)?|foot|feet|yards?|pounds?|ounces?|(?:kilo)?grams?)\b"
-)
-"""A number in words with a unit behind it: such texts are not read, and must not pass for none."""
+_SPELLED_NUMBERS = frozenset(_NUMERALS.split("|"))
+_WORDS = re.compile(r"[^\W\d_]+")
+_NO_UNIT = frozenset({"in", "ins", "once", "oncia"})
+"""Words of units that are other words as often."""
+
+
+@cache
+def _spelled() -> re.Pattern[str]:
+    """Match a number in words with a unit behind it: such texts are not read, and must not pass for none."""
+    known = (word for word, unit in unit_words().items() if unit.kind in ("length", "mass") and len(word) > 1)
+    units = "|".join(sorted((re.escape(w) for w in known if w.isalpha() and w not in _NO_UNIT), key=len, reverse=True))
+    more = rf"(?:[\s-]+(?:and|a|an|quarter|und|et|y|e|și|{_NUMERALS}))*"
+    return re.compile(rf"(?i)\b(?:{_NUMERALS}){more}[\s-]+(?:{units})\b")
+
 
 _PART = "weight of a part"
 """How the reason of a weight begins that is not the whole object's."""
+
+_LANGUAGE = 'say it in the mapping, [dimensions] language = "...", or write the word out'
+
+_NAMING = ("object_name", "title", "classification", "medium")
+"""Fields whose words name the object."""
 
 _WORTH_A_WORD = {
     "contradiction": "measure it again, and correct the text in the museum's database",
     "conversion": "measure it again, and correct the text in the museum's database",
     "missing_unit": 'write the unit into the text, or say it in the mapping, [dimensions] unit = "..."',
     "ambiguous": "write which number is which, such as H 10 x W 5 cm",
+    "label": _LANGUAGE,
+    "unused": "see which of them is the object's, and correct the text in the museum's database",
+    "part": "measure the whole object, or write which size is whose, such as Overall: H 10 x W 5 cm",
+    "remainder": "write it as in H 10 x W 5 x D 3 cm, or see that nothing in it matters",
     "truncated": "shorten it in the museum's database",
 }
 """Notes on a text that a person should mend, and how."""
@@ -75,7 +99,13 @@ def fill(values: dict[str, Any], cells: Cells, mapping: Texts, texts: Sequence[s
     given = {field for field in FIELDS_FILLED if values.get(field) is not None}
     for text in texts:
         if text.strip():
-            _fill_from(values, given, cells, parse(text, default_unit=mapping.unit, decimal=decimal), mapping)
+            _fill_from(
+                values,
+                given,
+                cells,
+                parse(text, default_unit=mapping.unit, decimal=decimal, language=mapping.language),
+                mapping,
+            )
 
 
 FIELDS_FILLED = tuple(dict.fromkeys(field for fields in FIELDS.values() for field in fields))
@@ -101,20 +131,32 @@ def _fill_from(values: dict[str, Any], given: set[str], cells: Cells, read: Dime
             ):
                 values[field] = choice.value
                 cells.provenance.append(_provenance(field, what, choice, read))
-    said = False
-    for note in read.notes:
-        if note.kind in _WORTH_A_WORD:
-            said = True
-            cells.problems.append(Problem("dimensions", note.message, _WORTH_A_WORD[note.kind]))
-    for spelled in _SPELLED.finditer(read.text):
-        said = True
-        message = f"a number in words is not read: {spelled[0][:80]!r}"
-        cells.problems.append(Problem("dimensions", message, "write it in digits, such as 2 ft"))
-    known = said or any(read.having(kind) for kind in ("left_out", "variable"))
-    if not (found or known) and any(c.isalnum() for c in read.text):
-        what = "says no size of the object itself" if read.parts else "holds no dimension that can be read"
-        message = f"the text {read.text[:80]!r} {what}"
-        cells.problems.append(Problem("dimensions", message, "write it as in H 10 x W 5 x D 3 cm, or leave it empty"))
+    about = " ".join(str(values.get(field) or "") for field in _NAMING)
+    _tell(cells, read, (*read.notes, *doubts(read, chosen, about)), found)
+
+
+def _tell(cells: Cells, read: Dimensions, notes: Sequence[DimensionNote], found: bool) -> None:
+    """Make problems of what a person should see of a text: the doubts, what was not understood, or all of it."""
+    words = _WORDS.findall(read.text.casefold())
+    spelled = [] if _SPELLED_NUMBERS.isdisjoint(words) else list(_spelled().finditer(read.text))
+    worth = [
+        note
+        for note in notes
+        if note.kind in _WORTH_A_WORD
+        and not (note.kind == "remainder" and any(note.start <= s.start() < note.end for s in spelled))
+    ]
+    problems = [Problem("dimensions", note.message, _WORTH_A_WORD[note.kind]) for note in worth]
+    for found_words in spelled:
+        message = f"a number in words is not read: {found_words[0][:80]!r}"
+        problems.append(Problem("dimensions", message, "write it in digits, such as 2 ft"))
+    only = len(problems) == sum(note.kind == "remainder" for note in worth)
+    if not found and only and not any(note.kind in ("left_out", "variable") for note in notes):
+        problems = []
+        if any(c.isalnum() for c in read.text):
+            what = "says no size of the object itself" if read.parts else "holds no dimension that can be read"
+            message = f"the text {read.text[:80]!r} {what}"
+            problems = [Problem("dimensions", message, "write it as in H 10 x W 5 x D 3 cm, or leave it empty")]
+    cells.problems += problems
 
 
 def _compare(field: str, value: float, choice: Choice, cells: Cells) -> None:

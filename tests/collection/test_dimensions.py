@@ -21,8 +21,10 @@ def test_units_are_those_of_the_rest_of_the_program():
 
 
 def test_no_word_means_two_things_behind_a_number():
-    """A word may be a unit behind a number and a label before it; these are the ones, and no more."""
-    assert {word for word in unit_words() if word in meanings()} == {"in", "t", "dm"}
+    """A word may be a unit behind a number and a label or a foot before it; these are the ones, and no more."""
+    assert {word for word in unit_words() if word in meanings()} == {
+        "in", "t", "dm", "fuß", "pied", "pie", "piede"
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", ["dimension_units", "dimension_words"])

@@ -15,12 +15,19 @@ SI = {unit: Fraction(repr(value)) for unit, value in (LENGTHS | MASSES).items()}
 ENGLISH = {"in": ("in", "in.", "inches", '"', "”", "″", "''"), "ft": ("ft", "ft.", "feet", "'", "’", "′")}
 METRIC = {"cm": ("cm", "cm.", "centimeters"), "mm": ("mm", "millimetres"), "m": ("m", "meters")}
 VULGAR = {Fraction(1, 4): "¼", Fraction(1, 2): "½", Fraction(3, 4): "¾", Fraction(1, 8): "⅛", Fraction(7, 8): "⅞"}
-LABELS = {
-    "height": ("H", "H.", "h.", "H:", "Height", "Höhe", "hauteur", "alto", "altezza", "高さ"),
-    "width": ("W", "W.", "w.", "W:", "Width", "Breite", "largeur", "ancho", "larghezza", "幅"),
-    "depth": ("D", "D.", "d.", "D:", "Depth", "Tiefe", "profondeur", "fondo", "profondità", "奥行"),
-    "diameter": ("Diam.", "diam", "Diameter:", "Durchmesser", "Ø", "diamètre", "diámetro"),
-    "length": ("L.", "l.", "Length", "Länge", "longueur", "lunghezza"),
+LABELS = {  # as English writes them
+    "height": ("H", "H.", "h.", "H:", "Height"),
+    "width": ("W", "W.", "w.", "W:", "Width"),
+    "depth": ("D", "D.", "d.", "D:", "Depth"),
+    "diameter": ("Diam.", "diam", "Diameter:", "Ø"),
+    "length": ("L.", "l.", "Length"),
+}
+WORDS = {
+    "height": ("Höhe", "hauteur", "alto", "altezza", "hoogte", "altura", "înălțime", "高さ"),
+    "width": ("Breite", "largeur", "ancho", "larghezza", "breedte", "largura", "lățime", "幅"),
+    "depth": ("Tiefe", "profondeur", "fondo", "profondità", "diepte", "profundidade", "adâncime", "奥行"),
+    "diameter": ("Durchmesser", "diamètre", "diámetro", "diametro", "diâmetro", "diametru", "径"),
+    "length": ("Länge", "longueur", "lunghezza", "lengte", "comprimento", "lungime"),
 }
 PARTS = ("overall", "base", "frame", "framed", "sheet", "image", "rim", "with base", "bowl")
 JOINS = (" x ", " × ", " by ", "x", " X ")
@@ -69,8 +76,9 @@ def test_joined_by_order(data, numbers, unit, join, part):
 def test_labels_before(data, dimensions, count, unit, between):
     name, word = unit
     numbers = [data.draw(eighths) for _ in range(count)]
+    labels = data.draw(st.sampled_from([LABELS, WORDS]))
     pieces = [
-        f"{data.draw(st.sampled_from(LABELS[dim]))} {data.draw(shown(n))} {word}"
+        f"{data.draw(st.sampled_from(labels[dim]))} {data.draw(shown(n))} {word}"
         for dim, n in zip(dimensions, numbers, strict=False)
     ]
     d = parse(between.join(pieces))

@@ -449,7 +449,7 @@ def test_the_field_limit_of_other_readers_is_left_alone(read: Read) -> None:
         ("No. 12", "the text 'No. 12' holds no dimension that can be read"),
         ("Dimensions variable", None),
         ("10 min.", None),
-        ("H 10 cm, four handles", None),
+        ("H 10 cm, four handles", "not understood: 'four handles'"),
         ("-", None),
     ],
 )

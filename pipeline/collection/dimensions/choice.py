@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import hypot, pi
 
+from pipeline.collection.dimensions.parts import DETAILS, FRAMED, is_base, is_detail
 from pipeline.collection.dimensions.result import Choice, Chosen, DimensionPart, Dimensions
 
-_FRAMED = frozenset({"framed", "frame"})
 _FACES = {"mount": 4, "mat": 4, "sheet": 5, "page": 5, "image": 6, "composition": 6, "plate": 6, "block": 6}
-_DETAILS = frozenset(
-    {"rim", "seat", "lid", "top", "mouth", "handle", "stem", "neck", "cord", "label", "crate", "storage", "opening"}
-)
-_BASES = frozenset({"base", "foot", "feet", "plinth", "pedestal", "bottom"})
 _LAST = 9
+_LABELLED = frozenset({"height", "width", "depth", "diameter", "length", "thickness", "weight"})
 _FLAT = 0.5
 """First number of a base over its second from which both lie in plan; below it the first is the base's own height."""
 
@@ -40,15 +38,24 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
     for part in dimensions.parts:
         if part.value is not None and part.value > 0.0:
             groups.setdefault(part.group, []).append(part)
-    bodies = [g for g in groups.values() if not _is_base(g[0].name) and any(p.dimension != "weight" for p in g)]
+    bodies = [g for g in groups.values() if not is_base(g[0].name) and any(p.dimension != "weight" for p in g)]
     out: dict[str, Choice] = {}
     chosen: list[DimensionPart] = []
-    if bodies:
-        best = min(_rank(g, hung) for g in bodies)
-        alike = [g for g in bodies if _rank(g, hung) == best]
-        chosen = max(alike, key=_size)
+    best = min((_rank(g, hung) for g in bodies), default=_LAST)
+    alike = [g for g in bodies if _rank(g, hung) == best < _LAST]
+    if alike and not _is_lost(dimensions, alike):
+        chosen = max(_telling(alike), key=_size)
+        if dimensions.having("round"):
+            chosen = [replace(part, dimension="diameter") if part.dimension == "depth" else part for part in chosen]
         out = _extents(chosen, _reason(chosen, len(alike), hung and best == 0))
-    bases = [g for g in groups.values() if _is_base(g[0].name)]
+        if chosen[0].name.startswith("with ") and len(out) == 1:  # "height with base" beside width and depth without
+            own = [
+                g
+                for g in bodies
+                if g[0].name.startswith(("overall", "without ")) and all(p.dimension in _LABELLED for p in g)
+            ]
+            out = _extents(max(own, key=_size), "of the object itself") | out if own else out
+    bases = [g for g in groups.values() if is_base(g[0].name)]
     if bases:
         out |= _base(max(bases, key=_size))
     mass = _mass(dimensions, chosen)
@@ -57,9 +64,26 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
     return Chosen(**out)
 
 
-def _is_base(name: str) -> bool:
-    words = name.split()
-    return not name.startswith(("with ", "without ")) and bool(_BASES.intersection(words))
+def _telling(alike: list[list[DimensionPart]]) -> list[list[DimensionPart]]:
+    """Return the groups that say a height, if they are not far smaller than others; else those that say most."""
+    largest = max(map(_size, alike))
+    upright = [
+        g for g in alike if any(p.dimension == "height" and not p.assumed for p in g) and 2.0 * _size(g) >= largest
+    ]
+    if upright:
+        return upright
+    said = [{p.dimension for p in g} - {"unlabelled", "weight"} for g in alike]
+    if not any("height" in one or len(one) > 1 for one in said):
+        return alike
+    return [g for g, one in zip(alike, said, strict=True) if one]
+
+
+def _is_lost(dimensions: Dimensions, alike: list[list[DimensionPart]]) -> bool:
+    """Whether the size of the object itself stands there without a unit: then a number of a part is none."""
+    if any(part.dimension != "unlabelled" or part.name == "overall" for group in alike for part in group):
+        return False
+    own = [p for p in dimensions.parts if p.name == "overall" and not p.words and p.dimension != "weight"]
+    return bool(own) and all(p.value is None for p in own)
 
 
 def _rank(group: list[DimensionPart], hung: bool) -> int:
@@ -68,14 +92,16 @@ def _rank(group: list[DimensionPart], hung: bool) -> int:
     words = name.split()
     if "sight" in group[0].qualifiers:
         return 6
-    if _FRAMED.intersection(words):
+    if FRAMED.intersection(words):
         return 0 if hung else 3
-    if name == "with base":
+    if name == "with base" or (name.startswith("with ") and DETAILS.intersection(words)):
         return 1
     if name.startswith("overall"):
         return 2
-    if _DETAILS.intersection(words):
+    if is_detail(name):
         return _LAST
+    if name.startswith("without "):
+        return 4
     faces = [_FACES[word] for word in words if word in _FACES]
     return min(faces) if faces else 3
 
@@ -100,9 +126,14 @@ def _extents(group: list[DimensionPart], reason: str) -> dict[str, Choice]:
     def take(field: str, part: DimensionPart, how: str, factor: float = 1.0) -> None:
         if field not in out and part.value is not None:
             said = ", as" if part.qualifiers else ""
+            if part.low is not None and part.low != part.value:
+                how += f", the larger end of {part.low:.4g} to {part.value:.4g} m"
             why = f"{how}, {reason}{said} {', '.join(part.qualifiers)}".rstrip()
             out[field] = Choice(part.value * factor, part.start, part.end, why)
 
+    widest = [p for p in group if p.dimension == "diameter"]
+    if len(widest) > 1:
+        take("diameter", max(widest, key=lambda p: p.value or 0.0), f"diameter, the largest of {len(widest)}")
     for part in group:
         if part.dimension in ("height", "width", "depth", "diameter"):
             order = ", by the order height x width x depth" if part.assumed else ""
@@ -114,8 +145,9 @@ def _extents(group: list[DimensionPart], reason: str) -> dict[str, Choice]:
             take("depth", part, "thickness")
         elif part.dimension == "circumference":
             take("diameter", part, "circumference divided by pi", 1.0 / pi)
-    if not out:
-        largest = max((p for p in group if p.dimension == "unlabelled"), key=lambda p: p.value or 0.0, default=None)
+    if not out or set(out) == {"diameter"}:
+        bare = [p for p in group if p.dimension == "unlabelled" and (not out or p.start < out["diameter"].start)]
+        largest = max(bare, key=lambda p: p.value or 0.0, default=None)
         if largest is not None:
             take("height", largest, "a number without a label, taken as the height")
     return out

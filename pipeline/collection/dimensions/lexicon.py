@@ -1,7 +1,8 @@
-"""The units and words that the parser knows, from the tables dimension_units.csv and dimension_words.csv."""
+"""The units, words and labels that the parser knows, from the tables dimension_units, _words and _labels."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -11,6 +12,9 @@ from pydantic import Field
 
 from pipeline.tables import table
 from pipeline.tables.rows import Entries, Text, checked
+
+_COMPOUND = "compound"
+_SPOKEN = "language"
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +27,32 @@ class LexiconUnit:
     den: int
     smaller: str
     system: str
+
+
+@dataclass(frozen=True, slots=True)
+class Language:
+    """What short labels mean in a language, and the words that tell that a text is written in it.
+
+    Attributes
+    ----------
+    name : str
+        Of two letters.
+    labels : mapping of str to str
+        Meanings; the case counts where a language uses it (L longueur, l largeur).
+    folded : mapping of str to str
+        The same in small letters, for labels in another case than the table's.
+    words : frozenset of str
+        In small letters.
+    """
+
+    name: str
+    labels: Mapping[str, str]
+    folded: Mapping[str, str]
+    words: frozenset[str]
+
+    def meaning(self, label: str) -> str:
+        """Return what a label means, "" where the language does not know it."""
+        return self.labels.get(label) or self.folded.get(label.lower(), "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +70,13 @@ class _Word:
     kind: Text
     meaning: str
     words: Entries
+
+
+@dataclass(frozen=True, slots=True)
+class _Label:
+    language: Text
+    meaning: Text
+    labels: Entries
 
 
 @cache
@@ -77,4 +114,33 @@ def unit_words() -> dict[str, LexiconUnit]:
 def meanings() -> dict[str, tuple[str, str]]:
     """Return kind and meaning of every word that is not a unit, in small letters."""
     rows = checked(_Word, table("dimension_words"), "dimension_words.csv", named="words")
-    return {word: (row.kind, row.meaning) for row in rows for word in row.words}
+    return {word: (row.kind, row.meaning) for row in rows if row.kind != _COMPOUND for word in row.words}
+
+
+@cache
+def compounds() -> dict[str, tuple[str, ...]]:
+    """Return the words that say several things at once, such as Gesamthöhe, with the plain words for them."""
+    rows = checked(_Word, table("dimension_words"), "dimension_words.csv", named="words")
+    return {word: tuple(row.meaning.split()) for row in rows if row.kind == _COMPOUND for word in row.words}
+
+
+@cache
+def label_words() -> frozenset[str]:
+    """Return the labels of all languages in small letters."""
+    return frozenset(label for one in languages().values() for label in one.folded)
+
+
+@cache
+def languages() -> dict[str, Language]:
+    """Return the languages by name, in the order of the table, which is that of preference."""
+    rows = checked(_Label, table("dimension_labels"), "dimension_labels.csv", named="labels")
+    out = {}
+    for name in dict.fromkeys(row.language for row in rows):
+        own = [row for row in rows if row.language == name]
+        labels = {label: row.meaning for row in own if row.meaning != _SPOKEN for label in row.labels}
+        folded: dict[str, str] = {}
+        for label, meaning in labels.items():
+            folded.setdefault(label.lower(), meaning)
+        words = frozenset(word for row in own if row.meaning == _SPOKEN for word in row.labels)
+        out[name] = Language(name, labels, folded, words)
+    return out

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from pipeline.collection.dimensions.lexicon import units
+import re
+
+from pipeline.collection.dimensions.labels import labelled
+from pipeline.collection.dimensions.lexicon import languages, units
 from pipeline.collection.dimensions.quantities import DimensionQuantity, Group
 from pipeline.collection.dimensions.reader import Reader
 from pipeline.collection.dimensions.result import DimensionNote, DimensionPart, Dimensions
 from pipeline.collection.dimensions.tokens import tokens_of
+from pipeline.collection.dimensions.units_ahead import units_behind
 from pipeline.errors import InputError
 
 LONGEST = 2000
 """Characters of a text that are read; what follows is noted, not read."""
 
+_SHOWN = re.compile(r"(?<![\d.,])\d+([.,])\d{1,2}(?![\d.,]|\s*/)")
+_POINTED = re.compile(r"\d{1,3}\.\d{3}")
 _ORDERS = {"": ("height", "width", "depth"), "length": ("width", "height", "depth")}
 _CONVENTION = "the order is taken as height x width x depth, the museums' convention; it is not written"
 
 
-def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> Dimensions:
+def parse(text: str, *, default_unit: str | None = None, decimal: str = ".", language: str = "") -> Dimensions:
     """Read the text of a dimensions field.
 
     Parameters
@@ -27,6 +33,9 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> 
         The unit of lengths that none is written for, "cm" for instance; None leaves them without a value.
     decimal : {".", ","}
         The decimal mark where a number leaves it open ("1,234").
+    language : str
+        The language of the source, of two letters, which settles short labels such as L. and A.; "" leaves that to the
+        words of the text.
 
     Returns
     -------
@@ -36,7 +45,7 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> 
     Raises
     ------
     InputError
-        For an unknown default unit or decimal mark.
+        For an unknown default unit, decimal mark or language.
 
     References
     ----------
@@ -51,14 +60,21 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> 
             raise InputError(f"default_unit must be one of {known}, not {default_unit!r}")
     if decimal not in (".", ","):
         raise InputError(f'decimal must be "." or ",", not {decimal!r}')
+    if language and language not in languages():
+        raise InputError(f"language must be one of {', '.join(languages())}, not {language!r}")
     head = text[:LONGEST]
-    reader = Reader(head, tokens_of(head, decimal), default is not None)
+    decimal = _mark_of(head) or decimal
+    told: list[DimensionNote] = []
+    tokens = units_behind(labelled(tokens_of(head, decimal), head, language, told))
+    reader = Reader(head, tokens, default is not None)
+    reader.notes += told
     reader.read()
     notes = reader.notes
     if len(text) > LONGEST:
         notes.append(
             DimensionNote("truncated", f"{len(text):,} characters, of which {LONGEST:,} are read", LONGEST, len(text))
         )
+    _share_last(reader.groups, notes)
     for group in reader.groups:
         if all(q.unit is not None for q in group.quantities):
             continue
@@ -71,10 +87,33 @@ def parse(text: str, *, default_unit: str | None = None, decimal: str = ".") -> 
                 )
             elif q.unit is None:
                 notes.append(DimensionNote("missing_unit", "no unit is written, so there is no value", q.start, q.end))
+    for group in reader.groups:
+        _weighed(group, notes)
+        for q in group.quantities:
+            if decimal == "," and _POINTED.fullmatch(q.word):
+                message = f"{q.word} is read as {q.num / q.den:.10g}, its point as a mark of thousands"
+                notes.append(DimensionNote("ambiguous", message, q.start, q.end))
     parts = tuple(
         _part(group, number, q) for number, group in enumerate(_ordered(reader.groups, notes)) for q in group.quantities
     )
     return Dimensions(text, parts, tuple(notes))
+
+
+def _share_last(groups: list[Group], notes: list[DimensionNote]) -> None:
+    """Carry the only unit of a text, behind its last number, back to the labelled numbers of all its parts."""
+    every = sorted((q for group in groups for q in group.quantities), key=lambda q: q.start)
+    if len(groups) < 2 or every[-1].kind != "length" or any(q.unit is not None for q in every[:-1]):
+        return
+    for q in every[:-1]:
+        if q.dimension not in ("", "weight"):
+            q.unit = every[-1].unit
+            notes.append(DimensionNote("unit", "the unit is that of the last number", q.start, q.end))
+
+
+def _mark_of(text: str) -> str:
+    """Return the decimal mark that a text itself shows by decimals of one or two digits; "" where it shows none."""
+    found = {match[1] for match in _SHOWN.finditer(text)}
+    return found.pop() if len(found) == 1 else ""
 
 
 def _share_units(group: Group, notes: list[DimensionNote]) -> None:
@@ -86,6 +125,15 @@ def _share_units(group: Group, notes: list[DimensionNote]) -> None:
         elif q.unit is None and unit is not None and q.dimension != "weight":
             q.unit = unit
             notes.append(DimensionNote("unit", f"the unit is that of the next number, {unit.name}", q.start, q.end))
+
+
+def _weighed(group: Group, notes: list[DimensionNote]) -> None:
+    """Refuse a weight in centimetres and a height in kilograms: the unit is believed, the label is not."""
+    for q in group.quantities:
+        if (q.dimension == "weight" and q.kind == "length") or (q.kind == "mass" and q.dimension not in ("", "weight")):
+            message = f"{q.dimension} in {q.unit.name if q.unit else ''}: the unit is believed, and not the label"
+            notes.append(DimensionNote("ambiguous", message, q.start, q.end))
+            q.dimension = "weight" if q.kind == "mass" else "unlabelled"
 
 
 def _ordered(groups: list[Group], notes: list[DimensionNote]) -> list[Group]:

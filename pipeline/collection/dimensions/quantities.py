@@ -135,6 +135,12 @@ class Group:
     words: str
     qualifiers: set[str]
     quantities: list[DimensionQuantity] = field(default_factory=list)
+    aside: bool = False
+    """One dimension of a part, "diam. at rim": what follows without a name is not said of that part."""
+
+    def named(self) -> set[str]:
+        """Return the dimensions that it has, diameters aside: of these it may have several."""
+        return {q.dimension for q in self.quantities if q.dimension} - {"diameter"}
 
 
 def fill_units(run: list[DimensionQuantity]) -> None:

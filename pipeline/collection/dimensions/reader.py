@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pipeline.collection.dimensions.pairing import agree, pair
+from pipeline.collection.dimensions.parts import is_base, is_detail
 from pipeline.collection.dimensions.phrases import Phrase, phrase_of
 from pipeline.collection.dimensions.quantities import DimensionQuantity, Group
 from pipeline.collection.dimensions.result import DimensionNote
@@ -29,6 +30,7 @@ from pipeline.collection.dimensions.tokens import (
 _LONGEST_REMARK = 20  # tokens; so that no text makes the reader look at its words again and again
 _BEHIND = ("with", "framed", "unframed")
 _STATES = frozenset({"folded", "unfolded", "open", "opened", "closed", "unopened", "assembled", "extended"})
+_VOLUMES = frozenset({"volum", "vol", "volume", "volumen", "volumul"})
 _STRAY = frozenset("'\"’”′″")
 _ASIDE = frozenset({OPEN, CLOSE, COLON, COMMA, DASH, DOT})
 
@@ -46,6 +48,7 @@ class Reader:
         self.open: list[DimensionQuantity] = []  # numbers of this clause that have no conversion yet
         self.fresh = True  # no number since the last line break
         self.runs = 0
+        self.current: Group | None = None  # the one that the last numbers went to
 
     def read(self) -> None:
         """Read the whole text."""
@@ -97,12 +100,18 @@ class Reader:
             return self._leave_out(at, behind, "neither a length nor a mass")
         if not self._measures(at, items, behind):
             return 0
+        if items[0].unit is None and len(items) == 1 and self._is_volume(items[0].word):
+            return self._leave_out(at, behind, "an area or a volume")
         if items[-1].unit is None and (tokens[behind].type == DASH or tokens[behind].word == "to"):
             other = run_at(tokens, behind + 1, self.text)  # 24 x 18 - 25 x 19 in.
             if other is not None and other[0][0].kind == "length":
                 for item in items:
                     item.unit = other[0][0].unit
         phrase = phrase_of(tokens, self.label, self.text)
+        if self.label and tokens[self.label[-1]].start == tokens[at].start:
+            phrase.dimensions.append(items[0].dimension)  # one word for both, such as 底径
+        inner = (tokens[i].meaning for i in range(at, behind))
+        phrase.qualifiers |= {meaning[1] for meaning in inner if meaning and meaning[0] == "qualifier"}
         group = self._group(phrase, items)
         for item in items:
             item.run = self.runs
@@ -115,6 +124,11 @@ class Reader:
         self.label = []
         self.fresh = False
         return self._conversions(behind, group)
+
+    def _is_volume(self, number: str) -> bool:
+        """Whether a decimal number stands behind "Vol.", as cubic metres do; "Volume 2" is a part."""
+        words = [self.tokens[at].word for at in self.label if self.tokens[at].type == WORD]
+        return bool(words) and words[-1] in _VOLUMES and not number.isdigit()
 
     def _measures(self, at: int, items: list[DimensionQuantity], behind: int) -> bool:
         """Say whether numbers measure something; a number without unit and partner may as well count or name a part."""
@@ -167,6 +181,8 @@ class Reader:
                 if not behind:
                     return at
                 at = behind
+            elif tokens[place].type == DIMENSION and tokens[place - 1].type == CLOSE and self._labels(place, group):
+                at = place + 1
             elif tokens[place].type == JOIN:
                 behind = self._joined(place + 1, group)
                 if not behind:
@@ -174,6 +190,17 @@ class Reader:
                 at = behind
             else:
                 return at
+
+    def _labels(self, at: int, group: Group) -> bool:
+        """Give a number the label behind its conversion, as in '28 7/8 in. (73.3 cm) height x 10 in. (25 cm) diam.'."""
+        behind = at + 2 if self.tokens[at + 1].type == DOT else at + 1
+        last, meaning = group.quantities[-1], self.tokens[at].meaning
+        mates = [q for q in group.quantities if q.run == last.run and q is not last]
+        ends = self.tokens[behind].type in (JOIN, END, BREAK, COMMA)
+        if not ends or last.dimension or meaning is None or not all(q.dimension for q in mates):
+            return False
+        last.dimension = meaning[1]
+        return True
 
     def _same(self, at: int) -> int:
         """Take a run that repeats the open numbers in the other system and agrees with all; else return 0."""
@@ -206,23 +233,39 @@ class Reader:
 
     def _group(self, phrase: Phrase, items: list[DimensionQuantity]) -> Group:
         """Return the group that numbers belong to: the last one where they go on with it, else a new one."""
-        if self.groups and not self.fresh and not phrase.name:
-            last = self.groups[-1]
-            named = {q.dimension for q in last.quantities if q.dimension}
-            continues = all(q.dimension and q.dimension not in named for q in items)
-            aside = len(items) == 1 and any(self.tokens[at].type == COMMA for at in self.label)
+        last = self._target(phrase)
+        if last is not None and not self.fresh:
+            named = last.named() if "height" in last.named() else {q.dimension for q in last.quantities if q.dimension}
+            spoken = [q.dimension or "".join(phrase.dimensions[-1:] if len(items) == 1 else "") for q in items]
+            continues = all(one and one not in named for one in spoken)
+            weighs = items[0].kind == "mass" and bool(items[0].dimension or phrase.dimensions)
+            aside = len(items) == 1 and not weighs and any(self.tokens[at].type == COMMA for at in self.label)
             if items[0].kind == "mass" and (items[0].dimension or phrase.dimensions):
                 continues = last.name == "overall"  # "Weight: 20 kg" behind the base is the whole object's
             elif items[0].kind == "mass":
                 continues = True
-            if continues or aside or (len(items) == 1 and phrase.dimensions):
+            if continues or (not phrase.name and (aside or (len(items) == 1 and phrase.dimensions))):
                 last.qualifiers |= phrase.qualifiers
+                self.current = last
                 return last
         words = self.text[phrase.start : phrase.end].strip(" \t:,.-–—") if phrase.name else ""
         group = Group(phrase.name or "overall", words, set(phrase.qualifiers))
+        if len(items) == 1 and (is_base(group.name) or is_detail(group.name)):
+            group.aside = bool(phrase.dimensions) or not items[0].dimension
+        elif len(items) == 1 and phrase.name and phrase.dimensions:
+            state = group.name.startswith(_BEHIND)
+            group.aside = any(other.name == "overall" if state else not other.aside for other in self.groups)
         self.groups.append(group)
+        self.current = group
         self.open = []
         return group
+
+    def _target(self, phrase: Phrase) -> Group | None:
+        """Return the group that a phrase's numbers may go on with: one of its name; without a name, the last whole."""
+        if phrase.name:
+            alike = self.current is not None and self.current.name == phrase.name and bool(phrase.dimensions)
+            return self.current if alike else None
+        return next((group for group in reversed(self.groups) if not group.aside), None)
 
     def _apply(self, phrase: Phrase, items: list[DimensionQuantity]) -> None:
         """Give numbers the dimensions that a phrase names: a legend to all, one dimension to a single number."""
@@ -236,12 +279,20 @@ class Reader:
         """Read a remark in brackets right behind numbers, such as (irreg.), (h x w) or (framed)."""
         tokens = self.tokens
         end = at + 1
-        while tokens[end].type in (WORD, DIMENSION, DOT, COMMA, JOIN):
+        while tokens[end].type in (WORD, DIMENSION, DOT, COMMA, JOIN) or (
+            tokens[end].type == NUMBER and tokens[end + 1].type == WORD and tokens[end + 1].unit is None
+        ):
             end += 1
         following = tokens[end + 1].type if tokens[end].type == CLOSE else COLON
         phrase = phrase_of(tokens, list(range(at, end)), self.text)
         remark = phrase.qualifiers or phrase.dimensions or phrase.name
         ends = following in (END, BREAK, COMMA, DOT)
+        if following == COMMA and tokens[end + 2].type == DIMENSION and not phrase.known and phrase.name:
+            start, stop = tokens[at + 1].start, tokens[end - 1].end
+            self.notes.append(
+                DimensionNote("remainder", f"not understood: {self.text[start:stop][:80]!r}", start, stop)
+            )
+            return end + 1
         if following in (COLON, NUMBER) or not remark or (phrase.name and not (phrase.known and ends)):
             self.label.append(at)
             return at + 1
@@ -291,7 +342,7 @@ class Reader:
 
     def _behind(self, phrase: Phrase) -> bool:
         """Apply a phrase that stands behind numbers to them; say whether there was any use for it."""
-        group = self.groups[-1]
+        group = self.current or self.groups[-1]
         use = False
         if phrase.dimensions:
             run = [q for q in group.quantities if q.run == group.quantities[-1].run]
@@ -303,6 +354,8 @@ class Reader:
         name = phrase.name
         if name.endswith(" base") and not phrase.dimensions and not name.startswith("with"):
             name = "with base"  # "on wooden base" without numbers of its own
+        if phrase.known and (is_base(name) or is_detail(name)):
+            group = self._split(group, phrase)
         stands = phrase.known or name.startswith(_BEHIND)
         stands = stands or ("each" in phrase.qualifiers and not group.words)
         if name and stands and group.name == "overall":
@@ -318,6 +371,16 @@ class Reader:
             group.qualifiers |= phrase.qualifiers
             use = True
         return use
+
+    def _split(self, group: Group, phrase: Phrase) -> Group:
+        """Give the last number of a group one of its own: in "H. 12 cm, Diam. 8 cm (rim)" only it is the rim's."""
+        last = [q for q in group.quantities if q.run == group.quantities[-1].run]
+        if group.name != "overall" or len(last) == len(group.quantities) or len(last) > 1:
+            return group
+        group.quantities = [q for q in group.quantities if q not in last]
+        self.current = Group("overall", "", set(phrase.qualifiers), last, aside=True)
+        self.groups.append(self.current)
+        return self.current
 
     def _leave_out(self, at: int, behind: int, what: str) -> int:
         """Note something that is no dimension, with the words before it and its unit; return the token behind it."""

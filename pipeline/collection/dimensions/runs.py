@@ -6,6 +6,7 @@ from pipeline.collection.dimensions.lexicon import LexiconUnit, unit_words, unit
 from pipeline.collection.dimensions.phrases import is_label_letter
 from pipeline.collection.dimensions.quantities import DimensionQuantity, fill_units, troy
 from pipeline.collection.dimensions.tokens import (
+    BREAK,
     CLOSE,
     COLON,
     COMMA,
@@ -13,6 +14,7 @@ from pipeline.collection.dimensions.tokens import (
     DIMENSION,
     DOT,
     DOTTED,
+    END,
     JOIN,
     NUMBER,
     OPEN,
@@ -22,6 +24,10 @@ from pipeline.collection.dimensions.tokens import (
     Token,
 )
 
+_UP_TO = frozenset({"to", "bis", "à", "a", "tot", "al", "até", "până", "から"})
+_ENDS = frozenset({END, BREAK, COMMA, CLOSE, OPEN, JOIN, DASH, DOT, OTHER, DIMENSION})
+_AND = frozenset({"and", "und", "et", "en", "y", "e", "și"})
+_OF = frozenset({"de", "di", "in", "of", "da", "en"})
 _AREAS = frozenset({"sq", "square", "cubic", "cu", "quadrat"})
 
 
@@ -92,7 +98,7 @@ def quantity_at(tokens: list[Token], at: int, *, joined: bool, weighing: bool) -
     token = tokens[at]
     out = DimensionQuantity(token.num, token.den, token.start, token.end, token.word)
     at = _take_unit(tokens, at + 1, out, weighing)
-    second = tokens[at + 1] if tokens[at].type == DASH or tokens[at].word in ("to", "bis", "à") else None
+    second = tokens[at + 1] if tokens[at].type == DASH or tokens[at].word in _UP_TO else None
     if second is not None and second.type == NUMBER:
         end = DimensionQuantity(second.num, second.den, second.start, second.end, second.word)
         behind = _take_unit(tokens, at + 2, end, weighing)
@@ -133,6 +139,15 @@ def _smaller(tokens: list[Token], at: int, larger: DimensionQuantity) -> tuple[D
     out = DimensionQuantity(number.num, number.den, number.start, number.end, number.word)
     behind = _take_unit(tokens, at + (2 if comma else 1), out, False)
     if out.unit is None:
+        if (
+            larger.unit.name == "m"
+            and not comma
+            and number.den == 1
+            and _is_pair(number)
+            and tokens[behind].type in _ENDS
+        ):
+            out.unit = units()["cm"]  # 1 m 20
+            return out, behind
         if larger.unit.name != "ft" or comma or number.num >= 12 * number.den:
             return None, at
         out.unit = units()["in"]
@@ -141,6 +156,11 @@ def _smaller(tokens: list[Token], at: int, larger: DimensionQuantity) -> tuple[D
     if out.unit.name != chain or (comma and larger.unit.kind == "length" and larger.unit.system == "metric"):
         return None, at
     return out, behind
+
+
+def _is_pair(number: Token) -> bool:
+    """Whether a number is written with two digits, as the centimetres behind metres are."""
+    return number.word.isdigit() and len(number.word) == 2
 
 
 def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[DimensionQuantity], int] | None:
@@ -169,7 +189,7 @@ def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[DimensionQuant
         if tokens[at].type == DIMENSION and meaning and not is_label_letter(tokens, at, text):
             label = meaning[1]
             at += 1
-            while tokens[at].type in (DOT, COLON) or tokens[at].word in ("of", "ca", "approx"):
+            while tokens[at].type in (DOT, COLON) or tokens[at].word == "of" or _qualifies(tokens[at]):
                 at += 1
         if tokens[at].type not in (NUMBER, DOTTED):
             at = start
@@ -190,6 +210,10 @@ def run_at(tokens: list[Token], at: int, text: str) -> tuple[list[DimensionQuant
     return items, at
 
 
+def _qualifies(token: Token) -> bool:
+    return token.meaning is not None and token.meaning[0] == "qualifier"
+
+
 def _begins(tokens: list[Token], at: int) -> bool:
     """Say whether a number, or a dimension and a number, begin at a token."""
     if tokens[at].type == DIMENSION:
@@ -205,6 +229,8 @@ def _label_behind(tokens: list[Token], at: int, quantity: DimensionQuantity, tex
     bracket = tokens[place].type == OPEN
     if bracket:
         place += 1
+    if tokens[place].word in _OF and tokens[place + 1].type == DIMENSION and quantity.unit is not None:
+        place += 1  # 82 cm de alto
     token = tokens[place]
     if token.type != DIMENSION or token.meaning is None or is_label_letter(tokens, place, text):
         return at
@@ -215,7 +241,9 @@ def _label_behind(tokens: list[Token], at: int, quantity: DimensionQuantity, tex
         if tokens[behind].type != CLOSE:
             return at
         behind += 1
-    elif tokens[behind].type == COLON or (tokens[behind].type == WORD and tokens[behind].unit is None):
+    elif tokens[behind].type == COLON or (
+        tokens[behind].type == WORD and tokens[behind].unit is None and tokens[behind].word not in _AND
+    ):
         return at  # "3 in. diam. at rim" and "3 in. high back: ..." are phrases
     quantity.dimension = token.meaning[1]
     quantity.end = max(quantity.end, tokens[place].end)

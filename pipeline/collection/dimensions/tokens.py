@@ -6,7 +6,7 @@ import re
 from functools import lru_cache
 from typing import NamedTuple
 
-from pipeline.collection.dimensions.lexicon import LexiconUnit, meanings, unit_words
+from pipeline.collection.dimensions.lexicon import LexiconUnit, compounds, label_words, meanings, unit_words
 
 NUMBER, DOTTED, WORD, UNIT, DIMENSION, JOIN, OPEN, CLOSE, BREAK, COMMA, COLON, DASH, DOT, TIME, OTHER, END = range(16)
 
@@ -36,6 +36,17 @@ _TOKEN = re.compile(
     rf"|(''|’’|‘‘|′′|[\"“”″'’‘′])"
     rf"|([\r\n;\u2028\u2029]+)"
     rf"|(\S))",
+)
+# Full-width letters, digits and marks; the cedillas that stood for the commas of Romanian.
+_ALIKE = {code: code - 0xFEE0 for code in range(0xFF01, 0xFF5F)} | {0x3000: 0x20, 0xFF0E: 0x2E}
+_ALIKE |= {ord(old): ord(new) for old, new in zip("şţŞŢ±≈∅", "șțȘȚ~~Ø", strict=True)}
+_ALIKE[0xB1] = _ALIKE[0x2248] = 0x20
+# Each as long as what it replaces, so that the places of all characters stay.
+_SAME_LENGTH = (
+    (re.compile(r"(?i)\bw/o\b"), "sem"),
+    (re.compile(r"(?i)\bw/(?=[ (]|base|frame|mount|lid|stand)"), "cu"),
+    (re.compile(r"(?i)\bhors[ -]tout"), "horstout "),
+    (re.compile(r"(?i)(?<![^\W_])[dln]['’](?=[^\W\d_]{2})"), "  "),  # l'ouverture, d'épaules
 )
 _MIXED = re.compile(rf"(\d[\d,]*)[^\d{_V}]*(?:(\d+)\D+(\d+)|([{_V}]))")
 _MARKS = {
@@ -91,7 +102,8 @@ def tokens_of(text: str, decimal: str) -> list[Token]:
         In the order of the text.
     """
     out: list[Token] = []
-    known, by_word = meanings(), unit_words()
+    text = _plain(text)
+    known, by_word, several = meanings(), unit_words(), compounds()
     new = tuple.__new__  # a NamedTuple's own constructor takes twice as long, and a text has fifty tokens
     for match in _TOKEN.finditer(text):
         group = match.lastindex or 0
@@ -102,7 +114,12 @@ def tokens_of(text: str, decimal: str) -> list[Token]:
             if word[-1] == "x" and word[:-1] in by_word:  # 10 cmx 12 cm
                 out.append(_word(word[:-1], start, end - 1, known, by_word))
                 word, start = "x", end - 1
-            out.append(_word(word, start, end, known, by_word))
+            if word in several:
+                out += [_word(one, start, end, known, by_word) for one in several[word]]
+            elif "x" in word and word not in known and _is_legend(word):
+                out += _legend(word, start, known, by_word)
+            else:
+                out.append(_word(word, start, end, known, by_word))
         elif _CLOCK < group < _QUOTE:
             value = number_value(word, group, decimal)
             if value is None:
@@ -116,6 +133,34 @@ def tokens_of(text: str, decimal: str) -> list[Token]:
         else:
             out.append(Token(BREAK if group == _BREAK else TIME, start, end, word))
     out.append(Token(END, len(text), len(text)))
+    return out
+
+
+def _plain(text: str) -> str:
+    """Return a text as long as before, with one character for each way to write it, and in words what is in marks."""
+    text = text.translate(_ALIKE)
+    for pattern, words in _SAME_LENGTH:
+        text = pattern.sub(words, text)
+    return text
+
+
+def _is_legend(word: str) -> bool:
+    """Whether a word such as "hxbxt" or "lxlxh" is nothing but labels joined by x."""
+    pieces = word.split("x")
+    if not all(pieces) or not 2 <= len(pieces) <= 4 or (len(pieces) == 2 and "h" not in pieces):
+        return False
+    return all(piece in label_words() for piece in pieces)
+
+
+def _legend(word: str, start: int, known: dict[str, tuple[str, str]], by_word: dict[str, LexiconUnit]) -> list[Token]:
+    """Return the labels of a legend and the joins between them."""
+    out: list[Token] = []
+    for piece in word.split("x"):
+        if out:
+            out.append(Token(JOIN, start, start + 1, "x"))
+            start += 1
+        out.append(_word(piece, start, start + len(piece), known, by_word))
+        start += len(piece)
     return out
 
 

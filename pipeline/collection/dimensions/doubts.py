@@ -1,0 +1,86 @@
+"""What a text says beyond the extents that were chosen: numbers that no field holds, parts that stand for the whole."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+from pipeline.collection.dimensions.lexicon import label_words, meanings
+from pipeline.collection.dimensions.result import Chosen, DimensionNote, DimensionPart, Dimensions
+
+_CARRIERS = frozenset({
+    "page", "pages", "mat", "case", "slipcase", "cover", "portfolio", "box", "book", "album", "envelope", "folder",
+    "volume", "panel", "canvas", "board", "block", "part", "parts", "component", "components", "irregular", "various",
+    "installation", "support", "mount", "approx", "stacked", "spread", "partial", "large",
+})  # fmt: skip
+"""What a work on paper or in parts is made of and kept in: such sizes are the object's, as far as the text tells."""
+_LETTERS = re.compile(r"[^\W\d_]+")
+_OPEN = frozenset({"height", "width", "depth", "length", "unlabelled"})
+
+
+def doubts(read: Dimensions, chosen: Chosen, about: str = "") -> tuple[DimensionNote, ...]:
+    """Return what a person should see before the chosen extents are believed.
+
+    Parameters
+    ----------
+    read : Dimensions
+        What was read of the text.
+    chosen : Chosen
+        What was made of it.
+    about : str
+        The words that name the object: what they name is no part of it.
+
+    Returns
+    -------
+    tuple of DimensionNote
+        Of kind "unused" (a number of the chosen group that fills no field) and "part" (the size is that of something
+        that the text names and the table of words does not know).
+    """
+    used = {(c.start, c.end) for name in Chosen.__slots__ if (c := getattr(chosen, name)) is not None}
+    body = chosen.height or chosen.width or chosen.depth or chosen.diameter
+    groups = {part.group for part in read.parts if body and (part.start, part.end) == (body.start, body.end)}
+    out = [
+        DimensionNote("unused", f"the text also gives {_shown(part, read)}, which no field holds", part.start, part.end)
+        for part in read.parts
+        if part.group in groups and (part.start, part.end) not in used and part.dimension in _OPEN and part.value
+    ]
+    out += [
+        DimensionNote("unused", f"what {part.words!r} means is not known", part.start, part.end)
+        for part in read.parts
+        if part.name in _labels() and part.value
+    ]
+    for part in read.parts:
+        if body is not None and (part.start, part.end) == (body.start, body.end) and is_strange(part.name, about):
+            message = f"the size of {part.words!r} is taken for that of the whole object"
+            out.append(DimensionNote("part", message, part.start, part.end))
+    return tuple(out)
+
+
+def _shown(part: DimensionPart, read: Dimensions) -> str:
+    written = read.written(part)
+    shown = written if part.unit_text and part.unit_text in written.lower() else f"{written} {part.unit}".strip()
+    return f"the {part.dimension} {shown!r}"
+
+
+def is_strange(name: str, about: str) -> bool:
+    """Say whether a part's name has a word that neither the table of words nor the object's own name has."""
+    own = {_stem(word) for word in about.casefold().split()}
+    return any(
+        len(word) > 2 and word not in meanings() and word not in _named() and _stem(word) not in own
+        for word in _LETTERS.findall(name.casefold())
+    )
+
+
+@cache
+def _labels() -> frozenset[str]:
+    """Return labels of some language that as the name of a part are labels that were not understood."""
+    return frozenset(label for label in label_words() if len(label) < 3) - frozenset("abcdefg")
+
+
+@cache
+def _named() -> frozenset[str]:
+    return _CARRIERS | frozenset(word for _, meaning in meanings().values() for word in meaning.split())
+
+
+def _stem(word: str) -> str:
+    return word.strip(".,:;()[]'\"").removesuffix("s")

@@ -1,0 +1,21 @@
+"""Names of parts that are not the object: what is said of them is theirs alone."""
+
+from __future__ import annotations
+
+FRAMED = frozenset({"framed", "frame"})
+DETAILS = frozenset(
+    {"rim", "seat", "lid", "top", "mouth", "handle", "stem", "neck", "cord", "label", "crate", "storage", "opening"}
+)
+BASES = frozenset({"base", "foot", "feet", "plinth", "pedestal", "bottom"})
+_HOLLOW = "inside"
+_WHOLE = ("with ", "without ")
+
+
+def is_base(name: str) -> bool:
+    """Say whether a name is that of a base or foot, and not of an object with or without one."""
+    return not name.startswith(_WHOLE) and bool(BASES.intersection(name.split()))
+
+
+def is_detail(name: str) -> bool:
+    """Say whether a name is that of a part whose size is not the object's."""
+    return not name.startswith(_WHOLE) and (name == _HOLLOW or bool(DETAILS.intersection(name.split())))
