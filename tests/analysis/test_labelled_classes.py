@@ -37,10 +37,12 @@ def held(name: str) -> str:
 
 @cache
 def labelled() -> tuple[tuple[str, str, str], ...]:
-    """(part, label, the classifier's class) of every row."""
+    """(part, label, the classifier's class) of every row of the first set."""
     out = []
     with FILE.open(encoding="utf-8", newline="") as stream:
         for row in csv.DictReader(stream):
+            if row["set"] != "first":
+                continue
             texts = {name: row[name] for name in ("title", "object_name", "classification", "medium")}
             sizes = {name: float(row[name]) if row[name] else None for name in ("height_m", "width_m", "depth_m")}
             item = Item(row["object_number"], "G", **texts, **sizes)  # type: ignore[arg-type]
