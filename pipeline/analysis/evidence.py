@@ -21,7 +21,7 @@ from math import log
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.analysis.rules import Readings, fold, stuff
+from pipeline.analysis.rules import Readings, RuleMatch, fold, stuff
 from pipeline.records import Item
 from pipeline.tables import table
 
@@ -29,8 +29,16 @@ BIAS = "any"
 """The sign that every object has."""
 AGREES = "says so"
 """After the name of a field: that it says the class itself."""
-FIELDS = ("decided", "name", "classification", "medium", "title")
+FIELDS = ("name", "classification", "medium", "title")
 """The parts of `Readings` that say a class."""
+NOTHING = "nothing"
+"""What decides where no part of the record says a class."""
+SAYING = (*FIELDS, *(f"decided by {field}" for field in (*FIELDS, NOTHING)))
+"""What has a say: each part, and the rule that decides, by the part that it comes from."""
+POSSIBLE = 0.02
+"""Probability from which a class is likely at all."""
+SILENT = "silent"
+"""What a part of a record says that names no class."""
 IDENTIFIED = 0.97
 """Probability of a class that an identifier of the Getty AAT gives: records hold those of parts too (judgement)."""
 SIZES = (0.05, 0.1, 0.2, 0.4, 0.8, 1.5, 3.0)
@@ -98,13 +106,15 @@ def _measures(item: Item) -> tuple[str, ...]:
 
 def signs_of(item: Item, read: Readings) -> tuple[str, ...]:
     """Return the signs that an object shows: what the model weighs."""
-    out = [BIAS]
+    out, decisive = [BIAS], NOTHING
     for field in FIELDS:
-        one = getattr(read, field)
+        one: RuleMatch | None = getattr(read, field)
         if one is None:
-            out.append(f"{field}: silent")
+            out.append(f"{field}: {SILENT}")
         else:
-            out += (f"{field}: {one.rule.object_class}", f"{field} by {one.rule.name}")
+            out += (f"{field}: {one.rule.object_class}", f"rule of {field}: {one.rule.name}")
+            decisive = field if one is read.decided else decisive
+    out.append(f"decided by {decisive}: {read.decided.rule.object_class}")
     out += _signs_in("medium", stuff(item.material, item.medium))
     out += _signs_in("title", fold(item.title or item.object_name))
     out += _measures(item)
@@ -126,7 +136,7 @@ class Weights:
 
     def scores(self, signs: tuple[str, ...]) -> NDArray[np.float64]:
         """Return the score of each class: the logarithm of its probability but for a constant."""
-        return np.sum([self.weight(sign) for sign in signs], axis=0)
+        return np.asarray(np.sum([self.weight(sign) for sign in signs], axis=0))
 
     def weight(self, sign: str) -> NDArray[np.float64]:
         """Return what one sign says for each class."""
@@ -168,8 +178,10 @@ def _chances(signs: tuple[str, ...]) -> tuple[Chance, ...]:
 def chances_of(item: Item, read: Readings) -> tuple[Chance, ...]:
     """Return the probability of each class, the likeliest first.
 
-    One class alone where an identifier or a rule of the museum's own decides.
+    One class alone where an identifier or a rule of the museum's own decides; none where the record names nothing.
     """
+    if read.silent and not any((item.title, item.object_name, item.classification, item.material, item.medium)):
+        return ()
     if read.outright:
         certain = IDENTIFIED if read.decided.evidence.startswith("AAT") else 1.0
         return (Chance(read.decided.rule.object_class, certain),)
