@@ -60,7 +60,7 @@ TABLE_WORDS = {
     "plausible": "What a number of a record may be.",
     "rules": "Which class a record names; the first rule that holds decides.",
     "class_signs": "Words of materials and titles that say something of the class, in eight languages.",
-    "class_weights": "What each sign says for each class: the natural logarithm of the odds, found from labelled objects.",
+    "class_weights": "What each sign says for each class: logarithms of odds, found from labelled objects.",
     "slender": "How much of an object of a class is about as slender as its critical section, by share of its height.",
     "stakes": "What is at stake: weights of the classes of value and of a person, and the energy that is dangerous.",
     "survey": "The questions of the survey's sheet.",

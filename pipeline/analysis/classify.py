@@ -440,7 +440,7 @@ def unclassified(item: Item) -> Scene:
 
 def _unheld(item: Item, support: Support) -> list[str]:
     """Say that the support is missing where a thing is too thin to stand and nothing tells how it is held."""
-    plan = [d for d in (item.base_width_m or item.width_m, item.base_depth_m or item.depth_m) if d is not None]
+    plan = [d for d in (item.base_width_m or item.width_m, item.base_depth_m or item.depth_m) if d]
     if item.support is not None or support is not Support.FREESTANDING or not plan or item.height_m is None:
         return []
     times = item.height_m / min(plan)

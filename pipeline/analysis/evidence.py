@@ -136,15 +136,20 @@ class Weights:
 
     def scores(self, signs: tuple[str, ...]) -> NDArray[np.float64]:
         """Return the score of each class: the logarithm of its probability but for a constant."""
-        return np.asarray(np.sum([self.weight(sign) for sign in signs], axis=0))
+        return np.asarray(np.add.reduce([self.weight(sign) for sign in signs]))
 
     def weight(self, sign: str) -> NDArray[np.float64]:
         """Return what one sign says for each class."""
-        out = np.array(self.of_sign.get(sign, np.zeros(len(self.classes))))
-        field, _, named = sign.partition(": ")
-        if named in self.classes and field in self.agreeing:
-            out[self.classes.index(named)] += self.agreeing[field]
-        return out
+        return _weight(self, sign)
+
+
+@lru_cache(maxsize=65536)
+def _weight(of: Weights, sign: str) -> NDArray[np.float64]:
+    out = np.array(of.of_sign.get(sign, np.zeros(len(of.classes))))
+    field, _, named = sign.partition(": ")
+    if named in of.classes and field in of.agreeing:
+        out[of.classes.index(named)] += of.agreeing[field]
+    return out
 
 
 def read_weights(rows: tuple[Mapping[str, str], ...], classes: tuple[str, ...]) -> Weights:
