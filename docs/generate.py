@@ -61,6 +61,8 @@ TABLE_WORDS = {
     "overturning": "Published medians of overturning that `kouros validate --published` is held against.",
     "plausible": "What a number of a record may be.",
     "rules": "Which class a record names; the first rule that holds decides.",
+    "class_signs": "Words of materials and titles that say something of the class, in eight languages.",
+    "class_weights": "What each sign says for each class: logarithms of odds, found from labelled objects.",
     "slender": "How much of an object of a class is about as slender as its critical section, by share of its height.",
     "stakes": "What is at stake: weights of the classes of value and of a person, and the energy that is dangerous.",
     "survey": "The questions of the survey's sheet.",
@@ -83,6 +85,9 @@ COLUMN_WORDS = {
     "on_display": "whether it is on display",
     "state": "act, watch, fine, unknown, or not on display",
     "object_class": "the class it was taken for: a row of the table of classes",
+    "class_probability": "how likely that class is by what the record says; empty where a person decided",
+    "class_next": "the next likely class, where it has more than 0.1",
+    "class_next_probability": "how likely that one is",
     "furniture": "what it stands on or in, or hangs from: a row of the table of furniture",
     "furniture_origin": (
         "where that is known from: its record (measured), the case that it names (derived), a house rule (stated), or "

@@ -1,22 +1,25 @@
 """Item -> Scene: which generic class an object belongs to, and every number its models need, with its origin.
 
-The class is what the table of rules says (`pipeline.analysis.rules`).  Numbers that the museum did not record are what
-its house rules state (`pipeline.analysis.house`), else they come from the row of the class (tables/classes.csv) and the
-material (tables/materials.csv) as value, low and high, and are named as assumed.
+The class is the likeliest by what each part of the record says (`pipeline.analysis.evidence`), by the table of rules
+(`pipeline.analysis.rules`); the museum's own rules, and people, decide outright.  Numbers that the museum did not
+record are what its house rules state (`pipeline.analysis.house`), else they come from the row of the class
+(tables/classes.csv) and the material (tables/materials.csv) as value, low and high, and are named as assumed.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, lru_cache
 from math import pi
+from typing import NamedTuple
 
+from pipeline.analysis.evidence import FIELDS, POSSIBLE, Chance, chances_of
 from pipeline.analysis.flexibility import Body, concentration, estimated_frequency
 from pipeline.analysis.footing import base_extents, half_widths
 from pipeline.analysis.furniture import in_furniture
 from pipeline.analysis.hanging import HangingGuess, hanging_estimates, hanging_of, swings
 from pipeline.analysis.house.effect import NO_EFFECT, HouseEffect
 from pipeline.analysis.house.matching import HouseRules
-from pipeline.analysis.rules import RuleTable, rule_for
+from pipeline.analysis.rules import Readings, RuleTable, readings
 from pipeline.analysis.section import Section, section_of, share_of
 from pipeline.models import MODELS, model_named
 from pipeline.models.rigid_body import FALLS_IN, HALF
@@ -26,6 +29,8 @@ from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed, span, table
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
 from pipeline.tables.bending_rows import bending
 
+SURE = 0.5
+"""Probability from which materials and measures alone say a class."""
 SLENDEREST = 9.0
 """Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
 
@@ -305,17 +310,57 @@ def house_effect(
     item: Item, house: HouseRules, rules: RuleTable | None = None, decided: tuple[str, str] | None = None
 ) -> HouseEffect:
     """Return what a museum's house rules come to for an object: see `classify`."""
-    object_class = _class_of(item, rules, decided)[0]
+    object_class = _class_of(item, rules, decided).name
     values = assumed() if rules is None else rules.values
     return house.effect(item, object_class, item.support or values.classes[object_class].support)
 
 
-def _class_of(item: Item, rules: RuleTable | None, decided: tuple[str, str] | None) -> tuple[str, str]:
-    """Return the class of an object, and why it is that."""
+class _Taken(NamedTuple):
+    """What an object is taken for: its class, why it is that, and the classes that are likely at all."""
+
+    name: str
+    words: str
+    chances: tuple[tuple[str, float], ...] = ()
+
+
+def _class_of(item: Item, rules: RuleTable | None, decided: tuple[str, str] | None) -> _Taken:
+    """Return what an object is taken for."""
     if decided is not None:
-        return decided
-    decision = rule_for(item, rules)
-    return decision.rule.object_class, decision.words
+        return _Taken(*decided)
+    read = readings(item, rules)
+    chances = chances_of(item, read)
+    if not chances or (read.silent and chances[0].probability < SURE):
+        return _Taken(read.decided.rule.object_class, read.decided.words, _told(chances))
+    return _Taken(chances[0].object_class, _why(read, chances[0]), _told(chances))
+
+
+@lru_cache(maxsize=65536)
+def _told(chances: tuple[Chance, ...]) -> tuple[tuple[str, float], ...]:
+    """Return the classes that are likely at all, with their probability to the hundredth."""
+    return tuple((one.object_class, round(one.probability, 2)) for one in chances if one.probability >= POSSIBLE)
+
+
+def _why(read: Readings, taken: Chance) -> str:
+    """Return why an object is of a class: the rule that says so, of those of each part of its record."""
+    if read.decided.rule.object_class == taken.object_class:
+        return read.decided.words
+    found = (one for field in FIELDS if (one := getattr(read, field)) is not None)
+    for one in found:
+        if one.rule.object_class == taken.object_class:
+            return str(one.words)
+    return "evidence: all that its record says, weighed together"
+
+
+def _undecided(scene: Scene, values: AssumedValues) -> Scene:
+    """Return a scene that says where another class is likely for which something else would be computed."""
+    other = scene.next_class
+    if other is None or other[0] not in values.classes:
+        return scene
+    mine, theirs = values.classes[scene.object_class], values.classes[other[0]]
+    if mine.support is theirs.support and mine.models == theirs.models:
+        return scene
+    told = f"its class is not certain: {theirs.told} is possible ({other[1]:.2f}); say what it is (kouros decide)"
+    return replace(scene, assumptions=(*scene.assumptions, told))
 
 
 def classify(
@@ -331,13 +376,14 @@ def classify(
     house   : what the museum states once for many objects; None for nothing
     raises  : KeyError for a decided class that is no row of classes.csv
     """
-    object_class, words = _class_of(item, rules, decided)
+    taken = _class_of(item, rules, decided)
     values = assumed() if rules is None else rules.values
-    row = values.classes[object_class]
-    said = NO_EFFECT if house is None else house.effect(item, object_class, item.support or row.support)
-    scene = _scene(item, row, words, values, said)
-    scene = replace(scene, hanging=said.hanging(item) or scene.hanging, statements=said.statements)
-    return in_furniture(scene, said, values)
+    row = values.classes[taken.name]
+    said = NO_EFFECT if house is None else house.effect(item, taken.name, item.support or row.support)
+    scene = _scene(item, row, taken.words, values, said)
+    hanging = said.hanging(item) or scene.hanging
+    scene = replace(scene, hanging=hanging, statements=said.statements, chances=taken.chances)
+    return in_furniture(_undecided(scene, values), said, values)
 
 
 def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:
@@ -394,7 +440,7 @@ def unclassified(item: Item) -> Scene:
 
 def _unheld(item: Item, support: Support) -> list[str]:
     """Say that the support is missing where a thing is too thin to stand and nothing tells how it is held."""
-    plan = [d for d in (item.base_width_m or item.width_m, item.base_depth_m or item.depth_m) if d is not None]
+    plan = [d for d in (item.base_width_m or item.width_m, item.base_depth_m or item.depth_m) if d]
     if item.support is not None or support is not Support.FREESTANDING or not plan or item.height_m is None:
         return []
     times = item.height_m / min(plan)

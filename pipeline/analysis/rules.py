@@ -6,7 +6,7 @@ aat            : one of these Getty AAT identifiers is recorded: then classifica
 classification : the museum's classification, or a part of its object name, is one of these, in singular or plural
 words          : the naming word is one of these; `*statuette` also takes words that end so (Bronzestatuette)
 medium         : material or medium has one of these words; what an object stands on (a base) does not count
-shape          : all of these measures hold (see SHAPES)
+shape          : all of these measures hold (see `pipeline.analysis.shapes`)
 
 The naming word is the last known word of the object name or, if it knows none, of the title, each read up to its first
 "of", "with", comma and the like: a vase with a bust is a vase, a lantern vase a vase, a cup and saucer a cup.
@@ -24,66 +24,12 @@ from unicodedata import combining, normalize
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationInfo
 
+from pipeline.analysis.shapes import SHAPES
 from pipeline.errors import InputError
 from pipeline.records import Item
 from pipeline.tables import Row, TableError, read_table, table
 from pipeline.tables.assumed import AssumedValues, assumed
 from pipeline.tables.rows import Entries, checked, once
-
-FLAT = 0.12
-"""Depth over the larger face dimension below which a thing is a sheet, not a body."""
-THIN = 0.2
-"""Smallest over largest recorded dimension below which a thing lies rather than stands."""
-TALL = 2.0
-"""Height over the larger plan dimension from which a sculpture is taken as a standing figure."""
-LOW = 0.5
-"""Height over the larger plan dimension below which a turned thing is a bowl."""
-SMALL = 0.4
-"""Height [m] below which a sculpture is handled as a figurine."""
-LARGE = 0.6
-"""Largest dimension [m] from which a textile is hung and a figure is a statue."""
-TINY = 0.2
-"""Largest dimension [m] below which a find or a plaque lies in a case."""
-
-
-def _plan(item: Item) -> float:
-    return max(item.width_m or 0.0, item.depth_m or 0.0)
-
-
-def _sizes(item: Item) -> list[float]:
-    return [size for size in (item.height_m, item.width_m, item.depth_m) if size is not None]
-
-
-def _flat(item: Item) -> bool:
-    return (item.depth_m or 0.0) <= FLAT * max(item.height_m or 0.0, item.width_m or 0.0)
-
-
-def _thin(item: Item) -> bool:
-    sizes = _sizes(item)
-    return len(sizes) == 3 and min(sizes) < THIN * max(sizes)
-
-
-def _tall(item: Item) -> bool:
-    return item.height_m is not None and 0.0 < TALL * _plan(item) <= item.height_m
-
-
-def _low(item: Item) -> bool:
-    return item.height_m is not None and item.height_m < LOW * _plan(item)
-
-
-SHAPES: Mapping[str, Callable[[Item], bool]] = {
-    "flat": _flat,
-    "thin": _thin,
-    "tall": _tall,
-    "low": _low,
-    "small": lambda item: item.height_m is not None and item.height_m < SMALL,
-    "not-small": lambda item: item.height_m is not None and item.height_m >= SMALL,
-    "large": lambda item: max(_sizes(item), default=0.0) >= LARGE,
-    "not-large": lambda item: max(_sizes(item), default=0.0) < LARGE,
-    "tiny": lambda item: max(_sizes(item), default=TINY) < TINY,
-}
-"""The measures that a row may ask for.  A record without the dimensions is no small, tall, large or tiny thing, but
-a flat one."""
 
 _IDENTIFIER = re.compile(r"(?<!\d)300\d{6}(?!\d)")
 _WORD = re.compile(r"[^\W\d_]+")
@@ -91,10 +37,16 @@ _BREAK = re.compile(
     r"[,:;|()\[\]/\"]|\s(?:of|with|for|in|from|by|and|on|showing|depicting|mit|von|aus|und|avec|de|du|des|et|di|da|con|y|e|met|van|en)\s"
 )
 """Where the name of a thing ends and its description begins."""
+_MARK = re.compile(r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\b|n[°o]|#|series\b|[a-z-]*\d)")
+"""What a maker calls a thing, which is no model of it: Clock Model No. 101."""
 _SUPPORT = re.compile(
     r"\b(?:on|in|with|and|recessed in|auf|sur|su|sobre|op)\s[^,;]{0,40}?\b(?:base|plinth|socle|pedestal)\b"
 )
 """What a medium says of the base."""
+_READ = 10_000
+"""Characters of a text that are searched for the name of the thing."""
+PICTURES = ("framed",)
+"""Classes of what hangs flat whatever its title says."""
 _SHOWN = 80
 """Characters of a cell that a message repeats."""
 _STEM = 2
@@ -202,8 +154,11 @@ class Rule:
 
 @dataclass(frozen=True, eq=False)
 class RuleTable:
-    """The rules in order, and where to find those of a word; ``wordless`` are those that ask for no naming word.
+    """The rules in order, and where to find those of a word.
 
+    wordless, classed : those that ask for no naming word: of medium and measures only, and of the classification too
+    own     : the names of the museum's own rules, which decide outright
+    spanning : the phrases that a word such as "of" or "de" does not break
     aat     : every identifier that some rule names
     by_last : the known words and phrases by their last word
     values  : what is assumed of the classes that the rules name
@@ -213,6 +168,9 @@ class RuleTable:
     by_word: Mapping[str, tuple[Rule, ...]]
     by_ending: Mapping[str, tuple[Rule, ...]]
     wordless: tuple[Rule, ...]
+    classed: tuple[Rule, ...]
+    own: frozenset[str]
+    spanning: re.Pattern[str] | None
     aat: frozenset[str]
     by_last: Mapping[str, tuple[str, ...]]
     values: AssumedValues
@@ -232,9 +190,12 @@ class RuleMatch:
         return f"{self.rule.name}: {self.rule.why}{said}"
 
 
-def read_rules(rows: tuple[Row, ...], values: AssumedValues, file: str = "rules.csv") -> RuleTable:
+def read_rules(
+    rows: tuple[Row, ...], values: AssumedValues, file: str = "rules.csv", own: Iterable[str] = ()
+) -> RuleTable:
     """Return rows of a table of rules, ready to match.
 
+    own    : the names of those that are the museum's own
     raises : TableError naming file, line, rule, column and remedy, for an unknown class or shape, a name used twice,
              an identifier that is none of the AAT's, a word that cannot match, and a last row with conditions
     """
@@ -261,11 +222,20 @@ def read_rules(rows: tuple[Row, ...], values: AssumedValues, file: str = "rules.
         tuple(out),
         {word: tuple(found) for word, found in words.items()},
         {ending: tuple(endings[ending]) for ending in sorted(endings, key=len, reverse=True)},
-        tuple(r for r in out if not r.named and (r.kinds or r.medium or r.shapes or r is out[-1])),
+        tuple(r for r in out if not r.named and not r.kinds and (r.medium or r.shapes or r is out[-1])),
+        tuple(r for r in out if not r.named and r.kinds),
+        frozenset(own),
+        _spanning(words),
         frozenset().union(*(rule.aat for rule in out)),
         {last: tuple(phrases) for last, phrases in by_last.items()},
         values,
     )
+
+
+def _spanning(words: Iterable[str]) -> re.Pattern[str] | None:
+    """Return what finds a phrase with a breaking word in it at the beginning of a text, in singular or plural."""
+    phrases = sorted((re.escape(word) for word in words if _BREAK.search(word)), key=lambda one: (-len(one), one))
+    return re.compile(rf"(?:{'|'.join(phrases)})s?\b") if phrases else None
 
 
 def _rule(row: _RuleRow, position: int) -> Rule:
@@ -309,46 +279,107 @@ def with_own(path: Path | None, values: AssumedValues | None = None) -> RuleTabl
         raise TableError(f"{path.name}: there is no column {missing[0]!r}; its columns must be {', '.join(ours[0])}")
     names = {row["rule"] for row in own}
     both = (*own, *(row for row in ours if row["rule"] not in names))
-    return read_rules(both, values, path.name)
+    return read_rules(both, values, path.name, names)
+
+
+@dataclass(frozen=True)
+class Readings:
+    """What each part of a record says of the class by itself; None for a part that says nothing.
+
+    decided        : the rule that decides where the rules alone do
+    outright       : whether nothing else is asked: an identifier, or a rule of the museum's own
+    name, title    : the rule of the naming word of object name and title
+    classification : the rule of what the museum classes it as
+    medium         : the rule of what it is made of
+    """
+
+    decided: RuleMatch
+    outright: bool
+    name: RuleMatch | None = None
+    classification: RuleMatch | None = None
+    medium: RuleMatch | None = None
+    title: RuleMatch | None = None
+
+    @property
+    def silent(self) -> bool:
+        """Whether no part of the record says a class."""
+        return not (self.outright or self.name or self.classification or self.medium or self.title)
 
 
 def rule_for(item: Item, among: RuleTable | None = None) -> RuleMatch:
     """Return the first rule whose conditions hold for the object, of Kouros's table or another."""
+    return readings(item, among).decided
+
+
+def readings(item: Item, among: RuleTable | None = None) -> Readings:
+    """Return what each part of a record says of the class, and the rule that decides among them."""
     of = among or rules()
     if item.aat:
         recorded = identifiers(item.aat) & of.aat
         for rule in of.rules if recorded else ():
             shared = rule.aat & recorded
             if shared and rule.fits(item):
-                return RuleMatch(rule, f"AAT {min(shared)}")
+                return Readings(RuleMatch(rule, f"AAT {min(shared)}"), outright=True)
     kinds = _kinds(item.classification) | _kinds(item.object_name)
-    named = _named(item, kinds, of)
-    for rule in of.wordless:
-        if named is not None and named.rule.position < rule.position:
-            return named
-        if (not rule.kinds or rule.kinds & kinds) and rule.fits(item):
-            return RuleMatch(rule)
-    raise TableError("rules.csv: no rule holds; the last row must have no conditions")
+    classed, made = _wordless(item, kinds, of)
+    name = _named(item, item.object_name, kinds, of)
+    if classed is None and item.classification:
+        classed = _named(item, item.classification, kinds, of)
+    title = _named(item, item.title, kinds, of)
+    # What is painted, drawn or printed is flat, whatever its title says that it shows.
+    speaks = title if made is None or made.rule.object_class not in PICTURES else None
+    found = [one for one in (name or speaks, classed, made) if one is not None]
+    decided = min(found, key=lambda one: one.rule.position, default=RuleMatch(of.rules[-1]))
+    return Readings(decided, decided.rule.name in of.own, name, classed, made, title)
 
 
-def _named(item: Item, kinds: frozenset[str], of: RuleTable) -> RuleMatch | None:
-    """Return the first rule of the first naming word that has one which fits."""
-    for word in _candidates(item, of):
+def _wordless(item: Item, kinds: frozenset[str], of: RuleTable) -> tuple[RuleMatch | None, RuleMatch | None]:
+    """Return the first rule that asks for the classification and no name, and the first that asks for neither."""
+    classed: RuleMatch | None = None
+    for rule in of.classed if kinds else ():
+        if rule.kinds & kinds and rule.fits(item):
+            classed = RuleMatch(rule)
+            break
+    for rule in of.wordless[:-1]:
+        if rule.fits(item):
+            return classed, RuleMatch(rule)
+    return classed, None
+
+
+def _named(item: Item, text: str, kinds: frozenset[str], of: RuleTable) -> RuleMatch | None:
+    """Return the first rule of the first naming word of a text that has one which fits."""
+    if not text:
+        return None
+    for word in _candidates(text[:_READ], of):
         for rule in of.by_word.get(word) or of.by_ending.get(word[1:], ()):
             if (not rule.kinds or rule.kinds & kinds) and rule.fits(item):
                 return RuleMatch(rule, f"named {word!r}")
     return None
 
 
-def _candidates(item: Item, of: RuleTable) -> Iterator[str]:
-    """Yield the known words and *endings of object name and title, the likeliest name of the thing first."""
-    for text in (item.object_name, item.title):
-        for part in _BREAK.split(fold(text)) if text else ():
-            found = _WORD.findall(part)
-            for end in range(len(found), 0, -1):
-                for before, word in _known(of, found[end - 1]):
-                    if not before or before == tuple(found[max(0, end - 1 - len(before)) : end - 1]):
-                        yield word
+@lru_cache(maxsize=16384)
+def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
+    """Return the known words and *endings of an object name or title, the likeliest name of the thing first."""
+    folded = _MARK.sub(" , ", fold(text))
+    parts = _BREAK.split(folded)
+    # A phrase such as "montre de poche" goes over what would else break it; it must stand at the beginning.
+    start = of.spanning.match(folded) if of.spanning is not None else None
+    out = [] if start is None else list(_spelt(of, start.group().split()))
+    for part in parts:
+        found = _WORD.findall(part)
+        for end in range(len(found), 0, -1):
+            for before, word in _known(of, found[end - 1]):
+                if not before or before == tuple(found[max(0, end - 1 - len(before)) : end - 1]):
+                    out.append(word)
+    return tuple(out)
+
+
+def _spelt(of: RuleTable, words: list[str]) -> Iterator[str]:
+    """Yield a phrase as the table spells it."""
+    for form in _forms(words[-1]):
+        phrase = " ".join((*words[:-1], form))
+        if phrase in of.by_word:
+            yield phrase
 
 
 @lru_cache(maxsize=65536)

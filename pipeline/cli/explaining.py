@@ -51,6 +51,7 @@ def explanation_lines(explained: "Explanation") -> Iterator[str]:
     item = scene.item
     yield f"{item.object_number}  {item.title}  ({item.gallery})"
     yield f"  class    {scene.object_class}, by rule {scene.rule}"
+    yield from _class_lines(explained)
     yield f"  support  {scene.support.value}" + (f", on floor {scene.floor}" if scene.floor else "")
     for statement in scene.statements:
         yield f"  house    {statement}"
@@ -71,6 +72,17 @@ def explanation_lines(explained: "Explanation") -> Iterator[str]:
         yield from _likelihood(found)
     for advice in explained.advice:
         yield from _advice(advice)
+
+
+def _class_lines(explained: "Explanation") -> Iterator[str]:
+    """Yield how likely the classes are, and what that leans on: the natural logarithm of the odds."""
+    chances = explained.scene.chances
+    if chances:
+        yield "  likely   " + ", ".join(f"{name} {probability:.2f}" for name, probability in chances)
+    for second, signs in explained.leaning:
+        yield f"  leaning  against {second} (logarithm of the odds)"
+        for sign, weight in signs:
+            yield f"    {weight:+.2f}  {sign}"
 
 
 def _likelihood(found: "Likelihood") -> Iterator[str]:

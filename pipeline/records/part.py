@@ -42,7 +42,7 @@ class Result:
     ----------
     object_class, rule, support, models, parameters, assumptions, missing, skipped, floor
         See `Scene`.
-    hanging, furniture, statements, furniture_origin, anchorage
+    hanging, furniture, statements, furniture_origin, anchorage, chances
         See `Scene`.
     findings : tuple of Finding
         One for each demand and level.
@@ -78,6 +78,7 @@ class Result:
     furniture_origin: Origin | None = None
     anchorage: Anchorage | None = None
     likelihoods: tuple[Likelihood, ...] = ()
+    chances: tuple[tuple[str, float], ...] = ()
 
 
 Urgency = tuple[int, bool, bool, float, float, float, str, str]

@@ -212,6 +212,9 @@ class Item:
     problems: tuple[Problem, ...] = ()
 
 
+LIKELY = 0.1
+"""Probability above which a class that an object is not taken for is named beside its own."""
+
 ITEM_FIELDS = tuple(f.name for f in fields(Item))
 
 
@@ -320,6 +323,9 @@ class Scene:
         What house rules say of it besides its numbers, and where its record overrules them, in words.
     anchorage : Anchorage or None
         Whether its furniture is fastened, by its record or else by a house rule; None where neither says.
+    chances : tuple of (str, float)
+        The classes that are likely at all by what its record says, with their probability, the likeliest first; ()
+        where a person decided.
     """
 
     item: Item
@@ -337,6 +343,13 @@ class Scene:
     statements: tuple[str, ...] = ()
     furniture_origin: Origin | None = None
     anchorage: Anchorage | None = None
+    chances: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def next_class(self) -> tuple[str, float] | None:
+        """The next likely class and its probability, where that is likely enough to say so (`LIKELY`)."""
+        others = (pair for pair in self.chances if pair[0] != self.object_class and pair[1] > LIKELY)
+        return next(others, None)
 
     @property
     def stands_by(self) -> Origin | None:

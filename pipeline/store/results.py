@@ -110,6 +110,7 @@ def anonymous(assessment: Assessment, needing: dict[str, int], wishes: tuple[Mea
         scene.furniture_origin,
         scene.anchorage,
         assessment.likelihoods,
+        scene.chances,
     )
 
 
@@ -132,6 +133,7 @@ def of_object(result: Result, item: Item) -> Assessment:
         result.statements,
         result.furniture_origin,
         result.anchorage,
+        result.chances,
     )
     return Assessment(
         scene,

@@ -6,10 +6,12 @@ from math import isnan
 
 from pipeline.analysis.assess import assess, moving
 from pipeline.analysis.context import Context
+from pipeline.analysis.evidence import leaning
 from pipeline.analysis.findings import findings
 from pipeline.analysis.furniture import itself, loose
 from pipeline.analysis.plan import Work, plan
 from pipeline.analysis.refinement import FidelitySearch, examine
+from pipeline.analysis.rules import RuleTable, readings
 from pipeline.analysis.stakes import Worth, counting, worth_of
 from pipeline.analysis.verdicts import LevelMotions, capacity_of
 from pipeline.collection.inventory import read_inventory
@@ -78,13 +80,26 @@ class Reasoning:
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """The whole chain of reasoning for one object."""
+    """The whole chain of reasoning for one object.
+
+    Attributes
+    ----------
+    scene, reasonings, advice, likelihoods, worth
+        What it is taken for, and what was found.
+    leaning : tuple of (str, tuple of (str, float))
+        What its class leans on against the next likely one: that one, and signs with the logarithm of the odds.
+    """
 
     scene: Scene
     reasonings: tuple[Reasoning, ...]
     advice: tuple[Recommendation, ...]
     likelihoods: tuple[Likelihood, ...] = ()
     worth: Worth | None = None
+    leaning: tuple[tuple[str, tuple[tuple[str, float], ...]], ...] = ()
+
+
+_SIGNS = 8
+"""How many signs of a class are told."""
 
 
 def explain(workspace: Workspace, number: str, progress: Progress) -> list[Explanation]:
@@ -176,7 +191,15 @@ def _explain(
     chances, advice = advised((one, *others), scenes, found, levels, context, numerics, sampling, workspace.measures)
     with counting(workspace.settings.museum.value_per_c):
         worth = worth_of(scene)
-    return Explanation(scene, tuple(reasonings), tuple(advice[0]), chances[0], worth)
+    return Explanation(scene, tuple(reasonings), tuple(advice[0]), chances[0], worth, _leaning(scene, workspace.rules))
+
+
+def _leaning(scene: Scene, rules: RuleTable | None) -> tuple[tuple[str, tuple[tuple[str, float], ...]], ...]:
+    """Return what the class leans on against the next one; nothing where people or one rule decided."""
+    second = next((name for name, _ in scene.chances if name != scene.object_class), None)
+    if second is None:
+        return ()
+    return ((second, leaning(scene.item, readings(scene.item, rules), scene.object_class, second)[:_SIGNS]),)
 
 
 def _reason(work: Work, scene: Scene, level: LevelMotions, context: Context, numerics: Numerics) -> Reasoning:

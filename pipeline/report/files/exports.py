@@ -11,7 +11,7 @@ from math import isfinite, isnan
 from pathlib import Path
 from typing import Any
 
-from pipeline.records import Assessment, Finding, Harm, Recommendation, RunRecord, Urgency
+from pipeline.records import Assessment, Finding, Harm, Recommendation, RunRecord, Scene, Urgency
 from pipeline.report.files.ranks import KEYS, keys_part
 from pipeline.report.files.workbook import write_workbook
 from pipeline.report.pages.alike import Memory, finding_key
@@ -24,6 +24,7 @@ from pipeline.report.units import Units
 
 _NUMBERS = (
     "demand", "low", "high", "capacity", "utilisation", "error",
+    "class_probability", "class_next_probability",
     "median_g", "dispersion", "median_pgv_m_s", "goodness", "annual_rate", "chance_50_years", "chance_50_years_low",
     "chance_50_years_high", *(f"yearly_{state.value}" for state in Harm),
     "probability", "probability_error", *(f"p_{state.value}" for state in Harm), "worth", "expected_loss", "remaining",
@@ -40,7 +41,8 @@ RECOMMENDATION_COLUMNS = (
     "remaining", "settled", "source",
 )  # fmt: skip
 OBJECT_COLUMNS = (
-    "run", "object_number", "title", "gallery", "case", "on_display", "state", "object_class", "furniture",
+    "run", "object_number", "title", "gallery", "case", "on_display", "state", "object_class", "class_probability",
+    "class_next", "class_next_probability", "furniture",
     "furniture_origin", "missing", "probability", "probability_error", "band", "harm", "harm_level",
     *(f"p_{state.value}" for state in Harm), "open_for", "worth", "expected_loss",
     "median_g", "median_is", "dispersion", "median_pgv_m_s", "goodness", "annual_rate", "chance_50_years",
@@ -265,12 +267,24 @@ def _object(run: str, a: Assessment, page: str) -> dict[str, Any]:
         "on_display": item.on_display,
         "state": _NOT_SHOWN if a.aside else state_of(a).value,
         "object_class": a.scene.object_class,
+        **_class_chances(a.scene),
         "furniture": a.scene.furniture,
         "furniture_origin": a.scene.furniture_origin,
         "missing": "" if a.aside else "; ".join(a.scene.missing),
         **chance_columns(a),
         **first_failure(a),
         "page": page,
+    }
+
+
+def _class_chances(scene: Scene) -> dict[str, Any]:
+    """Return how sure the class is, and the next likely one where that is likely at all."""
+    sure = dict(scene.chances).get(scene.object_class)
+    other = scene.next_class
+    return {
+        "class_probability": sure,
+        "class_next": "" if other is None else other[0],
+        "class_next_probability": None if other is None else other[1],
     }
 
 

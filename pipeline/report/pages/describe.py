@@ -50,6 +50,8 @@ from pipeline.report.plots.chart import Spot
 from pipeline.report.text import clean, count, digest, plain, short, words
 from pipeline.report.units import Units, ratio
 
+_POSSIBLE = 0.05
+"""Probability from which another class is named on the page of an object."""
 _PLACEHOLDER = re.compile(r"{(\w+)}")
 _RANGE = re.compile(r" \([^()]*{(?:low|high)}[^()]*\)")
 """Brackets of a sentence that tell the range of a demand."""
@@ -291,6 +293,19 @@ class Sayings:
         return NumberView(text, self.origin(e.origin), clean(e.note), clean(e.source))
 
 
+def taken_words(scene: Scene) -> str:
+    """Return how sure the class of an object is, and which other one is possible."""
+    sure = dict(scene.chances).get(scene.object_class)
+    if sure is None:
+        return ""
+    told = _("taken for: {one} ({sure})").format(one=words(clean(scene.object_class)), sure=f"{sure:.2f}")
+    others = [pair for pair in scene.chances if pair[0] != scene.object_class and pair[1] >= _POSSIBLE]
+    if not others:
+        return told
+    other = _("{one} is possible ({sure})").format(one=words(clean(others[0][0])), sure=f"{others[0][1]:.2f}")
+    return f"{told}; {other}"
+
+
 class Describer:
     """Turns assessments of one run into views."""
 
@@ -336,6 +351,7 @@ class Describer:
             value_class=clean(item.value_class),
             worth=worth_words(scene, worth) if worth.terms else "",
             object_class=words(clean(scene.object_class)),
+            taken=taken_words(scene),
             rule=said(clean(scene.rule)),
             support=support(scene.support),
             place=clean(item.case),

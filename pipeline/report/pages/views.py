@@ -181,6 +181,7 @@ class ObjectView:
     """One object with everything that the report says about it; ``lead`` is its most urgent finding.
 
     settled : whether people accepted or overruled all that does not pass, and nothing of that is in doubt
+    taken   : how sure its class is, and which other is possible; "" where a person decided
     worth   : what it counts where losses are compared, and why; "" where nothing is recorded of that
     """
 
@@ -194,6 +195,7 @@ class ObjectView:
     value_class: str
     worth: str
     object_class: str
+    taken: str
     rule: str
     support: str
     place: str

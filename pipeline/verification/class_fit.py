@@ -1,0 +1,201 @@
+"""Weights of evidence for the class of an object, found from labelled objects, and their test on museums left out.
+
+Each labelled object is shown several times, with parts of its record hidden, so that the weights hold for museums that
+record no classification, or no object name.  Ridge penalties keep the weights of single rules and signs below those of
+fields and classes.
+"""
+
+from __future__ import annotations
+
+import csv
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize, minimize_scalar
+from scipy.sparse import csr_matrix
+from scipy.special import logsumexp
+
+from pipeline.analysis.evidence import AGREES, BIAS, SAYING, SILENT, Weights, read_weights, signs_of
+from pipeline.analysis.rules import readings
+from pipeline.records import Item
+from pipeline.tables import table
+
+CLASSES = tuple(row["class"] for row in table("classes"))
+"""Those of Kouros's own table."""
+TEXTS = ("title", "object_name", "classification", "medium")
+LENGTHS = ("height_m", "width_m", "depth_m")
+
+HIDDEN: tuple[tuple[tuple[str, ...], float], ...] = (
+    ((), 1.0),
+    (("classification",), 0.5),
+    (("object_name",), 0.3),
+    (("title",), 0.3),
+)
+"""Parts of a record that are hidden, and the weight of the object without them."""
+
+RIDGE = {"agree": 0.02, "class": 3.0, "rule": 3.0, "sign": 10.0, "bias": 2.0}
+"""Penalties on squared weights."""
+
+LEAST = 0.02
+"""Smaller weights are left out of the table."""
+
+
+@dataclass(frozen=True)
+class Labelled:
+    """An object with the class that a person gave it."""
+
+    museum: str
+    item: Item
+    object_class: str
+
+
+def labelled_of(row: Mapping[str, str]) -> Labelled:
+    """Return a row of a file of labelled objects."""
+    texts = {name: row[name] for name in TEXTS}
+    sizes = {name: float(row[name]) if row[name] else None for name in LENGTHS}
+    item = Item(row["object_number"], "", **texts, **sizes)  # type: ignore[arg-type]
+    return Labelled(row["collection"], item, row["class"])
+
+
+def read_labelled(path: Path) -> list[Labelled]:
+    """Return the objects of a file of labels."""
+    with path.open(encoding="utf-8", newline="") as stream:
+        return [labelled_of(row) for row in csv.DictReader(stream)]
+
+
+def _shown(item: Item) -> dict[tuple[str, ...], float]:
+    """Return the signs of an object, whole and with parts hidden, each with its weight."""
+    out: dict[tuple[str, ...], float] = {}
+    for hidden, weight in HIDDEN:
+        if hidden and not any(getattr(item, name) for name in hidden):
+            continue
+        less = replace(item, **dict.fromkeys(hidden, ""))  # type: ignore[arg-type]
+        signs = signs_of(less, readings(less))
+        out[signs] = out.get(signs, 0.0) + weight
+    return out
+
+
+def fit(objects: Sequence[Labelled]) -> Weights:
+    """Return the weights that make the labels most probable, less the penalties."""
+    classes = CLASSES
+    cases = [
+        (signs, classes.index(one.object_class), weight)
+        for one in objects
+        for signs, weight in _shown(one.item).items()
+    ]
+    columns = {sign: at for at, sign in enumerate(sorted({sign for signs, _, _ in cases for sign in signs}))}
+    indices = [columns[sign] for signs, _, _ in cases for sign in signs]
+    starts = np.cumsum([0, *(len(signs) for signs, _, _ in cases)])
+    shown = csr_matrix((np.ones(len(indices)), indices, starts), shape=(len(cases), len(columns)))
+    right = np.array([label for _, label, _ in cases])
+    weight = np.array([w for _, _, w in cases])
+    agreeing = np.zeros((len(SAYING), len(cases), len(classes)))
+    for row, (signs, _, _) in enumerate(cases):
+        for sign in signs:
+            field, _, named = sign.partition(": ")
+            if field in SAYING and named in classes:
+                agreeing[SAYING.index(field), row, classes.index(named)] = 1.0
+    ridge = np.array([_penalty(sign, classes) for sign in columns])[:, None]
+    size = len(columns) * len(classes)
+
+    def loss(x: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+        of_sign, of_field = x[:size].reshape(len(columns), len(classes)), x[size:]
+        scores = shown @ of_sign + np.tensordot(of_field, agreeing, axes=1)
+        scores -= logsumexp(scores, axis=1, keepdims=True)
+        away = np.exp(scores)
+        away[np.arange(len(right)), right] -= 1.0
+        away *= weight[:, None]
+        value = -float(weight @ scores[np.arange(len(right)), right])
+        value += 0.5 * float(np.sum(ridge * of_sign**2)) + 0.5 * RIDGE["agree"] * float(of_field @ of_field)
+        slope = shown.T @ away + ridge * of_sign
+        return value, np.concatenate(
+            [slope.ravel(), np.tensordot(agreeing, away, axes=([1, 2], [0, 1])) + RIDGE["agree"] * of_field]
+        )
+
+    start = np.zeros(size + len(SAYING))
+    found = minimize(
+        loss, start, jac=True, method="L-BFGS-B", options={"maxiter": 1000, "maxfun": 2000, "ftol": 1e-11, "gtol": 1e-4}
+    )
+    of_sign = found.x[:size].reshape(len(columns), len(classes))
+    return Weights(
+        classes,
+        {sign: of_sign[at] for sign, at in columns.items()},
+        {field: float(found.x[size + at]) for at, field in enumerate(SAYING)},
+    )
+
+
+def _penalty(sign: str, classes: tuple[str, ...]) -> float:
+    if sign == BIAS:
+        return RIDGE["bias"]
+    if sign.partition(": ")[2] in (*classes, SILENT):
+        return RIDGE["class"]
+    return RIDGE["rule" if sign.startswith("rule of ") else "sign"]
+
+
+def rows_of(found: Weights) -> list[tuple[str, str, str]]:
+    """Return weights as rows of the table: sign, class, weight."""
+    rows = [(field, AGREES, f"{weight:.2f}") for field, weight in found.agreeing.items()]
+    for sign in sorted(found.of_sign):
+        pairs = zip(found.classes, found.of_sign[sign], strict=True)
+        rows += [(sign, name, f"{weight:.2f}") for name, weight in pairs if abs(weight) >= LEAST]
+    return rows
+
+
+def tabled(found: Weights) -> Weights:
+    """Return weights as the table holds them: rounded, without the smallest."""
+    rows = tuple({"sign": sign, "class": name, "weight": weight} for sign, name, weight in rows_of(found))
+    return read_weights(rows, found.classes)
+
+
+def probabilities(found: Weights, items: Sequence[Item]) -> NDArray[np.float64]:
+    """Return the probability of each class (columns) for each object (rows)."""
+    scores = np.array([found.scores(signs_of(item, readings(item))) for item in items])
+    return np.asarray(np.exp(scores - logsumexp(scores, axis=1, keepdims=True)))
+
+
+def left_out(objects: Sequence[Labelled]) -> dict[str, tuple[list[Labelled], NDArray[np.float64]]]:
+    """Return by museum its objects, and the probabilities of their classes by the weights of all other museums."""
+    out = {}
+    for museum in sorted({one.museum for one in objects}):
+        mine = [one for one in objects if one.museum == museum]
+        others = fit([one for one in objects if one.museum != museum])
+        out[museum] = mine, probabilities(others, [one.item for one in mine])
+    return out
+
+
+def temperature(objects: Sequence[Labelled]) -> float:
+    """Return by what scores would have to be divided for probabilities to hold for museums that are left out.
+
+    About 1: the penalties suffice.  It is the one under which the labels are most probable.
+
+    References
+    ----------
+    Guo, C., Pleiss, G., Sun, Y. and Weinberger, K. Q. (2017). On calibration of modern neural networks. Sec. 4.2.
+    """
+    logs, right = [], []
+    for mine, found in left_out(objects).values():
+        logs.append(np.log(np.maximum(found, 1e-300)))
+        right += [CLASSES.index(one.object_class) for one in mine]
+    scores, labels = np.concatenate(logs), np.array(right)
+
+    def loss(heat: float) -> float:
+        scaled = scores / heat
+        return float(np.sum(logsumexp(scaled, axis=1) - scaled[np.arange(len(labels)), labels]))
+
+    return float(minimize_scalar(loss, bounds=(0.5, 4.0), method="bounded").x)
+
+
+def main() -> None:
+    """Write the table of weights from files of labelled objects, whose paths are given."""
+    objects = [one for path in sys.argv[1:] for one in read_labelled(Path(path))]
+    writer = csv.writer(sys.stdout, lineterminator="\n")
+    writer.writerow(("sign", "class", "weight"))
+    writer.writerows(rows_of(fit(objects)))
+
+
+if __name__ == "__main__":
+    main()
