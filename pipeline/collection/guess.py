@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+import zlib
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
@@ -22,7 +23,7 @@ from pipeline.collection.mapping import MAPPABLE, WRITTEN, Mapping
 from pipeline.collection.opening import open_source
 from pipeline.collection.record import units_of
 from pipeline.collection.sources.address import expand_secrets
-from pipeline.collection.sources.files import unreadable
+from pipeline.collection.sources.files import head_of, unreadable
 from pipeline.collection.sources.registry import is_address, recognised
 from pipeline.collection.sources.rows import Row
 from pipeline.errors import InputError
@@ -201,10 +202,11 @@ def _of_workbook(path: Path, sheet: str | None, doubts: list[str]) -> tuple[dict
 
 def _source(path: Path) -> dict[str, str]:
     try:
-        with path.open("rb") as stream:
-            head = stream.read(SNIFFED)
+        head = head_of(path, SNIFFED)
     except OSError as problem:
         raise unreadable(path, problem) from problem
+    except zlib.error as problem:
+        raise CollectionError(f"{path.name}: packed by gzip, and damaged ({problem}); export it again") from problem
     kind = recognised(str(path), head)
     if kind is not None:
         return {"format": kind.name}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -10,6 +11,7 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.limits import STANDARD, Limits
 from pipeline.collection.mapping import Mapping
 from pipeline.collection.sources.base import HEAD, Opened, Request, Source
+from pipeline.collection.sources.files import head_of
 from pipeline.collection.sources.registry import is_address, recognised, source_named
 
 
@@ -64,8 +66,8 @@ def _check(where: str | Path, mapping: Mapping, source: Source) -> None:
         )
     head = b""
     # What cannot be read is told by who reads it.
-    with suppress(OSError), Path(where).open("rb") as stream:
-        head = stream.read(HEAD)
+    with suppress(OSError, zlib.error):
+        head = head_of(Path(where), HEAD)
     other = recognised(str(where), head)
     if other is not None and other.name != source.name and not source.recognises(str(where), head):
         raise CollectionError(

@@ -7,17 +7,17 @@ import json
 import stat
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from io import BufferedReader
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, cast
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.limits import Limits
-from pipeline.collection.sources.files import unreadable
+from pipeline.collection.sources.files import unpacked, unreadable
 from pipeline.collection.sources.rows import Row
 
 Name = Annotated[str, Field(min_length=1)]
@@ -138,7 +138,7 @@ class Source(ABC):
 
 
 class FileSource(Source):
-    """A kind of file: opening, its limit of bytes and its digest are done; ``rows`` reads it."""
+    """A kind of file: opening, unpacking (gzip), its limit of bytes and its digest are done; ``rows`` reads it."""
 
     is_file = True
 
@@ -160,8 +160,10 @@ class FileSource(Source):
     def open(self, request: Request) -> Iterator[Opened]:
         """Open the file."""
         path = Path(request.where)
-        with _open(path, request.limits.bytes) as binary:
-            digest = _digest(binary, path.name)
+        with ExitStack() as stack:
+            packed = stack.enter_context(_open(path, request.limits.bytes))
+            digest = _digest(packed, path.name)
+            binary = stack.enter_context(cast(BufferedReader, unpacked(packed, path.name, request.limits.bytes)))
             yield Opened(path.name, self.rows(binary, path.name, request), lambda: digest)
 
 
