@@ -10,6 +10,7 @@ from pathlib import Path
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.limits import STANDARD, Limits
 from pipeline.collection.mapping import Mapping
+from pipeline.collection.record import KINDS
 from pipeline.collection.sources.base import HEAD, Opened, Request, Source
 from pipeline.collection.sources.files import head_of
 from pipeline.collection.sources.registry import is_address, recognised, source_named
@@ -52,6 +53,9 @@ def open_source(where: str | Path, mapping: Mapping, limits: Limits = STANDARD) 
         optional=tuple(column for _, column, may_lack in wanted if may_lack),
         key_column=mapping.columns["object_number"].sources[0],
         limits=limits,
+        texts=tuple(
+            name for field, one in mapping.columns.items() if KINDS.get(field) == "text" for name in one.sources
+        ),
     )
     with source.open(request) as opened:
         yield opened

@@ -254,6 +254,7 @@ class RowReader:
             places = [names.index(source) for source in column.sources if source in names]
             if places:
                 self._columns.append((field, column, places))
+        self._key = next(places for field, _, places in self._columns if field == "object_number")
         self.flagged = "on_display" in mapping.columns and (
             mapping.columns["on_display"].constant is not None or any(f == "on_display" for f, *_ in self._columns)
         )
@@ -352,7 +353,10 @@ class RowReader:
                 cells.provenance = [of for of in cells.provenance if of.field != field]
         number = values["object_number"]
         if not number:
-            self._reject(row, "object_number", "the object has no number", "give it one in the museum's database")
+            missing = ("the object has no number", "give it one in the museum's database")
+            fault = next((row.faults[at] for at in self._key if at in row.faults), None)
+            message, remedy = missing if fault is None else (f"the cell of its number {fault[0]}", fault[1])
+            self._reject(row, "object_number", message, remedy)
         elif len(number) > NUMBER_LIMIT:
             message = f"an object number of {len(number)} characters, more than {NUMBER_LIMIT}"
             self._reject(row, "object_number", message, "see whether the cells of this row were shifted")

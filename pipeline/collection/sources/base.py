@@ -54,6 +54,8 @@ class Request:
         The column with the object numbers: a source without an order of its own sorts by it.
     limits : Limits
         Bytes and seconds that are accepted; rows are counted by who reads them.
+    texts : tuple of str
+        The columns that hold texts: what looks like a number there is a name, and keeps its characters.
     """
 
     where: str
@@ -62,6 +64,7 @@ class Request:
     optional: tuple[str, ...]
     key_column: str
     limits: Limits
+    texts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
