@@ -87,9 +87,10 @@ def unit_columns(columns: Mapping[str, ColumnMap], header: Sequence[str]) -> dic
     """
     used = {name for column in columns.values() for name in (*column.sources, column.unit_column) if name}
     named = {at: _plain(name) for at, name in enumerate(header) if name not in used and _UNIT_NAME.search(_plain(name))}
-    fields = {f: c for f, c in columns.items() if c.column and c.unit and c.unit != WRITTEN and not c.unit_column}
+    there = {f: c for f, c in columns.items() if c.column in header and not c.unit_column}
+    fields = {f: c for f, c in there.items() if c.unit is not None and c.unit != WRITTEN}
     own = {
-        at: [field for field, column in fields.items() if _plain(str(column.column)) in name]
+        at: [f for f, column in fields.items() if re.search(rf"\b{re.escape(_plain(str(column.column)))}\b", name)]
         for at, name in named.items()
     }
     return {
@@ -147,7 +148,9 @@ def audit(
     out = [*_sides(found, columns, rows)]
     crossed = {name for one in out for name in one.field.split(", ")}
     out += [one for name in found.ratios if name not in crossed for one in _texts(found, name, columns, rows)]
-    out += [*_units(found, columns, rows), *units]
+    against = any(one.holds == "texts" for one in out)
+    # That columns are in another unit than mapped is shown by texts already, and better.
+    out += [*_units(found, columns, rows), *(one for one in units if not (against and one.holds == "units"))]
     if not any(one.holds == "weights" for one in units):
         out += _weights(found, rows)
     return (*out, *_display(found, rows), *_decimals(found))

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from dataclasses import field as member
 from itertools import product
+from math import log
 from statistics import median
 from typing import Any
 
@@ -30,6 +31,9 @@ MOST = 0.8
 
 FILL = (0.015, 1.0)
 """What share of its box the median object may fill with its own material: from bowls and frames to solid blocks."""
+
+USUAL = 0.25
+"""What share of its box an object fills with its own material as a rule: between hollow and solid; judgement."""
 
 SOLID = 1.3
 """What share of its box an object surely cannot fill: a solid block of the densest of its material, and a slip of the
@@ -240,7 +244,7 @@ def _densities(found: Evidence, rows: Mapping[str, Sequence[str]]) -> list[Suspi
             factor = (MASSES[other_mass] / MASSES[mass]) / (LENGTHS[other_length] / LENGTHS[length]) ** 3
             if FILL[0] <= fill * factor <= FILL[1] and not _too_full(group, factor):
                 changed = (other_length != length) + (other_mass != mass)
-                fits.append((changed, abs(fill * factor - 0.25), other_length, other_mass, fill * factor))
+                fits.append((changed, abs(log(fill * factor / USUAL)), other_length, other_mass, fill * factor))
         # Both labels wrong alike (pounds for kilograms and inches for centimetres) is one slip of one export.
         metric = {"m", "cm", "mm", "kg", "g"}
         fits.sort(key=lambda fit: ((fit[2] in metric) != (fit[3] in metric), fit[0], fit[1]))

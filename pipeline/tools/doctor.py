@@ -184,7 +184,8 @@ def _inventory(workspace: Workspace, items: Sequence[Item]) -> tuple[str, str]:
     doubts += [f"{one['message']}; {one['remedy']}" for one in read["suspicions"]]
     doubts += [unsaid(read["unsaid"])] if read["unsaid"] else []
     wrong = doubts or read["refused"] or read["sheets"]
-    return "warning" if wrong else "ok", "; ".join([text, *doubts])
+    chosen = [f"settled by choice: {one['message']}; {one['remedy']}" for one in read["choices"]]
+    return "warning" if wrong else "ok", "; ".join([text, *doubts, *chosen])
 
 
 def _objects(workspace: Workspace, inventory: Sequence[Item]) -> tuple[str, str]:
