@@ -297,7 +297,7 @@ def judged(all_: Iterable[Suspicion], holds: Holds) -> tuple[tuple[Suspicion, ..
         if held is None:
             open_.append(one)
         else:
-            what = f'the mapping says that it holds as mapped ([holds] {one.holds} = "{held}")'
+            what = f'settled by the mapping, [holds] {one.holds} = "{held}"'
             settled.append(Suspicion(one.field, f"{one.message}; {what}", one.remedy, one.holds, one.examples))
     return tuple(open_), tuple(settled)
 
