@@ -19,6 +19,7 @@ from pydantic import AfterValidator
 
 from pipeline.collection.dimensions import parse
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.guessed_display import flag_column, number_column, stores
 from pipeline.collection.mapping import MAPPABLE, WRITTEN, Mapping
 from pipeline.collection.opening import open_source
 from pipeline.collection.record import units_of
@@ -127,9 +128,19 @@ def guess(where: str | Path, table: str | None = None) -> Guess:
     if decimal == ",":
         source["decimal"] = decimal
     found = _fields(columns)
+    numbers = [column for column in columns if _field_of(column) == "object_number"]
+    chosen = number_column(numbers, doubts)
+    if chosen is not None:
+        found["object_number"] = chosen
     if "object_number" not in found:
         found["object_number"] = _unique(name, columns)
         doubts.append(f"object numbers are taken from {found['object_number'].name!r}, where each row has another one")
+    used = {id(column) for column in found.values()}
+    flag = flag_column(
+        found.pop("on_display", None), [c for c in columns if id(c) not in used], found.get("gallery"), doubts
+    )
+    if flag is not None:
+        found["on_display"] = flag
     document = tomlkit.document()
     document.add(tomlkit.comment(f"Guessed from the columns of {_line(name)}. Look at every line; units above all."))
     document["source"] = source
@@ -138,6 +149,8 @@ def guess(where: str | Path, table: str | None = None) -> Guess:
     texts = _texts_of_dimensions(columns, found)
     if texts:
         document["dimensions"] = {"columns": texts}
+    if flag is None and stores(found.get("gallery")):
+        document["display"] = {"not_on_display": stores(found.get("gallery"))}
     text = tomlkit.dumps(document)
     mapping = Mapping.model_validate(document.unwrap())
     return Guess(text, mapping, tuple(doubts))
@@ -289,14 +302,18 @@ def _fields(columns: Sequence[_Column]) -> dict[str, _Column]:
     """Return the fields whose columns are told by their names; of two for one field, the one that is filled more."""
     found: dict[str, _Column] = {}
     for column in columns:
-        bare = _UNIT.sub("", column.name)
-        own = column.name if column.name in MAPPABLE else None
-        name = own or _names().get(_plain(column.name)) or _names().get(_plain(bare))
+        name = _field_of(column)
         if name is None or name == "dimensions":
             continue
         if name not in found or len(column.filled) > len(found[name].filled):
             found[name] = column
     return found
+
+
+def _field_of(column: _Column) -> str | None:
+    bare = _UNIT.sub("", column.name)
+    own = column.name if column.name in MAPPABLE else None
+    return own or _names().get(_plain(column.name)) or _names().get(_plain(bare))
 
 
 def _unique(name: str, columns: Sequence[_Column]) -> _Column:
