@@ -17,6 +17,7 @@ _BETWEEN = re.compile(r"[\s_.\-\u2010\u2011]+")
 _CODE = re.compile(r"(?:no|nr|n°|nº)?[\w°º]{0,2}\d*[\w]?|\d[\w]*", re.IGNORECASE)
 _COMPOUND = re.compile(r"\w{3,}(?:depot|magazin)s?")
 _MOST_BESIDE = 3
+_MOST_FLAGS, _LONGEST_FLAG = 40, 80
 _CJK = re.compile("[\u3040-\u30ff\u4e00-\u9fff]")
 
 
@@ -76,8 +77,11 @@ def says_flags(texts: Sequence[str]) -> bool:
     -------
     bool
     """
-    known = [flag_of(text, display=True) for text in texts]
-    words = {_folded(text) for text in texts} - _meant()["yes"] - _meant()["no"]
+    each = set(texts)
+    if len(each) > _MOST_FLAGS or max(map(len, each), default=0) > _LONGEST_FLAG:
+        return False
+    known = {flag_of(text, display=True) for text in each}
+    words = {_folded(text) for text in each} - _meant()["yes"] - _meant()["no"]
     return bool(words) and None not in known and True in known
 
 
