@@ -44,7 +44,9 @@ TABLE_WORDS = {
     "dimension_labels": "Short labels of dimension texts by language.",
     "dimension_units": "Units of dimension texts.",
     "dimension_words": "Words of dimension texts.",
-    "display_words": "Words that say that an object is on display or not, and names of stores, for `--guess`.",
+    "display_words": "Words by which museums say what is on display, in flags and names of places: yes and no of any "
+    "flag; shown and away; a store whatever else its name says, or where only a code follows (code); what makes a "
+    "store a gallery; who lends.",
     "dispersion": "What a fragility curve's dispersion is made of.",
     "efforts": "Hours, cost and trade of each measure, of one that is not named, and of setting out in a gallery.",
     "fixings": "What wax, putty, pins, ties, clips, brackets and clamps hold, and which materials they harm.",
@@ -145,9 +147,11 @@ COLUMN_WORDS = {
     "row": "of the source",
     "line": "of a text file, where it differs from the row",
     "field": "of the object record",
-    "what": "refused, problem, or doubt",
+    "what": "source, choice, refused, sheet, or doubtful",
     "message": "what is wrong",
     "remedy": "what mends it",
+    "characters": "what stands in the museum's record, where that is kept: a column; behind | a text of it",
+    "used": "what is used of the field, in SI units; empty for nothing",
 }
 """Of the exports' columns that no schema describes."""
 

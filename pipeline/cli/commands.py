@@ -140,10 +140,13 @@ def _print_rules(questions: "Sequence[RuleQuestion]") -> None:
 @click.command()
 @click.option("--numerics", is_flag=True, help="Run the models at their extremes instead, against exact limits.")
 @click.option("--deep", is_flag=True, help="Compare all that is kept with what was written instead; nothing changes.")
+@click.option("--migrate", is_flag=True, help="First bring the database's tables to this version; keep a copy of it.")
 @as_json
 @click.pass_obj
-def check(options: Options, numerics: bool, deep: bool, as_json: bool) -> None:
+def check(options: Options, numerics: bool, deep: bool, migrate: bool, as_json: bool) -> None:
     """Look at settings, database, mapping, motions, house rules, clock and disk, and say what to mend.
+
+    Nothing is written, but with --migrate; every verb that writes brings the tables up to date by itself.
 
     With --numerics: whether this machine's compiled code is right at the extremes; exit code 1 if not.  Beside a
     kouros.toml the result is kept, and the next report shows it.
@@ -152,8 +155,8 @@ def check(options: Options, numerics: bool, deep: bool, as_json: bool) -> None:
 
     Example: kouros check
     """
-    if numerics and deep:
-        raise click.UsageError("--numerics or --deep, one at a time")
+    if numerics + deep + migrate > 1:
+        raise click.UsageError("--numerics, --deep or --migrate, one at a time")
     if deep:
         _check_deep(options, as_json)
         return
@@ -162,7 +165,7 @@ def check(options: Options, numerics: bool, deep: bool, as_json: bool) -> None:
         return
     from pipeline.tools.doctor import diagnose
 
-    found = diagnose(Path(options.config))
+    found = diagnose(Path(options.config), migrate=migrate)
     if as_json:
         click.echo(json.dumps([asdict(d) for d in found], indent=2))
     else:

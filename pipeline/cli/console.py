@@ -153,6 +153,8 @@ def _reading_lines(summary: "Summary") -> list[str]:
     if read is not None:
         told = [printable(f"{one['message']}; {one['remedy']}") for one in read["suspicions"]]
         lines += [f"    the whole file: {text}" for text in told]
+        chosen = [printable(f"{one['message']}; {one['remedy']}") for one in read.get("choices", ())]
+        lines += [f"    settled by choice: {text}" for text in chosen]
         lines += [f"  {unsaid(read['unsaid'])}"] if read["unsaid"] else []
     return lines
 

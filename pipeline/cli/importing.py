@@ -283,6 +283,7 @@ def _plain(done: "Imported") -> dict[str, Any]:
         "doubtful": sum(1 for item in reading.items if item.problems),
         "display_said": done.display_said,
         "suspicions": [asdict(s) for s in reading.suspicions],
+        "choices": [asdict(s) for s in reading.choices],
         "problems": [{"object_number": item.object_number, **asdict(p)} for item, p in done.problems],
         "counts": None if done.changes is None else asdict(done.changes.counts),
         "changes": None if done.changes is None else asdict(done.changes),
@@ -300,6 +301,7 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
     )
     listed("rejected", [f"{r.message}; {r.remedy}" for r in reading.rejected])
     listed("suspicion", [f"{s.message}; {s.remedy}" for s in reading.suspicions])
+    listed("choice", [f"{s.message}; {s.remedy}" for s in reading.choices])
     listed("problem", _problems(reading))
     if done.changes is None:
         return
@@ -309,8 +311,9 @@ def _tell(done: "Imported", *, dry_run: bool) -> None:
     _changed(done.changes)
     click.echo(f"inventory: {counted(c.after, 'object')} ({c.added:,} new, {c.removed:,} gone, {c.changed:,} changed)")
     doubtful = sum(1 for item in reading.items if item.problems)
+    chosen = f", {len(reading.choices):,} settled by choice" if reading.choices else ""
     click.echo(
-        f"read: {counted(reading.rows, 'row')}, {len(reading.rejected):,} refused, {doubtful:,} doubtful; "
+        f"read: {counted(reading.rows, 'row')}, {len(reading.rejected):,} refused, {doubtful:,} doubtful{chosen}; "
         "the next report names each"
     )
     if not done.display_said:

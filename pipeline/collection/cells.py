@@ -10,6 +10,7 @@ from decimal import Context
 from enum import StrEnum
 from math import isinf
 
+from pipeline.collection.display_words import flag_of
 from pipeline.collection.mapping import WRITTEN, ColumnMap
 from pipeline.collection.measured_cell import of_cell
 from pipeline.collection.record import CHOICES, plausible, units_of
@@ -30,7 +31,7 @@ _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udf
 _SPACE = " \t\r\n\v\f\u00a0\u3000"
 # A product of two decimals is rounded once, to the nearest double: 79 in is 2.0066 m and not its neighbour.
 _EXACT = Context(prec=80)
-_FLAGS = {"true": True, "yes": True, "y": True, "1": True, "false": False, "no": False, "n": False, "0": False}
+_FLAGS = {"1": True, "0": False}
 
 
 @dataclass(slots=True)
@@ -45,11 +46,14 @@ class Cells:
         Gathers where each number comes from.
     problems : list of Problem
         Gathers what is wrong; without the row's number, for a row that moves in its file is no other record.
+    pairs : list of (str, float, float)
+        Gathers what is said twice, field by field: by its own column and by a text, in SI.
     """
 
     decimal: str = "."
     provenance: list[Provenance] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
+    pairs: list[tuple[str, float, float]] = field(default_factory=list)
 
     def number(self, name: str, column: ColumnMap, texts: Sequence[str]) -> float | None:
         """Return a number in SI units.
@@ -216,7 +220,9 @@ class Cells:
         text = texts[0].strip(_SPACE)
         if _missing(text, column):
             return None
-        meaning = _translate(column).get(text.casefold(), _FLAGS.get(text.casefold()))
+        meaning = _translate(column).get(text.casefold(), _FLAGS.get(text))
+        if meaning is None:
+            meaning = flag_of(text, display=name == "on_display")
         if not isinstance(meaning, bool):
             message = f"{_show(text)} is neither yes nor no"
             self._note(name, column, message, f"add it to the mapping, [columns.{name}] values")

@@ -6,13 +6,18 @@ from collections.abc import Mapping
 from math import radians, tan
 from typing import Any
 
+from pipeline.collection.unit_audit import SOLID
 from pipeline.records import SECTION_SHAPES, ContactPolygon, Problem
+from pipeline.tables.assumed import assumed
 
 HEAVIEST = 22_600.0
 """Density of osmium [kg/m3], the heaviest thing there is: no object is heavier than a box of it."""
 
 LIGHTEST = 0.1
 """Mass of an object over the box around it [kg/m3]: a mobile of wire reaches it; air itself has 1.2."""
+
+HOLLOW = 0.0005
+"""What share of its box the emptiest object fills with its own material: an open umbrella, a mobile; judgement."""
 
 _TOLERANCE = 1.03
 """Two rounded measurements of the same thing."""
@@ -92,10 +97,22 @@ def _density(values: Mapping[str, Any]) -> list[tuple[str, Problem]]:
     if mass is None or not all(sides):
         return []
     density = mass / (sides[0] * sides[1] * sides[2])
-    if LIGHTEST <= density <= HEAVIEST:
-        return []
     box = " x ".join(f"{side:.3g}" for side in sides)
-    limit = "osmium, the heaviest metal" if density > HEAVIEST else "a mobile of wire"
-    than = "heavier" if density > HEAVIEST else "lighter"
-    message = f"{mass:.4g} kg in a box of {box} m is {density:.3g} kg/m3, {than} than {limit}: mass or size is wrong"
-    return [("mass_kg", Problem("mass_kg", message, "weigh and measure it again; the mass is left out until then"))]
+    told = f"{mass:.4g} kg in a box of {box} m is {density:.3g} kg/m3"
+    remedy = "weigh and measure it again; the mass is left out until then"
+    if not LIGHTEST <= density <= HEAVIEST:
+        limit = "osmium, the heaviest metal" if density > HEAVIEST else "a mobile of wire"
+        than = "heavier" if density > HEAVIEST else "lighter"
+        return [("mass_kg", Problem("mass_kg", f"{told}, {than} than {limit}: mass or size is wrong", remedy))]
+    materials = assumed().materials_in(str(values.get("material") or values.get("medium") or ""))
+    if not materials:
+        return []
+    most, least = max(materials, key=lambda one: one.density_high), min(materials, key=lambda one: one.density_low)
+    if density > SOLID * most.density_high:
+        than = f"{density / most.density:.2g} times as heavy as a solid block of {most.name}"
+        return [("mass_kg", Problem("mass_kg", f"{told}, {than}: mass, size or material is wrong", remedy))]
+    if density < HOLLOW * least.density_low:
+        than = f"{density / least.density:.1g} of a solid block of {least.name}"
+        message = f"{told}, {than}: as if mass or size were in another unit; it is used"
+        return [("", Problem("mass_kg", message, "weigh and measure it again, and correct what is wrong"))]
+    return []

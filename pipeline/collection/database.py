@@ -3,10 +3,13 @@
 import errno
 import os
 import re
+import shutil
 import sqlite3
+import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 from urllib.parse import quote
 
@@ -167,11 +170,30 @@ def _say_no_room(context: ExceptionContext) -> None:
 
 
 def open_for_reading(url: URL) -> Engine:
-    """Open a database that is there so that nothing can be written to it, whoever tries."""
+    """Open a database that is there so that nothing can be written to it, whoever tries, nor beside it.
+
+    Parameters
+    ----------
+    url : URL
+        Of the database.
+
+    Returns
+    -------
+    Engine
+        Of the file itself; where a process that died left a journal or a log of changes beside it, which SQLite would
+        settle by writing, of a copy that goes with the engine.
+    """
     if url.get_backend_name() == "sqlite":
-        where = f"file:{quote(str(Path(str(url.database)).resolve()))}?mode=ro"
+        file = Path(str(url.database)).resolve()
+        folder = _settled_apart(file) if _unsettled(file) else None
+        there = file if folder is None else Path(folder.name) / file.name
+        # A file whose changes go to a log of their own is locked by files beside it: without one, nobody is at work.
+        mode = "ro&immutable=1" if folder is None and _is_logged(file) else "ro"
+        where = f"file:{quote(str(there))}?mode={mode}"
         lite = create_engine(url, poolclass=NullPool, creator=lambda: sqlite3.connect(where, uri=True, timeout=10.0))
         event.listen(lite, "handle_error", _say_no_room)
+        if folder is not None:
+            weakref.finalize(lite, folder.cleanup)
         return lite
     engine = create_engine(url, poolclass=NullPool)
 
@@ -180,6 +202,47 @@ def open_for_reading(url: URL) -> Engine:
         connection.read_only = True
 
     return engine
+
+
+def _is_logged(file: Path) -> bool:
+    """Say whether a file is in SQLite's mode WAL (bytes 18 and 19 of its header)."""
+    with file.open("rb") as stream:
+        return stream.read(20)[18:] == b"\x02\x02"
+
+
+def _unsettled(file: Path) -> bool:
+    log = file.with_name(f"{file.name}-wal")
+    if log.is_file() and log.stat().st_size:
+        return True
+    if not file.with_name(f"{file.name}-journal").is_file():
+        return False
+    # A journal is a living process's, or one that died left it: only SQLite's own locks tell.
+    probe = sqlite3.connect(f"file:{quote(str(file))}?mode=ro", uri=True, timeout=10.0)
+    try:
+        probe.execute("SELECT count(*) FROM sqlite_master").fetchone()
+    except sqlite3.OperationalError:
+        return True
+    finally:
+        probe.close()
+    return False
+
+
+def _settled_apart(file: Path) -> "TemporaryDirectory[str]":
+    """Copy a file with what lies beside it, and have SQLite settle the copy."""
+    folder = TemporaryDirectory(prefix="kouros-reading-")
+    try:
+        for name in (file.name, f"{file.name}-wal", f"{file.name}-journal"):
+            if file.with_name(name).is_file():
+                shutil.copyfile(file.with_name(name), Path(folder.name) / name)
+        copy = sqlite3.connect(Path(folder.name) / file.name)
+        try:
+            copy.execute("PRAGMA journal_mode = DELETE").fetchone()
+        finally:
+            copy.close()
+    except BaseException:
+        folder.cleanup()
+        raise
+    return folder
 
 
 def _prepare_sqlite(connection: Any, _record: Any) -> None:

@@ -9,13 +9,13 @@ from typing import Any
 
 import tomlkit
 
+from pipeline.collection.display_words import says_away
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, candidates
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
 from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among
 from pipeline.collection.guessing.names import bare
 from pipeline.collection.guessing.source import Told, columns_in, database, objects_of, source_of, workbook
-from pipeline.collection.guessing.words import stores_among
 from pipeline.collection.mapping import MAPPABLE, PRESETS, load_mapping, preset_names
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.sources.address import expand_secrets
@@ -153,7 +153,7 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     if texts:
         document["dimensions"] = {"columns": [column.name for column in texts]}
     gallery = found.get("gallery")
-    stores = stores_among(gallery.distinct) if gallery is not None else []
+    stores = list(filter(says_away, gallery.distinct)) if gallery is not None else []
     if stores:
         document["display"] = {"not_on_display": stores[:MOST_STORES]}
         told.doubts.append(_said_of(stores))
@@ -271,7 +271,7 @@ def _of_preset(name: str, columns: Sequence[Column], told: Told) -> Guess:
     if not tells("height_m", "width_m", "depth_m", "diameter_m") and not filled & set(texts):
         told.doubts.append("no record tells sizes: export the dimensions too")
     places = proposal.columns["gallery"].sources
-    stores = stores_among(_joined(columns, places, proposal.columns["gallery"].separator))
+    stores = list(filter(says_away, _joined(columns, places, proposal.columns["gallery"].separator)))
     if stores:
         document = tomlkit.parse(text)
         document["display"] = {"not_on_display": stores[:MOST_STORES]}

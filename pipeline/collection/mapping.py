@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Iterable, Iterator, Sequence
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
     BaseModel,
@@ -128,6 +128,10 @@ class ColumnMap(_Part):
         description="Unit of the column's numbers; required for every length and mass, for them only. "
         f'"{WRITTEN}" where each cell holds number and unit, such as 23 cm or 8 1/2 in.',
     )
+    unit_column: Name | None = Field(
+        default=None,
+        description="A column that names the unit of each row's number; where it is empty or no unit, unit counts.",
+    )
     missing: tuple[Number | StrictStr, ...] = Field(
         default=(), description="Numbers (in the column's own unit) or texts that mean: not recorded."
     )
@@ -186,6 +190,30 @@ class Display(_Part):
     not_on_display: tuple[Name, ...] = Field(
         default=(), description="Locations (such as a store) whose objects are not on display, and so not assessed."
     )
+    on_display: tuple[Name, ...] = Field(
+        default=(),
+        description="Locations that are galleries although their names sound otherwise, such as a store that is open.",
+    )
+
+
+class Holds(_Part):
+    """What holds where a source contradicts itself in most rows; without it the import stops there."""
+
+    texts: Literal["columns", "texts"] | None = Field(
+        default=None, description="Columns of sizes and masses, or the texts of dimensions that say otherwise."
+    )
+    sides: Literal["mapping"] | None = Field(
+        default=None, description="Height, width and depth as mapped, although texts say that they are exchanged."
+    )
+    units: Literal["mapping"] | None = Field(
+        default=None, description="Units as mapped, although a column of units, or how the numbers are written, differ."
+    )
+    weights: Literal["mapping"] | None = Field(
+        default=None, description="Masses and their unit as mapped, although they do not fit the objects' sizes."
+    )
+    display: Literal["flag", "location"] | None = Field(
+        default=None, description="The flag, or the location that says otherwise, on whether an object is on display."
+    )
 
 
 class Mapping(_Part):
@@ -202,6 +230,7 @@ class Mapping(_Part):
         default=None, description="Texts that fill heights, widths, depths and masses which no column gives."
     )
     display: Display = Field(default=Display(), description="Which locations are no galleries.")
+    holds: Holds = Field(default=Holds(), description="What holds where the source contradicts itself in most rows.")
     _name: str = PrivateAttr(default="mapping")
 
     @property
@@ -214,6 +243,8 @@ class Mapping(_Part):
         for field, column in self.columns.items():
             for source in column.sources:
                 yield f"columns.{field}", source, column.optional
+            if column.unit_column is not None:
+                yield f"columns.{field}", column.unit_column, column.optional
         if self.dimensions is not None:
             for source in self.dimensions.columns:
                 yield "dimensions", source, self.dimensions.optional
@@ -391,6 +422,8 @@ def _fault(field: str, column: ColumnMap) -> str:
     if units and column.unit not in units and column.unit != WRITTEN:
         given = "has no unit" if column.unit is None else f"cannot be in {column.unit!r}"
         return f'a {"length" if units is LENGTHS else "mass"} {given}; add unit = "..." with one of {", ".join(units)}'
+    if column.unit_column is not None and (not units or column.unit == WRITTEN or kind != "number"):
+        return f"unit_column is for lengths and masses whose unit is not {WRITTEN!r}; leave it out"
     if not units and column.unit is not None:
         return f"unit is for lengths ({', '.join(LENGTHS)}) and masses ({', '.join(MASSES)}) only; leave it out"
     if column.columns and kind != "text" and column.unit != WRITTEN:
@@ -422,7 +455,7 @@ def _constant_fault(field: str, kind: str, column: ColumnMap) -> str:
         return 'the constant of a flag is "true" or "false"'
     if kind not in ("text", "flag") or field == "object_number":
         return "a constant is for texts that all objects share, such as the gallery; name a column"
-    if column.unit is not None or column.missing or column.values or column.optional:
+    if column.unit is not None or column.unit_column or column.missing or column.values or column.optional:
         return "a constant needs no unit, missing, values or optional; leave them out"
     return ""
 
@@ -433,6 +466,7 @@ _SECTIONS: dict[str, type[BaseModel]] = {
     "columns": ColumnMap,
     "dimensions": Texts,
     "display": Display,
+    "holds": Holds,
 }
 
 

@@ -77,7 +77,15 @@ def _joined(columns: tuple[str, ...]) -> ColumnMap:
     return ColumnMap(columns=columns, separator="; ")
 
 
-def fill(values: dict[str, Any], cells: Cells, mapping: Texts, texts: Sequence[str], decimal: str) -> None:
+def fill(
+    values: dict[str, Any],
+    cells: Cells,
+    mapping: Texts,
+    texts: Sequence[str],
+    decimal: str,
+    *,
+    texts_hold: bool = False,
+) -> None:
     """Fill what no column gives from the texts of a row; where both speak, say whether they agree.
 
     Parameters
@@ -92,11 +100,13 @@ def fill(values: dict[str, Any], cells: Cells, mapping: Texts, texts: Sequence[s
         Of the mapping's columns, in its order; the first that says something counts.
     decimal : {".", ","}
         The source's decimal mark.
+    texts_hold : bool
+        Whether a text holds where a column says something else; else the column does.
     """
     # Lines are how such texts are written, and no fault of theirs.
     lines = ["; ".join(filter(None, (line.strip() for line in text.splitlines()))) for text in texts]
     values["dimensions"] = cells.text("dimensions", _joined(mapping.columns), lines, limit=TEXT_LIMIT)
-    given = {field for field in FIELDS_FILLED if values.get(field) is not None}
+    given = {field: values[field] for field in FIELDS_FILLED if values.get(field) is not None}
     for text in texts:
         if text.strip():
             _fill_from(
@@ -105,13 +115,21 @@ def fill(values: dict[str, Any], cells: Cells, mapping: Texts, texts: Sequence[s
                 cells,
                 parse(text, default_unit=mapping.unit, decimal=decimal, language=mapping.language),
                 mapping,
+                texts_hold,
             )
 
 
 FIELDS_FILLED = tuple(dict.fromkeys(field for fields in FIELDS.values() for field in fields))
 
 
-def _fill_from(values: dict[str, Any], given: set[str], cells: Cells, read: Dimensions, mapping: Texts) -> None:
+def _fill_from(
+    values: dict[str, Any],
+    given: Mapping[str, float],
+    cells: Cells,
+    read: Dimensions,
+    mapping: Texts,
+    texts_hold: bool,
+) -> None:
     chosen = choose(read, hung=mapping.framed)
     found = False
     for what, fields in FIELDS.items():
@@ -125,7 +143,11 @@ def _fill_from(values: dict[str, Any], given: set[str], cells: Cells, read: Dime
             continue
         for field in fields:
             if field in given:
-                _compare(field, values[field], choice, cells)
+                cells.pairs.append((field, given[field], choice.value))
+                if _differs(field, given[field], choice, cells, texts_hold) and texts_hold:
+                    values[field] = choice.value
+                    cells.provenance = [of for of in cells.provenance if of.field != field]
+                    cells.provenance.append(_provenance(field, what, choice, read))
             elif values.get(field) is None and cells.plausible(
                 field, choice.value, read.text[choice.start : choice.end]
             ):
@@ -159,13 +181,16 @@ def _tell(cells: Cells, read: Dimensions, notes: Sequence[DimensionNote], found:
     cells.problems += problems
 
 
-def _compare(field: str, value: float, choice: Choice, cells: Cells) -> None:
+def _differs(field: str, value: float, choice: Choice, cells: Cells, texts_hold: bool) -> bool:
+    """Note a text that says something else than the field's own column, the first time."""
     if any(p.field == field and p.message.startswith("the text says") for p in cells.problems):
-        return
-    if not agree(value, choice.value, "mass" if field == "mass_kg" else "length"):
-        unit = "kg" if field == "mass_kg" else "m"
-        message = f"the text says {choice.value:.4g} {unit} ({choice.why}), its own column {value:.4g}, which is used"
-        cells.problems.append(Problem(field, message, "see which is right, and correct the other"))
+        return False
+    if agree(value, choice.value, "mass" if field == "mass_kg" else "length"):
+        return False
+    unit, used = "kg" if field == "mass_kg" else "m", "text" if texts_hold else "column"
+    message = f"the text says {choice.value:.4g} {unit} ({choice.why}), its own column {value:.4g}; the {used} is used"
+    cells.problems.append(Problem(field, message, "see which is right, and correct the other"))
+    return True
 
 
 def _provenance(field: str, what: str, choice: Choice, read: Dimensions) -> Provenance:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
@@ -10,7 +11,9 @@ from pathlib import Path
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.limits import STANDARD, Limits
 from pipeline.collection.mapping import Mapping
+from pipeline.collection.record import KINDS
 from pipeline.collection.sources.base import HEAD, Opened, Request, Source
+from pipeline.collection.sources.files import head_of
 from pipeline.collection.sources.long_form import gathered
 from pipeline.collection.sources.registry import is_address, recognised, source_named
 
@@ -48,10 +51,13 @@ def open_source(where: str | Path, mapping: Mapping, limits: Limits = STANDARD) 
     request = Request(
         where=str(where),
         settings=mapping.source,
-        columns=tuple(column for _, column, may_lack in wanted if not may_lack),
-        optional=tuple(column for _, column, may_lack in wanted if may_lack),
+        columns=tuple(dict.fromkeys(column for _, column, may_lack in wanted if not may_lack)),
+        optional=tuple(dict.fromkeys(column for _, column, may_lack in wanted if may_lack)),
         key_column=mapping.columns["object_number"].sources[0],
         limits=limits,
+        texts=tuple(
+            name for field, one in mapping.columns.items() if KINDS.get(field) == "text" for name in one.sources
+        ),
     )
     long = mapping.source.long
     with source.open(request) as opened:
@@ -67,8 +73,8 @@ def _check(where: str | Path, mapping: Mapping, source: Source) -> None:
         )
     head = b""
     # What cannot be read is told by who reads it.
-    with suppress(OSError), Path(where).open("rb") as stream:
-        head = stream.read(HEAD)
+    with suppress(OSError, zlib.error):
+        head = head_of(Path(where), HEAD)
     other = recognised(str(where), head)
     if other is not None and other.name != source.name and not source.recognises(str(where), head):
         raise CollectionError(

@@ -21,9 +21,11 @@ from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, Texts, che
 from pipeline.collection.measured import fill, is_dimension
 from pipeline.collection.opening import open_source
 from pipeline.collection.record import KINDS, NUMBER_LIMIT, TEXT_LIMIT
+from pipeline.collection.row_audit import RowAudit
+from pipeline.collection.source_audit import audit, judged, taken_away
 from pipeline.collection.sources.delimited import RECORD_LIMIT
 from pipeline.collection.sources.rows import NO_FAULTS, Row
-from pipeline.collection.unit_audit import Evidence, Suspicion, suspicions
+from pipeline.collection.unit_audit import Evidence, Suspicion
 from pipeline.errors import KourosError, fault_words
 from pipeline.records import Item, Origin, Problem, Provenance
 
@@ -88,7 +90,9 @@ class Reading:
     places : tuple of (int, int)
         Of each item, its row and its line in the source.
     suspicions : tuple of Suspicion
-        Units that the whole source seems to have wrong.
+        What the whole source seems to have wrong; those that say what must hold stop an import.
+    choices : tuple of Suspicion
+        What was settled for the whole source, by the mapping or unasked.
     known : mapping of str to KnownRow
         What is known of the rows that were read now, by their digests, for the next reading.
     unread : Unread or None
@@ -110,6 +114,7 @@ class Reading:
     known: KnownRows = member(default_factory=dict)
     unread: Unread | None = None
     flagged: bool = False
+    choices: tuple[Suspicion, ...] = ()
 
     @property
     def objects(self) -> int:
@@ -188,6 +193,8 @@ def read_items(
     )
     if not reader.rows:
         raise NoRowsError(f"{source.name}: empty collection: a header and no data rows; export it again")
+    evidence = reader.evidence()
+    open_, settled = judged(audit(evidence, mapping.columns, reader.audit.rows), mapping.holds)
     return Reading(
         items=tuple(reader.items),
         rows=reader.rows,
@@ -198,7 +205,8 @@ def read_items(
         museum=mapping.museum.name,
         credit=mapping.museum.credit,
         places=tuple(reader.places),
-        suspicions=suspicions(reader.evidence()),
+        suspicions=open_,
+        choices=(*settled, *taken_away(evidence)),
         known=reader.found,
         unread=None if known is None else reader.unread(),
         flagged=reader.flagged,
@@ -254,10 +262,12 @@ class RowReader:
             places = [names.index(source) for source in column.sources if source in names]
             if places:
                 self._columns.append((field, column, places))
+        self._key = next(places for field, _, places in self._columns if field == "object_number")
         self.flagged = "on_display" in mapping.columns and (
             mapping.columns["on_display"].constant is not None or any(f == "on_display" for f, *_ in self._columns)
         )
-        self._stores = {name.strip().casefold() for name in mapping.display.not_on_display}
+        self.audit = RowAudit(mapping, names)
+        self._shows = Evidence()
         self._seen: dict[str, int] = {}
         texts = mapping.dimensions
         self._texts = texts and [names.index(source) for source in texts.columns if source in names]
@@ -304,7 +314,7 @@ class RowReader:
         except Exception as problem:  # noqa: BLE001 - whatever it is, it is this row's, and told
             self._reject(row, "", f"{FAILED}: {fault_words(problem)}", TELL)
         for item in self.items[before:]:
-            evidence = Evidence.of([item]).plain()
+            evidence = self._shows.plain()
             said = json.dumps(evidence, separators=(",", ":")) if any(evidence) else None
             if said is not None:
                 self._evidence[said] += 1
@@ -343,20 +353,26 @@ class RowReader:
         if row.faults:
             self._refuse_cells(row, cells)
         values: dict[str, Any] = self._constants | {
-            field: _read(cells, field, column, [row.cells[i] for i in places])
+            field: _read(cells, field, self.audit.column_of(field, column, row, cells), [row.cells[i] for i in places])
             for field, column, places in self._columns
         }
         self._spread_diameter(values, cells)
         if self._texts and self._mapping.dimensions is not None:
             self._fill(values, cells, self._mapping.dimensions, [row.cells[i] for i in self._texts])
-        for field, problem in contradictions(values):
+        self._shows = self.audit.look(row, values, cells)
+        found = contradictions(values)
+        self.audit.weigh(self._shows, row, values, [problem for _, problem in found])
+        for field, problem in found:
             cells.problems.append(problem)
             if field:
                 values[field] = _NOTHING.get(KINDS[field])
                 cells.provenance = [of for of in cells.provenance if of.field != field]
         number = values["object_number"]
         if not number:
-            self._reject(row, "object_number", "the object has no number", "give it one in the museum's database")
+            missing = ("the object has no number", "give it one in the museum's database")
+            fault = next((row.faults[at] for at in self._key if at in row.faults), None)
+            message, remedy = missing if fault is None else (f"the cell of its number {fault[0]}", fault[1])
+            self._reject(row, "object_number", message, remedy)
         elif len(number) > NUMBER_LIMIT:
             message = f"an object number of {len(number)} characters, more than {NUMBER_LIMIT}"
             self._reject(row, "object_number", message, "see whether the cells of this row were shifted")
@@ -370,13 +386,13 @@ class RowReader:
             self._reject(row, "object_number", message, "give each object its own number, and export one row an object")
         else:
             self._seen[number] = row.number
-            self.items.append(self._item(values, cells))
+            self.items.append(self._item(row, values, cells))
             self.places.append((row.number, row.line))
 
     def _fill(self, values: dict[str, Any], cells: Cells, texts: Texts, found: list[str]) -> None:
         before, provenance = dict(values), list(cells.provenance)
         try:
-            fill(values, cells, texts, found, self._decimal)
+            fill(values, cells, texts, found, self._decimal, texts_hold=self._mapping.holds.texts == "texts")
         except KourosError:
             raise
         except Exception as problem:  # noqa: BLE001 - whatever it is, it is this text's, and told
@@ -392,10 +408,10 @@ class RowReader:
                 if cell in row.faults:
                     cells.refuse(field, column, *row.faults[cell])
 
-    def _item(self, values: dict[str, Any], cells: Cells) -> Item:
+    def _item(self, row: Row, values: dict[str, Any], cells: Cells) -> Item:
         said = values.pop("on_display", None)
         gallery = values["gallery"]
-        on_display = gallery.casefold() not in self._stores and said is not False
+        on_display = self.audit.display(self._shows, row, values["object_number"], gallery, said, cells)
         if not gallery:
             gallery, on_display = NOWHERE, False
             remedy = "record its current location; until then it counts as not on display"

@@ -48,8 +48,8 @@ REQUIRED = ("object_number", "gallery")
 TEXT_LIMIT = 2000
 """Characters that are kept of a text."""
 
-NUMBER_LIMIT = 200
-"""Characters of the longest object number: longer ones are pasted prose, and databases cannot index them."""
+NUMBER_LIMIT = 600
+"""Characters of the longest object number: with four bytes each a database can still index them."""
 
 _MEANINGS = {
     "object_number": "The museum's own number of the object; unique.",

@@ -16,6 +16,7 @@ from pipeline.collection.inventory.source_rows import hold_source, known_rows
 from pipeline.collection.limits import Limits
 from pipeline.collection.mapping import load_mapping, preset_file, preset_names
 from pipeline.collection.reading import NOWHERE, Reading, read_items
+from pipeline.collection.source_audit import require_settled
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.registry import is_address
 from pipeline.collection.unit_audit import Suspicion
@@ -157,7 +158,8 @@ def import_collection(
     source  : path of a file, or the URL of a database
     nightly : nobody is there to decide: a version that a person went back to stays until the source changes; and nobody
               looks on: rows that are as they were at the last reading are not read again
-    raises  : CollectionError, MappingError and ShrunkError, as reading and writing do; nothing is written then
+    raises  : CollectionError, MappingError and ShrunkError, as reading and writing do, and ContradictionError where the
+              source contradicts itself in most rows and the mapping does not say what holds; nothing is written then
     """
     key = source_key(workspace.settings, source, mapping)
     known = known_rows(workspace.engine, key) if nightly else None
@@ -168,6 +170,7 @@ def import_collection(
             if not dry_run:
                 hold_source(workspace.engine, key, reading.sha256)
             return Imported(reading, None, held=stays)
+    require_settled(reading.source, reading.suspicions)
     last = latest_import(workspace.engine)
     changes = replace_inventory(workspace.engine, reading, shrink_limit=shrink_limit, dry_run=dry_run, key=key)
     after = latest_import(workspace.engine)
@@ -202,6 +205,8 @@ def log_rows(reading: Reading, changes: Difference) -> Iterator[tuple[Any, ...]]
         yield out.row, out.line, "", out.field, "rejected", out.message, out.remedy
     for doubt in reading.suspicions:
         yield "", "", "", doubt.field, "suspicion", doubt.message, doubt.remedy
+    for choice in reading.choices:
+        yield "", "", "", choice.field, "choice", choice.message, choice.remedy
     noted = () if reading.unread is None else reading.unread.noted
     unread = (
         (row, line, number, field, "problem", message, remedy) for row, line, number, field, message, remedy in noted

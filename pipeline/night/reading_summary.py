@@ -12,6 +12,8 @@ from pipeline.quantities import counted
 from pipeline.records import Doubt, RunRecord
 from pipeline.report.pages.reading import INVENTORY, READING
 
+_TOLD = ("field", "message", "remedy")
+
 UNKNOWN = "not known what was refused or is doubted: import again"
 
 
@@ -30,7 +32,8 @@ def told(workspace: Workspace, index: ObjectIndex) -> dict[str, Any] | None:
         "refused": found.refused,
         "doubtful": found.doubtful,
         "sheets": found.sheets,
-        "suspicions": [dict(zip(("field", "message", "remedy"), one, strict=True)) for one in found.suspicions],
+        "suspicions": [dict(zip(_TOLD, one, strict=True)) for one in found.suspicions],
+        "choices": [dict(zip(_TOLD, one, strict=True)) for one in found.choices],
         "unsaid": 0 if found.flagged or stores else index.objects.shown,
     }
 
@@ -51,6 +54,8 @@ def in_line(reading: Mapping[str, Any] | None) -> str:
         parts.append(f"{reading['sheets']:,} not used of sheets")
     if reading["suspicions"]:
         parts.append(f"{counted(len(reading['suspicions']), 'doubt')} about the whole file")
+    if reading.get("choices"):
+        parts.append(f"{len(reading['choices']):,} settled by choice")
     return ", ".join(parts)
 
 

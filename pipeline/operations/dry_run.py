@@ -57,7 +57,7 @@ def rehearsed(settings: "Settings", dry_run: bool = True) -> Iterator["Settings"
         yield settings.model_copy(update={"rehearsal": folder, "logs": logs})
 
 
-def read_only(settings: "Settings", folder: Path) -> "Database":
+def read_only(settings: "Settings", folder: Path, doing: str = "a dry run") -> "Database":
     """Open the database of the settings so that nothing can be written to it; where it is still empty, another one.
 
     Parameters
@@ -67,6 +67,8 @@ def read_only(settings: "Settings", folder: Path) -> "Database":
     folder : Path
         Of the rehearsal; where nothing was imported yet the job may work on an empty database there, which goes with
         it.
+    doing : str
+        What is done with it, for messages.
 
     Returns
     -------
@@ -102,7 +104,7 @@ def read_only(settings: "Settings", folder: Path) -> "Database":
         migrate.refuse_newer(engine, there, migrate.revisions())
         raise InputError(
             f"{shown} has tables of an earlier Kouros (revision {there}, this one's is {migrate.revisions()[-1]}), and "
-            "a dry run does not change them: `kouros check` brings them up to date; keep a copy of the database"
+            f"{doing} does not change them: `kouros check --migrate` brings them up to date; keep a copy of it before"
         )
     engine = open_database(folder / SCRATCH)
     migrate.upgrade(engine)

@@ -29,6 +29,10 @@ IMPORTS = "imports"
 """Folder beside the settings that holds the log of every import that changed something."""
 
 
+LOCK = ".kouros.lock"
+"""File beside the settings that who works there holds."""
+
+
 class LockedError(KourosError):
     """Another run is at work."""
 
@@ -268,7 +272,7 @@ def locked(settings: "Settings", *, sweeping: bool = True) -> Iterator[None]:
     """
     from filelock import FileLock, Timeout
 
-    file = settings.home / ".kouros.lock"
+    file = settings.home / LOCK
     if settings.rehearsal is not None and not file.is_file():
         yield
         return

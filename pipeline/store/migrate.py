@@ -80,8 +80,8 @@ def require_head(engine: Engine) -> None:
     known, there = revisions(), current(engine)
     if there != known[-1]:
         raise OtherVersionError(
-            f"{_where(engine)} has tables of revision {there}, this version of Kouros has {known[-1]}: `kouros check` "
-            "brings them up to date; keep a copy of the database"
+            f"{_where(engine)} has tables of revision {there}, this version of Kouros has {known[-1]}: `kouros check "
+            "--migrate` brings them up to date; keep a copy of the database"
         )
 
 

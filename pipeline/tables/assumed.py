@@ -69,6 +69,11 @@ class AssumedValues:
         """
         return _material_in(self, text)
 
+    def materials_in(self, text: str) -> tuple[Material, ...]:
+        """Return all materials that a text names, in the museum's words; none where there is none."""
+        bare = _FINISH.sub("", text)
+        return tuple(one for pattern, one in self._words if pattern.search(bare))
+
     def friction_of(self, object_material: str = "", surface_material: str = "") -> tuple[Friction, ...]:
         """Return the frictions that a pair may have: all rows that are not ruled out.
 

@@ -1,18 +1,22 @@
 """Check whether the next night can run, and what to mend if not."""
 
 import hashlib
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import monotonic
 
 from pipeline.collection.inventory import galleries, latest_import, read_inventory
 from pipeline.collection.sources.registry import is_address
+from pipeline.errors import KourosError
 from pipeline.night.reading_summary import in_line, told, unsaid
 from pipeline.night.source_state import mapping_of
+from pipeline.operations.dry_run import DryRunWarning, read_only
 from pipeline.operations.secrets import hider
-from pipeline.operations.workspace import Workspace, open_workspace
+from pipeline.operations.workspace import Workspace, locked, open_workspace
 from pipeline.quantities import counted
 from pipeline.records import Item
 from pipeline.settings import Settings, load_settings
@@ -32,20 +36,40 @@ class Diagnosis:
     message: str
 
 
-def diagnose(file: Path) -> list[Diagnosis]:
-    """Look at everything a night needs; every look is made, whatever the others found."""
+def diagnose(file: Path, *, migrate: bool = False) -> list[Diagnosis]:
+    """Look at everything a night needs; every look is made, whatever the others found, and nothing is written.
+
+    migrate : bring the tables of the database to this version first
+    """
     try:
         settings = load_settings(file)
     except ValueError as problem:
         return [Diagnosis("settings", "wrong", str(problem))]
     found = [Diagnosis("settings", "ok", str(file))]
-    try:
-        workspace = open_workspace(settings)
-    except Exception as problem:  # noqa: BLE001 - a doctor reports whatever a database driver raises
-        found.append(Diagnosis("database", "wrong", hider(settings)(f"{type(problem).__name__}: {problem}")))
-        return [*found, *_each(settings, None)]
-    found.append(Diagnosis("database", "ok", f"{workspace.engine.dialect.name}, tables up to date"))
-    return [*found, *_each(settings, workspace)]
+    # SQLite needs a file for the tables that are not there yet.
+    with TemporaryDirectory(prefix="kouros-check-") as folder:
+        try:
+            workspace, state, message = _opened(settings, Path(folder), migrate=migrate)
+        except Exception as problem:  # noqa: BLE001 - a doctor reports whatever a database driver raises
+            said = str(problem) if isinstance(problem, KourosError) else f"{type(problem).__name__}: {problem}"
+            found.append(Diagnosis("database", "wrong", hider(settings)(said)))
+            return [*found, *_each(settings, None)]
+        found.append(Diagnosis("database", state, hider(settings)(message)))
+        return [*found, *_each(settings, workspace)]
+
+
+def _opened(settings: Settings, folder: Path, *, migrate: bool) -> tuple[Workspace, str, str]:
+    """Return the workspace, to be read only, with the state of its database and a message."""
+    if migrate:
+        with locked(settings):
+            open_workspace(settings)
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always", DryRunWarning)
+        engine = read_only(settings, folder, "looking")
+    said = [str(one.message) for one in warned if issubclass(one.category, DryRunWarning)]
+    if said:
+        return Workspace(settings, engine), "warning", "; ".join(said)
+    return Workspace(settings, engine), "ok", f"{engine.dialect.name}, tables up to date"
 
 
 def _each(settings: Settings, workspace: Workspace | None) -> list[Diagnosis]:
@@ -160,7 +184,8 @@ def _inventory(workspace: Workspace, items: Sequence[Item]) -> tuple[str, str]:
     doubts += [f"{one['message']}; {one['remedy']}" for one in read["suspicions"]]
     doubts += [unsaid(read["unsaid"])] if read["unsaid"] else []
     wrong = doubts or read["refused"] or read["sheets"]
-    return "warning" if wrong else "ok", "; ".join([text, *doubts])
+    chosen = [f"settled by choice: {one['message']}; {one['remedy']}" for one in read["choices"]]
+    return "warning" if wrong else "ok", "; ".join([text, *doubts, *chosen])
 
 
 def _objects(workspace: Workspace, inventory: Sequence[Item]) -> tuple[str, str]:

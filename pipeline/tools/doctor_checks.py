@@ -11,7 +11,7 @@ from pipeline.extensions import ExtensionWarning, extension_versions
 from pipeline.models import MODELS
 from pipeline.operations.hooks import look, named
 from pipeline.operations.report_status import FAILED, GOOD, RUNNING, last_good, status
-from pipeline.operations.workspace import LockedError, Workspace, locked
+from pipeline.operations.workspace import LOCK, LockedError, Workspace, locked
 from pipeline.quantities import counted
 from pipeline.settings import Settings
 from pipeline.store.runs import list_runs
@@ -118,6 +118,9 @@ def _extensions() -> Found:
 
 
 def _lock(settings: Settings) -> Found:
+    if not (settings.home / LOCK).is_file():
+        # To take it would make the file.
+        return "ok", "no other run is at work"
     try:
         with locked(settings, sweeping=False):
             return "ok", "no other run is at work"

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import shutil
+import sqlite3
+import subprocess
+import sys
 import warnings
 from collections.abc import Sequence
 from contextlib import chdir
@@ -11,16 +14,19 @@ from pathlib import Path
 
 import click
 import pytest
+from alembic.command import upgrade
+from alembic.config import Config
 from click.testing import CliRunner
 from sqlalchemy import create_engine, inspect, text
 
 from pipeline.cli import kouros
 from pipeline.cli.commands import ALL
-from pipeline.collection.database import database_url, open_database
+from pipeline.collection.database import database_url, open_database, open_for_reading
 from pipeline.collection.inventory import versions
 from pipeline.errors import KourosError
 from pipeline.motions import read_motion
 from pipeline.operations.dry_run import NOTHING
+from pipeline.resources import resource
 from pipeline.store.migrate import revisions
 from pipeline.tools.synthetic import synthesise
 from tests.museum import COLUMNS, ROWS, workspace
@@ -238,6 +244,101 @@ def test_a_dry_run_does_not_bring_old_tables_up_to_date(museum: Path, tmp_path: 
         code, _, message = say(folder, *words, "--dry-run")
         assert (code, "a dry run does not change them" in message) == (2, True), message
     assert digest(folder) == before
+
+
+LOOKS = (
+    ["check"],
+    ["check", "--deep"],
+    ["run", "--dry-run"],
+    ["run", "--explain", "1", "--dry-run"],
+    ["import", "export.csv", "--dry-run"],
+    ["import", "sheet.csv", "--sheet", "--dry-run"],
+    ["import", "--return-to", "1", "--dry-run"],
+    ["import", "export.csv", "--guess", "--dry-run"],
+    ["prune", "--dry-run"],
+    ["decide", "2", "accept", "--why", "w", "--who", "A", "--dry-run"],
+)
+
+
+@pytest.mark.parametrize("left", ["nothing", "log", "journal"])
+def test_looking_writes_nothing_beside_a_database_either(museum: Path, tmp_path: Path, left: str) -> None:
+    """A database in SQLite's mode WAL, and what a process that was killed left beside it: read, and not settled."""
+    folder = Path(shutil.copytree(museum, tmp_path / "copy", symlinks=True))
+    if left == "journal":
+        kill_amid_a_change(folder / "kouros.sqlite", "DELETE")
+        assert (folder / "kouros.sqlite-journal").stat().st_size
+    else:
+        kill_amid_a_change(folder / "kouros.sqlite", "WAL")
+        if left == "nothing":
+            settled = sqlite3.connect(folder / "kouros.sqlite")
+            settled.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+            settled.close()
+        assert (folder / "kouros.sqlite-wal").is_file() is (left == "log")
+    before = digest(folder)
+    for words in LOOKS:
+        code, out, message = say(folder, *words)
+        assert (code, digest(folder) == before) == (0, True), (words, out, message)
+    # What was committed is seen, what was not is not; then the real one settles it.
+    tables = inspect(open_for_reading(database_url(folder / "kouros.sqlite"))).get_table_names()
+    assert ("some" in tables, "more" in tables) == (left != "journal", False)
+    assert digest(folder) == before
+    assert say(folder, "import", "export.csv")[0] == 0
+
+
+DYING = """
+import os, sqlite3, sys
+c = sqlite3.connect(sys.argv[1], isolation_level=None)
+c.execute("PRAGMA journal_mode = " + sys.argv[2])
+c.execute("PRAGMA cache_size = 1")
+if sys.argv[2] == "WAL":
+    c.execute("CREATE TABLE some AS SELECT 1 AS kept")
+c.execute("BEGIN IMMEDIATE")
+c.execute("CREATE TABLE more (n, t)")
+c.executemany("INSERT INTO more VALUES (?, ?)", [(n, "x" * 500) for n in range(2000)])
+os._exit(9)
+"""
+
+
+def kill_amid_a_change(file: Path, mode: str) -> None:
+    """Have a process commit a change where the mode is WAL, begin another, and die."""
+    assert subprocess.run([sys.executable, "-c", DYING, str(file), mode], check=False).returncode == 9
+
+
+def older(folder: Path) -> None:
+    """Put a database of the version before in place of the museum's."""
+    (folder / "kouros.sqlite").unlink()
+    engine = open_database(folder / "kouros.sqlite")
+    config = Config()
+    config.set_main_option("script_location", str(resource("schemas", "migrations")))
+    with engine.begin() as connection:
+        config.attributes["connection"] = connection
+        upgrade(config, revisions()[-2])
+    engine.dispose()
+
+
+def test_check_migrates_only_where_it_is_told_to(museum: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(museum, tmp_path / "old", symlinks=True))
+    older(folder)
+    before = digest(folder)
+    code, out, _ = say(folder, "check")
+    assert (code, "looking does not change them: `kouros check --migrate`" in out) == (2, True), out
+    assert "collection" in out, "the other looks are made"
+    assert digest(folder) == before
+    code, out, message = say(folder, "check", "--migrate")
+    assert (code, "tables up to date" in out) == (0, True), (out, message)
+    assert digest(folder) != before
+    assert say(folder, "check", "--deep", "--migrate")[0] == 2
+
+
+def test_check_of_a_museum_without_a_database_makes_none(museum: Path, tmp_path: Path) -> None:
+    for name in ("kouros.toml", "mapping.toml", "export.csv"):
+        shutil.copy(museum / name, tmp_path)
+    shutil.copytree(museum / "shaking", tmp_path / "shaking")
+    before = digest(tmp_path)
+    _, out, _ = say(tmp_path, "check")
+    assert "has no tables of Kouros yet" in out
+    assert "nothing imported yet" in out
+    assert digest(tmp_path) == before
 
 
 def test_a_dry_run_reads_a_server_only(

@@ -9,11 +9,11 @@ import openpyxl
 import pytest
 from sqlalchemy import create_engine, text
 
+from pipeline.collection.display_words import says_away
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guess import guess
 from pipeline.collection.guessing.names import named
-from pipeline.collection.guessing.text_files import Head, encoding_of, head_of
-from pipeline.collection.guessing.words import stores_among
+from pipeline.collection.guessing.text_files import Head, encoding_of, table_head
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.night.importing import presets, proposed
@@ -213,16 +213,16 @@ def test_texts_come_back_as_they_were_written(encoding: str) -> None:
 def test_where_columns_are_named() -> None:
     """Titles above, two rows of a merged head, and a table that begins with its head: each as a person sees it."""
     plain = [(1, ["Inv. no.", "Title", "Height (cm)"]), (2, ["1", "Vase", "12"]), (3, ["2", "Bowl", "7"])]
-    assert head_of(plain) == Head(1, 1, 3)
+    assert table_head(plain) == Head(1, 1, 3)
     titled = [(1, ["Museum", "", ""]), *((number + 4, cells) for number, cells in plain)]
-    assert head_of(titled) == Head(5, 1, 3)
+    assert table_head(titled) == Head(5, 1, 3)
     merged = [
         (1, ["Inventarnr.", "Titel", "Maße (mm)", "", ""]),
         (2, ["", "", "H", "B", "T"]),
         (3, ["1", "Vase", "120", "80", "70"]),
         (4, ["2", "Krug", "220", "80", "75"]),
     ]
-    found = head_of(merged)
+    found = table_head(merged)
     assert (found.row, found.rows) == (1, 2)
 
 
@@ -255,7 +255,7 @@ def test_names_of_columns_in_eight_languages(name: str, field: str | None) -> No
 
 def test_a_store_is_no_visible_storage() -> None:
     places = ["Depot A, rek 3", "Schaudepot", "Réserve 2", "Open storage 4", "Salle 3", "収蔵庫2", "Depotstraße-Saal"]
-    assert stores_among(places) == ["Depot A, rek 3", "Réserve 2", "収蔵庫2"]
+    assert list(filter(says_away, places)) == ["Depot A, rek 3", "Réserve 2", "収蔵庫2"]
 
 
 def test_joins_are_proposed_for_a_database_with_declared_keys(url: str) -> None:

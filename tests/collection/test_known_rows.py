@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from random import Random
@@ -18,8 +19,9 @@ from pipeline.collection.inventory.reading_report import READING, _told, account
 from pipeline.collection.inventory.source_rows import SOURCE_ROW, SourceKey, known_rows
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import KnownRow, Reading, read_items, row_digest
-from pipeline.collection.unit_audit import Evidence, suspicions
+from pipeline.collection.unit_audit import Evidence, wrong_units
 from pipeline.night.importing import bundled_collection, log_rows
+from pipeline.records import ITEM_FIELDS
 
 CARNEGIE = load_mapping("carnegie")
 KEY = SourceKey("export.csv", "mapping", "code", "limits")
@@ -195,6 +197,7 @@ def test_a_reading_of_what_changed_finds_what_one_from_nothing_finds(
         saved += 0 if again.unread is None else again.unread.objects
         assert (again.rows, again.objects, again.rejected) == (whole.rows, whole.objects, whole.rejected)
         assert (again.suspicions, again.flagged, again.sha256) == (whole.suspicions, whole.flagged, whole.sha256)
+        assert again.choices == whole.choices
         assert noted(again) == noted(whole)
         changes = replace_inventory(engine, whole, shrink_limit=1.0, dry_run=True)
         found = replace_inventory(engine, again, shrink_limit=1.0, key=KEY)
@@ -252,12 +255,22 @@ def test_where_cells_end_counts() -> None:
 
 def test_evidence_of_rows_adds_up(real: Table, tmp_path: Path) -> None:
     items = read_items(Export(real, Random(1)).write(tmp_path / "export.csv"), CARNEGIE).items
-    whole, parts = Evidence.of(items), Evidence()
-    for item in items:
-        parts.add(Evidence.of_plain(Evidence.of([item]).plain()))
+    whole, halves = Evidence(), [Evidence(), Evidence()]
+    for at, item in enumerate(items):
+        one = Evidence.of({name: getattr(item, name) for name in ITEM_FIELDS}, item.provenance)
+        one.ratios["height_m"], one.tallies["display"] = [1.0, 2.54], [1, at % 2]
+        assert Evidence.of_plain(json.loads(json.dumps(one.plain()))) == one
+        whole.add(one)
+        halves[at >= len(items) // 2].add(one)
+    parts = halves[0]
+    parts.add(halves[1])
+    twice = Evidence()
+    twice.add(whole, 2)
     assert parts == whole
     assert whole.steps["in"][1] > 50
-    assert suspicions(parts) == suspicions(whole) == ()
+    assert twice.tallies["display"] == [2 * len(items), 2 * (len(items) // 2)]
+    assert len(twice.ratios["height_m"]) == 4 * len(items)
+    assert wrong_units(parts, {}) == wrong_units(whole, {}) == ()
 
 
 def test_a_suspicion_is_found_from_rows_that_are_not_read_again(tmp_path: Path, engine: Engine) -> None:

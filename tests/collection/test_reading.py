@@ -244,7 +244,7 @@ GOOD = "B1,Hall,Bust,10,\n"
     [
         (",Hall,Vase,,\n", "object_number", "the object has no number"),
         (GOOD, "object_number", "object number 'B1' was given in row 1 already"),
-        (f"{'x' * 201},Hall,Vase,,\n", "object_number", "an object number of 201 characters"),
+        (f"{'x' * 601},Hall,Vase,,\n", "object_number", "an object number of 601 characters"),
         ("A1,Hall,Vase\n", "", "3 cells, the header has 5"),
         ("A1,Hall,Vase,,,\n", "", "6 cells, the header has 5"),
         ('A1,Hall,"Vase" old,,\n', "", "not a row of a CSV file: ',' expected after '\"'"),

@@ -17,6 +17,7 @@ from pipeline.collection.inventory import latest_import, reading_report, replace
 from pipeline.collection.inventory.reading_report import READING, account, doubts
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
+from pipeline.collection.source_audit import ContradictionError
 from pipeline.night.importing import bundled_collection, go_back, import_collection
 from pipeline.night.reading_summary import UNKNOWN
 from pipeline.night.run import Selection, run
@@ -25,7 +26,7 @@ from pipeline.operations.workspace import open_workspace
 from pipeline.records import Doubt, Problem
 from pipeline.records.reading import DOUBTFUL
 from pipeline.report import render
-from pipeline.report.pages.reading import SHOWN
+from pipeline.report.pages.reading import PAGES, SHOWN, page_file
 from pipeline.settings import Settings, load_settings
 from pipeline.store.migrate import upgrade
 from pipeline.tools.doctor import diagnose
@@ -246,26 +247,104 @@ def test_real_files_are_accounted_for(name: str, tmp_path: Path) -> None:
 
 
 def test_a_hundred_thousand_doubts_make_no_heavy_page(tmp_path: Path) -> None:
-    """The page shows the first rows, whatever order they come in; the list has all, and no cell is a formula."""
+    """The pages show the first rows, whatever order they come in; the list has all, and no cell is a formula."""
     many = 100_000
 
     def all_of_them() -> Iterator[Doubt]:
         for n in range(many, 0, -1):
-            yield Doubt(DOUBTFUL, n, n + 1, f"=cmd{n}", "height_m", "<script>" + "x" * 400, "@measure it")
+            hostile = "<script>" + "x" * 400
+            yield Doubt(DOUBTFUL, n, n + 1, f"=cmd{n}", "height_m", hostile, "@measure it", hostile, hostile)
 
     record = builder.record()
     settings = {**record.settings, "reading": builder.reading() | {"doubtful": many, "rows": many}}
     index = render(replace(record, assessments=(), settings=settings), tmp_path / "r", doubts=all_of_them)
-    page = index.with_name("reading.html")
-    assert page.stat().st_size < 1_000_000
-    rows = html.parse(str(page)).getroot().findall(".//table[@class='doubts']/tbody/tr")
-    assert len(rows) == SHOWN
-    assert rows[0].findtext("th/bdi") == "=cmd1"
-    assert "The first 1,000 of 100,000 are shown" in words(page)
+    pages = [index.with_name(page_file(number)) for number in range(1, PAGES + 1)]
+    assert not index.with_name(page_file(PAGES + 1)).exists()
+    for number, page in enumerate(pages):
+        assert page.stat().st_size < 2_000_000
+        tree = html.parse(str(page)).getroot()
+        rows = tree.findall(".//table[@class='doubts']/tbody/tr")
+        assert (len(rows), rows[0].findtext("th/bdi")) == (SHOWN, f"=cmd{number * SHOWN + 1}")
+        assert "<script>x" not in page.read_text(encoding="utf-8")
+        (turn, again) = tree.findall(".//nav[@class='turn']")
+        assert [a.get("href") for a in turn.findall("a")] == [p.name for p in pages if p != page]
+        assert turn.findtext("strong") == again.findtext("strong") == str(number + 1)
+        # What to mend is told once, on the first.
+        assert (tree.find(".//table[@class='kinds']") is not None) is (number == 0)
+    assert "The first 20,000 of 100,000 are shown" in words(pages[0])
+    assert "100,000height" in words(pages[0])
     with index.with_name("reading.csv").open(encoding="utf-8", newline="") as stream:
         cells = next(row for n, row in enumerate(csv.reader(stream)) if n == many)
     assert cells[2] == "'=cmd1"
     assert cells[6] == "'@measure it"
+
+
+def test_what_stands_there_and_what_was_made_of_it(tmp_path: Path) -> None:
+    """Refused, left out, doubted and used, taken by choice: each entry says which, with the museum's characters."""
+    settings = workspace(tmp_path, [])
+    head = "object_number,gallery,title,height_m,width_m,depth_m,size,shown"
+    rows = [
+        "1,Hall,Vase,0.3,0.1,0.1,H 40 x W 10 x D 10 cm,yes",  # a text that contradicts its column
+        "2,Depot 1,Jug,0.2,-0.2,0.2,,ja",  # a flag against a location, and a negative width
+        "3,Réserve,Jug,0.2,0.2,0.2,,",  # a location that says it alone
+        "4,Hall,Jug,0.2,0.2,0.2,approx. two feet,oui",  # a text that is not read
+        ",Hall,Jug,0.2,0.2,0.2,,nein",
+    ]
+    (tmp_path / "export.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    mapping = tmp_path / "mapping.toml"
+    more = '[columns.on_display]\ncolumn = "shown"\n[dimensions]\ncolumns = ["size"]\n'
+    mapping.write_text(mapping.read_text(encoding="utf-8") + more, encoding="utf-8")
+    summary, index = night(settings)
+    assert "1 settled by choice" in "\n".join(summary_lines(summary))
+    assert "Settled by choice: 1 object taken not to be on display" in words(index)
+    assert "5 rows, 1 refused, 3 doubtful, 1 settled by choice: look" in words(index)
+    found = {(r["what"], r["object_number"], r["field"]): (r["characters"], r["used"]) for r in table(index)}
+    assert found == {
+        ("choice", "", "on_display"): ("", ""),
+        ("refused", "", "object_number"): ("", ""),
+        ("doubtful", "1", "height_m"): ("0.3 m | H 40 x W 10 x D 10 cm", "0.3 m"),
+        ("doubtful", "2", "width_m"): ("", ""),
+        ("doubtful", "2", "on_display"): ("", "on display"),
+        ("doubtful", "4", "dimensions"): ("approx. two feet", "height 0.2 m, width 0.2 m, depth 0.2 m"),
+    }
+    page = index.with_name("reading.html")
+    made = [
+        row.findtext("td[3]/bdi")
+        for row in html.parse(str(page)).getroot().findall(".//table[@class='doubts']/tbody/tr")
+    ]
+    assert made[:2] == ["taken so", "no object was made of it"]
+    assert sorted(made[2:]) == sorted(["0.3 m", "not used", "on display", "height 0.2 m, width 0.2 m, depth 0.2 m"])
+    told = json.loads(index.with_name("summary.json").read_text(encoding="utf-8"))["reading"]
+    assert [one["field"] for one in told["choices"]] == ["on_display"]
+    (looked,) = [one for one in diagnose(tmp_path / "kouros.toml") if one.what == "inventory"]
+    assert "settled by choice: 1 object taken not to be on display" in looked.message
+
+
+def test_a_source_that_contradicts_itself_stops_the_night_and_leaves_all_as_it_was(tmp_path: Path) -> None:
+    settings = workspace(tmp_path, [f"{n},A,Vase,1.2,0.2,0.2" for n in range(1, 31)])
+    mapping = tmp_path / "mapping.toml"
+    text = mapping.read_text(encoding="utf-8")
+    mapping.write_text(text + '[dimensions]\ncolumns = ["size"]\noptional = true\n', encoding="utf-8")
+    _, index = night(settings)
+    before = (tmp_path / "kouros.sqlite").read_bytes()
+    head = "object_number,gallery,title,height_m,width_m,depth_m,size"
+    rows = [f'{n},A,Vase,1.2,0.2,0.2,"H {n + 50} x W 20 x D 20 cm"' for n in range(1, 31)]
+    (tmp_path / "export.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    for dry_run in (True, False):
+        with pytest.raises(ContradictionError, match="say other things of height in 30 of 30 rows"):
+            run(settings, SILENT, dry_run=dry_run)
+        place = open_workspace(settings)
+        with pytest.raises(ContradictionError, match=r"row 1, 1: its column says 1\.2 m, the text 0\.51 m"):
+            import_collection(place, tmp_path / "export.csv", "mapping.toml", shrink_limit=0.9, dry_run=dry_run)
+    assert (tmp_path / "kouros.sqlite").read_bytes() == before
+    assert len(list(index.parent.parent.glob("2*T*"))) == 1, "no report was made"
+    with mapping.open("a", encoding="utf-8") as file:
+        file.write('[holds]\ntexts = "texts"\n')
+    summary, index = night(settings)
+    assert "say other things of height in 30 of 30 rows" in words(index)
+    assert 'settled by the mapping, [holds] texts = "texts"' in words(index)
+    assert summary.reading is not None
+    assert summary.reading["doubtful"] == 30
 
 
 def test_what_a_version_keeps_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

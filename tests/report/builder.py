@@ -21,7 +21,7 @@ from pipeline.records import (
     Support,
     Verdict,
 )
-from pipeline.records.reading import DOUBTFUL, REFUSED, SHEET, SOURCE
+from pipeline.records.reading import CHOICE, DOUBTFUL, REFUSED, SHEET, SOURCE
 
 from .pictures import HASH, charts, motion
 
@@ -434,7 +434,7 @@ def reading() -> dict[str, object]:
     """Return what a run keeps of a reading that refused and doubted something; `doubts` are what."""
     doubt = {"field": "height_m", "message": HOSTILE["H.2"], "remedy": HOSTILE["H.1"]}
     counts = {"rows": 24, "refused": 2, "doubtful": 3, "sheets": 1, "unsaid": 20}
-    return {"source": HOSTILE["H.1"], **counts, "suspicions": [doubt]}
+    return {"source": HOSTILE["H.1"], **counts, "suspicions": [doubt], "choices": [doubt]}
 
 
 def doubts() -> list[Doubt]:
@@ -442,6 +442,8 @@ def doubts() -> list[Doubt]:
     return [
         Doubt(DOUBTFUL, None, None, HOSTILE["H.3"], "mass_kg", HOSTILE["H.2"], HOSTILE["H.4"]),
         Doubt(DOUBTFUL, 7, 9, "79.AA.143", "height_m", HOSTILE["H.1"], HOSTILE["H.6"]),
+        Doubt(DOUBTFUL, 8, 10, "79.AA.1", "on_display", HOSTILE["H.1"], HOSTILE["H.6"], HOSTILE["H.2"], "on display"),
+        Doubt(CHOICE, None, None, "", "on_display", HOSTILE["H.2"], HOSTILE["H.1"], HOSTILE["H.3"], HOSTILE["H.4"]),
         Doubt(REFUSED, 3, 4, "", "object_number", HOSTILE["H.8"], ""),
         Doubt(SHEET, 2, 3, "82.AB.7", "friction", HOSTILE["H.7"], "-2+3"),
         Doubt(SOURCE, None, None, "", "height_m", HOSTILE["H.2"], HOSTILE["H.1"]),

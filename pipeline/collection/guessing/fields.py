@@ -9,10 +9,10 @@ from statistics import median
 
 import tomlkit
 
+from pipeline.collection.display_words import flag_of, says_flags
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column
 from pipeline.collection.guessing.names import unit_in
-from pipeline.collection.guessing.words import shown
 from pipeline.collection.mapping import MAPPABLE, WRITTEN
 from pipeline.collection.record import CHOICES, KINDS, units_of
 from pipeline.collection.sources.measurement_terms import unit_of
@@ -23,9 +23,6 @@ FEWEST = 5
 USUAL_MM = 150
 """Median of whole numbers from which lengths are taken to be in millimetres: half of all objects are no metre and a
 half."""
-
-LONGEST_YES = 5
-"""Letters of the longest word that means just yes or no."""
 
 MOST_WORDS = 30
 """Different texts that a column of flags has at most."""
@@ -87,12 +84,7 @@ def flag_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | No
     Column or None
     """
     taken = {id(column) for column in used}
-    for column in columns:
-        words = column.distinct
-        flags = 1 < len(words) <= MOST_WORDS and all(shown(word) is not None for word in words)
-        if id(column) not in taken and flags and any(len(word) > LONGEST_YES for word in words):
-            return column
-    return None
+    return next((one for one in columns if id(one) not in taken and one.filled and says_flags(one.filled)), None)
 
 
 @dataclass
@@ -182,7 +174,8 @@ class Fields:
         if len(words) > MOST_WORDS:
             self._leave_out(name, column, f"holds {len(words)} different texts")
             return None
-        known = {word: meaning for word in words if (meaning := shown(word)) is not None}
+        display = name == "on_display"
+        known = {word: said for word in words if (said := flag_of(word, display=display)) is not None}
         unknown = ", ".join([repr(word) for word in words if word not in known][:8])
         if not known:
             self._leave_out(name, column, f"none of its words is known ({unknown})" if words else "it is empty")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
@@ -13,11 +14,11 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.guessing.columns import Column, candidates, columns_of
 from pipeline.collection.guessing.fields import Question
 from pipeline.collection.guessing.long_rows import long_form_of
-from pipeline.collection.guessing.text_files import LOOKED_AT, delimiter_of, encoding_of, first_lines, head_of
+from pipeline.collection.guessing.text_files import LOOKED_AT, delimiter_of, encoding_of, first_lines, table_head
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.opening import open_source
-from pipeline.collection.sources.files import unreadable
+from pipeline.collection.sources.files import head_of, unreadable
 from pipeline.collection.sources.long_form import COLUMNS as LONG_COLUMNS
 from pipeline.collection.sources.long_form import gathered
 from pipeline.collection.sources.registry import recognised
@@ -78,10 +79,11 @@ def source_of(path: Path, told: Told) -> dict[str, Any]:
             return {"format": kind.name}
         raise CollectionError(f"{path}: a folder without records; name the museum's export itself")
     try:
-        with path.open("rb") as stream:
-            head = stream.read(SNIFFED)
+        head = head_of(path, SNIFFED)
     except OSError as problem:
         raise unreadable(path, problem) from problem
+    except zlib.error as problem:
+        raise CollectionError(f"{path.name}: packed by gzip, and damaged ({problem}); export it again") from problem
     kind = recognised(str(path), head)
     if kind is not None:
         return {"format": kind.name}
@@ -112,7 +114,7 @@ def source_of(path: Path, told: Told) -> dict[str, Any]:
 
 def _set_head(source: dict[str, Any], rows: Sequence[tuple[int, list[str]]], told: Told) -> None:
     """Say where the columns are named, where that is not the first row alone."""
-    head = head_of(rows)
+    head = table_head(rows)
     row, many = head.row, head.rows
     try:
         row = int(told.choices.get("header_row", row))

@@ -163,7 +163,7 @@ class Head:
     known: int
 
 
-def head_of(rows: Sequence[tuple[int, list[str]]]) -> Head:
+def table_head(rows: Sequence[tuple[int, list[str]]]) -> Head:
     """Return where the names of columns stand: where they tell the most fields, else where the table begins.
 
     Parameters

@@ -18,9 +18,10 @@ from pipeline.collection.inventory.records import RECORD_COLUMNS, shown, sound
 from pipeline.collection.inventory.tables import IMPORT_BATCH, ITEM, doubted, newest
 from pipeline.collection.reading import Reading
 from pipeline.collection.sealing import damaged_rows, require_sound, seal_column, write_seals
+from pipeline.collection.used import characters_of, used_of
 from pipeline.errors import DamageWarning
 from pipeline.records import Account, Doubt, Item
-from pipeline.records.reading import DOUBTFUL, REFUSED, SHEET, SOURCE
+from pipeline.records.reading import CHOICE, DOUBTFUL, REFUSED, SHEET, SOURCE
 
 PLACES = 50_000
 """Doubtful objects of which a version keeps row and line: of more their numbers must do."""
@@ -46,6 +47,7 @@ base       : the version whose row of import_batch counts the rows and names tho
              it, of a return the one returned to; null where that is not known
 flagged    : whether a column says what is on display
 suspicions : field, message and remedy of each
+choices    : the same of what was settled by choice; lacking where an earlier Kouros wrote it
 places     : by object number, row and line of a doubtful object
 doubtful   : how many of these there are
 sheets     : what was not used of sheets of our own: sheet, row, line, object number, field, message, remedy
@@ -84,6 +86,7 @@ def account(engine: Engine, version: int | None = None) -> Account | None:
         sheets=len(known["sheets"]),
         suspicions=tuple((field, message, remedy) for field, message, remedy in known["suspicions"]),
         flagged=known["flagged"],
+        choices=tuple((field, message, remedy) for field, message, remedy in known.get("choices", ())),
     )
 
 
@@ -100,7 +103,8 @@ def doubts(engine: Engine, version: int) -> Iterator[Doubt]:
     Yields
     ------
     Doubt
-        What is of the whole source comes first, then rows refused, then sheets, then objects by number.
+        What is of the whole source comes first, with what was settled by choice, then rows refused, then sheets, then
+        objects by number.
 
     Raises
     ------
@@ -113,6 +117,8 @@ def doubts(engine: Engine, version: int) -> Iterator[Doubt]:
             return
         for field, message, remedy in known["suspicions"]:
             yield Doubt(SOURCE, None, None, "", field, message, remedy)
+        for field, message, remedy in known.get("choices", ()):
+            yield Doubt(CHOICE, None, None, "", field, message, remedy)
         rejected = select(IMPORT_BATCH.c.rejected).where(IMPORT_BATCH.c.id == known["base"])
         for row in connection.execute(rejected).scalar_one():
             # Its place is told besides.
@@ -125,7 +131,8 @@ def doubts(engine: Engine, version: int) -> Iterator[Doubt]:
             for item in sound(some, shown(engine)):
                 place, below = known["places"].get(item.object_number, (None, None))
                 for one in item.problems:
-                    yield Doubt(DOUBTFUL, place, below, item.object_number, one.field, one.message, one.remedy)
+                    made = characters_of(item, one.field), used_of(item, one.field)
+                    yield Doubt(DOUBTFUL, place, below, item.object_number, one.field, one.message, one.remedy, *made)
 
 
 def note_import(
@@ -158,6 +165,7 @@ def note_import(
             "base": base,
             "flagged": reading.flagged,
             "suspicions": [[one.field, one.message, one.remedy] for one in reading.suspicions],
+            "choices": [[one.field, one.message, one.remedy] for one in reading.choices],
             "places": dict(kept),
             "doubtful": doubtful,
             "sheets": _sheets(connection, below),

@@ -7,17 +7,17 @@ import json
 import stat
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from io import BufferedReader
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, cast
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from pipeline.collection.errors import CollectionError
 from pipeline.collection.limits import Limits
-from pipeline.collection.sources.files import unreadable
+from pipeline.collection.sources.files import unpacked, unreadable
 from pipeline.collection.sources.rows import Row
 
 Name = Annotated[str, Field(min_length=1)]
@@ -72,6 +72,8 @@ class Request:
         The column with the object numbers: a source without an order of its own sorts by it.
     limits : Limits
         Bytes and seconds that are accepted; rows are counted by who reads them.
+    texts : tuple of str
+        The columns that hold texts: what looks like a number there is a name, and keeps its characters.
     """
 
     where: str
@@ -80,6 +82,7 @@ class Request:
     optional: tuple[str, ...]
     key_column: str
     limits: Limits
+    texts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -156,7 +159,7 @@ class Source(ABC):
 
 
 class FileSource(Source):
-    """A kind of file: opening, its limit of bytes and its digest are done; ``rows`` reads it."""
+    """A kind of file: opening, unpacking (gzip), its limit of bytes and its digest are done; ``rows`` reads it."""
 
     is_file = True
 
@@ -178,8 +181,10 @@ class FileSource(Source):
     def open(self, request: Request) -> Iterator[Opened]:
         """Open the file."""
         path = Path(request.where)
-        with _open(path, request.limits.bytes) as binary:
-            digest = _digest(binary, path.name)
+        with ExitStack() as stack:
+            packed = stack.enter_context(_open(path, request.limits.bytes))
+            digest = _digest(packed, path.name)
+            binary = stack.enter_context(cast(BufferedReader, unpacked(packed, path.name, request.limits.bytes)))
             yield Opened(path.name, self.rows(binary, path.name, request), lambda: digest)
 
 

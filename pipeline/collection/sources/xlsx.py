@@ -6,12 +6,13 @@ import re
 import warnings
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import ExitStack
-from datetime import datetime, time
+from datetime import date, datetime, time
 from io import BufferedReader
+from math import isfinite
 from pathlib import Path
-from typing import Any, BinaryIO, Literal
+from typing import Any, BinaryIO, Literal, NamedTuple
 
 from pydantic import Field
 
@@ -21,6 +22,7 @@ from pipeline.collection.sources.delimited import HeadedSettings
 from pipeline.collection.sources.files import stream_of
 from pipeline.collection.sources.heads import joined_heads
 from pipeline.collection.sources.rows import Row, as_text
+from pipeline.collection.sources.shown import is_moment, shown
 from pipeline.collection.sources.workbook import (
     COLUMN_LIMIT,
     SAVE_AGAIN,
@@ -60,15 +62,19 @@ def read_sheet(
     sheet: str | None = None,
     header_row: int = 1,
     header_rows: int = 1,
+    key: str | None = None,
+    texts: Collection[str] = (),
 ) -> Iterator[Row]:
     """Yield the header (number 0) and then every row of a sheet that is not blank; a row's line is its number there.
 
     Each row has as many cells as the header has names: missing ones are empty, and a row with anything beyond has a
     fault. Whole numbers are written without a decimal point; a format of zeros only ("0000") keeps its leading zeros, a
-    date without a time is a date; no other format counts (50 % is 0.5). Formulas are never computed, and the value that
-    was once saved beside them is never trusted: such cells have a fault, and so have error values, times without a
-    date's meaning (durations), and cells that are hidden behind a merged one. Hidden rows are read like all others. A
-    header cell that holds any of these is an error of the whole sheet.
+    date without a time is a date; no other format counts (50 % is 0.5), but in the columns of texts: there a number is
+    the text that the sheet shows, 1913.20 and not 1913.2. In the column of the objects' numbers a date has a fault, for
+    a spreadsheet made it of something else. Formulas are never computed, and the value that was once saved beside them
+    is never trusted: such cells have a fault, and so have error values, times without a date's meaning (durations), and
+    cells that are hidden behind a merged one. Hidden rows are read like all others. A header cell that holds any of
+    these is an error of the whole sheet.
 
     Parameters
     ----------
@@ -82,6 +88,10 @@ def read_sheet(
         The row (from 1) that names the columns; what stands above it is left out.
     header_rows : int
         How many rows name them together (`heads.joined_heads`); cells that are merged there are no fault.
+    key : str or None
+        The column of the objects' numbers.
+    texts : collection of str
+        Columns that hold texts, among them numbers that are names.
 
     Yields
     ------
@@ -112,7 +122,7 @@ def read_sheet(
         if found.last_row and found.last_row < header_row:
             raise CollectionError(f"{file}: {page.title!r} ends in row {found.last_row}; say which row is the header")
         if found.last_row:
-            yield from _rows(page, file, header_row, header_rows, found)
+            yield from _rows(page, file, header_row, header_rows, found, _Named(key, frozenset(texts)))
 
 
 def visible_sheets(path: Path) -> tuple[str, ...]:
@@ -255,7 +265,19 @@ def _name(there: Range) -> str:
     return f"{letter(there[1])}{there[0]}:{letter(there[3])}{there[2]}"
 
 
-def _rows(page: Any, file: str, header_row: int, header_rows: int, found: Survey) -> Iterator[Row]:
+class _Named(NamedTuple):
+    """Columns whose numbers are names: that of the objects' numbers, and all of texts."""
+
+    key: str | None
+    texts: frozenset[str]
+
+    def places(self, header: list[str]) -> dict[int, bool]:
+        """Return where they are (from 0), and whether the column is that of the objects' numbers."""
+        names = [name.strip() for name in header]
+        return {at: name == self.key for at, name in enumerate(names) if name == self.key or name in self.texts}
+
+
+def _rows(page: Any, file: str, header_row: int, header_rows: int, found: Survey, named: _Named) -> Iterator[Row]:
     last, width = found.last_row, found.last_column
     filled = _Ranges(found.computed, file, width, but_first=False)
     hidden = _Ranges(found.merged, file, width, but_first=True)
@@ -263,6 +285,7 @@ def _rows(page: Any, file: str, header_row: int, header_rows: int, found: Survey
     names = 0
     number = 0
     heads: list[list[str]] = []
+    places: dict[int, bool] = {}
     for line in range(header_row, last + 1):
         cells, faults = [""] * width, dict[int, tuple[str, str]]()
         try:
@@ -270,7 +293,7 @@ def _rows(page: Any, file: str, header_row: int, header_rows: int, found: Survey
                 warnings.simplefilter("ignore")  # a date that cannot be becomes an error value, which gets a fault
                 for place, cell in enumerate(next(rows)):
                     if cell.value is not None:
-                        _take(cell, place, cells, faults)
+                        _take(cell, place, cells, faults, places.get(place))
         except (*_DAMAGE, StopIteration) as problem:
             raise _damaged(file, problem, line) from problem
         for place, where in filled.columns(line).items():
@@ -283,9 +306,9 @@ def _rows(page: Any, file: str, header_row: int, header_rows: int, found: Survey
             heads.append(cells)
             names = max(names, _header_width(file, line, cells, faults))
             if len(heads) == header_rows:
-                yield Row(
-                    0, header_row, joined_heads([row[:names] for row in heads]) if header_rows > 1 else cells[:names]
-                )
+                head = joined_heads([row[:names] for row in heads]) if header_rows > 1 else cells[:names]
+                places = named.places(head)
+                yield Row(0, header_row, head)
         elif used:
             number += 1
             fault = ("", "")
@@ -310,8 +333,10 @@ def _header_width(file: str, line: int, cells: list[str], faults: dict[int, tupl
     return width
 
 
-def _take(cell: Any, place: int, cells: list[str], faults: dict[int, tuple[str, str]]) -> None:
-    """Put the text of a cell into its place, or say why there is none."""
+def _take(
+    cell: Any, place: int, cells: list[str], faults: dict[int, tuple[str, str]], is_key: bool | None = None
+) -> None:
+    """Put the text of a cell into its place, or say why there is none; is_key is None where it is no text's column."""
     value = cell.value
     if cell.data_type == "f":
         faults[place] = _formula("holds a formula")
@@ -323,6 +348,18 @@ def _take(cell: Any, place: int, cells: list[str], faults: dict[int, tuple[str, 
             faults[place] = ("holds a character that is none", "type the cell again")
         else:
             cells[place] = text
+    elif is_key and is_moment(value):
+        told = as_text(_as_shown(cell, value)) if isinstance(value, date | time) else str(value)
+        faults[place] = (f"holds a date ({told}), which a spreadsheet made of what was typed", _TYPE_AGAIN)
+    elif is_key is not None and isinstance(value, int | float) and not isinstance(value, bool):
+        seen = shown(value, cell.number_format or "") if isfinite(value) else None
+        if seen is not None:
+            cells[place] = seen
+        elif is_key:
+            told = f"holds {str(value)[:40]} in the format {str(cell.number_format)[:40]!r}, which shows another text"
+            faults[place] = (told, _TYPE_AGAIN)
+        else:
+            cells[place] = as_text(value)
     else:
         try:
             cells[place] = as_text(_as_shown(cell, value))
@@ -340,6 +377,9 @@ def _as_shown(cell: Any, value: Any) -> Any:
         zeros = cell.number_format or ""
         return str(value).zfill(len(zeros)) if _ZEROS.fullmatch(zeros) else value
     return value
+
+
+_TYPE_AGAIN = "format the column as text, and type the number again as the museum writes it"
 
 
 def _formula(what: str) -> tuple[str, str]:
@@ -388,5 +428,11 @@ class Xlsx(FileSource):
         """
         own = request.settings
         return read_sheet(
-            binary, file, sheet=own.sheet, header_row=own.header_row or 1, header_rows=own.header_rows or 1
+            binary,
+            file,
+            sheet=own.sheet,
+            header_row=own.header_row or 1,
+            header_rows=own.header_rows or 1,
+            key=request.key_column,
+            texts=request.texts,
         )

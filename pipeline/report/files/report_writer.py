@@ -39,7 +39,7 @@ from pipeline.report.pages.compose import anchor_of, museum_view, page_head, pag
 from pipeline.report.pages.environment import environment, fill
 from pipeline.report.pages.errand_views import plan_page
 from pipeline.report.pages.further import further_pages
-from pipeline.report.pages.reading import FILES, INVENTORY, READING, Doubts, reading_view, write_doubts
+from pipeline.report.pages.reading import INVENTORY, READING, Doubts, is_reading_file, reading_view, write_doubts
 from pipeline.report.pages.since import since_view
 from pipeline.report.pages.views import Pointer, State
 from pipeline.report.plots.traces import trace
@@ -221,18 +221,20 @@ class ReportWriter:
     def _read(self, head: RunRecord, doubts: Doubts) -> str:
         """Write the page and the list of what reading refused and doubts, or take those of the earlier report."""
         key = _key(self.renderer, sorted(head.settings[READING].items()), head.settings.get(INVENTORY))
-        if key == self._previous.manifest.reading and self._previous.has(*FILES):
-            self._link(*FILES)
+        files = [name for name in self._previous.manifest.files if is_reading_file(name)]
+        if key == self._previous.manifest.reading and self._previous.has(*files):
+            self._link(*files)
             return key
-        page, table = FILES
-        language = self.renderer.language
+        table, language = f"{READING}.csv", self.renderer.language
         with speaking(language):
             listed = write_doubts(self._partial / table, doubts())
             self._files[table] = sum_of(self._partial / table)
             shown = page_head(head, Page("", "", True, 1, 1, head.run_id, head.finished))
-            context = {"museum": shown, "reading": reading_view(head.settings), "listed": listed}
-            text = fill(environment(language), page, context | {"here": "reading", "units": self.renderer.units})
-        self._write(page, text.encode())
+            context: dict[str, Any] = {"museum": shown, "reading": reading_view(head.settings), "listed": listed}
+            context |= {"here": "reading", "units": self.renderer.units}
+            for number, page in enumerate(listed.pages, 1):
+                text = fill(environment(language), f"{READING}.html", context | {"number": number})
+                self._write(page, text.encode())
         return key
 
     def _plan(self, head: RunRecord, terms: PlanTerms) -> str:

@@ -1,6 +1,7 @@
 """Refused and doubted records of the museum: a line of the index, a page, and the list for programs."""
 
 import csv
+import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -9,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.records import Doubt
-from pipeline.records.reading import DOUBTFUL, REFUSED, SHEET, SOURCE
+from pipeline.records.reading import CHOICE, DOUBTFUL, REFUSED, SHEET, SOURCE
+from pipeline.report.language import _
 from pipeline.report.text import clean, safe_cell, short, words
 
 READING = "reading"
@@ -19,12 +21,20 @@ INVENTORY = "inventory"
 """Key of a run's settings under which the version of the inventory is kept."""
 
 SHOWN = 1_000
-"""Entries on the page, which a browser shows at once; the list beside it has all."""
+"""Entries on a page, which a browser shows at once."""
 
-COLUMNS = ("row", "line", "object_number", "field", "what", "message", "remedy")
+PAGES = 20
+"""Pages, of which nobody reads more; the list beside them has all."""
+
+COLUMNS = ("row", "line", "object_number", "field", "what", "message", "remedy", "characters", "used")
 
 _LONGEST = 300
-_ORDER = {SOURCE: 0, REFUSED: 1, SHEET: 2, DOUBTFUL: 3}
+_ORDER = {SOURCE: 0, CHOICE: 1, REFUSED: 2, SHEET: 3, DOUBTFUL: 4}
+_KINDS = 10_000
+"""Kinds of doubts that are counted apart."""
+
+_TOLD = 12
+"""Kinds that the page tells."""
 
 Doubts = Callable[[], Iterable[Doubt]]
 """Gives everything that was refused or is doubted, in any order."""
@@ -37,6 +47,7 @@ class ReadingView:
     known   : whether it was noted what reading refused and doubts
     unsaid  : objects taken to be on display because no column says what is; 0 where one does
     suspicions : what the whole source seems to have wrong, and what mends it
+    choices : what was settled for the whole source by choice, and what settles it otherwise
     """
 
     known: bool
@@ -47,6 +58,7 @@ class ReadingView:
     sheets: int = 0
     suspicions: tuple[tuple[str, str], ...] = ()
     unsaid: int = 0
+    choices: tuple[tuple[str, str], ...] = ()
 
     @property
     def look(self) -> bool:
@@ -65,6 +77,8 @@ class DoubtView:
     field: str
     message: str
     remedy: str
+    characters: str
+    used: str
 
 
 def reading_view(settings: Mapping[str, Any]) -> ReadingView:
@@ -81,36 +95,74 @@ def reading_view(settings: Mapping[str, Any]) -> ReadingView:
         sheets=int(told["sheets"]),
         suspicions=tuple((clean(one["message"]), clean(one["remedy"])) for one in told["suspicions"]),
         unsaid=int(told["unsaid"]),
+        choices=tuple((clean(one["message"]), clean(one["remedy"])) for one in told.get("choices", ())),
     )
 
 
 @dataclass(frozen=True, slots=True)
+class DoubtKind:
+    """A kind of doubt: its field and its remedy, how often it is, and an object that has it."""
+
+    field: str
+    remedy: str
+    count: int
+    example: str
+
+
+@dataclass(frozen=True, slots=True)
 class ListedDoubts:
-    """What the page shows of a list: its first entries, how many there are, how many of which field."""
+    """What the pages show of a list: its first entries, how many there are, how many of which field and remedy."""
 
     entries: tuple[DoubtView, ...]
     all: int
-    fields: tuple[tuple[str, int], ...]
+    kinds: tuple[DoubtKind, ...]
+
+    @property
+    def pages(self) -> tuple[str, ...]:
+        """The files of the pages, one at least."""
+        return tuple(page_file(at) for at in range(1, max(1, -(-len(self.entries) // SHOWN)) + 1))
+
+    def page(self, number: int) -> tuple[DoubtView, ...]:
+        """Return the entries of a page, counted from 1."""
+        return self.entries[(number - 1) * SHOWN : number * SHOWN]
+
+
+def page_file(number: int) -> str:
+    """Return the file of a page, counted from 1: the first one's has no number."""
+    return f"{READING}.html" if number == 1 else f"{READING}-{number}.html"
+
+
+def is_reading_file(name: str) -> bool:
+    """Say whether a file of a report is a page or the list of what reading refused and doubts."""
+    return bool(_FILE.fullmatch(name))
 
 
 def write_doubts(file: Path, doubts: Iterable[Doubt]) -> ListedDoubts:
-    """Write the whole list as CSV, one entry at a time, and return what the page shows of it."""
-    fields: Counter[str] = Counter()
+    """Write the whole list as CSV, one entry at a time, and return what the pages show of it."""
+    kinds: Counter[tuple[str, str]] = Counter()
+    examples: dict[tuple[str, str], str] = {}
     with file.open("w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(COLUMNS)
 
         def written() -> Iterator[Doubt]:
             for one in doubts:
-                cells = (one.row, one.line, one.object_number, one.field, one.what, one.message, one.remedy)
+                cells = (one.row, one.line, *(getattr(one, name) for name in COLUMNS[2:]))
                 writer.writerow([safe_cell(cell) if isinstance(cell, str) else cell for cell in cells])
-                fields[one.field] += 1
+                kind = (one.field, one.remedy)
+                if kind not in kinds and len(kinds) >= _KINDS:
+                    kind = ("", "")
+                kinds[kind] += 1
+                examples.setdefault(kind, one.object_number)
                 yield one
 
-        first = nsmallest(SHOWN, written(), key=_order)
-    return ListedDoubts(
-        tuple(map(_view, first)), fields.total(), tuple((words(f), n) for f, n in fields.most_common() if f)
-    )
+        first = nsmallest(SHOWN * PAGES, written(), key=_order)
+    told = [
+        DoubtKind(words(clean(name)), short(remedy, _LONGEST), n, short(examples[name, remedy], 60))
+        for (name, remedy), n in kinds.most_common(_TOLD)
+        if name
+    ]
+    return ListedDoubts(tuple(map(_view, first)), kinds.total(), tuple(told))
 
 
 def _order(one: Doubt) -> tuple[int, bool, int, str]:
@@ -120,13 +172,29 @@ def _order(one: Doubt) -> tuple[int, bool, int, str]:
 def _view(one: Doubt) -> DoubtView:
     return DoubtView(
         what=one.what,
-        row="" if one.row is None else str(one.row),
-        line="" if one.line is None else str(one.line),
+        row="" if one.row is None else f"{one.row:,}",
+        line="" if one.line is None else f"{one.line:,}",
         number=short(one.object_number, 120),
         field=words(clean(one.field)),
         message=short(one.message, _LONGEST),
         remedy=short(one.remedy, _LONGEST),
+        characters="" if one.characters and one.characters in one.message else short(one.characters, _LONGEST),
+        used=_used(one),
     )
 
 
-FILES = (f"{READING}.html", f"{READING}.csv")
+def _used(one: Doubt) -> str:
+    """Say what was made of an entry."""
+    if one.what == REFUSED:
+        return _("no object was made of it")
+    if one.what == SOURCE:
+        return _("nothing was changed")
+    if one.what == CHOICE:
+        return _("taken so")
+    if one.what == SHEET or not one.used:
+        return _("not used")
+    flags = {"on display": _("on display"), "not on display": _("not on display"), "yes": _("yes"), "no": _("no")}
+    return flags.get(one.used) or short(one.used, _LONGEST)
+
+
+_FILE = re.compile(rf"{READING}(?:-\d{{1,2}})?\.html|{READING}\.csv")

@@ -1,0 +1,135 @@
+"""Words by which museums say what is on display, in flags and names of places (tables/display_words.csv)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from typing import Literal
+from unicodedata import normalize
+
+from pipeline.tables import table
+from pipeline.tables.rows import Entries, checked
+
+_SEGMENTS = re.compile(r"[,;>/|:()\[\]\u2013\u2014]|\s-\s")
+_BETWEEN = re.compile(r"[\s_.\-\u2010\u2011]+")
+_CODE = re.compile(r"(?:no|nr|n°|nº)?[\w°º]{0,2}\d*[\w]?|\d[\w]*", re.IGNORECASE)
+_COMPOUND = re.compile(r"\w{3,}(?:depot|magazin)s?")
+_MOST_BESIDE = 3
+_MOST_FLAGS, _LONGEST_FLAG = 40, 80
+_CJK = re.compile("[\u3040-\u30ff\u4e00-\u9fff]")
+
+
+@dataclass(frozen=True, slots=True)
+class _Words:
+    words: Entries
+    meaning: Literal["yes", "no", "shown", "away", "store", "code", "gallery", "lender"]
+
+
+@cache
+def _meant() -> Mapping[str, frozenset[str]]:
+    """Return the words of each meaning."""
+    found: dict[str, set[str]] = {}
+    for row in checked(_Words, table("display_words"), "display_words.csv", named="meaning"):
+        found.setdefault(row.meaning, set()).update(_folded(word) for word in row.words)
+    return {meaning: frozenset(words) for meaning, words in found.items()}
+
+
+def _folded(text: str) -> str:
+    return _BETWEEN.sub(" ", normalize("NFKC", text).casefold()).strip()
+
+
+def flag_of(text: str, *, display: bool = False) -> bool | None:
+    """Return what the text of a flag says.
+
+    Parameters
+    ----------
+    text : str
+        Of a cell.
+    display : bool
+        Whether the flag is that of being on display, which may also be said by "on view" or by a place.
+
+    Returns
+    -------
+    bool or None
+        None for words that are not known.
+    """
+    folded, meant = _folded(text), _meant()
+    if folded in meant["yes"] or folded in meant["no"]:
+        return folded in meant["yes"]
+    if not display:
+        return None
+    if folded in meant["shown"]:
+        return True
+    return False if says_away(text) else None
+
+
+def says_flags(texts: Sequence[str]) -> bool:
+    """Say whether texts of a column are those of a flag of being on display, and not only numbers or yes and no.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        Of its cells that are not empty.
+
+    Returns
+    -------
+    bool
+    """
+    each = set(texts)
+    if len(each) > _MOST_FLAGS or max(map(len, each), default=0) > _LONGEST_FLAG:
+        return False
+    known = {flag_of(text, display=True) for text in each}
+    words = {_folded(text) for text in each} - _meant()["yes"] - _meant()["no"]
+    return bool(words) and None not in known and True in known
+
+
+@lru_cache(maxsize=65536)
+def says_away(location: str) -> bool:
+    """Say whether the name of a place, or what stands in its stead, says that what is there is not on display.
+
+    Parameters
+    ----------
+    location : str
+        As the museum writes it, such as "Not on View", "Depot 3", "Réserve sculptures" or "On loan to the Tate".
+
+    Returns
+    -------
+    bool
+        False for "Open Storage", "General Store" and "On loan from a private collection".
+    """
+    meant = _meant()
+    whole = _folded(location)
+    if not whole:
+        return False
+    if _CJK.search(whole):
+        return any(word in whole for word in (*meant["away"], *meant["store"]) if _CJK.search(word))
+    named = meant["gallery"].intersection(whole.split())
+    if any(_says(whole, phrase, meant["lender"]) for phrase in meant["away"] if " " in phrase or not named):
+        return True
+    return any(_is_store(segment) for segment in map(_folded, _SEGMENTS.split(location)) if segment)
+
+
+def _says(whole: str, phrase: str, lenders: frozenset[str]) -> bool:
+    at = whole.find(phrase)
+    if at < 0 or (at and whole[at - 1].isalnum()):
+        return False
+    rest = whole[at + len(phrase) :]
+    return not rest[:1].isalnum() and (rest.split() or [""])[0] not in lenders
+
+
+def _is_store(segment: str) -> bool:
+    meant = _meant()
+    words = segment.split()
+    if meant["gallery"].intersection(words):
+        return False
+    for length in (2, 1):
+        for at in range(len(words) - length + 1):
+            word = " ".join(words[at : at + length])
+            others = words[:at] + words[at + length :]
+            if word in meant["store"] or _COMPOUND.fullmatch(word):
+                return len(others) <= _MOST_BESIDE
+            if word in meant["code"] and at == 0 and all(_CODE.fullmatch(other) for other in others):
+                return True
+    return False
