@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -144,6 +145,9 @@ def first_lines(text: str, delimiter: str, most: int) -> list[tuple[int, list[st
     return out
 
 
+_DIGITS = re.compile(r"\d+")
+
+
 @dataclass(frozen=True)
 class Head:
     """Where the columns of a table are named.
@@ -185,11 +189,12 @@ def table_head(rows: Sequence[tuple[int, list[str]]]) -> Head:
             taken = [row for _, row in rows[at : at + many]]
             if len(taken) < many or len(rows) <= at + many:
                 continue
-            # The rows of a head follow each other, and none of them holds numbers.
-            if many > 1 and (rows[at + many - 1][0] - number != many - 1 or any(map(_numbered, taken[1:]))):
+            below = [row for _, row in rows[at + many : at + many + 20]]
+            # The rows of a head follow each other, and none of them is like those of the table.
+            if many > 1 and (rows[at + many - 1][0] - number != many - 1 or _of_table(taken[-1], below)):
                 break
             names = joined_heads(taken) if many > 1 else cells
-            known = len(candidates(columns_of(names, (row for _, row in rows[at + many : at + many + 20]))))
+            known = len(candidates(columns_of(names, below)))
             if best is None or known > best.known:
                 best = Head(number, many, known)
     if best is not None and best.known > 1:
@@ -200,6 +205,18 @@ def table_head(rows: Sequence[tuple[int, list[str]]]) -> Head:
         if width == widest > 1 and not _numbered(cells):
             return Head(number, 1, 0 if best is None else best.known)
     return Head(rows[0][0] if rows else 1, 1, 0)
+
+
+def _of_table(cells: Sequence[str], below: Sequence[Sequence[str]]) -> bool:
+    """Whether a row holds numbers, texts that come again below, or such as "Inv. 12" where "Inv. 13" follows."""
+    if _numbered(cells):
+        return True
+    for place, cell in enumerate(cells):
+        texts = {row[place].strip() for row in below if place < len(row)} - {""}
+        shape = _DIGITS.sub("0", cell.strip())
+        if cell.strip() in texts or ("0" in shape and shape in {_DIGITS.sub("0", text) for text in texts}):
+            return True
+    return False
 
 
 def _numbered(cells: Sequence[str]) -> bool:
