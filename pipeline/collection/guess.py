@@ -15,7 +15,7 @@ from pipeline.collection.guessing.columns import Column, candidates
 from pipeline.collection.guessing.columns import texts_of_dimensions as texts_among
 from pipeline.collection.guessing.fields import Fields, Question, decimal_of, flag_among
 from pipeline.collection.guessing.names import bare
-from pipeline.collection.guessing.source import Told, columns_in, database, objects_of, source_of, workbook
+from pipeline.collection.guessing.source import GuessNotes, columns_in, database, objects_of, source_of, workbook
 from pipeline.collection.mapping import MAPPABLE, PRESETS, load_mapping, preset_names
 from pipeline.collection.mapping import Mapping as Proposal
 from pipeline.collection.sources.address import expand_secrets
@@ -85,7 +85,7 @@ def guess(where: str | Path, table: str | None = None, choices: Mapping[str, str
         For a source that cannot be read, that shows no column with the objects' numbers, and for a choice that cannot
         be; with the option that helps.
     """
-    told = Told(dict(choices or {}))
+    told = GuessNotes(dict(choices or {}))
     _check_choices(told.choices)
     if is_address(where):
         name = expand_secrets(str(where)).shown
@@ -127,7 +127,7 @@ def _check_choices(choices: Mapping[str, str]) -> None:
             )
 
 
-def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told: Told) -> Guess:
+def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told: GuessNotes) -> Guess:
     found = _chosen(name, columns, candidates(columns), told)
     document = tomlkit.document()
     document.add(
@@ -172,7 +172,9 @@ def _written(name: str, source: dict[str, Any], columns: Sequence[Column], told:
     return Guess(text, proposal, tuple(told.doubts), tuple(told.questions), tuple(told.sure))
 
 
-def _chosen(name: str, columns: Sequence[Column], able: Mapping[str, list[Column]], told: Told) -> dict[str, Column]:
+def _chosen(
+    name: str, columns: Sequence[Column], able: Mapping[str, list[Column]], told: GuessNotes
+) -> dict[str, Column]:
     """Return the column of each field: the one that was chosen, or the likeliest."""
     found = {fieldname: those[0] for fieldname, those in able.items() if fieldname in MAPPABLE}
     for key, wanted in told.choices.items():
@@ -215,7 +217,7 @@ def _chosen(name: str, columns: Sequence[Column], able: Mapping[str, list[Column
     return found
 
 
-def _settle_number(able: Sequence[Column], found: dict[str, Column], told: Told) -> None:
+def _settle_number(able: Sequence[Column], found: dict[str, Column], told: GuessNotes) -> None:
     """Take the next column of numbers where the likeliest repeats them, as the number of an accession of many does."""
     if "object_number" in told.choices or not able:
         return
@@ -251,7 +253,7 @@ def _unique(name: str, columns: Sequence[Column]) -> Column:
     )
 
 
-def _of_preset(name: str, columns: Sequence[Column], told: Told) -> Guess:
+def _of_preset(name: str, columns: Sequence[Column], told: GuessNotes) -> Guess:
     """Return a preset, and what the source leaves empty of what it reads."""
     text = (PRESETS / f"{name}.toml").read_text(encoding="utf-8")
     proposal = load_mapping(name)

@@ -79,7 +79,9 @@ def test_every_table_parses_and_has_no_row_twice(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_row_says_where_it_comes_from(name: str) -> None:
-    """A source, or the reason why (rules, classes and plausible limits are Kouros's own)."""
+    """A source, or the reason why (rules, classes and plausible limits are Kouros's own); what is fitted has none."""
+    if name == "class_weights":
+        pytest.skip("fitted: tests/analysis/test_evidence.py finds it again from the labelled objects")
     for row in table(name):
         column = next(c for c in ("source", "why", "reason") if c in row)
         assert len(row[column]) > 5, row

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pipeline.collection.dimensions.lexicon import Language, label_words, languages
+from pipeline.collection.dimensions.lexicon import LabelLanguage, label_words, languages
 from pipeline.collection.dimensions.phrases import is_label_letter
 from pipeline.collection.dimensions.result import DimensionNote
 from pipeline.collection.dimensions.tokens import (
@@ -106,9 +106,9 @@ def _upright(tokens: list[Token]) -> list[Token]:
     return [token._replace(meaning=depth) if token.word == _UPRIGHT else token for token in tokens]
 
 
-def _likeliest(labels: set[str], words: set[str]) -> list[Language]:
+def _likeliest(labels: set[str], words: set[str]) -> list[LabelLanguage]:
     """Return the languages that explain a text's labels best, the first of them first; none where none does."""
-    scored: list[tuple[int, Language]] = []
+    scored: list[tuple[int, LabelLanguage]] = []
     for one in languages().values():
         meanings = [one.meaning(label) for label in labels]
         known = [meaning for meaning in meanings if meaning]

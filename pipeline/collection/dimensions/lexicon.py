@@ -30,7 +30,7 @@ class LexiconUnit:
 
 
 @dataclass(frozen=True, slots=True)
-class Language:
+class LabelLanguage:
     """What short labels mean in a language, and the words that tell that a text is written in it.
 
     Attributes
@@ -131,7 +131,7 @@ def label_words() -> frozenset[str]:
 
 
 @cache
-def languages() -> dict[str, Language]:
+def languages() -> dict[str, LabelLanguage]:
     """Return the languages by name, in the order of the table, which is that of preference."""
     rows = checked(_Label, table("dimension_labels"), "dimension_labels.csv", named="labels")
     out = {}
@@ -142,5 +142,5 @@ def languages() -> dict[str, Language]:
         for label, meaning in labels.items():
             folded.setdefault(label.lower(), meaning)
         words = frozenset(word for row in own if row.meaning == _SPOKEN for word in row.labels)
-        out[name] = Language(name, labels, folded, words)
+        out[name] = LabelLanguage(name, labels, folded, words)
     return out

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from pipeline.collection.dimensions import parse
-from pipeline.collection.guessing.names import LENGTH, TEXTS, Named, bare, named
+from pipeline.collection.guessing.names import LENGTH, TEXTS, ColumnMeaning, bare, named
 from pipeline.collection.sources.measurement_terms import kind_of, unit_of
 
 NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
@@ -110,7 +110,7 @@ def candidates(columns: Sequence[Column]) -> dict[str, list[Column]]:
     said = {id(column): named(column.name) for column in columns}
     for column, meant in _letters(columns, said):
         said[id(column)] = meant
-    found: dict[str, list[tuple[Named, Column]]] = {}
+    found: dict[str, list[tuple[ColumnMeaning, Column]]] = {}
     for column in columns:
         what = said[id(column)]
         if what is not None:
@@ -139,7 +139,7 @@ def internal(column: Column) -> bool:
     return what is not None and what.internal
 
 
-def _letters(columns: Sequence[Column], said: Mapping[int, Named | None]) -> list[tuple[Column, Named]]:
+def _letters(columns: Sequence[Column], said: Mapping[int, ColumnMeaning | None]) -> list[tuple[Column, ColumnMeaning]]:
     """Return what single letters mean beside each other: L is a width beside H and P, a length beside H and B."""
     short = {bare(c.name).strip(" .:"): c for c in columns if said[id(c)] is None and c.numeric}
     short = {
@@ -161,7 +161,7 @@ def _letters(columns: Sequence[Column], said: Mapping[int, Named | None]) -> lis
         elif letter.casefold() == "d":
             name = "depth_m" if folded & {"b", "w"} and not folded & {"t", "p"} else "diameter_m"
         if name is not None:
-            out.append((column, Named(name, 99)))
+            out.append((column, ColumnMeaning(name, 99)))
     return out
 
 

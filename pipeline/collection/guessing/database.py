@@ -13,7 +13,7 @@ from pipeline.collection.guessing.long_rows import VALUES
 from pipeline.collection.guessing.names import named, of_table, plain, same_stem
 from pipeline.collection.sources.address import expand_secrets
 from pipeline.collection.sources.measurement_terms import kind_of, part_of, unit_of
-from pipeline.collection.sources.schema import Table
+from pipeline.collection.sources.schema import DatabaseTable
 from pipeline.collection.sources.sql import read_database
 
 if TYPE_CHECKING:
@@ -85,21 +85,21 @@ class Joined:
     said: tuple[str, ...]
 
 
-def object_tables(tables: Sequence[Table]) -> list[Table]:
+def object_tables(tables: Sequence[DatabaseTable]) -> list[DatabaseTable]:
     """Return the tables that may hold the objects, the likeliest first: those that name object numbers.
 
     Parameters
     ----------
-    tables : sequence of Table
+    tables : sequence of DatabaseTable
         Of the database.
 
     Returns
     -------
-    list of Table
+    list of DatabaseTable
         Empty where none names them.
     """
 
-    def likeness(table: Table) -> tuple[bool, bool, int, int]:
+    def likeness(table: DatabaseTable) -> tuple[bool, bool, int, int]:
         found = _named(table)
         number = found.get("object_number")
         own = number is not None and not _is_internal(number)
@@ -111,16 +111,16 @@ def object_tables(tables: Sequence[Table]) -> list[Table]:
     return sorted(own or able, key=likeness, reverse=True)
 
 
-def joined(url: str, tables: Sequence[Table], objects: Table) -> Joined | None:
+def joined(url: str, tables: Sequence[DatabaseTable], objects: DatabaseTable) -> Joined | None:
     """Return the SELECT that joins dimensions, places and words to the objects; None where there is nothing to join.
 
     Parameters
     ----------
     url : str
         Of the database, which is only read.
-    tables : sequence of Table
+    tables : sequence of DatabaseTable
         All of it.
-    objects : Table
+    objects : DatabaseTable
         The table of objects.
 
     Returns
@@ -135,7 +135,7 @@ def joined(url: str, tables: Sequence[Table], objects: Table) -> Joined | None:
     return _Joiner(url, tables, objects).joined()
 
 
-def _named(table: Table) -> dict[str, str]:
+def _named(table: DatabaseTable) -> dict[str, str]:
     """Field -> column, as the names alone tell."""
     able = [Column(c) for c in table.columns if plain(c).split()[-1:] != ["id"] or _is_internal(c)]
     return {name: found[0].name for name, found in candidates(able).items()}
@@ -146,7 +146,7 @@ def _is_internal(column: str) -> bool:
     return what is not None and what.internal
 
 
-def _refers(table: Table, other: Table) -> tuple[str, str] | None:
+def _refers(table: DatabaseTable, other: DatabaseTable) -> tuple[str, str] | None:
     """Return the columns by which a table refers to another: as declared or as named; a current one first."""
     found = list(_references(table, other))
 
@@ -157,7 +157,7 @@ def _refers(table: Table, other: Table) -> tuple[str, str] | None:
     return min(found, key=rank) if found else None
 
 
-def _references(table: Table, other: Table) -> Iterator[tuple[str, str]]:
+def _references(table: DatabaseTable, other: DatabaseTable) -> Iterator[tuple[str, str]]:
     if table is other:
         return
     for column, (name, there) in table.refers.items():
@@ -184,7 +184,7 @@ def _references(table: Table, other: Table) -> Iterator[tuple[str, str]]:
 
 
 class _Joiner:
-    def __init__(self, url: str, tables: Sequence[Table], objects: Table) -> None:
+    def __init__(self, url: str, tables: Sequence[DatabaseTable], objects: DatabaseTable) -> None:
         self._url = url
         self._tables = tables
         self._objects = objects
@@ -227,7 +227,7 @@ class _Joiner:
 
     # What tables hold
 
-    def _columns(self, table: Table) -> list[Column]:
+    def _columns(self, table: DatabaseTable) -> list[Column]:
         """Return the columns of a table with some of its rows."""
         if table.shown not in self._rows:
             rows = cast(Any, read_database(self._url, table=table.shown))
@@ -236,7 +236,7 @@ class _Joiner:
                 self._rows[table.shown] = columns_of(header.cells, (row.cells for row in islice(rows, SAMPLED)))
         return self._rows[table.shown]
 
-    def _others(self) -> Iterator[tuple[Table, Table | None]]:
+    def _others(self) -> Iterator[tuple[DatabaseTable, DatabaseTable | None]]:
         """Yield the tables that refer to the objects, each with the one between, if any."""
         near = [t for t in self._tables if _refers(t, self._objects) is not None]
         for table in near:
@@ -249,8 +249,8 @@ class _Joiner:
                         break
 
     def _told(
-        self, table: Table, tells: Callable[[str], object], share: float
-    ) -> tuple[Table, str, Table | None] | None:
+        self, table: DatabaseTable, tells: Callable[[str], object], share: float
+    ) -> tuple[DatabaseTable, str, DatabaseTable | None] | None:
         """Return the table and column whose texts tell something: the table's own, or of one that it refers to."""
         for column in self._columns(table):
             if column.name not in table.key and _known(column, tells) >= share:
@@ -324,7 +324,7 @@ class _Joiner:
                 self._said.append(f"{table.shown!r} tells no current place: of several the first counts")
             return
 
-    def _place_of(self, table: Table) -> tuple[Table, str] | None:
+    def _place_of(self, table: DatabaseTable) -> tuple[DatabaseTable, str] | None:
         """Return the table of places that a table refers to, and its column of names."""
         found = []
         for other in self._tables:
@@ -340,7 +340,7 @@ class _Joiner:
         found.sort(key=lambda one: one[:2])
         return (found[0][2], found[0][3]) if found else None
 
-    def _take_place(self, table: Table, places: Table, column: str) -> None:
+    def _take_place(self, table: DatabaseTable, places: DatabaseTable, column: str) -> None:
         self._join(places, table)
         self._select(places, column, "location")
         for name in places.columns:
@@ -366,25 +366,25 @@ class _Joiner:
                 return
 
     @staticmethod
-    def _called(table: Table) -> str | None:
+    def _called(table: DatabaseTable) -> str | None:
         """Return the column of a table that is called its name."""
         plains = {plain(c): c for c in table.columns if c not in table.key}
         ended = (column for name in _NAMES for found, column in plains.items() if found.split()[-1:] == [name])
         return next(ended, None)
 
-    def _name_of(self, table: Table) -> str | None:
+    def _name_of(self, table: DatabaseTable) -> str | None:
         called = self._called(table)
         if called is not None:
             return called
         texts = [c for c in self._columns(table) if c.filled and not c.numeric and c.name not in table.key]
         return texts[0].name if texts else None
 
-    def _is_reference(self, table: Table, column: str) -> bool:
+    def _is_reference(self, table: DatabaseTable, column: str) -> bool:
         return any((way := _refers(table, other)) is not None and way[0] == column for other in self._tables)
 
     # The statement
 
-    def _clause(self, table: Table) -> TableClause:
+    def _clause(self, table: DatabaseTable) -> TableClause:
         from sqlalchemy import column, quoted_name
         from sqlalchemy import table as table_clause
 
@@ -396,7 +396,7 @@ class _Joiner:
             )
         return self._clauses[table.shown]
 
-    def _join(self, table: Table, to: Table, flag: str | None = None, empty: str | None = None) -> None:
+    def _join(self, table: DatabaseTable, to: DatabaseTable, flag: str | None = None, empty: str | None = None) -> None:
         from sqlalchemy import and_, true
 
         if table.shown in self._clauses:
@@ -418,13 +418,13 @@ class _Joiner:
             conditions.append(new.c[empty].is_(None))
         self._from = self._from.outerjoin(new, and_(*conditions))
 
-    def _add(self, told: tuple[Table, str, Table | None], label: str) -> None:
+    def _add(self, told: tuple[DatabaseTable, str, DatabaseTable | None], label: str) -> None:
         table, column, by = told
         if by is not None:
             self._join(table, by)
         self._select(table, column, label)
 
-    def _select(self, table: Table, column: str, label: str) -> None:
+    def _select(self, table: DatabaseTable, column: str, label: str) -> None:
         from sqlalchemy import quoted_name
 
         if label not in self._labels:

@@ -56,7 +56,7 @@ _FORMER = frozenset(
 
 
 @dataclass(frozen=True, slots=True)
-class Named:
+class ColumnMeaning:
     """What the name of a column says.
 
     Attributes
@@ -91,14 +91,14 @@ class _ColumnNames:
 
 
 @cache
-def _names() -> dict[str, Named]:
+def _names() -> dict[str, ColumnMeaning]:
     rows = checked(_ColumnNames, table("column_names"), "column_names.csv", named="field")
-    found: dict[str, Named] = {}
+    found: dict[str, ColumnMeaning] = {}
     for row in rows:
         internal = False
         for rank, name in enumerate(row.names):
             internal = internal or (row.field == "object_number" and name == _INTERNAL)
-            found.setdefault(plain(name), Named(row.field, rank, internal))
+            found.setdefault(plain(name), ColumnMeaning(row.field, rank, internal))
     return found
 
 
@@ -155,7 +155,7 @@ def _says(name: str) -> str | None:
     return None if found is None else found.field
 
 
-def named(name: str) -> Named | None:
+def named(name: str) -> ColumnMeaning | None:
     """Return what the name of a column says; None for a name that no table has.
 
     Parameters
@@ -165,11 +165,11 @@ def named(name: str) -> Named | None:
 
     Returns
     -------
-    Named or None
+    ColumnMeaning or None
         One letter says nothing by itself: see `columns`.
     """
     if name in MAPPABLE:
-        return Named(name, 0)
+        return ColumnMeaning(name, 0)
     for form in _forms(name):
         found = _names().get(form)
         if found is not None:
@@ -210,7 +210,7 @@ def _forms(name: str) -> Iterator[str]:
         yield plain(outside)
 
 
-def _within(name: str) -> Named | None:
+def _within(name: str) -> ColumnMeaning | None:
     """Return what the last or the first words of a name say: "Akt. Standort"; of numbers, places and materials only."""
     words = plain(unit_in(name)[0]).split()
     if _FORMER & set(words) or words[-1:] == ["id"]:
@@ -222,5 +222,5 @@ def _within(name: str) -> Named | None:
             if found is None or found.internal or found.field not in ("object_number", "gallery", "medium"):
                 continue
             if found.field == "gallery" or not usual:
-                return Named(found.field, _WEAK + found.rank, internal=usual)
+                return ColumnMeaning(found.field, _WEAK + found.rank, internal=usual)
     return None

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pipeline.collection.sources.schema import Table
+from pipeline.collection.sources.schema import DatabaseTable
 
 _SIGNS = {"tms_database": {"objects", "objcomponents", "objlocations", "locations", "dimitemelemxrefs", "dimensions"}}
 """Preset -> names of tables that no other system has together."""
 
 
-def preset_for(tables: Sequence[Table]) -> str | None:
+def preset_for(tables: Sequence[DatabaseTable]) -> str | None:
     """Return the preset whose query a database can answer; None for a system that is not known.
 
     Parameters
     ----------
-    tables : sequence of Table
+    tables : sequence of DatabaseTable
         Of the database.
 
     Returns

@@ -32,7 +32,7 @@ SNIFFED = 1 << 18
 
 
 @dataclass
-class Told:
+class GuessNotes:
     """What is said of a guess on its way.
 
     Attributes
@@ -53,14 +53,14 @@ class Told:
 # Files
 
 
-def source_of(path: Path, told: Told) -> dict[str, Any]:
+def source_of(path: Path, told: GuessNotes) -> dict[str, Any]:
     """Return how a file is read: the section [source] of its mapping.
 
     Parameters
     ----------
     path : Path
         The file, or a folder of records.
-    told : Told
+    told : GuessNotes
         What is said of it; grows.
 
     Returns
@@ -112,7 +112,7 @@ def source_of(path: Path, told: Told) -> dict[str, Any]:
     return source
 
 
-def _set_head(source: dict[str, Any], rows: Sequence[tuple[int, list[str]]], told: Told) -> None:
+def _set_head(source: dict[str, Any], rows: Sequence[tuple[int, list[str]]], told: GuessNotes) -> None:
     """Say where the columns are named, where that is not the first row alone."""
     head = table_head(rows)
     row, many = head.row, head.rows
@@ -139,11 +139,11 @@ def _set_head(source: dict[str, Any], rows: Sequence[tuple[int, list[str]]], tol
         told.questions.append(Question("header_row", "which row names the columns?", options, str(row)))
 
 
-def workbook(path: Path, sheet: str | None, told: Told) -> tuple[dict[str, Any], list[Column]]:
+def workbook(path: Path, sheet: str | None, told: GuessNotes) -> tuple[dict[str, Any], list[Column]]:
     """Return how a workbook is read, and the columns of its sheet: the one named, or most like an inventory."""
     from pipeline.collection.sources.xlsx import first_rows, visible_sheets
 
-    def read(title: str | None, quietly: Told) -> tuple[dict[str, Any], list[Column]]:
+    def read(title: str | None, quietly: GuessNotes) -> tuple[dict[str, Any], list[Column]]:
         source: dict[str, Any] = {"format": "xlsx"} | ({} if title is None else {"sheet": title})
         numbered = enumerate(first_rows(path, title, LOOKED_AT + 60), start=1)
         _set_head(source, [(number, cells) for number, cells in numbered if any(map(str.strip, cells))], quietly)
@@ -152,10 +152,10 @@ def workbook(path: Path, sheet: str | None, told: Told) -> tuple[dict[str, Any],
     there = visible_sheets(path)
     if sheet is not None or len(there) == 1:
         return read(sheet, told)
-    best: tuple[tuple[bool, int, int], str, dict[str, Any], list[Column], Told] | None = None
+    best: tuple[tuple[bool, int, int], str, dict[str, Any], list[Column], GuessNotes] | None = None
     fault: CollectionError | None = None
     for title in there:
-        quietly = Told(told.choices)
+        quietly = GuessNotes(told.choices)
         try:
             source, columns = read(title, quietly)
         except CollectionError as problem:
@@ -234,7 +234,7 @@ def _filled(name: str, rows: Iterator[Row]) -> list[Column]:
     return columns_of(header.cells, whole)
 
 
-def objects_of(name: str, source: dict[str, Any], columns: list[Column], told: Told) -> list[Column]:
+def objects_of(name: str, source: dict[str, Any], columns: list[Column], told: GuessNotes) -> list[Column]:
     """Return the columns of objects, where those that are there are of single measurements."""
     long = long_form_of(columns)
     if long is None:
@@ -258,7 +258,9 @@ def objects_of(name: str, source: dict[str, Any], columns: list[Column], told: T
 # Databases
 
 
-def database(url: str, name: str, table: str | None, told: Told) -> tuple[str | None, dict[str, Any], list[Column]]:
+def database(
+    url: str, name: str, table: str | None, told: GuessNotes
+) -> tuple[str | None, dict[str, Any], list[Column]]:
     """Return the preset that reads a database, or else how it is read; and its columns."""
     from pipeline.collection.guessing.database import joined, object_tables
     from pipeline.collection.guessing.presets import preset_for

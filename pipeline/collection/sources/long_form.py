@@ -18,7 +18,7 @@ _Fault = tuple[str, str]
 
 
 @dataclass
-class _Object:
+class _Gathered:
     """An object whose rows are gathered: the first of them, and the measurements of all."""
 
     number: int
@@ -76,7 +76,7 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
     type_at, value_at = names.index(long.type), names.index(long.value)
     unit_at = None if long.unit is None else names.index(long.unit)
     part_at = None if long.part is None else names.index(long.part)
-    objects: dict[str, _Object] = {}
+    objects: dict[str, _Gathered] = {}
     broken: list[Row] = []
     above = ""
     for row in rows:
@@ -89,7 +89,7 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
             faults = {
                 kept.index(at): why for at, why in row.faults.items() if at in kept and row.cells[number_at].strip()
             }
-            found = _Object(len(objects) + 1, row.line, [row.cells[at] for at in kept], faults, Measurements())
+            found = _Gathered(len(objects) + 1, row.line, [row.cells[at] for at in kept], faults, Measurements())
             objects[number] = found
         for place, at in enumerate(kept):
             if not found.cells[place] and row.cells[at]:
@@ -107,7 +107,7 @@ def gathered(rows: Iterator[Row], long: LongForm, file: str) -> Iterator[Row]:
         yield Row(place, row.line, row.cells + [""] * (width + len(COLUMNS) - len(row.cells)), row.fault)
 
 
-def _measure(found: _Object, row: Row, type_at: int, value_at: int, unit_at: int | None, part_at: int | None) -> None:
+def _measure(found: _Gathered, row: Row, type_at: int, value_at: int, unit_at: int | None, part_at: int | None) -> None:
     said = row.cells[type_at].strip()
     for at in (type_at, value_at):
         if at in row.faults:

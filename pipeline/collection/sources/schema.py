@@ -12,7 +12,7 @@ _OWN_SCHEMAS = ("information_schema", "pg_", "mysql", "performance_schema", "sys
 
 
 @dataclass(frozen=True)
-class Table:
+class DatabaseTable:
     """A table or a view.
 
     Attributes
@@ -41,7 +41,7 @@ class Table:
         return self.name if self.schema is None else f"{self.schema}.{self.name}"
 
 
-def tables_of(url: str, *, environment: Mapping[str, str] | None = None) -> tuple[Table, ...]:
+def tables_of(url: str, *, environment: Mapping[str, str] | None = None) -> tuple[DatabaseTable, ...]:
     """Return the tables and views that a museum's database lists.
 
     Parameters
@@ -53,7 +53,7 @@ def tables_of(url: str, *, environment: Mapping[str, str] | None = None) -> tupl
 
     Returns
     -------
-    tuple of Table
+    tuple of DatabaseTable
         Of the default schema by name, then the others.
 
     Raises
@@ -61,7 +61,7 @@ def tables_of(url: str, *, environment: Mapping[str, str] | None = None) -> tupl
     CollectionError
         As `sql.read_database`.
     """
-    found: list[Table] = []
+    found: list[DatabaseTable] = []
     with inspected(url, environment=environment) as inspector:
         schemas: list[str | None] = [None]
         if inspector.dialect.name != "sqlite":
@@ -78,5 +78,5 @@ def tables_of(url: str, *, environment: Mapping[str, str] | None = None) -> tupl
                         other = str(foreign["referred_table"])
                         shown = other if there in (None, inspector.default_schema_name) else f"{there}.{other}"
                         refers[str(foreign["constrained_columns"][0])] = (shown, str(foreign["referred_columns"][0]))
-                found.append(Table(schema, name, columns, tuple(map(str, key)), refers))
+                found.append(DatabaseTable(schema, name, columns, tuple(map(str, key)), refers))
     return tuple(found)
