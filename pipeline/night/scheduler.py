@@ -243,8 +243,10 @@ class Scheduler:
         shared: list[_Some] = [[] for _ in range(parts)]
         for page, units in work.units:
             digests = page.part.objects.column("assessment_digest")
-            for at in units:
-                mine = shared[int(digests[page.units.bounds(at)[0]][:8] or "0", 16) % parts]
+            # In turn, in the order of their records: what stands in one room costs alike.
+            each = sorted((digests[page.units.bounds(at)[0]], at) for at in units)
+            for turn, (_, at) in enumerate(each, int(each[0][0][:8] or "0", 16) if each else 0):
+                mine = shared[turn % parts]
                 if not mine or mine[-1][0] is not page:
                     mine.append((page, array("I")))
                 mine[-1][1].append(at)
