@@ -312,12 +312,26 @@ def mapping() -> str:
             if "properties" in own and "description" in own:
                 said = plain(own["description"].partition("\n")[0])
                 parts.append(f"### `{place}`: {said}\n\n{_keys(own, schema)}")
+        for key, inner in _inner(table, schema).items():
+            parts.append(f"### `[{name}.{key}]`\n\n{plain(inner['description'])}\n\n{_keys(inner, schema)}")
     parts.append("### Fields that may be mapped\n\n" + ", ".join(f"`{name}`" for name in MAPPABLE))
     rows = []
     for preset in sorted(PRESETS.glob("*.toml")):
         said = re.match(r"(?:# ?.*\n)+", preset.read_text(encoding="utf-8"))
         rows.append((f"`{preset.stem}`", " ".join(said[0].replace("#", "").split()) if said else ""))
     return "\n\n".join([*parts, "## Presets\n\n" + markdown_table(("Preset", "For"), rows)])
+
+
+def _inner(table: Schema, schema: Schema) -> dict[str, Schema]:
+    """Return the tables within any kind of a table, by their keys."""
+    found = {}
+    for kind in table.get("oneOf", ()):
+        for key, field in _resolved(kind, schema).get("properties", {}).items():
+            told = next((one for one in (field, *field.get("anyOf", ())) if "$ref" in one), None)
+            inner = {} if told is None else _resolved(told, schema)
+            if inner.get("type") == "object":
+                found[key] = inner
+    return found
 
 
 def records() -> str:

@@ -28,6 +28,7 @@ NOT_RUN = frozenset(
         "it needs a Dask cluster",
         "it needs a PostgreSQL server",
         "it needs a copy of the source",
+        "it needs a museum's own file",
         "it needs a museum's server",
         "it needs a second experiment",
         "it needs a translation",
