@@ -15,7 +15,6 @@ from pipeline.night.importing import bundled_collection
 from pipeline.records import Furniture, Item, Origin, Support
 from pipeline.tables import Row, table
 from pipeline.tables.assumed import assumed, span
-from pipeline.tables.fill_rows import fills
 
 VASE = Item("1", "G", title="Covered vase", classification="Ceramics", medium="porcelain",
             height_m=0.4, width_m=0.2, depth_m=0.2)  # fmt: skip
@@ -167,11 +166,7 @@ def test_every_range_of_class_and_material_travels_to_the_models(row: Row, mater
     tensile = [float(stuff[c]) for c in ("tensile_low", "tensile", "tensile_high")]
     assert [getattr(found["allowable_stress"], s) for s in ends] == tensile
     box = 0.3 * 0.3 * item.height_m * (pi / 4 if row["round"] == "yes" else 1.0)  # type: ignore[operator]
-    fill = fills().get((row["class"], material))
-    filled = (
-        [float(row[f"fill{e}"]) for e in ("_low", "", "_high")] if fill is None else [getattr(fill, e) for e in ends]
-    )
-    masses = [box * f * float(stuff[f"density{e}"]) for f, e in zip(filled, ("_low", "", "_high"), strict=True)]
+    masses = [box * float(row[f"fill{end}"]) * float(stuff[f"density{end}"]) for end in ("_low", "", "_high")]
     assert [getattr(found["mass"], s) for s in ends] == pytest.approx(masses)
 
 
