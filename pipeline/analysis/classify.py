@@ -28,7 +28,6 @@ from pipeline.records import Estimate, Item, Origin, Scene, Support
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed, span, tables_of
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
 from pipeline.tables.bending_rows import bending
-from pipeline.tables.fill_rows import fills
 
 SURE = 0.5
 """Probability from which materials and measures alone say a class."""
@@ -248,11 +247,9 @@ class _Builder:
             mass = Estimate.assumed(15.0 * area, 5.0 * area, 40.0 * area, "kg", note, "judgement")
         across = item.width_m or item.depth_m
         along = item.depth_m or item.width_m
-        fill = None if row.own or self.material.own else fills().get((row.name, self.material.name))
-        fill = fill or row.filled
-        if mass is None and fill is not None and item.height_m and across and along:
+        if mass is None and row.filled is not None and item.height_m and across and along:
             box = item.height_m * across * along * (0.25 * pi if row.round else 1.0)
-            density = self.material.density_range
+            fill, density = row.filled, self.material.density_range
             note = f"mass: {self.material.told} of {density.value:g} kg/m3 filling {fill.value:g} of its outline"
             mass = Estimate.assumed(
                 box * fill.value * density.value,
