@@ -157,8 +157,9 @@ def audit(
 
 
 def _sides(found: Evidence, columns: Mapping[str, ColumnMap], rows: Mapping[str, Sequence[str]]) -> Iterable[Suspicion]:
-    for key, (could, does) in found.tallies.items():
-        if key.startswith("sides|") and could >= FEWEST and does > MOST * could:
+    for key in found.tallies:
+        does, could = _most(found, key) if key.startswith("sides|") else (0, 0)
+        if does:
             one, two = key.split("|")[1:]
             first, second = (_column(name, columns) for name in (one, two))
             yield Suspicion(
@@ -231,8 +232,8 @@ def _units(found: Evidence, columns: Mapping[str, ColumnMap], rows: Mapping[str,
 
 
 def _weights(found: Evidence, rows: Mapping[str, Sequence[str]]) -> Iterable[Suspicion]:
-    could, does = found.tallies.get("weights", (0, 0))
-    if could >= FEWEST and does > MOST * could:
+    does, could = _most(found, "weights")
+    if does:
         yield Suspicion(
             "mass_kg",
             f"{does:,} of {could:,} objects that are weighed and measured are heavier than anything of their size can "
@@ -244,8 +245,8 @@ def _weights(found: Evidence, rows: Mapping[str, Sequence[str]]) -> Iterable[Sus
 
 
 def _display(found: Evidence, rows: Mapping[str, Sequence[str]]) -> Iterable[Suspicion]:
-    could, does = found.tallies.get("display", (0, 0))
-    if could >= FEWEST and does > MOST * could:
+    does, could = _most(found, "display")
+    if does:
         yield Suspicion(
             "on_display",
             f"{does:,} of {could:,} objects that a flag says to be on display are where nothing is, as their location "
@@ -255,6 +256,12 @@ def _display(found: Evidence, rows: Mapping[str, Sequence[str]]) -> Iterable[Sus
             "display",
             tuple(rows.get("display", ())),
         )
+
+
+def _most(found: Evidence, what: str) -> tuple[int, int]:
+    """Return how many records show a contradiction, 0 unless most do, and how many could."""
+    could, does = found.tallies.get(what, (0, 0))
+    return (does if could >= FEWEST and does > MOST * could else 0), could
 
 
 def _decimals(found: Evidence) -> Iterable[Suspicion]:

@@ -9,8 +9,6 @@ from pipeline.planning.choice import EffortLimits, ErrandChoice, ErrandWork, cho
 from pipeline.planning.efforts import TRADES, Efforts, EffortSpan
 from pipeline.planning.errands import Advised, Errand, errands_of
 
-NO_SPAN = EffortSpan()
-
 
 @dataclass(frozen=True)
 class PlanTerms:

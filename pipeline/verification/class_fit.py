@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize, minimize_scalar
+from scipy.optimize import minimize
 from scipy.sparse import csr_matrix
 from scipy.special import logsumexp
 
@@ -165,28 +165,6 @@ def left_out(objects: Sequence[Labelled]) -> dict[str, tuple[list[Labelled], NDA
         others = fit([one for one in objects if one.museum != museum])
         out[museum] = mine, probabilities(others, [one.item for one in mine])
     return out
-
-
-def temperature(objects: Sequence[Labelled]) -> float:
-    """Return by what scores would have to be divided for probabilities to hold for museums that are left out.
-
-    About 1: the penalties suffice.  It is the one under which the labels are most probable.
-
-    References
-    ----------
-    Guo, C., Pleiss, G., Sun, Y. and Weinberger, K. Q. (2017). On calibration of modern neural networks. Sec. 4.2.
-    """
-    logs, right = [], []
-    for mine, found in left_out(objects).values():
-        logs.append(np.log(np.maximum(found, 1e-300)))
-        right += [CLASSES.index(one.object_class) for one in mine]
-    scores, labels = np.concatenate(logs), np.array(right)
-
-    def loss(heat: float) -> float:
-        scaled = scores / heat
-        return float(np.sum(logsumexp(scaled, axis=1) - scaled[np.arange(len(labels)), labels]))
-
-    return float(minimize_scalar(loss, bounds=(0.5, 4.0), method="bounded").x)
 
 
 def main() -> None:

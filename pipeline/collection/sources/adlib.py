@@ -26,7 +26,7 @@ from typing import Any, BinaryIO, ClassVar, Literal
 from pydantic import Field
 
 from pipeline.collection.sources.base import HEAD, FileSource, Name, Request, SourceSettings
-from pipeline.collection.sources.measurements import COLUMNS, Measurements, joined, row_of
+from pipeline.collection.sources.measurements import COLUMNS, MeasuredSettings, Measurements, joined, row_of
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.sources.xml_records import XmlRecords
 
@@ -135,12 +135,11 @@ def _side_by_side(columns: Sequence[list[str]]) -> Iterator[tuple[str, str, str,
         yield row[0], row[1], row[2], row[3]
 
 
-class AdlibSettings(SourceSettings):
+class AdlibSettings(MeasuredSettings):
     """How an Adlib XML file is read."""
 
     format: Literal["adlib"] = Field(description="The kind of source.")
     language: Name | None = Field(default=None, description='The language to prefer, such as "en" or "nl".')
-    unit: Literal["mm", "cm", "m", "in"] | None = Field(default=None, description="Unit of lengths that name none.")
 
 
 class Adlib(FileSource):

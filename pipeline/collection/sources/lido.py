@@ -37,7 +37,8 @@ from pipeline.collection.errors import CollectionError
 from pipeline.collection.sources.base import HEAD, FileSource, Name, Request, SourceSettings
 from pipeline.collection.sources.files import stream_of
 from pipeline.collection.sources.lido_terms import FORMER, LANGUAGES, PRODUCTION
-from pipeline.collection.sources.measurement_terms import KIND_CONCEPTS, KINDS, PARTS, UNIT_CONCEPTS
+from pipeline.collection.sources.measurement_terms import KIND_CONCEPTS, KIND_OF, PART_OF, UNIT_CONCEPTS
+from pipeline.collection.sources.measurements import MEASURED
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.sources.xml_records import XmlRecords
 
@@ -54,7 +55,7 @@ COLUMNS = (
     "gallery",
     "repository",
     "dimensions",
-    *(f"{part} {kind}".strip() for part in PARTS for kind in KINDS),
+    *MEASURED,
     "other_measurements",
 )
 """The header."""
@@ -67,8 +68,6 @@ _LANG = "{http://www.w3.org/XML/1998/namespace}lang"
 _AAT = re.compile(r"(?:https?://vocab\.getty\.edu/(?:page/)?aat/|aat[:/])?(300[0-9]{6})(?:\.html)?/?", re.I)
 _WIKIDATA = re.compile(r"https?://(?:www\.)?wikidata\.org/(?:entity|wiki)/(Q[0-9]+)/?", re.I)
 _OWN_NUMBER = re.compile("inventor|inventar|inventaire|accession|lido00113", re.I)
-_KIND_OF = {name.casefold(): kind for kind, names in KINDS.items() for name in names}
-_PART_OF = {name.casefold(): part for part, names in PARTS.items() for name in names}
 
 
 def read_records(source: str | Path | BinaryIO, file: str, *, languages: Sequence[str] = ("en",)) -> Iterator[Row]:
@@ -206,8 +205,8 @@ class _Record:
             shown.append(self._pick(_all(each, "displayObjectMeasurements")))
             for measured in _all(each, "objectMeasurements"):
                 extents = _all(measured, "extentMeasurements")
-                part = _known(extents, _PART_OF, {}) if extents else ""
-                if part is None and _known(extents, _KIND_OF, {}) is not None:
+                part = _known(extents, PART_OF, {}) if extents else ""
+                if part is None and _known(extents, KIND_OF, {}) is not None:
                     part = ""  # some programs repeat the type there
                 for one in _all(measured, "measurementsSet"):
                     value = _first(_texts(_all(one, "measurementValue")))
@@ -215,7 +214,7 @@ class _Record:
                         continue
                     text = f"{value} {self._unit(_all(one, 'measurementUnit'))}".strip()
                     types = _all(one, "measurementType")
-                    kind = _known(types, _KIND_OF, KIND_CONCEPTS)
+                    kind = _known(types, KIND_OF, KIND_CONCEPTS)
                     column = f"{part} {kind}".strip()
                     if part is None or kind is None or column in cells:
                         said = f"{self._label(extents)} {self._label(types)}".strip()

@@ -41,7 +41,7 @@ from pipeline.collection.sources.measurement_terms import (
     part_of,
     plain_word,
 )
-from pipeline.collection.sources.measurements import COLUMNS, Measurements, joined, row_of
+from pipeline.collection.sources.measurements import COLUMNS, MeasuredSettings, Measurements, joined, row_of
 from pipeline.collection.sources.rows import Row, as_text
 
 FILES = ("*.json", "*.jsonld", "*.jsonl", "*.ndjson")
@@ -287,11 +287,10 @@ def _classes(one: dict[str, Any]) -> set[str]:
     return {_concept(c) for c in _all(one, "classified_as")}
 
 
-class LinkedArtSettings(SourceSettings):
+class LinkedArtSettings(MeasuredSettings):
     """How Linked Art records are read."""
 
     format: Literal["linked_art"] = Field(description="The kind of source.")
-    unit: Literal["mm", "cm", "m", "in"] | None = Field(default=None, description="Unit of lengths that name none.")
 
 
 class LinkedArt(FileSource):

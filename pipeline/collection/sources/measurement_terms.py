@@ -141,8 +141,12 @@ UNITS: dict[str, str] = {
 }
 """Word -> unit; a plural's last letter does not count."""
 
-_KIND_OF = {name.casefold(): kind for kind, names in KINDS.items() for name in names}
-_PART_OF = {name.casefold(): part for part, names in PARTS.items() for name in names}
+KIND_OF = {name.casefold(): kind for kind, names in KINDS.items() for name in names}
+"""Word -> kind, in small letters."""
+
+PART_OF = {name.casefold(): part for part, names in PARTS.items() for name in names}
+"""Word -> part, in small letters."""
+
 _SHOWN = _words("display displayed overall total gesamt totale max maximum maximal (x) (y) (z)")
 
 
@@ -165,10 +169,10 @@ def kind_of(text: str) -> str | None:
         A key of KINDS.
     """
     whole = plain_word(text)
-    if whole in _KIND_OF:
-        return _KIND_OF[whole]
+    if whole in KIND_OF:
+        return KIND_OF[whole]
     words = [word for word in map(plain_word, whole.split()) if word and word not in _SHOWN and word not in "xyz"]
-    return _KIND_OF.get(words[0]) if len(words) == 1 else None
+    return KIND_OF.get(words[0]) if len(words) == 1 else None
 
 
 def part_of(text: str) -> str | None:
@@ -185,7 +189,7 @@ def part_of(text: str) -> str | None:
         A key of PARTS.
     """
     whole = plain_word(text)
-    return "" if not whole else _PART_OF.get(whole)
+    return "" if not whole else PART_OF.get(whole)
 
 
 def unit_of(text: str) -> str | None:

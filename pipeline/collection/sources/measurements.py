@@ -5,7 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from math import isclose
+from typing import Literal
 
+from pydantic import Field
+
+from pipeline.collection.sources.base import SourceSettings
 from pipeline.collection.sources.measurement_terms import KINDS, PARTS, kind_of, part_of, unit_of
 from pipeline.collection.sources.rows import NO_FAULTS, Row
 from pipeline.quantities import LENGTHS, MASSES
@@ -30,7 +34,6 @@ COLUMNS = (
     "other_measurements",
 )
 """The header of formats whose records are objects with measurements (Adlib XML, MuseumPlus RIA XML, Linked Art)."""
-
 SAME = 0.01
 """Relative difference up to which two statements of one measurement agree: what is rounded when inches become cm."""
 
@@ -38,6 +41,12 @@ _NUMBER = re.compile(r"[+-]?\d+(?:[.,]\d+)?", re.ASCII)
 # Three digits behind a comma may be thousands: these are left as they are, to be doubted.
 _COMMA = re.compile(r"[+-]?\d+,(?:\d{1,2}|\d{4,})", re.ASCII)
 _TRAILING = re.compile(r"(\.\d*?)0+$")
+
+
+class MeasuredSettings(SourceSettings):
+    """What formats whose records are objects with measurements have in common."""
+
+    unit: Literal["mm", "cm", "m", "in"] | None = Field(default=None, description="Unit of lengths that name none.")
 
 
 class Measurements:

@@ -24,7 +24,7 @@ from pydantic import Field
 
 from pipeline.collection.sources.base import HEAD, FileSource, Request, SourceSettings
 from pipeline.collection.sources.measurement_terms import kind_of, part_of
-from pipeline.collection.sources.measurements import COLUMNS, Measurements, joined, row_of
+from pipeline.collection.sources.measurements import COLUMNS, MeasuredSettings, Measurements, joined, row_of
 from pipeline.collection.sources.rows import Row
 from pipeline.collection.sources.xml_records import XmlRecords
 
@@ -190,11 +190,10 @@ def _names_a_part(text: str) -> bool:
     return any(word.casefold() not in ("x", "und", "and", "et") and kind_of(word) is None for word in words)
 
 
-class MuseumPlusSettings(SourceSettings):
+class MuseumPlusSettings(MeasuredSettings):
     """How a MuseumPlus RIA export is read."""
 
     format: Literal["museumplus"] = Field(description="The kind of source.")
-    unit: Literal["mm", "cm", "m", "in"] | None = Field(default=None, description="Unit of lengths that name none.")
 
 
 class MuseumPlus(FileSource):

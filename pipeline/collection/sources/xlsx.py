@@ -7,7 +7,7 @@ import warnings
 import zipfile
 import zlib
 from collections.abc import Collection, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from datetime import date, datetime, time
 from io import BufferedReader
 from math import isfinite
@@ -143,16 +143,8 @@ def visible_sheets(path: Path) -> tuple[str, ...]:
     CollectionError
         As `read_sheet` for the workbook itself.
     """
-    with ExitStack() as stack:
-        try:
-            stream = stream_of(path, path.name, stack)
-            check_kind(stream, path.name)
-            check_archive(stack.enter_context(zipfile.ZipFile(stream)), path.name)
-            return tuple(page.title for page in _load(stream, path.name).worksheets if page.sheet_state == "visible")
-        except CollectionError:
-            raise
-        except _DAMAGE as problem:
-            raise _damaged(path.name, problem) from problem
+    with _workbook(path) as book:
+        return tuple(page.title for page in book.worksheets if page.sheet_state == "visible")
 
 
 def first_rows(path: Path, sheet: str | None, most: int) -> list[list[str]]:
@@ -177,26 +169,32 @@ def first_rows(path: Path, sheet: str | None, most: int) -> list[list[str]]:
     CollectionError
         As `read_sheet` for the workbook itself.
     """
+    with _workbook(path) as book:
+        page = _page(book, path.name, sheet)
+        page.reset_dimensions()
+        out = []
+        for row in page.iter_rows(min_row=1, max_row=most, max_col=COLUMN_LIMIT):
+            cells, faults = [""] * len(row), dict[int, tuple[str, str]]()
+            for place, cell in enumerate(row):
+                if cell.value is not None:
+                    _take(cell, place, cells, faults)
+            out.append(cells)
+        return out
+
+
+@contextmanager
+def _workbook(path: Path) -> Iterator[Any]:
+    """Open a workbook, and say of damage that is met within the block that it is that."""
     with ExitStack() as stack:
         try:
             stream = stream_of(path, path.name, stack)
             check_kind(stream, path.name)
             check_archive(stack.enter_context(zipfile.ZipFile(stream)), path.name)
-            page = _page(_load(stream, path.name), path.name, sheet)
-            page.reset_dimensions()
-            out = []
-            for row in page.iter_rows(min_row=1, max_row=most, max_col=COLUMN_LIMIT):
-                cells, faults = [""] * len(row), dict[int, tuple[str, str]]()
-                for place, cell in enumerate(row):
-                    if cell.value is not None:
-                        _take(cell, place, cells, faults)
-                out.append(cells)
+            yield _load(stream, path.name)
         except CollectionError:
             raise
         except _DAMAGE as problem:
             raise _damaged(path.name, problem) from problem
-        else:
-            return out
 
 
 def _load(stream: BinaryIO, file: str) -> Any:
