@@ -49,6 +49,7 @@ TABLE_WORDS = {
     "store a gallery; who lends.",
     "dispersion": "What a fragility curve's dispersion is made of.",
     "efforts": "Hours, cost and trade of each measure, of one that is not named, and of setting out in a gallery.",
+    "fills": "How much of its outline a thing of some materials fills, where its class alone says too much.",
     "fixings": "What wax, putty, pins, ties, clips, brackets and clamps hold, and which materials they harm.",
     "fragility": "Published medians and dispersions that stand beside the computed ones.",
     "friction": "Friction between object and surface (Table 3 of the paper, handbooks and judgement).",
@@ -60,8 +61,12 @@ TABLE_WORDS = {
     "isolators": "The isolators that advice may choose from; a museum's own catalogue takes the place of this table.",
     "materials": "Density, strength and stiffness of materials, and the words that name them.",
     "measures": "The measures, in the order of their intrusiveness, with limits, words and sources.",
+    "mounts": "How a thing is held that lies in a case or cannot stand by itself: models, measures, grip in weights, "
+    "room [m] and lean [degrees].",
     "overturning": "Published medians of overturning that `kouros validate --published` is held against.",
     "plausible": "What a number of a record may be.",
+    "proportions": "One size over another one by class: 5th, 50th and 95th percentile; known: how many must be "
+    "recorded.",
     "rules": "Which class a record names; the first rule that holds decides.",
     "class_signs": "Words of materials and titles that say something of the class, in eight languages.",
     "class_weights": "What each sign says for each class: logarithms of odds, found from labelled objects.",
@@ -125,7 +130,7 @@ COLUMN_WORDS = {
     "p_rocks": "probability that it rocks",
     "p_falls": "probability that it falls",
     "p_breaks": "probability that it breaks",
-    "open_for": "the parameter whose measurement alone may change what is decided; empty where none may",
+    "open_for": "the parameter whose measurement alone may change what is decided; `class` for what it is",
     "worth": "by how much that measurement lowers the expected loss, as a share of the loss by harm",
     "expected_loss": "probability times what is at stake, in objects of class C",
     "median_is": "empty where the median was found; above, below: it is only a bound; flat: no curve tells it",
@@ -265,7 +270,8 @@ def manifest() -> str:
     places = {
         "SiteTable": "[site]", "LevelTable": "[[level]]", "TargetTable": "[level.target]", "Record": "[[level.record]]",
         "Horizontal": "[level.record.components], horizontal", "Vertical": "[level.record.components], vertical",
-        "BaselineTable": "[level.record.baseline]", "FloorTable": "[[floor]]", "FloorRecord": "[[floor.record]]",
+        "BaselineTable": "[level.record.baseline]", "EventTable": "[level.record.event]",
+        "StationTable": "[level.record.station]", "FloorTable": "[[floor]]", "FloorRecord": "[[floor.record]]",
     }  # fmt: skip
     parts = ["# The site's manifest\n\n`manifest.toml` in the site's folder, beside the files of the records."]
     for name, place in places.items():

@@ -28,7 +28,7 @@ VASE = Item("1", "G", title="Covered vase", classification="Ceramics", medium="p
             height_m=0.4, width_m=0.2, depth_m=0.2, furniture=Furniture.FLOOR)  # fmt: skip
 PAINTING = Item("3", "G", title="Landscape", classification="paintings", height_m=1.0, width_m=1.2)
 COLUMNS = "object_number,gallery,title,height_m,width_m,depth_m"
-ROWS = ['1,"Gallery ""A"" <b>",<script>alert(1)</script>,1.2,0.2,0.2', "2,B,Plate,0.03,0.3,0.3", "3,B,Vase,,0.2,0.2"]
+ROWS = ['1,"Gallery ""A"" <b>",<script>alert(1)</script>,1.2,0.2,0.2', "2,B,Plate,0.03,0.3,0.3", "3,B,Vase,,,"]
 MAPPING = """
 [source]
 format = "csv"

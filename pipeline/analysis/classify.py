@@ -9,7 +9,6 @@ record are what its house rules state (`pipeline.analysis.house`), else they com
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, lru_cache
-from math import pi
 from typing import NamedTuple
 
 from pipeline.analysis.evidence import FIELDS, POSSIBLE, Chance, chances_of
@@ -19,15 +18,18 @@ from pipeline.analysis.furniture import in_furniture
 from pipeline.analysis.hanging import HangingGuess, hanging_estimates, hanging_of, swings
 from pipeline.analysis.house.effect import NO_EFFECT, HouseEffect
 from pipeline.analysis.house.matching import HouseRules
+from pipeline.analysis.masses import mass_of, solid_mass
+from pipeline.analysis.mounts import MountGuess, mount_estimates, mount_of
 from pipeline.analysis.rules import Readings, RuleTable, readings
 from pipeline.analysis.section import Section, section_of, share_of
+from pipeline.analysis.sizes import PLAN, Sizes
+from pipeline.analysis.usual import clearance_of, friction_of, own_damping, wall_damping_of
 from pipeline.models import MODELS, model_named
 from pipeline.models.rigid_body import FALLS_IN, HALF
 from pipeline.models.unhooking import LOCKED
 from pipeline.records import Estimate, Item, Origin, Scene, Support
-from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed, span, tables_of
+from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
-from pipeline.tables.bending_rows import bending
 
 SURE = 0.5
 """Probability from which materials and measures alone say a class."""
@@ -48,49 +50,6 @@ def _measured(value: float | None, unit: str) -> Estimate | None:
     return None if value is None else Estimate.measured(value, unit)
 
 
-# What depends on a table and a few words only is worked out once, not for every object of a collection.
-
-
-@lru_cache(maxsize=4096)
-def _clearance_of(values: AssumedValues, object_class: str) -> Estimate | None:
-    row = values.classes[object_class]
-    if row.room is None:
-        return None
-    low, value, high = (100.0 * v for v in (row.room.low, row.room.value, row.room.high))
-    note = f"clearance: {value:g} cm ({low:g} to {high:g}) to neighbour, wall or edge, assumed for: {row.told}"
-    return Estimate.assumed(row.room.value, row.room.low, row.room.high, "m", note, row.room.source)
-
-
-@lru_cache(maxsize=4096)
-def _friction_of(values: AssumedValues, material: str, surface: str) -> Estimate:
-    rows = values.friction_of(material, surface)
-    found = span(rows)
-    pair = f"{material or 'any material'} on {surface or 'any floor'}"
-    note = f"friction: {found.value:g} ({found.low:g} to {found.high:g}), {tables_of(rows)} for {pair}; not measured"
-    return Estimate.assumed(found.value, found.low, found.high, "-", note, found.source)
-
-
-@lru_cache(maxsize=4096)
-def _wall_damping_of(values: AssumedValues, wall: str, back: str) -> Estimate:
-    rows = values.damping_of(wall, back)
-    found = span(rows)
-    note = f"damping of {back or 'its back'} on {wall or 'the wall'} ({tables_of(rows)})"
-    if not wall and not back:
-        least = min(rows, key=lambda row: row.low)
-        pair = f"{least.back_surface.lower()} on {least.wall_surface.lower()}"
-        note = f"damping against the wall: {pair}, the least of {tables_of(rows)}; wall and back surfaces not recorded"
-    # With nothing known of its back the lowest damping counts.
-    return Estimate.assumed(found.value if back else found.low, found.low, found.high, "-", note, found.source)
-
-
-@cache
-def _own_damping() -> Estimate:
-    found = bending("damping")
-    low, value, high = (100.0 * v for v in (found.low, found.value, found.high))
-    note = f"damping of the object itself: {value:g} % ({low:g} to {high:g} %), assumed"
-    return Estimate.assumed(found.value, found.low, found.high, "-", note, found.source)
-
-
 def _own_base(row: ObjectClass) -> bool:
     """Say whether the museum's own row of a class states the base, and does not leave it as it was."""
     kouros = assumed().classes.get(row.name)
@@ -102,9 +61,18 @@ class _Builder:
     """Collects the parameters of one scene, and what is missing for them."""
 
     def __init__(
-        self, item: Item, row: ObjectClass, support: Support, values: AssumedValues, house: HouseEffect
+        self,
+        item: Item,
+        row: ObjectClass,
+        support: Support,
+        values: AssumedValues,
+        house: HouseEffect,
+        mount: MountGuess | None,
     ) -> None:
-        self.item, self.row, self.support, self.values, self.house = item, row, support, values, house
+        self.mount = mount
+        self.sizes = Sizes.of(item, row)
+        # All is found with the best of what is not recorded, and then made as uncertain as that is.
+        self.item, self.row, self.support, self.values, self.house = self.sizes.filled, row, support, values, house
         self.material = material_of(item, values)
         self.hanging: HangingGuess | None = None
         if support is Support.HUNG:
@@ -113,13 +81,23 @@ class _Builder:
         self.found: dict[str, Estimate] = {}
         self.missing: list[str] = []
         self.doubts: list[str] = []
+        self.hangs_on: set[str] = set()
 
     def build(self) -> None:
         if self.support in (Support.HUNG, Support.SUSPENDED):
             self._hanging()
+        elif self.mount is not None and not self.mount.stands:
+            self._mounted(self.mount)
         else:
             self._standing()
         self._clearance()
+        self.found |= self.sizes.used(self.hangs_on)
+
+    def _spread(self, name: str, *sizes: str, power: float = 1.0, cause: str = "") -> None:
+        """Make a number that was found as uncertain as the sizes that it hangs on and that are not recorded."""
+        if name in self.found and self.sizes.used(sizes) and self.found[name].origin is not Origin.MEASURED:
+            self.found[name] = self.sizes.spread(self.found[name], sizes, power, cause)
+            self.hangs_on.update(sizes)
 
     def _keep(self, name: str, estimate: Estimate | None) -> None:
         if estimate is not None:
@@ -134,11 +112,14 @@ class _Builder:
     def _hanging(self) -> None:
         if self.hanging is not None:
             self.found |= hanging_estimates(self.item, self.hanging)
+            for name in ("hook_height", "gyration"):
+                self._spread(name, "height", cause="hook_height")
+            self._spread("hook_offset", "depth")
         if self.hanging is None or swings(self.hanging):
             self._pendulum()
         elif self.item.height_m is None and "hook_depth" not in self.found and self.hanging.known not in LOCKED:
             self.missing.append("height")
-        self._mass()
+        self._weigh("height", "width")
 
     def _pendulum(self) -> None:
         item = self.item
@@ -151,9 +132,11 @@ class _Builder:
             note += "a hook further down gives half of that, a cord from a rail up to 1 m more"
             length = Estimate.assumed(half, 0.5 * half, half + 1.0, "m", note, "judgement")
         self._keep("length", length)
+        if item.suspension_length_m is None:
+            self._spread("length", "height")
         damping = self._known("damping", "damping", "-")
         if damping is None and self.support is Support.HUNG:
-            damping = _wall_damping_of(self.values, item.wall_surface, item.back_surface)
+            damping = wall_damping_of(self.values, item.wall_surface, item.back_surface)
         elif damping is None:
             note = "damping: none, as the paper takes it for chandeliers"
             damping = Estimate.assumed(0.0, 0.0, 0.0, "-", note, "Agbabian et al. 1991, sec. 2.4")
@@ -168,6 +151,9 @@ class _Builder:
         if cg is None:
             self.missing.append("height" if self.row.cg is not None else "height of the centre of gravity")
         self._keep("cg_height", cg)
+        if item.cg_height_m is None and self._stated_as("cg_height_m") != "cg_height_m":
+            self._spread("cg_height", "height")
+            cg = self.found.get("cg_height")
         halves = half_widths(item, "" if _own_base(self.row) else self.row.name, width, depth, cg)
         self.found |= halves
         if item.susceptible is None and not self.row.rocking_harms:
@@ -175,7 +161,7 @@ class _Builder:
             source = f"{self.row.table}, {self.row.name} ({self.row.source})"
             self._keep(FALLS_IN, Estimate.assumed(HALF, HALF, HALF, "-", note, source))
         self._friction()
-        self._mass()
+        self._weigh("height", "width", "depth")
         if not self._section(width, depth) and self.support is Support.FASTENED:
             # What is made fast is judged by its weakest section alone.
             self.missing.extend(lost if self.row.section else ["width of its weakest section"])
@@ -185,7 +171,16 @@ class _Builder:
             self.missing.extend(lost)
         self._keep("frequency", self._known("frequency_hz", "lowest natural frequency", "Hz"))
         if "frequency" in self.found:
-            self._keep("damping", self._known("damping", "damping of the object itself", "-") or _own_damping())
+            self._keep("damping", self._known("damping", "damping of the object itself", "-") or own_damping())
+
+    def _mounted(self, mount: MountGuess) -> None:
+        self.found |= mount_estimates(mount, self.row, self.sizes)
+        if "friction_static" not in self.found:
+            self._friction()
+        self._weigh("height", "width", "depth")
+        self.hangs_on.update(self.sizes.assumed if {"mass", "half_width"} & self.found.keys() else ())
+        if mount.models_need_size and "half_width" not in self.found:
+            self.missing.append("height")
 
     def _length(self, name: str, share: str, what: str) -> Estimate | None:
         """Return a length that is recorded, or stated as such or as a share of the height."""
@@ -193,6 +188,11 @@ class _Builder:
         if getattr(self.item, name) is None and stated is not None and stated.field == share:
             return None if height is None else stated.estimate(what, "m", height)
         return self._known(name, what, "m")
+
+    def _stated_as(self, about: str) -> str:
+        """Return as which field a house rule states a thing; "" where none does."""
+        stated = self.house.stated.get(about)
+        return "" if stated is None else stated.field
 
     def _plan(self) -> tuple[Estimate | None, Estimate | None, list[str]]:
         """Return the sides of its base, None where they are not known, and what must be recorded to know them."""
@@ -210,6 +210,9 @@ class _Builder:
                 side = share.estimate(f"base {name}", "m", largest)
             elif side is None and largest is not None and row.base is not None:
                 side = share_of(row, row.base, largest, "m", f"base {name}", name)
+            if side is not None and measured is None and self.sizes.used((name,)):
+                side = self.sizes.spread(side, (name,))
+                self.hangs_on.add(name)
             sides.append(side)
         width, depth = sides
         if width is None and depth is None:
@@ -229,37 +232,23 @@ class _Builder:
         friction = self._known("friction", "friction", "-")
         if friction is None:
             material = item.base_material or self.material.friction_as
-            friction = _friction_of(self.values, material, item.surface_material)
+            friction = friction_of(self.values, material, item.surface_material)
         self._keep("friction_static", friction)
 
     def _clearance(self) -> None:
         clearance = self._known("clearance_m", "clearance", "m")
-        if clearance is None:
-            clearance = _clearance_of(self.values, self.row.name)
+        if clearance is None and "clearance" not in self.found:
+            clearance = clearance_of(self.values, self.row.name)
         self._keep("clearance", clearance)
 
+    def _weigh(self, *sizes: str) -> None:
+        """Keep its mass, which hangs on these sizes."""
+        self._mass()
+        self._spread("mass", *sizes, cause="half_width" if self.sizes.used(PLAN) else "cg_height")
+
     def _mass(self) -> None:
-        item, row = self.item, self.row
-        mass = _measured(item.mass_kg, "kg")
-        if mass is None and self.support in (Support.HUNG, Support.SUSPENDED) and item.height_m and item.width_m:
-            area = item.height_m * item.width_m
-            note = "mass: 15 kg (5 to 40 kg) for each square metre of a framed work, assumed"
-            mass = Estimate.assumed(15.0 * area, 5.0 * area, 40.0 * area, "kg", note, "judgement")
-        across = item.width_m or item.depth_m
-        along = item.depth_m or item.width_m
-        if mass is None and row.filled is not None and item.height_m and across and along:
-            box = item.height_m * across * along * (0.25 * pi if row.round else 1.0)
-            fill, density = row.filled, self.material.density_range
-            note = f"mass: {self.material.told} of {density.value:g} kg/m3 filling {fill.value:g} of its outline"
-            mass = Estimate.assumed(
-                box * fill.value * density.value,
-                box * fill.low * density.low,
-                box * fill.high * density.high,
-                "kg",
-                f"{note}{row.aside}, assumed",
-                density.source,
-            )
-        self._keep("mass", mass)
+        hung = self.support in (Support.HUNG, Support.SUSPENDED)
+        self._keep("mass", mass_of(self.item, self.row, self.material, hung))
 
     def _section(self, width: Estimate | None, depth: Estimate | None) -> bool:
         """Keep what the stress in the weakest section hangs on; say whether all of it is known."""
@@ -288,7 +277,17 @@ class _Builder:
         low, lever, high = (max(one - height, 0.0) for one in (cg.low, cg.value, cg.high))
         self._keep("lever", Estimate(lever, "m", Origin.DERIVED, low, high, note))
         self.found |= found.section.estimates(item.orientation_deg is not None)
+        solid = solid_mass(item, self.row, self.material)
+        self._keep("solid_mass", solid)
+        if solid is not None:
+            # What bends is as stiff for its mass as the solid one.
+            low, value, high = (max(one, solid.value) for one in (mass.low, mass.value, mass.high))
+            mass = replace(mass, low=low, value=value, high=high)
         self._bending(found.section, mass, cg)
+        if found.section.width.origin is Origin.ASSUMED:
+            self._spread("section_modulus", self.sizes.narrow, power=3.0, cause="half_width")
+            self._spread("frequency", self.sizes.narrow)
+        self._spread("frequency", "height", power=-1.5)
         return True
 
     def _bending(self, section: Section, mass: Estimate, cg: Estimate) -> None:
@@ -312,7 +311,11 @@ def house_effect(
     """Return what a museum's house rules come to for an object: see `classify`."""
     object_class = _class_of(item, rules, decided).name
     values = assumed() if rules is None else rules.values
-    return house.effect(item, object_class, item.support or values.classes[object_class].support)
+    return _said(house, item, values.classes[object_class])
+
+
+def _said(house: HouseRules, item: Item, row: ObjectClass) -> HouseEffect:
+    return house.effect(item, row.name, item.support or row.support, mounts=WHEN_HELD in row.models)
 
 
 class _Taken(NamedTuple):
@@ -379,7 +382,7 @@ def classify(
     taken = _class_of(item, rules, decided)
     values = assumed() if rules is None else rules.values
     row = values.classes[taken.name]
-    said = NO_EFFECT if house is None else house.effect(item, taken.name, item.support or row.support)
+    said = NO_EFFECT if house is None else _said(house, item, row)
     scene = _scene(item, row, taken.words, values, said)
     hanging = said.hanging(item) or scene.hanging
     scene = replace(scene, hanging=hanging, statements=said.statements, chances=taken.chances)
@@ -389,13 +392,15 @@ def classify(
 def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, house: HouseEffect) -> Scene:
     stands = house.laid_over(item)
     support = stands.support or row.support
-    models = _tried(stands, row)
+    mount = mount_of(stands, row, house)
+    models = _tried(stands, row, None if mount is None else mount.row.models)
     if not models:
         why = f"no generic model applies: it {row.why}"
         return Scene(item, row.name, words, support, (), {}, (), (why,))
-    builder = _Builder(item, row, support, values, house)
+    builder = _Builder(item, row, support, values, house, mount)
     builder.build()
-    builder.missing.extend(_unheld(stands, support))
+    if mount is None:
+        builder.missing.extend(_unheld(stands, support))
     missing = tuple(builder.missing) if _needs_size(models) else ()
     known = builder.found
     for estimates in _estimates_of(models):
@@ -403,16 +408,21 @@ def _scene(item: Item, row: ObjectClass, words: str, values: AssumedValues, hous
         known |= {name: one for name, one in estimates(scene).items() if name not in known}
     assumptions = [e.note for e in known.values() if e.origin is Origin.ASSUMED and e.note] + builder.doubts
     hanging = None if builder.hanging is None else builder.hanging.known
-    if stands.support is None:
+    if mount is not None and mount.note:
+        assumptions.insert(0, mount.note)
+    elif stands.support is None:
         assumptions.insert(0, f"support: {support.value}, assumed for: {row.told}; not recorded")
     told = tuple(dict.fromkeys(assumptions))
-    return Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
+    scene = Scene(item, row.name, words, support, models, known, told, missing, hanging=hanging)
+    return scene if mount is None else replace(scene, mount=mount.way, mount_origin=mount.origin)
 
 
-def _tried(item: Item, row: ObjectClass) -> tuple[str, ...]:
+def _tried(item: Item, row: ObjectClass, as_mounted: tuple[str, ...] | None = None) -> tuple[str, ...]:
     """Return the models that are tried on an object of a class: those of its class, or of how it is held, and more."""
     models = () if set(row.models) & {NO_MODEL, WHEN_HELD} else row.models
-    if item.support is not None and (item.support is not row.support or not (models or row.models == (NO_MODEL,))):
+    if as_mounted is not None:
+        models = as_mounted
+    elif item.support is not None and (item.support is not row.support or not (models or row.models == (NO_MODEL,))):
         models = models_of(item.support)
     for name, joins in _joining():
         if name not in models and joins(item, row.name, models):

@@ -5,8 +5,10 @@ A multinomial logistic model (Hastie, Tibshirani and Friedman 2009, The elements
 .. math:: P(c) \\propto \\exp \\left( b_c + \\sum_f a_f [v_f = c] + \\sum_s w_{s,c} \\right)
 
 with v_f the class that field f by itself says (by the rules of `pipeline.analysis.rules`), a_f how far fields are to be
-believed, and w the weights of signs s: the class and the rule of each field, materials, words of parts, and measures in
-steps.  tables/class_weights.csv holds a, b and w; `pipeline.verification.class_fit` finds them from labelled objects.
+believed, and w the weights of signs s: the class and the rule of each field, materials, words of parts and of the
+department (which stands for the gallery where an export tells no other), and measures in steps.  A floor under all
+classes stands for museums that mean other things by their words.  tables/class_weights.csv holds a, b and w;
+`pipeline.verification.class_fit` finds them from labelled objects.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from math import log
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.analysis.rules import Readings, RuleMatch, fold, stuff
+from pipeline.analysis.rules import Readings, RuleMatch, fold, stuff, words_of
 from pipeline.records import Item
 from pipeline.tables import table
 
@@ -31,22 +33,31 @@ AGREES = "says so"
 """After the name of a field: that it says the class itself."""
 FIELDS = ("name", "classification", "medium", "title")
 """The parts of `Readings` that say a class."""
+BESIDE = "title beside a name"
+"""What a title says where an object name says what the thing is: it counts for less."""
 NOTHING = "nothing"
 """What decides where no part of the record says a class."""
-SAYING = (*FIELDS, *(f"decided by {field}" for field in (*FIELDS, NOTHING)))
+SAYING = (*FIELDS, BESIDE, *(f"decided by {field}" for field in (*FIELDS, NOTHING)))
 """What has a say: each part, and the rule that decides, by the part that it comes from."""
 POSSIBLE = 0.02
 """Probability from which a class is likely at all."""
+GALLERY = "gallery"
+"""Field of signs that count only where there are any: most galleries are rooms, whose names say nothing."""
 SILENT = "silent"
 """What a part of a record says that names no class."""
 IDENTIFIED = 0.97
 """Probability of a class that an identifier of the Getty AAT gives: records hold those of parts too (judgement)."""
 SIZES = (0.05, 0.1, 0.2, 0.4, 0.8, 1.5, 3.0)
 """Steps of the largest dimension [m]."""
-HEIGHTS = (0.15, 0.5, 1.0, 2.0, 4.0, 9.0)
+HEIGHTS = (0.15, 0.5, 0.75, 1.0, 1.8, 4.0, 9.0)
 """Steps of the height over the larger plan dimension."""
 DEPTHS = (0.05, 0.12, 0.25, 0.5)
 """Steps of the smallest dimension over the middle one."""
+FLOOR = 0.02
+"""Chance that a museum means by its words what no labelled museum means: shared alike by all classes.
+
+It is what the scatter between museums that were left out leaves over: see pipeline.verification.class_scores.
+"""
 _READ = 400
 """Characters of a text that are searched."""
 
@@ -68,12 +79,7 @@ class _Sign:
 
 @cache
 def _signs() -> tuple[_Sign, ...]:
-    return tuple(_Sign(row["sign"], row["field"], _any_of(row["words"].split("|"))) for row in table("class_signs"))
-
-
-def _any_of(words: list[str]) -> re.Pattern[str]:
-    longest = sorted({fold(word) for word in words}, key=lambda word: (-len(word), word))
-    return re.compile(rf"\b(?:{'|'.join(map(re.escape, longest))})s?\b")
+    return tuple(_Sign(row["sign"], row["field"], words_of(row["words"].split("|"))) for row in table("class_signs"))
 
 
 @lru_cache(maxsize=65536)
@@ -81,7 +87,9 @@ def _signs_in(field: str, text: str) -> tuple[str, ...]:
     found = tuple(
         f"{field}: {sign.name}" for sign in _signs() if sign.field == field and sign.pattern.search(text[:_READ])
     )
-    return found or ((f"{field}: nothing known",) if text.strip() else (f"{field}: none",))
+    if found or field == GALLERY:
+        return found
+    return (f"{field}: nothing known",) if text.strip() else (f"{field}: none",)
 
 
 def _step(value: float, steps: tuple[float, ...]) -> str:
@@ -107,16 +115,20 @@ def _measures(item: Item) -> tuple[str, ...]:
 def signs_of(item: Item, read: Readings) -> tuple[str, ...]:
     """Return the signs that an object shows: what the model weighs."""
     out, decisive = [BIAS], NOTHING
+    # A name that only repeats the classification, such as sculpture, leaves the title its say.
+    named = read.name is not None and fold(item.object_name) != fold(item.classification)
     for field in FIELDS:
         one: RuleMatch | None = getattr(read, field)
+        part = BESIDE if field == "title" and named else field
         if one is None:
-            out.append(f"{field}: {SILENT}")
+            out.append(f"{part}: {SILENT}")
         else:
-            out += (f"{field}: {one.rule.object_class}", f"rule of {field}: {one.rule.name}")
+            out += (f"{part}: {one.rule.object_class}", f"rule of {part}: {one.rule.name}")
             decisive = field if one is read.decided else decisive
     out.append(f"decided by {decisive}: {read.decided.rule.object_class}")
     out += _signs_in("medium", stuff(item.material, item.medium))
     out += _signs_in("title", fold(item.title or item.object_name))
+    out += _signs_in(GALLERY, fold(item.gallery))
     out += _measures(item)
     return tuple(out)
 
@@ -170,12 +182,17 @@ def weights() -> Weights:
     return read_weights(table("class_weights"), tuple(row["class"] for row in table("classes")))
 
 
+def shares_of(scores: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the probabilities of scores (along the last axis), with the floor that every class keeps."""
+    shares = np.exp(scores - scores.max(axis=-1, keepdims=True))
+    shares /= shares.sum(axis=-1, keepdims=True)
+    return np.asarray((1.0 - FLOOR) * shares + FLOOR / scores.shape[-1])
+
+
 @lru_cache(maxsize=65536)
 def _chances(signs: tuple[str, ...]) -> tuple[Chance, ...]:
     of = weights()
-    scores = of.scores(signs)
-    shares = np.exp(scores - scores.max())
-    shares /= shares.sum()
+    shares = shares_of(of.scores(signs))
     order = np.argsort(-shares, kind="stable")
     return tuple(Chance(of.classes[at], float(shares[at])) for at in order)
 

@@ -14,9 +14,11 @@ from pipeline.analysis.plan import Indices, Work
 from pipeline.analysis.refinement import FidelitySearch
 from pipeline.analysis.verdicts import LevelMotions, Mask, utilisation
 from pipeline.models.common import NO_VERTICAL, words
+from pipeline.motions.record import ESTIMATED
 from pipeline.quantities import Array
 from pipeline.records import Columns, Estimate, Finding, Mark, Model, Numerics, Origin, Scene, Verdict
 from pipeline.records.result import BOUNDS, DEMANDS
+from pipeline.tables.mount_rows import mount_rows
 
 _SCREEN = Numerics("screen")
 
@@ -110,7 +112,7 @@ def findings(search: FidelitySearch, case: DemandCase, known: Known, scenes: Seq
         scene, motion, said = scenes[index], level.told[at], rows.said(row, at)
         other = model.otherwise(scene)
         bound = model.at_most if at_most or enclosed else ""
-        sentence = other[2] if other else bound or model.sentence
+        sentence = other[2] if other else (model.gripped if _gripped(scene) else "") or bound or model.sentence
         # Charts are drawn of the motions of the floor.
         marked = None if level.passed_on else model.mark(said.parameters, demand)
         out.append(
@@ -146,6 +148,10 @@ def findings(search: FidelitySearch, case: DemandCase, known: Known, scenes: Seq
             )
         )
     return out
+
+
+def _gripped(scene: Scene) -> bool:
+    return scene.mount is not None and mount_rows()[scene.mount].room is not None
 
 
 def _verdicts(known: Known) -> list[Verdict]:
@@ -209,8 +215,10 @@ class _Rows:
         )
 
     def _unsaid(self, at: int) -> str:
-        vertical = self._search.level.motions[at].acceleration[2]
-        return NO_VERTICAL if self._search.work.model.vertical and not vertical.any() else ""
+        motion = self._search.level.motions[at]
+        if not self._search.work.model.vertical:
+            return ""
+        return ESTIMATED if ESTIMATED in motion.steps else "" if motion.acceleration[2].any() else NO_VERTICAL
 
 
 def _screens(work: Work, level: LevelMotions, at: int, rows: Indices) -> tuple[Indices, Columns]:

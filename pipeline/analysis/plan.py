@@ -176,6 +176,7 @@ def _kind(scene: Scene) -> Hashable:
         scene.object_class,
         scene.support,
         scene.hanging,
+        scene.mount,
         scene.models,
         scene.missing,
         scene.rule,

@@ -51,6 +51,15 @@ _SHOWN = 80
 """Characters of a cell that a message repeats."""
 _STEM = 2
 """Letters that must precede an ending such as *statuette."""
+_IDEOGRAPH = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
+"""Letters of scripts that put no spaces between words: there one letter may precede an ending."""
+_PART = re.compile(
+    r"[(,:]\s*(lid|cover|stopper|fragment|sherd|deckel|couvercle|coperchio|tapa|deksel|capac|tampa|fragmento|frammento)s?"
+    r"\s*\)?\s*$"
+)
+"""What is said behind the name of a thing of which only a part is there: jar (lid)."""
+_BLANK = ("", "(not assigned)", "not assigned", "unclassified", "uncategorized", "unknown", "n/a", "none", "-")
+"""Classifications that say nothing."""
 
 
 @lru_cache(maxsize=4096)
@@ -68,8 +77,20 @@ def stuff(material: str, medium: str) -> str:
 
 
 def words_of(entries: Iterable[str]) -> re.Pattern[str]:
-    """Return what finds any of some words in what `stuff` returns, in singular or plural."""
-    return re.compile(rf"\b(?:{'|'.join(re.escape(fold(entry)) for entry in entries)})s?\b")
+    """Return what finds any of some words in what `fold` or `stuff` returns, in singular or plural, the longest first.
+
+    Words of scripts without spaces are found within others.
+    """
+    words = sorted({fold(entry) for entry in entries}, key=lambda word: (-len(word), word))
+    within = [word for word in words if _IDEOGRAPH.search(word)]
+    apart = [re.escape(word) for word in words if word not in within]
+    bounded = [rf"\b(?:{'|'.join(apart)})s?\b"] if apart else []
+    return re.compile("|".join([*bounded, *map(re.escape, within)]))
+
+
+@lru_cache(maxsize=65536)
+def _has(words: re.Pattern[str], text: str) -> bool:
+    return words.search(text) is not None
 
 
 def identifiers(text: str) -> frozenset[str]:
@@ -147,7 +168,7 @@ class Rule:
 
     def fits(self, item: Item) -> bool:
         """Say whether the object's medium and measures are those of the row."""
-        if self.medium is not None and not self.medium.search(stuff(item.material, item.medium)):
+        if self.medium is not None and not _has(self.medium, stuff(item.material, item.medium)):
             return False
         return all(shape(item) for shape in self.shapes)
 
@@ -161,6 +182,7 @@ class RuleTable:
     spanning : the phrases that a word such as "of" or "de" does not break
     aat     : every identifier that some rule names
     by_last : the known words and phrases by their last word
+    endings : the known endings by their last letter, the longest first
     values  : what is assumed of the classes that the rules name
     """
 
@@ -173,6 +195,7 @@ class RuleTable:
     spanning: re.Pattern[str] | None
     aat: frozenset[str]
     by_last: Mapping[str, tuple[str, ...]]
+    endings: Mapping[str, tuple[str, ...]]
     values: AssumedValues
 
 
@@ -221,15 +244,23 @@ def read_rules(
     return RuleTable(
         tuple(out),
         {word: tuple(found) for word, found in words.items()},
-        {ending: tuple(endings[ending]) for ending in sorted(endings, key=len, reverse=True)},
+        {ending: tuple(found) for ending, found in endings.items()},
         tuple(r for r in out if not r.named and not r.kinds and (r.medium or r.shapes or r is out[-1])),
         tuple(r for r in out if not r.named and r.kinds),
         frozenset(own),
         _spanning(words),
         frozenset().union(*(rule.aat for rule in out)),
         {last: tuple(phrases) for last, phrases in by_last.items()},
+        _by_last_letter(endings),
         values,
     )
+
+
+def _by_last_letter(endings: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    out: dict[str, list[str]] = {}
+    for ending in sorted(endings, key=lambda one: (-len(one), one)):
+        out.setdefault(ending[-1], []).append(ending)
+    return {letter: tuple(found) for letter, found in out.items()}
 
 
 def _spanning(words: Iterable[str]) -> re.Pattern[str] | None:
@@ -245,7 +276,7 @@ def _rule(row: _RuleRow, position: int) -> Rule:
         row.rule,
         row.object_class,
         frozenset(row.aat),
-        frozenset(_singular(fold(kind)) for kind in row.classification),
+        frozenset(_singular(fold(kind).replace("&", "and")) for kind in row.classification),
         frozenset(word for word, ends in words if not ends),
         tuple(word for word, ends in words if ends),
         words_of(row.medium) if row.medium else None,
@@ -365,6 +396,9 @@ def _candidates(text: str, of: RuleTable) -> tuple[str, ...]:
     # A phrase such as "montre de poche" goes over what would else break it; it must stand at the beginning.
     start = of.spanning.match(folded) if of.spanning is not None else None
     out = [] if start is None else list(_spelt(of, start.group().split()))
+    only = _PART.search(folded)
+    if only is not None:
+        out += _spelt(of, [only.group(1)])
     for part in parts:
         found = _WORD.findall(part)
         for end in range(len(found), 0, -1):
@@ -390,8 +424,8 @@ def _known(of: RuleTable, word: str) -> tuple[tuple[tuple[str, ...], str], ...]:
     ends = [
         ((), f"*{ending}")
         for form in forms
-        for ending in of.by_ending
-        if form.endswith(ending) and len(form) >= len(ending) + _STEM
+        for ending in of.endings.get(form[-1], ())
+        if form.endswith(ending) and len(form) >= len(ending) + (1 if _IDEOGRAPH.match(ending) else _STEM)
     ]
     return (*sorted(whole, key=lambda pair: -len(pair[0])), *ends)
 
@@ -413,6 +447,8 @@ def _singular(kind: str) -> str:
 @lru_cache(maxsize=4096)
 def _kinds(text: str) -> frozenset[str]:
     """Return a classification or object name, whole and in its parts, in the singular."""
-    folded = fold(text).strip()
+    folded = fold(text).strip().replace("&", "and")
+    if folded in _BLANK:
+        return frozenset()
     parts = (folded, *re.split(r"[|;,/-]", folded))
     return frozenset(_singular(part.strip()) for part in parts if part.strip())

@@ -111,6 +111,9 @@ def section_of(item: Item, row: ObjectClass, width: Estimate | None, depth: Esti
     narrow = min(width, depth, key=lambda e: e.value)
     kind = row.section
     across = min(item.width_m or item.depth_m or narrow.value, item.depth_m or item.width_m or narrow.value)
+    if min(narrow.low, across) <= 0.0:
+        # What has no width has no section either.
+        return KnownSection(None, missing, doubts)
     of_base = kind in ("foot", "legs", "ring")
     what = "wall of its foot" if kind == "ring" else f"critical section ({kind})"
     of = "narrower base side" if of_base else "narrower side"

@@ -14,9 +14,10 @@ from functools import cache
 from pipeline.analysis.assess import assess
 from pipeline.analysis.context import Context
 from pipeline.analysis.footing import HALVES, tilted
+from pipeline.analysis.sizes import PLAN, SIZES
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.models import model_named
-from pipeline.records import Estimate, Finding, Likelihood, MeasurementRequest, Numerics, Origin, Scene, Verdict
+from pipeline.records import Estimate, Finding, Likelihood, MeasurementRequest, Mount, Numerics, Origin, Scene, Verdict
 from pipeline.records.numerics import HISTORIES
 from pipeline.tables import table
 from pipeline.tables.rows import Entries, Optional, checked
@@ -68,6 +69,16 @@ def measurables() -> tuple[Measurable, ...]:
     """
     return checked(Measurable, table("survey"), "survey.csv", named="field")
 
+
+_SIZE_FIELDS = frozenset(f"{size}_m" for size in SIZES)
+"""Fields of sizes, on which no model hangs but through other numbers."""
+
+_BEHIND: Mapping[str, Sequence[str]] = {
+    **dict.fromkeys((*HALVES, "section_modulus"), PLAN),
+    **dict.fromkeys(("cg_height", "lever", "length", "hook_height", "gyration"), ("height",)),
+    **dict.fromkeys(("mass", "frequency"), SIZES),
+}
+"""Parameters, and the sizes that they hang on where nobody recorded these."""
 
 _MISSING = {
     "height": "height_m",
@@ -159,16 +170,38 @@ def telling_requests(scenes: Sequence[Scene], chances: Sequence[Sequence[Likelih
         for one in those:
             best.setdefault(one.open_for, []).append(one)
         for parameter, some in best.items():
+            if parameter == "friction_static" and scene.mount is Mount.UNKNOWN:
+                # No scale tells how a mount grips: a house rule does.
+                continue
+            size = size_behind(scene, parameter)
             # The first of the table that may be asked for: a tilt test tells more than a base that is measured.
-            fit = (m for m in measurables() if parameter in m.parameters and _may_be_asked(scene, m))
+            fit = (m for m in measurables() if (size or parameter) in m.parameters and _may_be_asked(scene, m))
             measurable = next(fit, None)
             if measurable is None:
                 continue
-            estimate = scene.parameters.get(parameter)
+            estimate = scene.parameters.get(size or parameter)
             reason = (estimate.note if estimate is not None else "") or "derived"
             trial = _Trial(scene, measurable, frozenset((parameter, one.level) for one in some), (), reason)
             out.append(replace(_request(trial, sum(one.moves for one in some)), drawn=True))
     return in_order(out)
+
+
+def size_behind(scene: Scene, parameter: str) -> str:
+    """Return the size that a number hangs on and that nobody recorded, which is sooner measured than the number.
+
+    Parameters
+    ----------
+    scene
+        The object as it stands.
+    parameter
+        Of its models.
+
+    Returns
+    -------
+    str
+        "height", "width" or "depth"; "" where the number hangs on none, or where all of them are recorded.
+    """
+    return next((size for size in _BEHIND.get(parameter, ()) if size in scene.parameters), "")
 
 
 def in_order(found: Sequence[MeasurementRequest]) -> list[MeasurementRequest]:
@@ -226,7 +259,7 @@ def _trials(scene: Scene, findings: Sequence[Finding]) -> list[_Trial]:
         return []
     out = []
     for measurable in measurables():
-        if not _may_be_asked(scene, measurable):
+        if not _may_be_asked(scene, measurable) or measurable.field in _SIZE_FIELDS:
             continue
         uncertain = [
             scene.parameters[name]

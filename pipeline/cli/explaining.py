@@ -53,6 +53,8 @@ def explanation_lines(explained: "Explanation") -> Iterator[str]:
     yield f"  class    {scene.object_class}, by rule {scene.rule}"
     yield from _class_lines(explained)
     yield f"  support  {scene.support.value}" + (f", on floor {scene.floor}" if scene.floor else "")
+    if scene.mount is not None and scene.mount_origin is not None:
+        yield f"  mount    {scene.mount.value}, {scene.mount_origin.value}"
     for statement in scene.statements:
         yield f"  house    {statement}"
     if explained.worth is not None:
@@ -86,12 +88,19 @@ def _class_lines(explained: "Explanation") -> Iterator[str]:
 
 
 def _likelihood(found: "Likelihood") -> Iterator[str]:
+    from pipeline.records.likelihood import CLASS
+
     yield f"  harm, {found.level}: {found.band.value}"
     yield f"    probability {found.probability:.3g} ± {found.error:.1g}, of {found.samples} samples"
+    for one in found.classes:
+        # What harm does to it as each class, of as many of the samples as had it be that.
+        harmed = "not drawn" if one.probability is None else f"harm {one.probability:.2g} of {one.samples} samples"
+        yield f"    if {' or '.join(one.classes)} ({one.chance:.2f}): {harmed}"
     for state, probability in found.states.items():
         yield f"    {state:<10}{probability:.3g}"
     if found.open_for:
-        yield f"    open      {found.open_for} alone may change what is decided; it is worth {found.worth:.2g}"
+        what = "what it is" if found.open_for == CLASS else found.open_for
+        yield f"    open      {what} alone may change what is decided; it is worth {found.worth:.2g}"
 
 
 def _reasoning(reasoning: "Reasoning") -> Iterator[str]:
@@ -121,12 +130,12 @@ def _taken(taken: "Taken") -> str:
 def _advice(advice: "Recommendation") -> Iterator[str]:
     values = ", ".join(f"{name} {_number(v)} {advice.units[name]}" for name, v in advice.parameters.items())
     yield f"  advice, {advice.level}: {advice.title}" + (f" ({values})" if values else "")
+    from pipeline.mitigate.by_class import NAMED_FIRST
     from pipeline.mitigate.search import ANCHORED, ONLY_HERE
 
     if advice.sentence.startswith(ANCHORED):
         yield f"    {ANCHORED}"
-    if advice.sentence.endswith(ONLY_HERE):
-        yield f"    {ONLY_HERE}"
+    yield from (f"    {words}" for words in (ONLY_HERE, NAMED_FIRST) if words in advice.sentence)
     if advice.remaining is not None:
         yield f"    harm remains with a probability of {advice.remaining:.2g}"
     for check in advice.checks:

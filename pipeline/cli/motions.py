@@ -1,4 +1,4 @@
-"""The seismologist's verbs: kouros motions list, show, process, compare, synthesise, select."""
+"""The seismologist's verbs: kouros motions add, export, list, show, process, compare, synthesise, select, convert."""
 
 import json
 from collections.abc import Sequence
@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pipeline.cli.adding import add, export
 from pipeline.cli.console import aligned
+from pipeline.cli.converting import convert
+from pipeline.cli.motions_words import swap_lines
 from pipeline.cli.options import Options, as_json, dry_run, say_dry
 from pipeline.cli.selecting import select
 
 if TYPE_CHECKING:
     from pipeline.settings import Settings
-    from pipeline.tools.compare_motions import Pair, Swap
     from pipeline.tools.strong_motion import MotionRow
 
 
@@ -139,7 +141,8 @@ def show(options: Options, site: str | None, record: str, out: Path, as_json: bo
     "reason",
     metavar="REASON",
     help="Overrule what was refused as a matter of judgement (clipping, a record cut off, an odd size, an orientation "
-    "against the station's) for --record; the manifest keeps the reason.  What is corrupt stays refused.",
+    "against the station's, components that do not belong together, several earthquakes) for --record; the manifest "
+    "keeps the reason.  What is corrupt stays refused.",
 )
 @dry_run("Process, and say what would be written or overruled")
 @as_json
@@ -199,41 +202,7 @@ def compare(options: Options, old: str, new: str, as_json: bool) -> None:
     if as_json:
         click.echo(json.dumps(asdict(swap), indent=2))
         return
-    click.echo("\n".join(_swap_lines(swap)))
-
-
-def _swap_lines(swap: "Swap", most: int = 20) -> list[str]:
-    lines = [f"from {swap.old}", f"to   {swap.new}"]
-    for pair in swap.pairs:
-        lines += ["", f"{pair.level}: {pair.before or 'nothing'} -> {pair.after or 'nothing'}"]
-        lines += ["  the same samples"] if pair.same else _measure_lines(pair)
-    lines += ["", f"Verdicts: {swap.basis}"]
-    lines += [f"  {number:>6,}  {words}" for words, number in swap.moved.items()]
-    lines += [
-        f"  {v.object_number} ({v.gallery}) {v.model}, {v.level}: {v.before or 'none'} -> {v.after or 'none'}"
-        for v in swap.verdicts[:most]
-    ]
-    if len(swap.verdicts) > most:
-        lines.append(f"  and {len(swap.verdicts) - most:,} more (--json lists all)")
-    if not swap.verdicts and swap.basis.startswith("the "):
-        lines.append("  none changes")
-    return lines
-
-
-def _measure_lines(pair: "Pair") -> list[str]:
-    from pipeline.report import Units
-
-    units = {"pga": "m/s2", "pgv": "m/s", "pgd": "m", "duration": "s", "pulse_period": "s", "pulse_pgv": "m/s"}
-    lines = []
-    for name, (before, after) in pair.measures.items():
-        unit = next((u for stem, u in units.items() if name.startswith(stem)), "")
-        told = [
-            ("-" if value is None else Units().text(value, unit) if unit else f"{value:.3g}")
-            for value in (before, after)
-        ]
-        change = f"{after / before - 1:+.1%}" if before and after is not None else ""
-        lines.append(f"  {name:<16}{told[0]:>14} -> {told[1]:<14}{change}".rstrip())
-    return lines
+    click.echo("\n".join(swap_lines(swap)))
 
 
 @motions.command(context_settings={"ignore_unknown_options": True})
@@ -299,4 +268,7 @@ def synthesise(
     click.echo(f"wrote {file}; try: kouros respond sliding friction_static=0.1,0.2 --site {out}")
 
 
+motions.add_command(add)
+motions.add_command(export)
 motions.add_command(select)
+motions.add_command(convert)

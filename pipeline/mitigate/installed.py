@@ -3,15 +3,17 @@
 The changes are those by which a measure is verified before it is advised (`Measure.change`).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import fsum
 from typing import Any
 
 from pipeline.analysis.assess import LevelMotions, assess
 from pipeline.analysis.context import Context
 from pipeline.analysis.furnished import furnished
 from pipeline.analysis.furniture import FurnitureFilter, filter_of
-from pipeline.analysis.likelihood.sampling import Stood, Transfer, likelihoods
+from pipeline.analysis.likelihood.analyses import CERTAIN, Kind, Stood, Transfer
+from pipeline.analysis.likelihood.sampling import likelihoods
 from pipeline.analysis.transmission import transmit
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
 from pipeline.mitigate.measures.base import held
@@ -45,17 +47,39 @@ class Placed:
         The object as it stands on the isolator; None where there is none.
     isolator : str
         Model of the isolator; "" for none.
+    may_be : tuple of PlacedAs
+        It as each class that it may be of, the one of `scene` first; () where that is certain or makes no difference.
     """
 
     scene: Scene
     above: Scene | None = None
     isolator: str = ""
+    may_be: "tuple[PlacedAs, ...]" = ()
 
     def passing(self) -> Transfer:
         """Return what passes the motion on: the kind of the isolator, and its parameters by name."""
         known = self.scene.parameters
         names = (q.name for q in model_named(self.isolator).needs if q.name in known)
         return self.isolator, tuple((name, known[name].value) for name in names)
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedAs:
+    """An object as one of the classes that it may be of.
+
+    Attributes
+    ----------
+    classes : tuple of str
+        The class, or several for which the same is computed.
+    chance : float
+        How likely it is of that; those of an object need not add up to 1.
+    placed : Placed
+        It as such, as it stands.
+    """
+
+    classes: tuple[str, ...]
+    chance: float
+    placed: Placed
 
 
 def placed(scene: Scene, measures: Sequence[InstalledMeasure], catalogue: MeasureCatalogue | None = None) -> Placed:
@@ -78,8 +102,14 @@ def placed(scene: Scene, measures: Sequence[InstalledMeasure], catalogue: Measur
     -------
     Placed
     """
+    return placed_more(Placed(scene), measures, catalogue)
+
+
+def placed_more(
+    stands: Placed, measures: Sequence[InstalledMeasure], catalogue: MeasureCatalogue | None = None
+) -> Placed:
+    """Return an object with more measures in place than it stands with: see `placed`."""
     catalogue = catalogue or own_catalogue()
-    stands = Placed(scene)
     for installed in measures:
         before = stands.scene if stands.above is None else stands.above
         try:
@@ -182,13 +212,24 @@ def likely(
 
 def stood_of(objects: Sequence[Placed]) -> list[Stood]:
     """Return the scenes of objects as joint samples shake them: those on isolators by what these do and pass on."""
-    stood = []
+    stood: list[Stood] = []
     for at, one in enumerate(objects):
-        stood.append(Stood(at, one.scene))
-        if one.above is not None:
-            passed = one.passing()
-            stood += [Stood(at, scene, passed if on_top else None) for scene, on_top in _shaken(one.above, passed[0])]
+        if not one.may_be:
+            stood += _stood(at, one, CERTAIN)
+        whole, start = fsum(each.chance for each in one.may_be), 0.0
+        for number, each in enumerate(one.may_be, start=1):
+            end = 1.0 if number == len(one.may_be) else start + each.chance / whole
+            stood += _stood(at, each.placed, Kind(each.classes, start, end))
+            start = end
     return stood
+
+
+def _stood(at: int, one: Placed, kind: Kind) -> Iterator[Stood]:
+    yield Stood(at, one.scene, kind=kind)
+    if one.above is not None:
+        passed = one.passing()
+        for scene, on_top in _shaken(one.above, passed[0]):
+            yield Stood(at, scene, passed if on_top else None, kind)
 
 
 def _passed(level: LevelMotions, transfer: Transfer) -> LevelMotions:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from pipeline.analysis.fragility.curve import ENOUGH, stated
-from pipeline.analysis.likelihood.sampling import Transfer
+from pipeline.analysis.likelihood.analyses import Transfer
 from pipeline.analysis.model_runs import prepare
 from pipeline.analysis.transmission import transmit
 from pipeline.analysis.verdicts import LevelMotions

@@ -34,6 +34,7 @@ from pipeline.models import settled_by_room
 from pipeline.models.unanchored import UNANCHORED
 from pipeline.records import Finding, Likelihood, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
+from pipeline.tables.mount_rows import mount_rows
 
 ONLY_HERE = "At another level of shaking it is not enough, and nothing that was tried is enough at all of them."
 """Follows the sentence of a measure that holds at one level only."""
@@ -150,8 +151,12 @@ def advise(
 
 
 def _asked(chances: Sequence[Likelihood], aim: HarmAim) -> frozenset[str]:
-    """Return the levels at which harm is too likely."""
-    return frozenset(one.level for one in chances if one.probability >= aim.target)
+    """Return the levels at which harm is too likely, also if the object is of the class that it is taken for.
+
+    Where only another class that is possible makes it so, no measure for this one helps: naming the object does.
+    """
+    too_likely = (one for one in chances if one.probability >= aim.target)
+    return frozenset(one.level for one in too_likely if not one.classes or one.classes[0].at_least(aim.target))
 
 
 def _furniture(scenes: Sequence[Scene]) -> list[FurnitureFilter | None]:
@@ -333,6 +338,9 @@ class _Search:
             open_ = self._round(open_, measure, last)
 
     def _proposed(self, unit: Unit, measure: Measure) -> Proposal:
+        mounts = [one.scene.mount for one in unit if one.wanted]
+        if not any(mount is None or measure.name in mount_rows()[mount].measures for mount in mounts):
+            return refused("it is not for what lies or is held as this is")
         if measure.isolator and any(_band_unknown(one.scene) for one in unit):
             return UNKNOWN_FREQUENCY
         if measure.isolator and any(_may_fall(one.findings) for one in unit):

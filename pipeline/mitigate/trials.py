@@ -11,7 +11,8 @@ from pipeline.analysis.assess import assess
 from pipeline.analysis.context import Context
 from pipeline.analysis.furnished import best_furnished, furnished, isolating
 from pipeline.analysis.furniture import FurnitureFilter, filter_of, loose, without_furniture
-from pipeline.analysis.likelihood.sampling import FEWEST, Stood, likelihoods
+from pipeline.analysis.likelihood.analyses import Stood
+from pipeline.analysis.likelihood.sampling import FEWEST, likelihoods
 from pipeline.analysis.response import answer
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.isolation import IsolatorResponse, TransmittedMotions, push_of, run_isolator
@@ -241,10 +242,14 @@ class TrialRunner:
         stood = []
         for at, trial in enumerate(trials):
             stood.append(Stood(at, trial.scene, None if trial.on is None else trial.on.transfer))
-        sampling = self._aim.sampling.deciding(self._aim.target)
-        sampling = replace(sampling, samples=min(sampling.samples, MOST))
         found = likelihoods(
-            stood, len(trials), self._floor, sampling, self._context.executor, telling=False, first=FEWEST
+            stood,
+            len(trials),
+            self._floor,
+            most_sampled(self._aim),
+            self._context.executor,
+            telling=False,
+            first=FEWEST,
         )
         return [{one.level: one for one in those} for those in found]
 
@@ -339,6 +344,12 @@ class TrialRunner:
             turns[at] = np.max(each, axis=0)
         for one, turn, share in zip(fresh, turns.max(axis=0).tolist(), shares.tolist(), strict=True):
             self._on_pads[pad, one] = (turn, share)
+
+
+def most_sampled(aim: HarmAim) -> Sampling:
+    """Return how closely harm is drawn that a measure leaves: as telling on which side of the aim it is takes."""
+    sampling = aim.sampling.deciding(aim.target)
+    return replace(sampling, samples=min(sampling.samples, MOST))
 
 
 def settled(scene: Scene) -> Scene:

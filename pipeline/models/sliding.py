@@ -33,6 +33,7 @@ from pipeline.records import (
     Harm,
     Model,
     Motion,
+    Mount,
     Scene,
     Support,
     Trials,
@@ -87,6 +88,9 @@ def _certificate(motion: Excitation, parameters: Mapping[str, Array]) -> Array:
 
 
 def _applies(scene: Scene) -> str:
+    # What a mount holds slides on it once its grip is overcome.
+    if scene.mount is Mount.SECURED:
+        return needs(scene, "friction_static")
     return unless_free(scene, "slide") or needs(scene, "friction_static")
 
 
@@ -144,6 +148,9 @@ SLIDING = Model(
     at_most=(
         "It slides at most {demand} from where it stands (at most {high}, its friction being uncertain); there is room "
         "for {capacity}."
+    ),
+    gripped=(
+        "On its mount it slips by {demand} ({low} to {high}) once that no longer grips it; it comes off at {capacity}."
     ),
     fails="slides",
     states=(Harm.LEAVES, Harm.SHIFTS),

@@ -10,6 +10,10 @@ where A is the peak acceleration of a rigid object, and of a flexible one the ps
 PSA(f, zeta); of a frequency that is known as a range the largest over that.  A factor K multiplies the bending where a
 held base concentrates it.  The static tilt with the same effect is arcsin(A / g).
 
+Where the section is assumed to be solid and the thing may be hollow (sheet, a casting), its section shrinks with its
+mass: below m_s, the mass of the thing with that section solid, m / A_s and m / S stay what they are at m_s.  A tube
+bears up to twice that; thin walls buckle and tear at joins, so none of it is counted.
+
 References
 ----------
 Agbabian, M. S., Ginell, W. S., Masri, S. F. and Nigbor, R. L. (1991). Evaluation of earthquake damage mitigation
@@ -39,6 +43,14 @@ _SECTION = (
     Quantity("area", "m2", "of the critical section", 0.0, exclusive=True),
     Quantity("section_modulus", "m3", "of the critical section", 0.0, exclusive=True),
     Quantity(
+        "solid_mass",
+        "kg",
+        "below which the section shrinks as the mass does: hollow things",
+        0.0,
+        optional=True,
+        default=0.0,
+    ),
+    Quantity(
         "concentration", "-", "largest over nominal bending stress, at a held base", 1.0, optional=True, default=1.0
     ),
 )
@@ -65,7 +77,7 @@ def section_stresses(push: Array, parameters: Mapping[str, Array]) -> Columns:
     push : ndarray, shape (n,) or float
         [m/s2].
     parameters : mapping of str to ndarray, shape (n,)
-        mass [kg], lever [m], area [m2], section_modulus [m3] and concentration [-].
+        mass and solid_mass [kg], lever [m], area [m2], section_modulus [m3] and concentration [-].
 
     Returns
     -------
@@ -73,7 +85,7 @@ def section_stresses(push: Array, parameters: Mapping[str, Array]) -> Columns:
         tension, compression, shear and error [Pa], tilt [deg], note, (n,) each; the tilt is NaN from 1 g on, where none
         reproduces the acceleration.
     """
-    mass, area = parameters["mass"], parameters["area"]
+    mass, area = np.maximum(parameters["mass"], parameters["solid_mass"]), parameters["area"]
     bending = parameters["concentration"] * mass * push * parameters["lever"] / parameters["section_modulus"]
     weight = mass * G / area
     share = push / G
@@ -166,10 +178,11 @@ def _say(row: Mapping[str, float], _parameters: Mapping[str, float]) -> str:
 
 def _mark(frequency: float, parameters: Mapping[str, float], tension: float) -> tuple[str, float, float] | None:
     # The acceleration behind a tension: the inverse of section_stresses; none where nothing is above the section.
-    moment = parameters["concentration"] * parameters["mass"] * parameters["lever"]
+    mass = max(parameters["mass"], parameters["solid_mass"])
+    moment = parameters["concentration"] * mass * parameters["lever"]
     if moment <= 0.0:
         return None
-    weight = parameters["mass"] * G / parameters["area"]
+    weight = mass * G / parameters["area"]
     return "spectrum", frequency, (tension + weight) * parameters["section_modulus"] / moment
 
 

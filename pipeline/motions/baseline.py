@@ -1,8 +1,7 @@
-"""Baselines, corner frequencies and resampling of raw records; every step is written into the motion."""
+"""Baselines and resampling of raw records; every step is written into the motion."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
@@ -10,56 +9,15 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from pipeline.errors import InputError
-from pipeline.motions.filtering import highpass, pad_seconds, remove_baseline
 from pipeline.motions.intensity import integrate, strong_part
+from pipeline.motions.onset import samples_before
 from pipeline.quantities import Array
 from pipeline.records import Motion
 
 IWAN_THRESHOLD = 0.5
 """m/s2: the baseline is taken to shift between the first and the last time it is exceeded (Iwan et al. 1985)."""
 
-CYCLES = 3.0
-"""Periods of the corner frequency that a record must hold."""
-
-NOISE_MARGIN = 3.0
-"""Least ratio of signal to pre-event noise above the corner."""
-
-TAIL_SHARE = 0.2
-"""Largest displacement allowed in the tail of the record, relative to its peak."""
-
-DRIFT_SHARE = 0.02
-"""Largest polynomial that may be left in the displacement, relative to its peak.
-
-A polynomial of DRIFT_DEGREE follows only what is slower than the record's shaking: film and old instruments bend their
-baselines at periods that no pre-event noise and no last tenth of a record shows.
-
-source : Ramos-Sepulveda et al. (2023), High-pass corner frequency selection for implementation in the USGS automated
-         ground motion processing tool, Geo-Congress 2023, 327-335; the share and the degree as the USGS's gmprocess
-         has them
-"""
-
-DRIFT_DEGREE = 5
-
-HIGHEST_CORNER = 1.0
-"""Hz: a record that would need a higher corner is not usable for displacement."""
-
 _LANCZOS_WIDTH = 30
-
-
-@dataclass(frozen=True, slots=True)
-class Corner:
-    """A corner for the high-pass of a record.
-
-    Attributes
-    ----------
-    frequency : float
-        In Hz.
-    reason : str
-        Which of record length, noise and displacement tail decided, with what each of them asked for.
-    """
-
-    frequency: float
-    reason: str
 
 
 def remove_pre_event_mean(motion: Motion, until: float) -> Motion:
@@ -82,7 +40,7 @@ def remove_pre_event_mean(motion: Motion, until: float) -> Motion:
     InputError
         Unless at least two samples lie before it.
     """
-    count = _samples_before(motion, until, "until")
+    count = samples_before(motion, until, "until")
     mean = motion.acceleration[:, :count].mean(axis=1)
     step = f"mean of the first {count * motion.dt:g} s removed: {_told(mean, 'm/s2')}"
     return _stepped(motion, motion.acceleration - mean[:, None], step)
@@ -208,94 +166,6 @@ def two_segment_baseline(
     return _stepped(motion, out, "two-segment baseline (Boore 2001) removed: " + "; ".join(told))
 
 
-def choose_corner(
-    motion: Motion,
-    pre_event: float | None = None,
-    *,
-    cycles: float = CYCLES,
-    margin: float = NOISE_MARGIN,
-    tail_share: float = TAIL_SHARE,
-    drift_share: float = DRIFT_SHARE,
-) -> Corner:
-    """Choose one high-pass corner for the three components of a raw record: the highest that any reason asks for.
-
-    The displacement is looked at in the horizontals only.  Of the vertical nothing but its acceleration is used, which
-    a corner hardly changes; what would quiet its noisier displacement would take long periods from the horizontals.
-
-    Parameters
-    ----------
-    motion : Motion
-        A raw record of at least 100 samples.
-    pre_event : float or None
-        Seconds of noise before the event at the start of the record; None: the record has none.
-    cycles : float
-        The record must hold so many periods of the corner.
-    margin : float
-        Above the corner the Fourier amplitude is at least so many times that of the noise, in bands of a third of an
-        octave, down from the band where it is best; nothing is known below 1 / pre_event.
-    tail_share : float
-        After the filter the horizontal displacement in the last tenth of the record stays below this share of its peak.
-    drift_share : float
-        And so does a polynomial fitted to that displacement, see DRIFT_SHARE.
-
-    Returns
-    -------
-    Corner
-        Its frequency in Hz, and what decided.
-
-    Raises
-    ------
-    InputError
-        When a corner above HIGHEST_CORNER would be needed, or a parameter is not usable.
-
-    Notes
-    -----
-    Error: a corner that is raised takes long-period velocity away with the noise, 12 % of the PGV of one near-fault
-    record (Meloland 1979): the reason says how much; where that matters, a person must judge.
-
-    References
-    ----------
-    Boore, D. M. and Bommer, J. J. (2005), Processing of strong-motion accelerograms: needs, options and consequences,
-    SDEE 25, 93-115, for noise and displacement as guides; see DRIFT_SHARE for the polynomial.
-    """
-    if not (cycles > 0.0 and margin >= 1.0 and 0.0 < tail_share < 1.0 and 0.0 < drift_share < 1.0):
-        raise InputError("choose_corner: cycles must be above 0, margin at least 1, and both shares between 0 and 1")
-    if motion.samples < 100:
-        raise InputError(f"choose_corner: a record of {motion.samples} samples is too short to choose a corner from")
-    by_length = cycles / motion.duration
-    reasons = [f"{cycles:g} periods in {motion.duration:g} s ask for {by_length:.3g} Hz"]
-    corner, decided = by_length, "record length"
-    if pre_event is None:
-        reasons.append("no pre-event noise to compare with")
-    else:
-        count = _samples_before(motion, pre_event, "pre_event")
-        if not 20 <= count <= motion.samples // 2:
-            raise InputError(
-                f"pre_event {pre_event:g} s holds {count} samples; noise needs at least 20 and at most half the record"
-            )
-        by_noise = _noise_corner(motion, count, margin)
-        asked = f"asks for {by_noise:.3g} Hz" if by_noise > 0.0 else f"is there down to {1.0 / pre_event:.3g} Hz"
-        reasons.append(f"a signal {margin:g} times the noise of the first {pre_event:g} s {asked}")
-        if by_noise > corner:
-            corner, decided = by_noise, "pre-event noise"
-    flat, _ = remove_baseline(motion.acceleration, motion.dt)
-    start, least, fastest = 0.9 * motion.duration, corner, 0.0
-    while corner <= HIGHEST_CORNER:
-        rest, drift, pgv = _unsettled(flat, motion.dt, corner, start)
-        fastest = pgv if corner == least else fastest
-        if rest <= tail_share and drift <= drift_share:
-            if corner > least:
-                lost = pgv / fastest - 1.0
-                reasons.append(f"raised from {least:.3g} Hz, which changes the larger horizontal PGV by {lost:+.1%}")
-            reasons.append(f"the displacement after {start:.3g} s is {rest:.1%} of its peak, its drift {drift:.1%}")
-            return Corner(corner, f"{decided}: " + "; ".join(reasons))
-        corner, decided = corner * 1.1, "displacement tail" if rest > tail_share else "displacement drift"
-    raise InputError(
-        f"motion {motion.name!r}: no corner up to {HIGHEST_CORNER:g} Hz is enough ({'; '.join(reasons)}); give "
-        f"highpass_hz, correct the baseline first, or use another record"
-    )
-
-
 def resample(motion: Motion, dt: float, *, method: Literal["fft", "lanczos"] = "fft") -> Motion:
     """Return the motion on another time step, taken as band-limited between its samples.
 
@@ -376,77 +246,6 @@ def _segment(motion: Motion, row: int) -> tuple[float, float]:
     if above.size >= 2:
         return float(above[0] * motion.dt), float(above[-1] * motion.dt)
     return strong_part(motion)
-
-
-def _samples_before(motion: Motion, until: float, name: str) -> int:
-    count = int(np.floor(until / motion.dt * (1.0 + 1e-12))) if np.isfinite(until) else 0
-    if not 2 <= count < motion.samples:
-        raise InputError(
-            f"{name} must be a time in s with at least two samples before it, inside the record of "
-            f"{motion.duration:g} s, not {until!r}"
-        )
-    return count
-
-
-def _noise_corner(motion: Motion, count: int, margin: float) -> float:
-    """The frequency down to which the event stands out from the noise before it in every component; 0: all the way."""
-    centres, noise = _bands(motion.acceleration[:, :count], motion.dt, count)
-    # The strong part only: the quiet end of a long record would thin the event out.
-    end = max(int(strong_part(motion)[1] / motion.dt) + 1, 2 * count)
-    _, signal = _bands(motion.acceleration[:, count:end], motion.dt, count)
-    worst = 0.0
-    for row in range(3):
-        silent = noise[row] == 0.0
-        ratio = np.where(silent, np.inf, signal[row] / np.where(silent, 1.0, noise[row]))
-        best = int(np.argmax(ratio))
-        below = np.flatnonzero(ratio[: best + 1] < margin)
-        if ratio[best] < margin:
-            raise InputError(
-                f"motion {motion.name!r}, component {'xyz'[row]}: the shaking is nowhere {margin:g} times the noise "
-                f"before it; check pre_event, or use another record"
-            )
-        if below.size:
-            worst = max(worst, float(centres[below[-1]]) * 2 ** (1 / 6))
-    return worst
-
-
-def _bands(data: Array, dt: float, count: int) -> tuple[Array, Array]:
-    """Root mean square Fourier amplitude per square root of a second in third octaves from 1 / (count dt) up."""
-    n = data.shape[1]
-    window = np.hanning(n)
-    level = data.mean(axis=1, keepdims=True)
-    lines = np.abs(np.fft.rfft((data - level) * window, axis=1)) / np.sqrt(float(window @ window))
-    frequency = np.fft.rfftfreq(n, dt)
-    lowest = 2 ** (1 / 6) / (count * dt)
-    centres = lowest * 2 ** (np.arange(max(1, int(np.floor(3 * np.log2(0.4 / dt / lowest))) + 1)) / 3)
-    out = np.zeros((3, centres.size))
-    for k, centre in enumerate(centres):
-        inside = (frequency >= centre * 2 ** (-1 / 6)) & (frequency < centre * 2 ** (1 / 6))
-        if not inside.any():
-            inside[np.argmin(np.abs(frequency - centre))] = True
-        out[:, k] = np.sqrt(np.mean(lines[:, inside] ** 2, axis=1))
-    return np.asarray(centres, dtype=np.float64), out
-
-
-def _unsettled(flat: Array, dt: float, corner: float, start: float) -> tuple[float, float, float]:
-    """What is left in the filtered horizontal displacement of the worse component, relative to its peak.
-
-    Returns
-    -------
-    (float, float, float)
-        Its largest value after a time, that of a polynomial fitted to all of it, and the larger PGV in m/s.
-    """
-    # The pads belong to the filtered motion (Boore 2005): cut off, its displacement would drift from the first sample.
-    n, pad = flat.shape[1], int(np.ceil(pad_seconds(corner) / dt))
-    filtered, _, _ = highpass(np.pad(flat, ((0, 0), (pad, pad))), dt, corner)
-    speed, moved = (history[:2, pad : pad + n] for history in integrate(Motion(dt, filtered)))
-    peaks = np.abs(moved).max(axis=1)
-    s = np.linspace(-1.0, 1.0, n)
-    bent = np.array([np.abs(Polynomial.fit(s, row, DRIFT_DEGREE, domain=[-1.0, 1.0])(s)).max() for row in moved])
-    some = peaks > 0.0
-    rest = np.abs(moved[:, int(start / dt) :]).max(axis=1)
-    worst = [float(np.max(size[some] / peaks[some], initial=0.0)) for size in (rest, bent)]
-    return worst[0], worst[1], float(np.abs(speed).max())
 
 
 def _told(values: Array | list[float], unit: str) -> str:

@@ -177,7 +177,7 @@ def _candidate(one: _Read, event: int | None) -> CandidateRecord:
 
 def _read(folder: Path, place: str, record: Record, azimuth: float, longest: float) -> _Read:
     where = f"record {record.name!r}"
-    if record.vertical == "absent":
+    if record.vertical is not None and len(record.components) == 2:
         wrong = "has no vertical component, and three are asked for"
         raise refusal(folder, where, wrong, "give the vertical's file")
     v_max = record.v_max_cm_s

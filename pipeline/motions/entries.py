@@ -8,9 +8,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from pipeline.motions.earthquakes import earthquakes, listed
 from pipeline.motions.errors import MotionError
 from pipeline.motions.grouping import channels, grouped
 from pipeline.motions.manifest import load_manifest, manifest_file, unlisted
+from pipeline.motions.parts import whole
 from pipeline.motions.reading import open_traces, own_unit
 
 
@@ -61,7 +63,8 @@ def _digest(path: Path) -> str:
 def _entry(folder: Path, of: str, found: Sequence[tuple[str, Any]]) -> str:
     files = list(dict.fromkeys(name for name, _ in found))
     said = [trace.stats.get("kouros", {}) for _, trace in found]
-    components = _components([trace for _, trace in found])
+    # A channel that is interrupted, or holds several earthquakes, comes in pieces.
+    components = _components(list({trace.id: trace for _, trace in reversed(found)}.values()))
     processed = {one.get("processed") for one in said}
     lines = [
         "[[level.record]]",
@@ -80,8 +83,20 @@ def _entry(folder: Path, of: str, found: Sequence[tuple[str, Any]]) -> str:
         lines.append('vertical = "absent"')
     elif len(components) != 3:
         lines.append(f'# it has {len(components)} channels; a record has x, y and z, or vertical = "absent"')
+    lines += _earthquakes(folder, found)
     lines += ["[level.record.components]", *components, "[level.record.sha256]"]
     return "\n".join(lines + [f"{json.dumps(name)} = {json.dumps(_digest(folder / name))}" for name in files])
+
+
+def _earthquakes(folder: Path, found: Sequence[tuple[str, Any]]) -> list[str]:
+    """A comment for each earthquake of several that the first channel holds, one of which is to be chosen."""
+    name, first = found[0]
+    pieces = sorted((whole(folder / name, t) for _, t in found if t.id == first.id), key=lambda one: one.start.ns)
+    events = earthquakes(pieces)
+    if len(events) < 2:
+        return []
+    told = [f'# origin_time = "{str(one.begins)[:19]}Z"  # {listed([one], own_unit(first.stats)[1])}' for one in events]
+    return [f"# it holds {len(events)} earthquakes: choose one, or a part by window_s", *told]
 
 
 def _components(traces: Sequence[Any]) -> list[str]:

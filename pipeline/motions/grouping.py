@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
@@ -11,7 +12,16 @@ _BY_CODE: Mapping[str, float | str] = {"E": 90.0, "N": 0.0, "Z": "up"}
 """How a channel is oriented whose code ends so, by the convention of SEED."""
 
 _BY_WORD: Mapping[str, float | str] = {"EW": 90.0, "NS": 0.0, "UD": "up"}
-"""The same of K-NET, whose codes are these."""
+"""The same of K-NET, whose codes are these, and of KiK-net, where 1 is the borehole and 2 the surface."""
+
+_ENDING = re.compile(
+    r"[-_. ]*(?:(?:[A-Z]{2})?[ENZUVXYTLRH123]|NS|EW|UD|UP|DOWN|DWN|VERT(?:ICAL)?|NORTH|SOUTH|EAST|WEST|\d{3})$",
+    re.IGNORECASE,
+)
+"""What the names of the files of one record differ by, at the end."""
+
+_RSN = re.compile(r"^RSN(\d{1,6})_", re.IGNORECASE)
+"""The number of a record in the names of PEER's files."""
 
 _TOGETHER = 60.0
 """s, how far apart the channels of one record may have started."""
@@ -59,10 +69,10 @@ def grouped(found: Sequence[tuple[str, Sequence[Any]]]) -> list[tuple[str, list[
     single: dict[tuple[Any, ...], list[FileTrace]] = {}
     for name, traces in found:
         if len(traces) > 1:
-            whole.append((name, [(name, trace) for trace in traces]))
+            whole += _of_file(name, traces)
             continue
         for trace in traces:
-            single.setdefault(_place(name, trace, trace.id[:-1] or name), []).append((name, trace))
+            single.setdefault(_place(name, trace, _instrument(name, trace)), []).append((name, trace))
     # Some agencies number the channels of one instrument where others number instruments: what is left is one station.
     left: dict[tuple[Any, ...], list[FileTrace]] = {}
     for key, traces in single.items():
@@ -70,13 +80,50 @@ def grouped(found: Sequence[tuple[str, Sequence[Any]]]) -> list[tuple[str, list[
             whole += _by_time(key[1], traces)
             continue
         for name, trace in traces:
-            left.setdefault(_place(name, trace, f"{trace.stats.network}.{trace.stats.station}"), []).append(
-                (name, trace)
-            )
+            of = f"{trace.stats.network}.{trace.stats.station}" if trace.stats.station else key[1]
+            left.setdefault(_place(name, trace, of), []).append((name, trace))
     for key, traces in left.items():
-        ids = {trace.id[:-1] for _, trace in traces}
+        ids = {_instrument(name, trace) for name, trace in traces}
         whole += _by_time(next(iter(ids)) if len(ids) == 1 else key[1], traces)
     return whole
+
+
+def _of_file(name: str, traces: Sequence[Any]) -> list[tuple[str, list[FileTrace]]]:
+    """Records of a file of several channels: one, unless it holds several stations, instruments or earthquakes."""
+    every = [(name, trace) for trace in traces]
+    stations = {f"{trace.stats.network}.{trace.stats.station}" for trace in traces}
+    if len(every) <= 3 and len(stations) == 1:
+        return [(name, every)]
+    made: list[tuple[str, list[FileTrace]]] = []
+    for station in sorted(stations):
+        own = [one for one in every if f"{one[1].stats.network}.{one[1].stats.station}" == station]
+        for _, part in _by_time(station, own):
+            instruments = sorted({one[1].id[:-1] for one in part})
+            # Where each channel has an instrument's code of its own, the code only numbers channels.
+            several = len(instruments) > 1 and len(part) >= 2 * len(instruments)
+            split = (
+                [(code, [one for one in part if one[1].id[:-1] == code]) for code in instruments]
+                if several
+                else [(name if len(stations) == 1 else station, part)]
+            )
+            made += split
+    return made
+
+
+def _instrument(name: str, trace: Any) -> str:
+    """What the channels of one instrument have in common; without a station, that of their title or their file's name.
+
+    Files that name no station would all be one otherwise.
+    """
+    if trace.stats.station:
+        return str(trace.id[:-1])
+    path = PurePosixPath(name)
+    number = _RSN.match(path.name)
+    title = str(trace.stats.get("kouros", {}).get("title", ""))
+    if "," in title:
+        called = title.rpartition(",")[0].strip()
+        return f"RSN{number[1]} {called}" if number else called
+    return _ENDING.sub("", path.stem) or str(trace.id[:-1])
 
 
 def _place(name: str, trace: Any, of: str) -> tuple[Any, ...]:
@@ -109,11 +156,11 @@ def channels(traces: Sequence[Any]) -> list[Channel]:
         In the order of the axes.
     """
     free = ["x", "y"]
-    made = []
+    made: list[Channel] = []
     for trace in sorted(traces, key=lambda one: ("EN".find(one.stats.channel[-1:]) % 3, one.id)):
         code = trace.stats.channel or trace.id
         own = trace.stats.get("kouros", {}).get("orientation")
-        meant = own if own is not None else _BY_WORD.get(code, _BY_CODE.get(code[-1:]))
+        meant = own if own is not None else _BY_WORD.get(code.rstrip("12"), _BY_CODE.get(code[-1:]))
         if meant in {"up", "down"} or (meant is None and code[-1:].upper() in {"V", "3"}):
             axis = "z"
         else:

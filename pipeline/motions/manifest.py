@@ -14,7 +14,17 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints, Validation
 
 from pipeline.errors import InputError
 from pipeline.motions.errors import MotionError, refusal
-from pipeline.motions.record import PRINTABLE, BaselineTable, FileName, Horizontal, Record, Table, Text
+from pipeline.motions.record import (
+    PRINTABLE,
+    BaselineTable,
+    EventTable,
+    FileName,
+    Horizontal,
+    Record,
+    StationTable,
+    Table,
+    Text,
+)
 from pipeline.resources import small_text
 
 MANIFEST = "manifest.toml"
@@ -232,6 +242,8 @@ _TABLES: dict[str, type[BaseModel]] = {
     "components": Horizontal,
     "baseline": BaselineTable,
     "target": TargetTable,
+    "event": EventTable,
+    "station": StationTable,
 }
 
 
@@ -312,7 +324,7 @@ def load_manifest(folder: str | Path, *, begun: bool = False) -> Manifest:
         there = unlisted(file, manifest)
         found = f"; beside it {'lies' if len(there) == 1 else 'lie'} {', '.join(there[:5])}" if there else ""
         more = f" and {len(there) - 5} more" if len(there) > 5 else ""
-        remedy = "put a record's files beside it, and paste in what `kouros motions entries` prints of them"
+        remedy = "add a record's files with `kouros motions add`"
         raise refusal(file, "level", f"it names no records yet{found}{more}", remedy)
     return manifest
 
@@ -388,7 +400,8 @@ def _check_files(file: Path, key: str, record: Record) -> None:
             raise refusal(file, where, f"{name!r} is a link out of the site's folder", "copy the file into the folder")
         if not path.is_file():
             raise refusal(file, where, f"there is no file {name!r}", "put it into the site's folder or mend its name")
-        digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        with path.open("rb") as stream:
+            digest = hashlib.file_digest(stream, "sha256").hexdigest()
         place = f"{key}.sha256.{name!r}"
         if name not in record.sha256:
             raise refusal(file, place, "the file has no hash", f"once you have checked the file, give it {digest}")

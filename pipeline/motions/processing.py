@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from pipeline.errors import InputError
 from pipeline.motions.baseline import (
-    choose_corner,
     polynomial_baseline,
     remove_pre_event_mean,
     resample,
     two_segment_baseline,
 )
+from pipeline.motions.corners import choose_corner
 from pipeline.motions.filtering import highpass, lowpass, remove_baseline
 from pipeline.motions.intensity import integrate
 from pipeline.motions.manifest import TargetTable
 from pipeline.motions.reading import PGA_MOST, Recording
 from pipeline.motions.record import BaselineTable, Record
 from pipeline.motions.suites import scale_to_spectrum
+from pipeline.motions.vertical import with_vertical
 from pipeline.quantities import Array, G
 from pipeline.records import Motion
 
@@ -48,6 +50,8 @@ class Processed:
     velocity : array, shape (3, n), or None
         In m/s, of the motion as its agency computed it, where the files hold it: its peak is the PGV; None for a record
         that is filtered here, resampled, or comes without.
+    factor : float
+        By which it is scaled.
     """
 
     motion: Motion
@@ -55,6 +59,7 @@ class Processed:
     filtered: bool
     corners: tuple[float | None, float | None]
     velocity: Array | None = None
+    factor: float = 1.0
 
 
 def process(
@@ -62,8 +67,10 @@ def process(
 ) -> Processed:
     """Turn a recording into the motion that the manifest asks for.
 
-    In this order: baseline, high-pass, low-pass (none of the three for a processed record), resampling, window,
-    rotation to x and y, scaling.  A scale to a PGA counts the larger *recorded* horizontal component, before rotation.
+    In this order: baseline, high-pass, low-pass (none of the three for a processed record), resampling, window, a
+    vertical where one is to be estimated, rotation to x and y, scaling.  The window went first, on reading: what is
+    filtered is the window with up to 300 s of the record on both sides (`parts.MARGIN`), which are then cut off; a
+    corner is chosen from the window.  A scale to a PGA counts the larger *recorded* horizontal, before rotation.
 
     Parameters
     ----------
@@ -87,7 +94,9 @@ def process(
         Naming the manifest's key.
     """
     source = f"{record.source}; licence: {record.licence}"
-    start = (0.0, 0.0, 0.0) if recording.velocity is None else recording.velocity[:, 0]
+    start: Iterable[float] = record.start_m_s or (0.0, 0.0, 0.0)
+    if recording.velocity is not None and record.start_m_s is None:
+        start = recording.velocity[:, 0]
     motion = Motion(recording.dt, recording.data, record.name, recording.steps, source, start)
     before = motion
     if not recording.processed:
@@ -100,7 +109,7 @@ def process(
             raise InputError(f"{keys}: the files say that the record is processed; drop what is for raw records")
         motion = motion.called(motion.name, "processed by its source: no baseline correction, no filter")
     else:
-        motion, corners = _filtered(_flattened(motion, record), record)
+        motion, corners = _filtered(_flattened(motion, record, recording.begins), record, recording)
     if record.resample_s is not None:
         if recording.processed and record.resample_s > motion.dt:
             raise InputError(
@@ -108,15 +117,19 @@ def process(
             )
         motion = resample(motion, record.resample_s)
     velocity = recording.velocity if record.resample_s is None else None
-    if record.window_s is not None:
-        motion, before = (_windowed(one, recording, *record.window_s) for one in (motion, before))
+    if recording.window is not None:
+        motion, before = (_windowed(one, recording, *recording.window) for one in (motion, before))
         if velocity is not None:
-            velocity, _ = cut(velocity, recording.dt, *record.window_s)
+            velocity, _ = cut(velocity, recording.dt, *recording.window, recording.begins)
+    if record.vertical == "estimated" and not recording.data[2].any():
+        motion, before = with_vertical(motion, recording.channels), with_vertical(before, recording.channels)
+        if velocity is not None:
+            velocity = np.vstack([velocity[:2], integrate(motion)[0][2]])
     unscaled = float(np.abs(motion.acceleration).max())
     motion, before = _scaled_to_pga(motion, before, record, recording)
+    total = float(np.abs(motion.acceleration).max()) / unscaled if unscaled > 0.0 else 1.0
     if velocity is not None:
-        factor = float(np.abs(motion.acceleration).max()) / unscaled
-        velocity, _ = rotate(factor * velocity, *recording.azimuths, x_azimuth)
+        velocity, _ = rotate(total * velocity, *recording.azimuths, x_azimuth)
     motion, before = (_turned(one, recording.azimuths, x_azimuth) for one in (motion, before))
     if record.scale_to_target:
         if target is None:
@@ -134,6 +147,7 @@ def process(
         factor = float(np.abs(fitted.acceleration).max()) / float(np.abs(motion.acceleration).max())
         before = before.scaled(factor, "as the processed motion")
         velocity = None if velocity is None else factor * velocity
+        total *= factor
         motion = fitted
     if record.v_max_cm_s is not None:
         motion = Motion(
@@ -142,10 +156,10 @@ def process(
     peak = float(np.abs(motion.acceleration).max())
     if peak > PGA_MOST:
         raise InputError(f"scale: the scaled motion peaks at {peak / G:.3g} g, above 20 g; lower the scale")
-    return Processed(motion, before, not recording.processed, corners, velocity)
+    return Processed(motion, before, not recording.processed, corners, velocity, total)
 
 
-def _flattened(motion: Motion, record: Record) -> Motion:
+def _flattened(motion: Motion, record: Record, begins: float) -> Motion:
     """Correct the baseline as the manifest says; by a straight line where it says nothing."""
     table = record.baseline or BaselineTable(method="linear")
     method = table.method
@@ -160,17 +174,32 @@ def _flattened(motion: Motion, record: Record) -> Motion:
     if record.pre_event_s is not None:
         motion = remove_pre_event_mean(motion, record.pre_event_s)
     if method == "two-segment":
-        motion = two_segment_baseline(motion, table.t1_s, table.t2_s, table.fit_from_s)
+        motion = two_segment_baseline(motion, *(_since(begins, table, key) for key in ("t1_s", "t2_s", "fit_from_s")))
     return motion
 
 
-def _filtered(motion: Motion, record: Record) -> tuple[Motion, tuple[float | None, float | None]]:
+def _since(begins: float, table: BaselineTable, key: str) -> float | None:
+    """A time of the manifest from the first sample that was read."""
+    at: float | None = getattr(table, key)
+    if at is None or begins == 0.0:
+        return at
+    if at < begins:
+        raise InputError(
+            f"baseline: {key} {at:g} s lies before {begins:g} s, from which the window is read; move either"
+        )
+    return at - begins
+
+
+def _filtered(motion: Motion, record: Record, recording: Recording) -> tuple[Motion, tuple[float | None, float | None]]:
     corner = record.corner_hz
     wanted = record.highpass_hz
     if wanted is None and record.baseline is not None and record.baseline.method == "two-segment":
         wanted = "none"
     if wanted in {None, "auto"}:
-        chosen = choose_corner(motion, record.pre_event_s)
+        magnitude = recording.magnitude
+        if record.event is not None and record.event.magnitude is not None:
+            magnitude = record.event.magnitude
+        chosen = choose_corner(_used(motion, record, recording), record.pre_event_s, magnitude=magnitude)
         corner = chosen.frequency
         motion = motion.called(motion.name, f"high-pass corner {corner:.4g} Hz chosen by {chosen.reason}")
     if corner is None:
@@ -185,8 +214,20 @@ def _filtered(motion: Motion, record: Record) -> tuple[Motion, tuple[float | Non
     return motion, (corner, record.lowpass_hz)
 
 
+def _used(motion: Motion, record: Record, recording: Recording) -> Motion:
+    """What a corner is chosen from: the window, from the noise before the event on where the manifest tells of it."""
+    if recording.window is None:
+        return motion
+    first, last = recording.window
+    if record.pre_event_s is not None:
+        first = recording.begins
+    part, _ = cut(motion.acceleration, motion.dt, first, last, recording.begins)
+    return Motion(motion.dt, part, motion.name)
+
+
 def _windowed(motion: Motion, recording: Recording, start: float, end: float) -> Motion:
-    part, said = cut(motion.acceleration, motion.dt, start, end)
+    part, said = cut(motion.acceleration, motion.dt, start, end, recording.begins)
+    start -= recording.begins
     if recording.velocity is not None:
         begin = recording.velocity[:, min(round(start / recording.dt), recording.velocity.shape[1] - 1)]
     else:
@@ -211,7 +252,7 @@ def _scaled_to_pga(motion: Motion, before: Motion, record: Record, recording: Re
     return motion.scaled(factor, why), before.scaled(factor, "as the processed motion")
 
 
-def cut(data: Array, dt: float, start: float, end: float) -> tuple[Array, str]:
+def cut(data: Array, dt: float, start: float, end: float, begins: float = 0.0) -> tuple[Array, str]:
     """Cut a history to a window, and say what velocity that leaves.
 
     Parameters
@@ -221,7 +262,9 @@ def cut(data: Array, dt: float, start: float, end: float) -> tuple[Array, str]:
     dt : float
         Time step in s.
     start, end : float
-        In s from the first sample.
+        In s, as `begins` counts.
+    begins : float
+        Time of the first sample in s.
 
     Returns
     -------
@@ -235,16 +278,17 @@ def cut(data: Array, dt: float, start: float, end: float) -> tuple[Array, str]:
     InputError
         For a window that holds fewer than two samples or ends after the record.
     """
-    last = (data.shape[1] - 1) * dt
+    last = begins + (data.shape[1] - 1) * dt
     if end > last + 0.5 * dt:
         raise InputError(f"window_s ends at {end:g} s, after the record's end at {last:g} s; shorten it")
-    a, b = round(start / dt), round(end / dt)
+    a, b = max(round((start - begins) / dt), 0), min(round((end - begins) / dt), data.shape[1] - 1)
     if b - a < 1:
         raise InputError(f"window_s [{start:g}, {end:g}] holds fewer than two samples; widen it")
     part = data[:, a : b + 1]
     left = dt * (part.sum(axis=1) - 0.5 * (part[:, 0] + part[:, -1]))
     told = ", ".join(f"{axis} {v:.2g}" for axis, v in zip("xyz", left, strict=True))
-    return part, f"cut to {a * dt:g} s to {b * dt:g} s of the record; velocity left at the end [m/s]: {told}"
+    span = f"{begins + a * dt:g} s to {begins + b * dt:g} s"
+    return part, f"cut to {span} of the record; velocity left at the end [m/s]: {told}"
 
 
 def _turned(motion: Motion, azimuths: tuple[float, float], x_azimuth: float) -> Motion:

@@ -8,15 +8,23 @@ import re
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from pipeline.motions.errors import Judgement, MotionError, judged, refusal
+from pipeline.motions import knet
+from pipeline.motions.earthquakes import earthquakes, listed, window_of
+from pipeline.motions.errors import MotionError, judged, refusal
+from pipeline.motions.joining import Row, aligned, channel_of, check_common, check_together, only_piece
+from pipeline.motions.orientation import by_station, oriented
+from pipeline.motions.parts import LARGEST, Part, Piece, holding, is_continuous, part_of, scan, whole, zero_of
+from pipeline.motions.plateaus import full_scale
 from pipeline.motions.quality import clipped
-from pipeline.motions.record import NO_VERTICAL, Component, Record
+from pipeline.motions.record import ESTIMATED, NO_VERTICAL, Component, Record
 from pipeline.motions.responses import load_obspy, read_inventory
+from pipeline.motions.unknown import unknown
 from pipeline.quantities import Array, G
 
 logger = logging.getLogger(__name__)
@@ -28,13 +36,17 @@ _SPELLINGS = {"m/s**2": "m/s2", "m/s/s": "m/s2", "m/s^2": "m/s2", "cm/s**2": "cm
 # obspy's ASCII readers hand on the storage type in the place of the unit where a file was written without one.
 _SILENT = {"", "integer", "float", "ascii", "unknown"}
 
-LARGEST = 256 << 20
-"""Bytes of a file of a record; three components of an hour at 1,000 samples a second have 90 MB as text."""
+MOST_SAMPLES = 4_000_000
+"""Samples of a component that is used as a whole; an hour at 1,000 samples a second has 3.6 million."""
 
 PGA_MOST = 20.0 * G
-PGA_LEAST = 1e-9 * G
 WATER_LEVEL_DB = 60.0
-AZIMUTH_TOLERANCE = 2.0
+
+APART = 300.0
+"""Seconds of quiet between two earthquakes beyond which what holds both is no one record."""
+
+RIVAL = 0.25
+"""Share of the largest peak from which another earthquake may be the one that is meant (judgement)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +69,14 @@ class Recording:
         Whether the agency has filtered it already, by the manifest, or else by the files.
     velocity : array, shape (3, n), or None
         In m/s as the agency computed it, with the velocity that the record starts with, of which the acceleration knows
-        nothing; None unless all three files hold it.
+        nothing; None unless all files hold it.
+    begins : float
+        Time of the first sample in s as the manifest counts it: 0 unless less than the record was read, or it counts
+        from an origin time.
+    window : (float, float) or None
+        What is to be kept of it once it is filtered, in s as the manifest counts; None: all.
+    magnitude : float or None
+        Of the earthquake, where the files say it.
     """
 
     dt: float
@@ -67,6 +86,9 @@ class Recording:
     steps: tuple[str, ...]
     processed: bool
     velocity: Array | None = None
+    begins: float = 0.0
+    window: tuple[float, float] | None = None
+    magnitude: float | None = None
 
 
 def prefilter(sampling_hz: float, highpass_hz: float | None) -> tuple[float, float, float, float]:
@@ -111,46 +133,135 @@ def read_record(folder: str | Path, record: Record) -> Recording:
     """
     folder = Path(folder)
     steps: list[str] = []
-    traces = [(folder / name, trace) for name in record.files for trace in open_traces(folder / name, steps)]
+    read, part, window = _read(folder, record, steps)
     inventory = None if record.response is None else read_inventory(folder / record.response, steps)
-    rows: dict[str, tuple[Path, Any, str]] = {}
+    rows: dict[str, Row] = {}
     azimuths: dict[str, float] = {}
     velocities: dict[str, Array] = {}
-    taken: set[int] = set()
     for key, component in record.components.items():
-        file, trace = _component(folder=folder, record=record, key=key, component=component, traces=traces, taken=taken)
-        _check(file, key, component, trace)
-        flat = clipped(trace.data[None, :], trace.stats.delta, (f"component {component.axis} ({key!r})",))
+        file, trace = read[key]
+        # What lies around the window is for the filters alone: whether it is any good is asked of the window.
+        seen = slice(*((0, trace.stats.npts) if part is None else part.inside(trace)))
+        _check(file, key, component, trace, seen)
+        flat = clipped(trace.data[None, seen], trace.stats.delta, (f"component {component.axis} ({key!r})",))
+        if flat is None and inventory is not None and (full := full_scale(trace.data[seen])) is not None:
+            at = full[1] + seen.start
+            flat = f"component {component.axis} ({key!r}) comes to the full scale of {full[0]:.0f} at sample {at}"
         if flat is not None:
             remedy = "use a record that was not clipped"
             judged(record.accept, "clipping", file, f"record {record.name!r}", flat, remedy, steps)
+        station = None
         if inventory is not None:
-            _check_orientation(folder / str(record.response), key, component, trace, inventory, record.accept, steps)
+            xml = folder / str(record.response)
+            station = by_station(xml, key, component, trace, inventory, record.accept, steps)
         steps += _in_si(file, key, record, trace, inventory)
         said = trace.stats.get("kouros", {})
         if "velocity" in said:
             velocities[component.axis] = np.asarray(said.velocity)
-        oriented = _oriented(file, key, component.axis, component.orientation, said, steps)
-        if isinstance(oriented, float):
-            azimuths[component.axis] = oriented
-        elif oriented == "down":
+        meant = component.orientation
+        towards = oriented(file, key, component.axis, meant, station, said.get("orientation"), steps)
+        if isinstance(towards, float):
+            azimuths[component.axis] = towards
+        elif towards == "down":
             trace.data = -trace.data
             velocities |= {axis: -values for axis, values in velocities.items() if axis == component.axis}
             steps.append(f"{key}: turned over, positive up")
-        if not component.silent:
-            _check_size(file, key, component, trace, record.accept, steps)
         rows[component.axis] = (file, trace, key)
+    check_together(rows, inventory, record.accept, steps)
     processed = _processed(folder, record.name, record.processed, [trace for _, trace, _ in rows.values()], steps)
-    data, dt, first = _aligned(rows, steps)
+    data, dt, first = aligned(rows, steps)
     velocity = None
     if processed and velocities.keys() == rows.keys():
         velocity = np.zeros_like(data)
         for axis, values in velocities.items():
             velocity["xyz".index(axis)] = values[first[axis] : first[axis] + data.shape[1]]
-    channels = (rows["x"][2], rows["y"][2], rows["z"][2] if "z" in rows else "absent")
-    if "z" not in rows:
+    channels = (rows["x"][2], rows["y"][2], rows["z"][2] if "z" in rows else str(record.vertical))
+    if record.vertical == "estimated":
+        steps.append(ESTIMATED)
+    elif "z" not in rows:
         steps.append(NO_VERTICAL)
-    return Recording(dt, data, (azimuths["x"], azimuths["y"]), channels, tuple(steps), processed, velocity)
+    begins = 0.0
+    if part is None:
+        check_common(rows, record.accept, steps)
+        _tell_earthquakes(rows["x"], record, steps)
+    else:
+        start = max(trace.stats.starttime for _, trace, _ in rows.values())
+        begins = start - part.zero
+        # On the record's own samples, where it counts from one of them.
+        begins = begins if record.origin_time is not None else round(begins / dt) * dt
+    way = (azimuths["x"], azimuths["y"])
+    return Recording(dt, data, way, channels, tuple(steps), processed, velocity, begins, window, _magnitude(rows))
+
+
+def _read(
+    folder: Path, record: Record, steps: list[str]
+) -> tuple[dict[str, tuple[Path, Any]], Part | None, tuple[float, float] | None]:
+    """The trace of each component: all of it, or the window that is asked for with what lies around it."""
+    in_part = record.window_s is not None or record.origin_time is not None
+    pieces = [piece for name in record.files for piece in _pieces(folder / name, steps, in_part=in_part)]
+    taken: set[int] = set()
+    channels = {
+        key: channel_of(folder=folder, record=record, key=key, component=one, pieces=pieces, taken=taken)
+        for key, one in record.components.items()
+    }
+    if not in_part:
+        alone = {key: only_piece(record, key, record.components[key], of) for key, of in channels.items()}
+        return {key: (piece.file, piece.trace) for key, piece in alone.items()}, None, None
+    every = list(channels.values())
+    zero = zero_of(record, every)
+    window = record.window_s or window_of(every, zero)
+    part = part_of(record, zero, window, every)
+    if record.origin_time is not None:
+        found = "" if record.window_s else ", that of the earthquake found there"
+        steps.append(f"window_s counts from {zero}: {window[0]:.6g} to {window[1]:.6g} s{found}")
+    read: dict[str, tuple[Path, Any]] = {}
+    for key, of in channels.items():
+        piece = holding(part, of, f"record {record.name!r}, component {record.components[key].axis} ({key!r})")
+        trace = part.read(piece)
+        if piece.trace is None:
+            s = trace.stats
+            logger.debug("%s: %s, %s, %d samples at %g Hz", piece.file, s._format, trace.id, s.npts, s.sampling_rate)
+            whole = "" if s.npts == piece.samples else f", of {piece.samples} from {piece.start}"
+            steps.append(f"{_read_of(piece.file, trace)}{whole}")
+        elif trace.stats.npts < piece.samples:
+            around = f"{trace.stats.npts} of {piece.samples} samples, from {trace.stats.starttime}"
+            steps.append(f"{key}: the window and what lies around it: {around}")
+        read[key] = (piece.file, trace)
+    return read, part, window
+
+
+def _pieces(file: Path, steps: list[str], *, in_part: bool) -> list[Piece]:
+    if not is_continuous(file) or (not in_part and file.stat().st_size > LARGEST):
+        return [whole(file, trace) for trace in open_traces(file, steps)]
+    pieces = scan(file)
+    if in_part:
+        return pieces
+    for name in {piece.id for piece in pieces}:
+        mine = [piece for piece in pieces if piece.id == name]
+        samples = sum(piece.samples for piece in mine)
+        if samples > MOST_SAMPLES:
+            wrong = (
+                f"{name} has {samples:,} samples from {mine[0].start}, more than a record ({MOST_SAMPLES:,} at most)"
+            )
+            remedy = f"choose a part by window_s or origin_time; earthquakes in it: {listed(earthquakes(mine))}"
+            raise refusal(file, "file", wrong, remedy)
+    return [whole(file, trace) for trace in open_traces(file, steps)]
+
+
+def _tell_earthquakes(row: Row, record: Record, steps: list[str]) -> None:
+    """Say that a record that is used as a whole holds several earthquakes; refuse what is no one record."""
+    file, trace, key = row
+    found = earthquakes([whole(file, trace)])
+    if len(found) < 2:
+        return
+    told = f"holds {len(found)} earthquakes ({key}): {listed(found, 1.0)}"
+    largest = max(one.peak for one in found)
+    strong = [one for one in found if one.peak >= RIVAL * largest]
+    if max((later.begins - one.ends for one, later in pairwise(strong)), default=0.0) > APART:
+        remedy = "choose one by origin_time or window_s"
+        judged(record.accept, "several", file, f"record {record.name!r}", told, remedy, steps)
+    else:
+        steps.append(f"{file.name} {told}; all of it is used, window_s or origin_time would choose")
 
 
 def open_traces(file: Path, steps: list[str]) -> list[Any]:
@@ -177,7 +288,8 @@ def open_traces(file: Path, steps: list[str]) -> list[Any]:
     size = file.stat().st_size
     if size > LARGEST:
         wrong = f"{size:,} bytes are more than a record has ({LARGEST:,} at most)"
-        raise refusal(file, "file", wrong, "cut out the earthquake, or see whether it is another file")
+        remedy = "cut out the earthquake, choose a part by window_s (MiniSEED), or see whether it is another file"
+        raise refusal(file, "file", wrong, remedy)
     with file.open("rb") as stream:
         head = stream.read(100)
     if b"obspy.core.stream" in head:
@@ -191,6 +303,8 @@ def open_traces(file: Path, steps: list[str]) -> list[Any]:
         except MotionError:  # Kouros's own readers say file, line and remedy themselves
             raise
         except Exception as error:  # on a broken file obspy's readers raise anything
+            if isinstance(error, TypeError) and str(error).startswith("Unknown format"):
+                raise unknown(file) from error
             wrong = f"cannot be read ({type(error).__name__}: {str(error)[:200]})"
             raise refusal(
                 file, "file", wrong, "it is cut off, damaged or of an unknown format; fetch it again"
@@ -201,6 +315,7 @@ def open_traces(file: Path, steps: list[str]) -> list[Any]:
             raise refusal(file, "file", f"is cut off or damaged ({str(warning.message)[:200]})", "fetch it again")
     steps += [f"{file.name}: the reader warned: {str(w.message)[:200]}" for w in said]
     _check_complete(file, stream)
+    knet.complete(file, stream)
     try:
         stream.merge(method=-1)
     except Exception as error:  # obspy raises a bare Exception for pieces that do not belong together
@@ -210,10 +325,13 @@ def open_traces(file: Path, steps: list[str]) -> list[Any]:
     for trace in stream:
         s = trace.stats
         logger.debug("%s: %s, %s, %d samples at %g Hz", file, s._format, trace.id, s.npts, s.sampling_rate)
-        steps.append(
-            f"read {file.name} ({s._format}, {trace.id}): {s.npts} samples at {s.sampling_rate:g} Hz from {s.starttime}"
-        )
+        steps.append(_read_of(file, trace))
     return list(stream)
+
+
+def _read_of(file: Path, trace: Any) -> str:
+    s = trace.stats
+    return f"read {file.name} ({s._format}, {trace.id}): {s.npts} samples at {s.sampling_rate:g} Hz from {s.starttime}"
 
 
 def _check_complete(file: Path, stream: Any) -> None:
@@ -233,33 +351,7 @@ def _check_complete(file: Path, stream: Any) -> None:
             raise refusal(file, "file", wrong, "fetch it again")
 
 
-def _component(
-    *, folder: Path, record: Record, key: str, component: Component, traces: list[tuple[Path, Any]], taken: set[int]
-) -> tuple[Path, Any]:
-    place = f"record {record.name!r}, component {component.axis} ({key!r})"
-    fitting = [(f, t) for f, t in traces if key in {t.id, t.stats.channel} or f == folder / key]
-    if not fitting:
-        there = ", ".join(sorted({f"{f.name}: {t.id}" for f, t in traces})) or "nothing"
-        raise refusal(
-            folder, place, "is missing", f"name a file, a channel or a channel id of the record; it has {there}"
-        )
-    file, trace = fitting[0]
-    ids = sorted({t.id for _, t in fitting})
-    if len(ids) > 1:
-        raise refusal(
-            file, place, f"fits several channels ({', '.join(ids)})", "name the full channel id in components"
-        )
-    if len(fitting) > 1:
-        later = fitting[1][1].stats.starttime
-        wrong = f"has a gap or an overlap after sample {trace.stats.npts - 1} (the next piece starts at {later})"
-        raise refusal(file, place, wrong, "use a record without a gap, or files with one unbroken trace a channel")
-    if id(trace) in taken:
-        raise refusal(file, place, "is used for two axes", "name each component's own file or channel")
-    taken.add(id(trace))
-    return file, trace
-
-
-def _check(file: Path, key: str, component: Component, trace: Any) -> None:
+def _check(file: Path, key: str, component: Component, trace: Any, seen: slice) -> None:
     place = f"component {component.axis} ({key!r})"
     if trace.stats.npts < 2:
         raise refusal(file, place, f"is empty ({trace.stats.npts} samples)", "fetch it again")
@@ -280,64 +372,9 @@ def _check(file: Path, key: str, component: Component, trace: Any) -> None:
         at = int(np.flatnonzero(values)[0])
         wrong = f"is declared silent and is {values[at]:g} at sample {at}"
         raise refusal(file, place, wrong, "drop silent from the manifest, or name the right channel")
-    if np.ptp(values) == 0.0 and not component.silent:
-        raise refusal(file, place, f"is dead: every sample is {values[0]:g}", "use a record of a working channel")
+    if not component.silent and seen.stop - seen.start > 1 and np.ptp(values[seen]) == 0.0:
+        raise refusal(file, place, f"is dead: every sample is {values[seen][0]:g}", "use a record of a working channel")
     trace.data = values
-
-
-def _check_orientation(
-    file: Path,
-    key: str,
-    component: Component,
-    trace: Any,
-    inventory: Any,
-    accept: Mapping[Judgement, str],
-    steps: list[str],
-) -> None:
-    place = f"component {component.axis} ({key!r})"
-    try:
-        known = inventory.get_channel_metadata(trace.id, trace.stats.starttime)
-    except Exception as error:  # obspy raises a bare Exception
-        wrong = f"says nothing about {trace.id} at {trace.stats.starttime}"
-        raise refusal(file, place, wrong, "name the StationXML of this channel and time") from error
-    if component.axis == "z":
-        said = {-90.0: "up", 90.0: "down"}.get(known["dip"])
-        agrees = said is None or component.orientation in {None, said}
-    else:
-        said = known["azimuth"]
-        meant = component.orientation
-        agrees = None in {said, meant} or abs((said - meant + 180.0) % 360.0 - 180.0) <= AZIMUTH_TOLERANCE
-    if not agrees:
-        wrong = f"the manifest orients it {component.orientation}, the StationXML {said}"
-        remedy = "find out which is right and mend the manifest's orientation"
-        judged(accept, "orientation", file, place, wrong, remedy, steps)
-
-
-def _oriented(
-    file: Path, key: str, axis: str, manifest: float | str | None, said: Any, steps: list[str]
-) -> float | str:
-    """Return the orientation by the manifest, or, where it is silent, by the file's header; degrees, "up" or "down"."""
-    header = said.get("orientation")
-    known = header in {"up", "down"} if axis == "z" else isinstance(header, float)
-    place = f"component {axis} ({key!r})"
-    if manifest is None:
-        if not known:
-            needed = "up or down" if axis == "z" else "an azimuth"
-            wrong = f"its orientation is not known: the file says {header!r}, and not {needed}"
-            raise refusal(file, place, wrong, "give orientation in the manifest")
-        steps.append(f"{key}: orientation {header}, by the file")
-        return header if isinstance(header, str) else float(header)
-    vertical = header in {"up", "down"}
-    if vertical != (axis == "z") and (vertical or isinstance(header, float)):
-        wrong = f"the file says that it is oriented {header!r}, which is no component {axis}"
-        raise refusal(file, place, wrong, "name the right channel in components")
-    if known and isinstance(header, str):
-        differs = header != manifest
-    else:
-        differs = known and abs((header - float(manifest) + 180.0) % 360.0 - 180.0) > AZIMUTH_TOLERANCE
-    if differs:
-        steps.append(f"{key}: the manifest's orientation {manifest} overrules the file's {header}")
-    return manifest if isinstance(manifest, str) else float(manifest)
 
 
 def _processed(folder: Path, name: str, manifest: bool | None, traces: list[Any], steps: list[str]) -> bool:
@@ -382,7 +419,7 @@ def _in_si(file: Path, key: str, record: Record, trace: Any, inventory: Any) -> 
         step = f"{key}: response of {record.response} removed to m/s2, {how}"
         return [step, *said]
     unit = record.units or own
-    if "kouros" in stats:
+    if stats.get("kouros", {}).get("units"):
         return _by_header(file, key, record, trace)
     if own and record.units and UNITS[record.units] != factor:
         wrong = f"the file says {own}, the manifest {record.units}"
@@ -438,40 +475,8 @@ def own_unit(stats: Any) -> tuple[str, float]:
     return unit, UNITS.get(unit, 0.0)
 
 
-def _check_size(
-    file: Path, key: str, component: Component, trace: Any, accept: Mapping[Judgement, str], steps: list[str]
-) -> None:
-    # About the mean, because a raw accelerometer carries an offset that is not shaking.
-    size = np.abs(trace.data - np.mean(trace.data))
-    at = int(np.argmax(size))
-    if not PGA_LEAST <= size[at] <= PGA_MOST:
-        place = f"component {component.axis} ({key!r})"
-        wrong = f"peaks at {size[at] / G:.3g} g (sample {at}), outside of 1e-9 g to 20 g"
-        remedy = "this looks like a wrong unit: mend units or response in the manifest"
-        judged(accept, "size", file, place, wrong, remedy, steps)
-
-
-def _aligned(rows: dict[str, tuple[Path, Any, str]], steps: list[str]) -> tuple[Array, float, dict[str, int]]:
-    dt = rows["x"][1].stats.delta
-    for axis, (file, trace, key) in rows.items():
-        if abs(trace.stats.delta - dt) > 1e-6 * dt:
-            wrong = f"has a time step of {trace.stats.delta:g} s, component x of {dt:g} s"
-            raise refusal(file, f"component {axis} ({key!r})", wrong, "use three components of one time step")
-    latest = max(trace.stats.starttime for _, trace, _ in rows.values())
-    late = {axis: (latest - trace.stats.starttime) / dt for axis, (_, trace, _) in rows.items()}
-    first = {axis: round(samples) for axis, samples in late.items()}
-    n = min(trace.stats.npts - first[axis] for axis, (_, trace, _) in rows.items())
-    if n < 2:
-        raise refusal(rows["x"][0], "components x, y, z", "have no common time", "use components of one event")
-    cuts = {axis: (first[axis], trace.stats.npts - first[axis] - n) for axis, (_, trace, _) in rows.items()}
-    if any(any(cut) for cut in cuts.values()):
-        told = ", ".join(f"{axis} {a} at the start and {b} at the end" for axis, (a, b) in sorted(cuts.items()))
-        steps.append(f"cut to the common span from {latest} ({n} samples); samples dropped: {told}")
-    skew = max(abs(late[axis] - first[axis]) for axis in rows) * dt
-    if skew > 1e-3 * dt:
-        steps.append(f"aligned to the nearest sample; the components' clocks differ by up to {skew:.3g} s")
-    # A vertical that was not recorded is none.
-    data = np.zeros((3, n))
-    for axis, (_, trace, _) in rows.items():
-        data["xyz".index(axis)] = trace.data[first[axis] : first[axis] + n]
-    return data, float(dt), first
+def _magnitude(rows: Mapping[str, tuple[Path, Any, str]]) -> float | None:
+    """The largest magnitude that the files say, between 1 and 10; None where they say none."""
+    said = [trace.stats.get("knet", {}).get("mag") for _, trace, _ in rows.values()]
+    known = [float(one) for one in said if isinstance(one, (int, float)) and 1.0 <= one <= 10.0]
+    return max(known, default=None)

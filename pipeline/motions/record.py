@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from datetime import datetime
 from typing import Annotated, Literal
 
 from pydantic import (
     AfterValidator,
+    AwareDatetime,
     BaseModel,
     ConfigDict,
     Discriminator,
@@ -38,11 +40,29 @@ def _inside(name: str) -> str:
 
 FileName = Annotated[str, AfterValidator(_inside), Field(json_schema_extra={"pattern": _INSIDE, "minLength": 1})]
 Digest = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
+# Times of the manifest are in UTC, whether TOML's own or texts.
+_TIME = r"^\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(\.\d{1,6})?(Z|\+00:00)?$(?!\n)"
+
+
+def _a_time(text: str) -> str:
+    if not re.fullmatch(_TIME.removesuffix(r"(?!\n)"), text):
+        raise InputError(f"{text[:60]!r} is no time in UTC, such as 2019-07-06T03:19:53Z")
+    try:
+        datetime.fromisoformat(text)
+    except ValueError as error:
+        raise InputError(f"{text!r} is no time: {error}; give one in UTC, such as 2019-07-06T03:19:53Z") from error
+    return text
+
+
+Time = Annotated[str, AfterValidator(_a_time), Field(json_schema_extra={"pattern": _TIME})]
 Unit = Literal["m/s2", "cm/s2", "mm/s2", "gal", "g", "mg"]
 
 
 NO_VERTICAL = "no vertical component was recorded: the motion has none"
 """The step of a record with vertical = "absent"."""
+
+ESTIMATED = "no vertical component was recorded: the motion's is an estimate from the horizontals, and no recorded one"
+"""The step of a record with vertical = "estimated"."""
 
 _RAW_ONLY = ("response", "baseline", "pre_event_s", "highpass_hz", "lowpass_hz")
 """Keys of what is done to raw records only."""
@@ -109,24 +129,59 @@ class BaselineTable(Table):
         return self
 
 
+class EventTable(Table):
+    """The earthquake of a record, as a catalogue or the record's own file has it.
+
+    time           : of its origin, with the offset of its zone
+    latitude, longitude, depth_km : of its hypocentre, degrees north and east
+    magnitude_type : such as "Mw"
+    """
+
+    name: Text | None = None
+    id: Text | None = None
+    time: AwareDatetime | None = None
+    latitude: float | None = Field(default=None, ge=-90.0, le=90.0)
+    longitude: float | None = Field(default=None, ge=-180.0, le=180.0)
+    depth_km: float | None = Field(default=None, ge=-10.0, le=800.0)
+    magnitude: float | None = Field(default=None, ge=-5.0, le=10.0)
+    magnitude_type: Text | None = None
+
+
+class StationTable(Table):
+    """The station of a record: its code with that of its network, and where it stands, degrees north and east."""
+
+    code: Text | None = None
+    name: Text | None = None
+    latitude: float | None = Field(default=None, ge=-90.0, le=90.0)
+    longitude: float | None = Field(default=None, ge=-180.0, le=180.0)
+
+
 class Record(Table):
     """One record of three components, or of two and no vertical, and what is to be done to it.
 
     files      : paths inside the site's folder; `response` is their StationXML, where they hold counts
     components : file name, channel code or full channel id -> axis and orientation; x, y and z once each
-    vertical   : "absent" where no vertical was recorded: components are x and y then, and the motion has no vertical
+    vertical   : "absent" where no vertical was recorded: components are x and y then, and the motion has no vertical;
+                 "estimated", one is made from the larger horizontal by the ratio of vertical to horizontal spectra of
+                 EN 1998-1 (see `vertical`), or the z that is given was made so
     units      : only where the file itself does not say
     processed  : whether the agency has filtered it already; such a record is never filtered again.  Left out, the
                  files' headers say it
     baseline   : of a raw record; pre_event_s: s of noise before the event at its start
     highpass_hz: of a raw record: a corner; "auto" or left out, one is chosen from length, noise and tail (see
-                 `baseline.choose_corner`); "none", it is not filtered
+                 `corners.choose_corner`); "none", it is not filtered
     resample_s : another time step
     scale, scale_to_pga_g, scale_to_target : one factor for all three components; the PGA in g that the larger recorded
                  horizontal component shall have; or the factor that fits the level's target spectrum best.  None of
                  them leaves the record as it was recorded
     v_max_cm_s : the velocity for the overturning criterion, after scaling, where it is not to be the PGV
-    window_s   : start and end in s from the first common sample
+    window_s   : start and end in s from the first common sample, or from origin_time.  It goes first: what lies more
+                 than 300 s outside of it is not read, and only filters see what lies nearer
+    origin_time: of the earthquake, in UTC, where the files hold more than one: from it window_s is counted; without
+                 window_s it is that of the earthquake found there
+    start_m_s  : of a processed record, the velocity in m/s that x, y and z begin with, which the samples do not tell
+    event, station, distance_km : the earthquake, the station, and how far from each other they are; nothing is computed
+                 of these.  The distance is the epicentral one, or as the record's source gives it
     accept     : refusals that a person has judged and overruled, each with the reason
     sha256     : of every file named, the response included
     """
@@ -139,9 +194,20 @@ class Record(Table):
                 {"not": {"required": ["scale_to_pga_g", "scale_to_target"]}},
                 {"not": {"required": ["units", "response"]}},
                 {
-                    "if": {"required": ["vertical"]},
+                    "if": {"properties": {"vertical": {"const": "absent"}}, "required": ["vertical"]},
                     "then": {"properties": {"components": {"maxProperties": 2}}},
-                    "else": {"properties": {"components": {"minProperties": 3}}},
+                },
+                {
+                    "if": {"not": {"required": ["vertical"]}},
+                    "then": {"properties": {"components": {"minProperties": 3}}},
+                },
+                {
+                    "if": {"not": {"required": ["origin_time"]}},
+                    "then": {"properties": {"window_s": {"prefixItems": [{"minimum": 0}]}}},
+                },
+                {
+                    "if": {"required": ["start_m_s"]},
+                    "then": {"properties": {"processed": {"const": True}}, "required": ["processed"]},
                 },
                 {
                     "if": {"properties": {"processed": {"const": True}}, "required": ["processed"]},
@@ -155,7 +221,7 @@ class Record(Table):
     files: tuple[FileName, ...] = Field(min_length=1)
     response: FileName | None = None
     components: dict[Text, Component] = Field(min_length=2, max_length=3)
-    vertical: Literal["absent"] | None = None
+    vertical: Literal["absent", "estimated"] | None = None
     units: Unit | None = None
     processed: bool | None = None
     scale: float | None = Field(default=None, gt=0.0)
@@ -166,9 +232,14 @@ class Record(Table):
     highpass_hz: Annotated[float, Field(gt=0.0)] | Literal["auto", "none"] | None = None
     lowpass_hz: float | None = Field(default=None, gt=0.0)
     resample_s: float | None = Field(default=None, gt=0.0)
-    window_s: tuple[Annotated[float, Field(ge=0.0)], Annotated[float, Field(gt=0.0)]] | None = None
+    window_s: tuple[float, Annotated[float, Field(gt=0.0)]] | None = None
+    origin_time: Time | None = None
+    start_m_s: tuple[float, float, float] | None = None
     v_max_cm_s: float | None = Field(default=None, gt=0.0)
     accept: dict[Judgement, Text] = Field(default_factory=dict)
+    event: EventTable | None = None
+    station: StationTable | None = None
+    distance_km: float | None = Field(default=None, ge=0.0, le=20_040.0)
     source: Text
     licence: Text
     sha256: dict[FileName, Digest]
@@ -205,13 +276,13 @@ class Record(Table):
         if len(set(self.all_files)) < len(self.all_files):
             raise InputError("files: a file is named twice; name each file once")
         axes = sorted(c.axis for c in self.components.values())
-        wanted = ["x", "y"] if self.vertical else ["x", "y", "z"]
-        if axes != wanted:
+        three, two = ["x", "y", "z"], ["x", "y"]
+        if axes not in {None: [three], "absent": [two], "estimated": [two, three]}[self.vertical]:
             remedy = "give each of x, y and z exactly once"
-            if self.vertical:
+            if self.vertical == "absent":
                 remedy = 'with vertical = "absent" they are x and y; drop that key, or the vertical component'
-            elif axes == ["x", "y"]:
-                remedy += ', or say vertical = "absent" where no vertical was recorded'
+            elif axes == two:
+                remedy += ', or say vertical = "absent" where no vertical was recorded ("estimated": make one)'
             raise InputError(f"components: the axes are {', '.join(axes)}; {remedy}")
         given = [key for key in ("scale", "scale_to_pga_g", "scale_to_target") if getattr(self, key) is not None]
         if len(given) > 1:
@@ -224,6 +295,12 @@ class Record(Table):
             )
         if self.corner_hz is not None and self.lowpass_hz is not None and self.corner_hz >= self.lowpass_hz:
             raise InputError(f"highpass_hz {self.corner_hz:g} must be below lowpass_hz {self.lowpass_hz:g}")
+        if self.window_s is not None and self.window_s[0] < 0.0 and self.origin_time is None:
+            raise InputError(
+                f"window_s {list(self.window_s)} begins before the record; only from an origin_time it may"
+            )
+        if self.processed is not True and self.start_m_s is not None:
+            raise InputError("start_m_s is for a record with processed = true; drop it, or say so")
         if self.window_s is not None and self.window_s[0] >= self.window_s[1]:
             raise InputError(f"window_s {list(self.window_s)} must be [start, end] with start before end")
         if self.baseline is not None and self.baseline.method == "pre-event" and self.pre_event_s is None:

@@ -14,7 +14,8 @@ import numpy as np
 from pipeline.cache import MOTIONS, Cache, CacheEntry, key_of
 from pipeline.errors import InputError
 from pipeline.motions.blas import one_thread
-from pipeline.motions.errors import MotionError, judged, refusal
+from pipeline.motions.errors import Judgement, MotionError, judged, refusal
+from pipeline.motions.filtering import remove_baseline
 from pipeline.motions.hazard_file import read_hazard
 from pipeline.motions.intensity import integrate, measures
 from pipeline.motions.manifest import (
@@ -26,10 +27,11 @@ from pipeline.motions.manifest import (
     load_manifest,
     manifest_file,
 )
-from pipeline.motions.processing import Processed, process
+from pipeline.motions.plausibility import doubt_motion, doubt_recorded
+from pipeline.motions.processing import Processed, cut, process
 from pipeline.motions.pulses import PERIODS, shahi_baker_pulse
 from pipeline.motions.quality import cut_off
-from pipeline.motions.reading import read_record
+from pipeline.motions.reading import Recording, read_record
 from pipeline.motions.record import Record
 from pipeline.quantities import Array
 from pipeline.records import Motion
@@ -413,8 +415,19 @@ def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_
         during strong shaking, unless that is accepted.
     """
     since = perf_counter()
-    recording = read_record(file.parent, record)
+    steps: list[str] = []
+
+    def ask(judgement: Judgement, wrong: str, remedy: str) -> None:
+        judged(record.accept, judgement, file, f"{key}, record {record.name!r}", wrong, remedy, steps)
+
     try:
+        recording = read_record(file.parent, record)
+        # Before anything is filtered, which would hide the evidence.
+        span, _ = remove_baseline(_span(recording), recording.dt)
+        if doubt := doubt_recorded(span):
+            ask(doubt.judgement, doubt.wrong, doubt.remedy)
+        if incomplete := cut_off(span, recording.dt, ("x", "y", "z")):
+            ask("cut_off", incomplete, "use the whole record, or widen window_s")
         done = process(recording, record, target, x_azimuth)
     except MotionError:
         raise
@@ -424,10 +437,14 @@ def prepare(file: Path, key: str, record: Record, target: TargetTable | None, x_
         "%s, %s, record %r: read and processed in %.2f s, %d samples of %g s",
         file, key, record.name, perf_counter() - since, done.motion.acceleration.shape[-1], done.motion.dt,
     )  # fmt: skip
-    cut = cut_off(done.motion.acceleration, done.motion.dt, ("x", "y", "z"))
-    if cut is None:
-        return done
-    steps: list[str] = []
-    remedy = "use the whole record, or widen window_s"
-    judged(record.accept, "cut_off", file, f"{key}, record {record.name!r}", cut, remedy, steps)
-    return replace(done, motion=done.motion.called(record.name, *steps))
+    unscaled = done.motion.scaled(1.0 / done.factor, "for judging")
+    velocity = None if done.velocity is None else done.velocity / done.factor
+    if doubt := doubt_motion(unscaled, velocity=velocity, processed=recording.processed):
+        ask(doubt.judgement, doubt.wrong, doubt.remedy)
+    return replace(done, motion=done.motion.called(record.name, *steps)) if steps else done
+
+
+def _span(recording: Recording) -> Array:
+    if recording.window is None:
+        return recording.data
+    return cut(recording.data, recording.dt, *recording.window, recording.begins)[0]

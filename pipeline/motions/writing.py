@@ -13,10 +13,9 @@ import numpy as np
 import tomlkit
 
 from pipeline.motions.errors import Judgement, refusal
-from pipeline.motions.intensity import measures
 from pipeline.motions.manifest import MANIFEST, SiteTable, load_manifest, manifest_file
 from pipeline.motions.processing import EAST
-from pipeline.motions.record import NO_VERTICAL, Record
+from pipeline.motions.record import ESTIMATED, NO_VERTICAL, Record
 from pipeline.motions.responses import load_obspy
 from pipeline.records import Motion
 from pipeline.resources import replacing
@@ -68,7 +67,7 @@ def write_site(
     -----
     Every sample is written with 17 digits and read back bit for bit; the time step to its last digit.  Compact files
     hold the acceleration to 1 mm/s2 and the velocity that it adds up to within half of that in a time step, so that
-    nothing drifts.  A velocity that a record starts with has no place in the files: its PGV is kept as `v_max_cm_s`.
+    nothing drifts.  The velocity that a motion starts with stands in the manifest (`start_m_s`), to its last digit.
     """
     _unwritten(folder)
     if dry_run:
@@ -202,19 +201,19 @@ def _record(folder: Path, file: str, motion: Motion, azimuth: float, licence: st
             component["silent"] = True
     # What was judged once, or is a test signal, is not judged again.
     told = "; ".join(motion.steps)[:460] or "as it was given"
-    v_max = motion.v_max or (measures(motion)["pgv_resultant"] if any(motion.start) else None)
     return {
         "name": motion.name[:500],
         "files": [file],
         "components": components,
         **({"units": "mm/s2"} if compact else {}),
-        **({"vertical": "absent"} if absent else {}),
+        **({"vertical": "absent"} if absent else {"vertical": "estimated"} if ESTIMATED in motion.steps else {}),
         "processed": True,
-        "accept": {"clipping": f"written by Kouros: {told}", "cut_off": f"written by Kouros: {told}"},
+        "accept": dict.fromkeys(("clipping", "cut_off", "size", "drift"), f"written by Kouros: {told}"),
         "source": (source or "Kouros")[:500],
         "licence": (own or licence)[:500],
         "sha256": {file: digest},
-        **({} if v_max is None else {"v_max_cm_s": 100.0 * v_max}),
+        **({"start_m_s": list(motion.start)} if any(motion.start) else {}),
+        **({} if motion.v_max is None else {"v_max_cm_s": 100.0 * motion.v_max}),
     }
 
 

@@ -15,6 +15,7 @@ from pipeline.analysis.context import Context
 from pipeline.analysis.faults import Fault, apart, each_apart, fault, unassessed
 from pipeline.analysis.fragility.objects import fragilities
 from pipeline.analysis.house.matching import HouseRules
+from pipeline.analysis.likelihood.classes import computed, scenes_by_class
 from pipeline.analysis.likelihood.sampling import ACTS
 from pipeline.analysis.likelihood.stripes import sampled_fragilities
 from pipeline.analysis.response_charts import ChartCache
@@ -23,7 +24,8 @@ from pipeline.analysis.survey import measurement_requests, telling_requests
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.record import INDIVIDUAL
 from pipeline.mitigate import MeasureCatalogue, advise
-from pipeline.mitigate.installed import InstalledMeasure, Placed, assess_above, likely, placed, stood_of
+from pipeline.mitigate.by_class import for_every_class
+from pipeline.mitigate.installed import InstalledMeasure, Placed, PlacedAs, assess_above, likely, placed, stood_of
 from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.mitigate.proposals import case_of
 from pipeline.mitigate.trials import HarmAim
@@ -79,16 +81,23 @@ def place(
     decisions: Sequence[Decision],
     measures: MeasureCatalogue | None = None,
     house: HouseRules | None = None,
+    *,
+    assessed: bool = True,
 ) -> Placed:
     """Return an object as people say that it is and stands: of the class decided, with the measures installed.
 
     decisions : those in force about it
     measures  : what the museum has; None: Kouros's own
     house     : what the museum states once for many objects; None: nothing
+    assessed  : whether anything is found of it, so that what else it may be counts
     """
     scene = classify(item, rules, decided_class(decisions), house)
     there = [InstalledMeasure(d.measure, d.parameters, d.by) for d in decisions if d.kind is DecisionKind.INSTALLED]
-    return placed(scene, there, measures)
+    may_be = tuple(
+        PlacedAs(classes, chance, placed(as_such, there, measures))
+        for classes, chance, as_such in (scenes_by_class(scene, rules, house) if assessed else ())
+    )
+    return replace(placed(scene, there, measures), may_be=may_be)
 
 
 def decided_class(decisions: Sequence[Decision]) -> tuple[str, str] | None:
@@ -189,23 +198,25 @@ def _likes(objects: Sequence[Placed], about: Mapping[str, Sequence[Decision]]) -
     """Return of each object what it shares with those that are alike; its place stands for one of its own kind."""
     likes: list[Hashable] = []
     for at, one in enumerate(objects):
-        like = None if one.scene.item.object_number in about else likeness(one.scene)
+        like = None if one.scene.item.object_number in about else likeness(one)
         likes.append(at if like is None else like)
     return likes
 
 
-def likeness(scene: Scene) -> Hashable | None:
+def likeness(one: Placed) -> Hashable | None:
     """Return what objects that are alike share; None for one whose company counts.
 
     That is one that stands in a case, whose measures are for all in it, or on an isolator.
     """
+    scene = one.scene
     if scene.item.case.strip() or scene.support is Support.ISOLATED:
         return None
     return (
         *(scene.object_class, scene.rule, scene.support, scene.models, tuple(scene.parameters.items())),
         *(scene.assumptions, scene.missing, scene.floor, scene.hanging, scene.furniture, scene.furniture_origin),
-        *(scene.anchorage, scene.statements),
+        *(scene.anchorage, scene.statements, scene.mount, scene.mount_origin),
         *_shared(scene.item),
+        *((each.classes, each.chance, computed(each.placed.scene)) for each in one.may_be),
     )
 
 
@@ -237,14 +248,22 @@ def by_object(decisions: Iterable[Decision]) -> dict[str, list[Decision]]:
 
 
 def placed_each(
-    context: "RunContext", floor: Floor, items: Sequence[Item], about: Mapping[str, Sequence[Decision]]
+    context: "RunContext",
+    floor: Floor,
+    items: Sequence[Item],
+    about: Mapping[str, Sequence[Decision]],
+    *,
+    assessed: bool = True,
 ) -> list[Placed | Exception]:
-    """Return each object as it stands, or the error that placing it came to."""
+    """Return each object as it stands, or the error that placing it came to.
+
+    assessed : whether anything is found of them
+    """
+    rules, measures, house = context.rules, context.measures, context.house
 
     def some(these: Sequence[Item]) -> list[Placed]:
         objects = [
-            place(item, context.rules, about.get(item.object_number, ()), context.measures, context.house)
-            for item in these
+            place(item, rules, about.get(item.object_number, ()), measures, house, assessed=assessed) for item in these
         ]
         return [replace(one, scene=replace(one.scene, floor=floor.name)) for one in objects]
 
@@ -266,7 +285,7 @@ def left_aside(
     Parameters and what is returned are those of `assess_objects`.
     """
     faults: list[Fault] = []
-    objects = placed_each(context, floor, items, by_object(decisions))
+    objects = placed_each(context, floor, items, by_object(decisions), assessed=False)
     assessments = [
         Assessment(one.scene, (), ()) if isinstance(one, Placed) else failed_on(item, one, faults)
         for item, one in zip(items, objects, strict=True)
@@ -366,7 +385,7 @@ def advised(
         chances=chances,
         aim=aim,
     )
-    return chances, advice
+    return chances, for_every_class(objects, advice, levels, working, aim, measures)
 
 
 def _has_a_curve(scene: Scene) -> bool:

@@ -22,7 +22,7 @@ from pipeline.collection.object_index import ObjectIndex
 from pipeline.execute import Threads
 from pipeline.kernels import KERNEL_VERSION
 from pipeline.mitigate import MeasureCatalogue
-from pipeline.motions.record import NO_VERTICAL
+from pipeline.motions.record import ESTIMATED, NO_VERTICAL
 from pipeline.motions.site import Level, Site
 from pipeline.night.context import RunContext, motions_of
 from pipeline.night.figures import Pictures
@@ -246,6 +246,9 @@ def _level_note(level: Level, units: Units) -> str:
     flat = [one.motion.name for one in level.motions if NO_VERTICAL in one.motion.steps]
     if flat:
         caution += f"; no vertical shaking was recorded, and none is assumed: {', '.join(flat)}"
+    made = [one.motion.name for one in level.motions if ESTIMATED in one.motion.steps]
+    if made:
+        caution += f"; no vertical shaking was recorded, and an estimate is assumed: {', '.join(made)}"
     return f"Level {level.name}{period}: {how}{caution}; {answers}."
 
 

@@ -15,7 +15,7 @@ from pipeline.records.change import (
 from pipeline.records.contact_polygon import ContactPolygon
 from pipeline.records.decision import Basis, Decision, DecisionKind, DecisionStatus, in_force
 from pipeline.records.fragility import Fragility
-from pipeline.records.likelihood import Band, Harm, Likelihood, Sampling
+from pipeline.records.likelihood import Band, Harm, IfClass, Likelihood, Sampling
 from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.model import Bounds, ChartAxis, ChartFigure, Columns, Figure, Model, Trials
 from pipeline.records.motion import Excitation, Motion, MotionSummary
@@ -34,6 +34,7 @@ from pipeline.records.scene import (
     Furniture,
     Hanging,
     Item,
+    Mount,
     Origin,
     Problem,
     Provenance,
@@ -77,6 +78,7 @@ __all__ = [
     "Furniture",
     "Hanging",
     "Harm",
+    "IfClass",
     "InputChange",
     "Item",
     "Likelihood",
@@ -86,6 +88,7 @@ __all__ = [
     "Motion",
     "MotionChange",
     "MotionSummary",
+    "Mount",
     "Move",
     "Numerics",
     "ObjectPlace",

@@ -6,6 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
+CLASS = "class"
+"""What is asked where it is not certain what an object is: role of the draws, and what `Likelihood.open_for` says."""
+
 
 class Harm(StrEnum):
     """State that an object may reach: it shifts, leaves its place or hits something, rocks, falls, breaks."""
@@ -63,6 +66,35 @@ class Sampling:
 
 
 @dataclass(frozen=True, slots=True)
+class IfClass:
+    """How likely harm is if an object is of one of the classes that it may be of.
+
+    Attributes
+    ----------
+    classes : tuple of str
+        The class, or several for which the same is computed.
+    chance : float
+        How likely it is of that, of the classes that are weighed.
+    probability : float or None
+        Of being harmed if it is; None where no sample had it be that.
+    samples : int
+        How many had it be that.
+    band : Band or None
+        The word for the probability.
+    """
+
+    classes: tuple[str, ...]
+    chance: float
+    probability: float | None
+    samples: int
+    band: Band | None
+
+    def at_least(self, target: float) -> bool:
+        """Say whether harm is as likely as that if it is; of no samples nobody knows it, and it counts as likely."""
+        return self.probability is None or self.probability >= target
+
+
+@dataclass(frozen=True, slots=True)
 class Likelihood:
     """How likely an object comes to harm at a level of shaking, its measures and the motions of the level being drawn.
 
@@ -83,11 +115,14 @@ class Likelihood:
     states : mapping of str to float
         By `Harm`, the probability of each state that it can reach; those that do it no harm as well.
     open_for : str
-        The parameter whose measurement alone may change what is decided about it; "" for none.
+        The parameter whose measurement alone may change what is decided about it, or "class": what it is; "" for none.
     worth : float
         By how much that measurement lowers the expected loss, in units of the loss by harm.
     moves : float
         Probability that it is measured where something else is decided than now.
+    classes : tuple of IfClass
+        What it may be, of which all this is the mixture, the class that it is taken for first; () where that is certain
+        or makes no difference.
     """
 
     level: str
@@ -100,6 +135,7 @@ class Likelihood:
     open_for: str = ""
     worth: float = 0.0
     moves: float = 0.0
+    classes: tuple[IfClass, ...] = ()
 
     @property
     def expected(self) -> float:

@@ -239,6 +239,8 @@ class Model:
         What is drawn of every motion, in order.
     at_most : str
         The sentence that takes the place of its own where only a bound is known, which the demand is then.
+    gripped : str
+        The sentence that takes the place of both for what a mount holds; "" where that is no matter.
     errors : mapping
         Output -> column of `run` with its own error, where `error` is not of the same unit.
     axes : tuple of mapping
@@ -329,6 +331,7 @@ class Model:
     turns: bool = False
     pictures: tuple[Figure | ChartFigure, ...] = ()
     at_most: str = ""
+    gripped: str = ""
     errors: Mapping[str, str] = field(default_factory=dict)
     axes: tuple[Mapping[str, str], ...] = ({}, {})
     across: bool = False

@@ -9,7 +9,7 @@ from pipeline.records.fragility import Fragility
 from pipeline.records.likelihood import Likelihood
 from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.result import Assessment, Finding, Recommendation, Spacing
-from pipeline.records.scene import Anchorage, Estimate, Furniture, Hanging, Origin, Support
+from pipeline.records.scene import Anchorage, Estimate, Furniture, Hanging, Mount, Origin, Support
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class Result:
     ----------
     object_class, rule, support, models, parameters, assumptions, missing, skipped, floor
         See `Scene`.
-    hanging, furniture, statements, furniture_origin, anchorage, chances
+    hanging, furniture, statements, furniture_origin, anchorage, chances, mount, mount_origin
         See `Scene`.
     findings : tuple of Finding
         One for each demand and level.
@@ -79,6 +79,8 @@ class Result:
     anchorage: Anchorage | None = None
     likelihoods: tuple[Likelihood, ...] = ()
     chances: tuple[tuple[str, float], ...] = ()
+    mount: Mount | None = None
+    mount_origin: Origin | None = None
 
 
 Urgency = tuple[int, bool, bool, float, float, float, str, str]

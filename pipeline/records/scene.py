@@ -27,6 +27,17 @@ class Hanging(StrEnum):
     FIXED = "fixed"
 
 
+class Mount(StrEnum):
+    """Way in which a thing is held that lies in a case, or that cannot stand by itself."""
+
+    LYING = "lying"
+    STANDING = "standing"
+    LEANING = "leaning"
+    RESTING = "resting"
+    SECURED = "secured"
+    UNKNOWN = "unknown"
+
+
 class Furniture(StrEnum):
     """Furniture that an object stands on or in, or that it hangs from."""
 
@@ -238,6 +249,8 @@ class Estimate:
         Who says so.
     per : str
         The parameter that it is proportional to: of a range of both, they go up and down together; "" for none.
+    cause : str
+        The parameter that shares the cause of its range, so that both are high together; "" for none.
     """
 
     value: float
@@ -248,6 +261,7 @@ class Estimate:
     note: str = ""
     source: str = ""
     per: str = ""
+    cause: str = ""
 
     @classmethod
     def measured(cls, value: float, unit: str, note: str = "") -> Estimate:
@@ -326,6 +340,9 @@ class Scene:
     chances : tuple of (str, float)
         The classes that are likely at all by what its record says, with their probability, the likeliest first; ()
         where a person decided.
+    mount, mount_origin : Mount or None, Origin or None
+        How it is held where it lies in a case or cannot stand by itself, None of all else; and by what
+        that is known.
     """
 
     item: Item
@@ -344,6 +361,8 @@ class Scene:
     furniture_origin: Origin | None = None
     anchorage: Anchorage | None = None
     chances: tuple[tuple[str, float], ...] = ()
+    mount: Mount | None = None
+    mount_origin: Origin | None = None
 
     @property
     def next_class(self) -> tuple[str, float] | None:

@@ -7,6 +7,7 @@ from io import TextIOWrapper
 from typing import IO
 
 from pipeline.analysis.classify import object_classes
+from pipeline.mitigate.by_class import NAMED_FIRST
 from pipeline.mitigate.catalogue import own_catalogue
 from pipeline.mitigate.fixing_rows import fixing_strengths
 from pipeline.mitigate.installed import ON_TOP
@@ -58,7 +59,7 @@ def run_phrases(
 
 def _of_models() -> Iterator[str]:
     for model in MODELS:
-        yield from (model.title, model.sentence, model.at_most, model.fails, *model.says)
+        yield from (model.title, model.sentence, model.at_most, model.gripped, model.fails, *model.says)
     yield from NOTES.values()
     yield ON_TOP
 
@@ -75,7 +76,7 @@ def _of_measures() -> Iterator[str]:
             yield sentence.replace("{what}", IT).replace("{product}", GENERIC).replace(" {how}", "")
         if "{care}" in sentence:
             yield sentence.replace(" {care}", "")
-    yield from (ONLY_HERE, AT_BEST, SIZED, ANCHORED, *(row.care for row in fixing_strengths().values()))
+    yield from (ONLY_HERE, AT_BEST, SIZED, ANCHORED, NAMED_FIRST, *(row.care for row in fixing_strengths().values()))
 
 
 def _names() -> Iterator[str]:

@@ -111,6 +111,8 @@ def anonymous(assessment: Assessment, needing: dict[str, int], wishes: tuple[Mea
         scene.anchorage,
         assessment.likelihoods,
         scene.chances,
+        scene.mount,
+        scene.mount_origin,
     )
 
 
@@ -134,6 +136,8 @@ def of_object(result: Result, item: Item) -> Assessment:
         result.furniture_origin,
         result.anchorage,
         result.chances,
+        result.mount,
+        result.mount_origin,
     )
     return Assessment(
         scene,

@@ -132,9 +132,12 @@ def _motions(settings: Settings) -> tuple[str, str]:
         text += f"; floor {floor}"
     doubts = [f"level {level.name}: {level.caution}" for level in site.levels if level.caution]
     nobody = [level.name for level in site.levels if not level.approved_by]
-    flat = [record.name for _, record in site.manifest.records() if record.vertical]
+    flat = [record.name for _, record in site.manifest.records() if record.vertical == "absent"]
+    made = [record.name for _, record in site.manifest.records() if record.vertical == "estimated"]
     if flat:
         doubts.append(f"no vertical was recorded, and none shakes anything: {', '.join(flat)}")
+    if made:
+        doubts.append(f"no vertical was recorded, and one is estimated: {', '.join(made)}")
     stray = unlisted(site.file, site.manifest)
     if stray:
         doubts.append(

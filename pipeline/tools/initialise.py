@@ -9,10 +9,9 @@ from pipeline.resources import replacing
 from pipeline.settings import Settings, template
 
 MANIFEST = """\
-# The motions of your site; it names none yet.  Put the files of a record beside this one, and paste in below what
-# `kouros motions entries` prints of them: names, components, sha256.  Answer what it asks, then try
-# `kouros motions show` and `kouros check`.  The documentation (docs/how-to/records.md)
-# lists what a record may say; an error names the key.
+# The motions of your site; it names none yet.  `kouros motions add FILES...` copies a record's files here and writes
+# what they say below; comments stay.  Then `kouros motions show` and `kouros check`.  The documentation
+# (docs/how-to/records.md) lists what a record may say; an error names the key.
 
 [site]
 name = "Our site"
@@ -39,7 +38,7 @@ longitude = 0.0
 # HNE = { axis = "x", orientation = 90 }
 # HNN = { axis = "y", orientation = 0 }
 # HNZ = { axis = "z", orientation = "up" }
-# [level.record.sha256]        # of every file named, as `kouros motions entries` prints it
+# [level.record.sha256]        # of every file named, as `kouros motions add` writes it
 #
 # [[floor]]                  # kouros.toml says which galleries stand on it
 # name = "2"

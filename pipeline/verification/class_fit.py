@@ -19,8 +19,8 @@ from scipy.optimize import minimize
 from scipy.sparse import csr_matrix
 from scipy.special import logsumexp
 
-from pipeline.analysis.evidence import AGREES, BIAS, SAYING, SILENT, Weights, read_weights, signs_of
-from pipeline.analysis.rules import readings
+from pipeline.analysis.evidence import AGREES, BIAS, GALLERY, SAYING, SILENT, Weights, read_weights, shares_of, signs_of
+from pipeline.analysis.rules import PICTURES, readings
 from pipeline.records import Item
 from pipeline.tables import table
 
@@ -34,10 +34,19 @@ HIDDEN: tuple[tuple[tuple[str, ...], float], ...] = (
     (("classification",), 0.5),
     (("object_name",), 0.3),
     (("title",), 0.3),
+    (("gallery",), 0.5),
+    (("classification", "object_name", "medium"), 0.2),
+    (("title", "classification", "medium", "gallery"), 0.2),
 )
 """Parts of a record that are hidden, and the weight of the object without them."""
 
-RIDGE = {"agree": 0.02, "class": 3.0, "rule": 3.0, "sign": 10.0, "bias": 2.0}
+RENAMED = 0.3
+"""Weight of an object whose title is taken as its object name."""
+
+NAMING = (1, 3)
+"""Words that a title has, at least and at most, which is what other museums record as the name of the thing."""
+
+RIDGE = {"agree": 0.02, "class": 3.0, "rule": 3.0, "sign": 10.0, "gallery": 1.0, "bias": 2.0}
 """Penalties on squared weights."""
 
 LEAST = 0.02
@@ -57,7 +66,7 @@ def labelled_of(row: Mapping[str, str]) -> Labelled:
     """Return a row of a file of labelled objects."""
     texts = {name: row[name] for name in TEXTS}
     sizes = {name: float(row[name]) if row[name] else None for name in LENGTHS}
-    item = Item(row["object_number"], "", **texts, **sizes)  # type: ignore[arg-type]
+    item = Item(row["object_number"], row["department"], **texts, **sizes)  # type: ignore[arg-type]
     return Labelled(row["collection"], item, row["class"])
 
 
@@ -67,25 +76,43 @@ def read_labelled(path: Path) -> list[Labelled]:
         return [labelled_of(row) for row in csv.DictReader(stream)]
 
 
-def _shown(item: Item) -> dict[tuple[str, ...], float]:
+def _shown(one: Labelled) -> dict[tuple[str, ...], float]:
     """Return the signs of an object, whole and with parts hidden, each with its weight."""
     out: dict[tuple[str, ...], float] = {}
+    _show(one.item, 1.0, out)
+    for item in _named(one):
+        _show(item, RENAMED, out)
+    return out
+
+
+def _named(one: Labelled) -> tuple[Item, ...]:
+    """Return the object as a museum would record it that keeps an object name, where this one keeps none.
+
+    A work that is hung is named by what it is classified as, another thing by a short title.
+    """
+    item = one.item
+    if item.object_name or not NAMING[0] <= len(item.title.split()) <= NAMING[1]:
+        return ()
+    if one.object_class not in PICTURES:
+        return (replace(item, object_name=item.title, title=""),)
+    return (replace(item, object_name=item.classification, classification=""),) if item.classification else ()
+
+
+def _show(item: Item, share: float, out: dict[tuple[str, ...], float]) -> None:
+    """Add the signs of an object, whole and with parts hidden, each with a share of its weight."""
     for hidden, weight in HIDDEN:
         if hidden and not any(getattr(item, name) for name in hidden):
             continue
         less = replace(item, **dict.fromkeys(hidden, ""))  # type: ignore[arg-type]
         signs = signs_of(less, readings(less))
-        out[signs] = out.get(signs, 0.0) + weight
-    return out
+        out[signs] = out.get(signs, 0.0) + share * weight
 
 
 def fit(objects: Sequence[Labelled]) -> Weights:
     """Return the weights that make the labels most probable, less the penalties."""
     classes = CLASSES
     cases = [
-        (signs, classes.index(one.object_class), weight)
-        for one in objects
-        for signs, weight in _shown(one.item).items()
+        (signs, classes.index(one.object_class), weight) for one in objects for signs, weight in _shown(one).items()
     ]
     columns = {sign: at for at, sign in enumerate(sorted({sign for signs, _, _ in cases for sign in signs}))}
     indices = [columns[sign] for signs, _, _ in cases for sign in signs]
@@ -118,7 +145,7 @@ def fit(objects: Sequence[Labelled]) -> Weights:
 
     start = np.zeros(size + len(SAYING))
     found = minimize(
-        loss, start, jac=True, method="L-BFGS-B", options={"maxiter": 1000, "maxfun": 2000, "ftol": 1e-11, "gtol": 1e-4}
+        loss, start, jac=True, method="L-BFGS-B", options={"maxiter": 400, "maxfun": 500, "ftol": 1e-8, "gtol": 1e-3}
     )
     of_sign = found.x[:size].reshape(len(columns), len(classes))
     return Weights(
@@ -133,6 +160,8 @@ def _penalty(sign: str, classes: tuple[str, ...]) -> float:
         return RIDGE["bias"]
     if sign.partition(": ")[2] in (*classes, SILENT):
         return RIDGE["class"]
+    if sign.startswith(f"{GALLERY}: "):
+        return RIDGE["gallery"]
     return RIDGE["rule" if sign.startswith("rule of ") else "sign"]
 
 
@@ -154,7 +183,7 @@ def tabled(found: Weights) -> Weights:
 def probabilities(found: Weights, items: Sequence[Item]) -> NDArray[np.float64]:
     """Return the probability of each class (columns) for each object (rows)."""
     scores = np.array([found.scores(signs_of(item, readings(item))) for item in items])
-    return np.asarray(np.exp(scores - logsumexp(scores, axis=1, keepdims=True)))
+    return shares_of(scores)
 
 
 def left_out(objects: Sequence[Labelled]) -> dict[str, tuple[list[Labelled], NDArray[np.float64]]]:

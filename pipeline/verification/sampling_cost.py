@@ -13,7 +13,8 @@ import numpy as np
 
 from pipeline.analysis.classify import classify
 from pipeline.analysis.faults import sound
-from pipeline.analysis.likelihood.sampling import Stood, likelihoods
+from pipeline.analysis.likelihood.analyses import Stood
+from pipeline.analysis.likelihood.sampling import likelihoods
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.collection.mapping import PRESETS, load_mapping
 from pipeline.collection.reading import read_items

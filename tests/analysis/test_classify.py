@@ -13,8 +13,9 @@ from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
 from pipeline.night.importing import bundled_collection
 from pipeline.records import Furniture, Item, Origin, Support
-from pipeline.tables import Row, table
+from pipeline.tables import Range, Row, table
 from pipeline.tables.assumed import assumed, span
+from pipeline.tables.fill_rows import fills
 
 VASE = Item("1", "G", title="Covered vase", classification="Ceramics", medium="porcelain",
             height_m=0.4, width_m=0.2, depth_m=0.2)  # fmt: skip
@@ -81,13 +82,14 @@ HELD = {"mass_kg": 2.0, "section_width_m": 0.02, "base_width_m": 0.1, "base_dept
     ("title", "support", "recorded", "missing"),
     [
         # Before, each of these ended the night: classes.csv, mounted: column 'base_ratio' must be a number, not ''.
-        ("Mask", Support.FASTENED, {}, ("width of its weakest section", "mass")),
+        # What a mount holds has no section that is known to be weak.
+        ("Mask", Support.FASTENED, {}, ()),
         ("Mask", Support.FASTENED, HELD, ()),
-        ("Mask", Support.FREESTANDING, {}, ("base width", "base depth")),
+        ("Mask", Support.FREESTANDING, {}, ()),
         ("Mask", Support.FREESTANDING, HELD, ()),
         ("Medal", Support.FREESTANDING, HELD, ()),
         ("Oil painting", Support.FREESTANDING, {"medium": "oil on canvas"}, ("base width", "base depth")),
-        ("Chandelier", Support.FASTENED, {"height_m": None}, ("height", "width of its weakest section", "mass")),
+        ("Chandelier", Support.FASTENED, {"height_m": None}, ("width of its weakest section", "mass")),
         # A vessel's base and section follow from its size; what is made fast needs no base where its section is known.
         ("Vase", Support.FASTENED, {}, ()),
         ("Vase", Support.FASTENED, HELD | {"width_m": None, "depth_m": None}, ()),
@@ -166,7 +168,11 @@ def test_every_range_of_class_and_material_travels_to_the_models(row: Row, mater
     tensile = [float(stuff[c]) for c in ("tensile_low", "tensile", "tensile_high")]
     assert [getattr(found["allowable_stress"], s) for s in ends] == tensile
     box = 0.3 * 0.3 * item.height_m * (pi / 4 if row["round"] == "yes" else 1.0)  # type: ignore[operator]
-    masses = [box * float(row[f"fill{end}"]) * float(stuff[f"density{end}"]) for end in ("_low", "", "_high")]
+    fill = fills().get((row["class"], stuff["material"])) or Range(
+        *(float(row[c]) for c in ("fill", "fill_low", "fill_high")), ""
+    )
+    filled = zip((fill.low, fill.value, fill.high), ("_low", "", "_high"), strict=True)
+    masses = [box * share * float(stuff[f"density{end}"]) for share, end in filled]
     assert [getattr(found["mass"], s) for s in ends] == pytest.approx(masses)
 
 
@@ -198,10 +204,17 @@ def test_derived_numbers_follow_the_table_of_classes() -> None:
 @pytest.mark.parametrize(
     ("change", "missing"),
     [
-        ({"height_m": None}, ("height",)),
-        ({"width_m": None, "depth_m": None}, ("width (or diameter)",)),
-        ({"title": "Commode", "classification": "Wood", "depth_m": None}, ("depth",)),
-        ({"title": "Landscape", "classification": "paintings", "height_m": None}, ("height or suspension length",)),
+        (dict.fromkeys(("height_m", "width_m", "depth_m")), ("height", "width (or diameter)")),
+        ({"title": "Landscape", "classification": "paintings", "height_m": None}, ()),
+        (
+            {"title": "Landscape", "classification": "paintings", "height_m": None, "width_m": None, "depth_m": None},
+            ("height or suspension length",),
+        ),
+        # Of what is only known to stand one size says nothing of the others.
+        (
+            {"title": "Thing", "classification": "", "medium": "", "width_m": None, "depth_m": None},
+            ("width (or diameter)",),
+        ),
     ],
 )
 def test_what_is_missing_is_named(change: dict[str, object], missing: tuple[str, ...]) -> None:

@@ -46,11 +46,15 @@ def judged(motion: Motion) -> list[tuple[Scene, Finding]]:
 
 
 def demand(scene: Scene, model: str, push: float, lift: float, of: dict[str, float]) -> float:
-    """The closed forms themselves: a / N, or friction, over b / h (paper, 2.1), and K m A l / S - m g / A (2.3)."""
+    """The closed forms themselves: a / N, or friction, over b / h (paper, 2.1), and K m A l / S - m g / A (2.3).
+
+    The section of what is hollow shrinks with its mass: m / S and m / A are those of the solid one.
+    """
     if model == "standing":
         return min(lift, of["friction_static"]) * of["cg_height"] / of["half_width"]
-    bending = of.get("concentration", 1.0) * of["mass"] * push * of["lever"] / of["section_modulus"]
-    return bending - of["mass"] * G / scene.parameters["area"].value
+    mass = max(of["mass"], scene.parameters["solid_mass"].value if "solid_mass" in scene.parameters else 0.0)
+    bending = of.get("concentration", 1.0) * mass * push * of["lever"] / of["section_modulus"]
+    return bending - mass * G / scene.parameters["area"].value
 
 
 def test_decided_verdicts_hold_at_all_corners_and_between_them(

@@ -19,6 +19,7 @@ from pipeline.tables import table
 from pipeline.verification.class_fit import CLASSES, Labelled, fit, labelled_of, left_out, probabilities, tabled
 
 FILE = Path(__file__).parents[1] / "data" / "collections" / "labelled_classes.csv"
+OTHERS = FILE.with_name("other_museums.csv")
 MUSEUMS = ("carnegie", "met", "moma", "williams")
 HELD = ("small_flat", "mounted")
 SUPPORT = {row["class"]: "held" if row["class"] in HELD else row["support"] for row in table("classes")}
@@ -74,6 +75,16 @@ def test_where_it_says_ninety_percent_it_is_right_in_ninety() -> None:
         some = (sure >= low) & (sure < high)
         assert some.sum() > 100
         assert np.mean(right[some]) >= np.mean(sure[some]) - 0.04, (low, high)
+
+
+def test_no_museum_is_sure_where_it_is_wrong() -> None:
+    """Of each museum left out by itself, at least 90 % of those said to be as likely as that."""
+    objects, found = unseen()
+    for museum in MUSEUMS:
+        at = [k for k, one in enumerate(objects) if one.museum == museum and found[k].max() >= 0.9]
+        assert len(at) > 100
+        right = np.mean([CLASSES[found[k].argmax()] == objects[k].object_class for k in at])
+        assert right >= 0.9, (museum, right)
 
 
 def test_the_table_of_weights_is_what_the_labels_give() -> None:
@@ -133,6 +144,17 @@ def test_flat_works_stay_flat_where_only_their_technique_says_so() -> None:
         ({"object_name": "dulap", "medium": "lemn"}, {"cabinet"}),
         ({"object_name": "montre de poche", "medium": "or"}, {"small_flat"}),
         ({"object_name": "Clock Model No. 101", "medium": "plastic"}, {"clock"}),
+        ({"title": "Jar (lid)", "medium": "carved wood"}, {"small_flat"}),
+        ({"object_name": "teapot", "title": "Harlequin", "medium": "bone china"}, {"vessel"}),
+        ({"title": "Untitled", "gallery": "Photography", "medium": "", "height_m": 0.2, "width_m": 0.25}, {"framed"}),
+        ({"title": "志野茶碗", "medium": "陶器", "height_m": 0.09}, {"vessel"}),
+        ({"title": "松林図屏風", "classification": "絵画"}, {"object", "framed"}),
+        ({"title": "秋冬山水図", "medium": "紙本墨画"}, {"framed"}),
+        ({"object_name": "能面", "medium": "木造彩色", "height_m": 0.21}, {"mounted"}),
+        ({"object_name": "theepot", "medium": "porselein"}, {"vessel"}),
+        ({"object_name": "Cómoda", "classification": "Mobiliário"}, {"cabinet"}),
+        ({"object_name": "arqueta", "medium": "plata"}, {"cabinet"}),
+        ({"object_name": "Gewandspange", "medium": "Bronze"}, {"small_flat"}),
         (
             {"title": "John Beatty Memorial", "classification": "sculpture", "medium": "marble", "height_m": 0.72,
              "width_m": 1.56, "depth_m": 0.12},
@@ -142,7 +164,20 @@ def test_flat_works_stay_flat_where_only_their_technique_says_so() -> None:
 )  # fmt: skip
 def test_what_things_are(record: dict[str, object], expected: set[str]) -> None:
     """Hand-labelled: what a conservator would call the thing, in words that the labels do not have."""
-    assert classify(Item("1", "G", **record)).object_class in expected  # type: ignore[arg-type]
+    assert classify(Item("1", **({"gallery": "G"} | record))).object_class in expected  # type: ignore[arg-type]
+
+
+def test_museums_that_were_labelled_before_they_were_read() -> None:
+    """Of 271 records of other museums in nine languages: at least 87 % and 91 %, by words that were added afterwards.
+
+    That is 3 % below what is reached, near twice the standard error. No weight is found from these records.
+    """
+    with OTHERS.open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    pairs = [(row["class"], classify(labelled_of(row).item).object_class) for row in rows]
+    assert len(pairs) > 250
+    assert np.mean([right == taken for right, taken in pairs]) >= 0.87
+    assert np.mean([SUPPORT[right] == SUPPORT[taken] for right, taken in pairs]) >= 0.91
 
 
 def test_chances_add_up_to_one_and_the_class_is_the_likeliest() -> None:

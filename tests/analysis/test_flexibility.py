@@ -337,8 +337,20 @@ def test_a_museums_material_without_stiffness_has_kouros(tmp_path: Path) -> None
 
 def test_twice_as_large_or_as_heavy() -> None:
     """f goes with 1 / size, as E I / L^3 does with the size and the mass with its cube, and with the root of 1 / m."""
-    f = classify(FIGURE).parameters["frequency"].value
-    twice = classify(replace(FIGURE, height_m=2.4, width_m=0.6, depth_m=0.5)).parameters["frequency"].value
+    wooden = replace(FIGURE, medium="oak")
+    f = classify(wooden).parameters["frequency"].value
+    twice = classify(replace(wooden, height_m=2.4, width_m=0.6, depth_m=0.5)).parameters["frequency"].value
     assert 2.0 * twice == pytest.approx(f)
-    heavy = 2.0 * classify(FIGURE).parameters["mass"].value
-    assert sqrt(2.0) * classify(replace(FIGURE, mass_kg=heavy)).parameters["frequency"].value == pytest.approx(f)
+    heavy = 2.0 * classify(wooden).parameters["mass"].value
+    assert sqrt(2.0) * classify(replace(wooden, mass_kg=heavy)).parameters["frequency"].value == pytest.approx(f)
+
+
+def test_what_is_cast_hollow_is_as_stiff_for_its_weight_as_what_is_solid() -> None:
+    """The section shrinks with the mass: f stays, until the casting is solid, and falls with the root of 1 / m then."""
+    found = classify(FIGURE).parameters
+    solid, f = found["solid_mass"].value, found["frequency"].value
+    assert found["mass"].value < 0.5 * solid
+    for mass in (0.01 * solid, 0.5 * solid, solid):
+        assert classify(replace(FIGURE, mass_kg=mass)).parameters["frequency"].value == pytest.approx(f)
+    twice = classify(replace(FIGURE, mass_kg=2.0 * solid)).parameters["frequency"].value
+    assert sqrt(2.0) * twice == pytest.approx(f)

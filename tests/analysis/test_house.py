@@ -203,7 +203,7 @@ def test_shares_become_sizes_of_each_object() -> None:
 
 def test_what_was_not_recorded_is_no_longer_missing_or_assumed() -> None:
     mask = Item("3", "East", "Mask", object_name="mask", height_m=0.3, width_m=0.2, depth_m=0.1)
-    assert any("how it is held" in why for why in classify(mask).missing)
+    assert any("how" in why for why in classify(mask).assumptions)
     held = scene(mask, rule(**{"class": classify(mask).object_class}, held="fastened"))
     assert (held.support, held.models) == (Support.FASTENED, classify(replace(mask, support=Support.FASTENED)).models)
     assert held.item == mask

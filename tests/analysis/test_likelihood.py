@@ -16,8 +16,9 @@ from pipeline.analysis.assess import assess
 from pipeline.analysis.classify import classify
 from pipeline.analysis.context import Context
 from pipeline.analysis.fragility.curve import stated
+from pipeline.analysis.likelihood.analyses import Stood
 from pipeline.analysis.likelihood.draws import OTHERWISE, Draw, switched, value_at
-from pipeline.analysis.likelihood.sampling import FIRST, Stood, likelihoods
+from pipeline.analysis.likelihood.sampling import FIRST, likelihoods
 from pipeline.analysis.likelihood.shaking import FARTHEST
 from pipeline.analysis.survey import telling_requests
 from pipeline.analysis.transmission import transmit

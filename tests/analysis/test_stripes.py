@@ -15,7 +15,7 @@ from pipeline.analysis.fragility.counts import FLATTEST, fit_counts
 from pipeline.analysis.fragility.curve import stated
 from pipeline.analysis.fragility.hazard import Hazard
 from pipeline.analysis.fragility.objects import Stripe, with_rate
-from pipeline.analysis.likelihood.sampling import Stood
+from pipeline.analysis.likelihood.analyses import Stood
 from pipeline.analysis.likelihood.shaking import FARTHEST, scatter
 from pipeline.analysis.likelihood.stripes import EACH, sampled_fragilities
 from pipeline.execute import Threads

@@ -34,7 +34,7 @@ def test_a_night_from_nothing(tmp_path: Path) -> None:
     # The source is read before every run, so that object 1 is there although nothing was imported by hand.
     assert empty.returncode == 0
     done = kouros("run", "-q", folder=tmp_path)
-    assert done.returncode == 0  # object 3 has no height, which is no fault of the night
+    assert done.returncode == 0  # object 3 has no size, which is no fault of the night
     assert "      1  cannot be assessed" in done.stdout
     assert done.stderr == ""
     report = done.stdout.strip().splitlines()[-1].removeprefix("Report: ")

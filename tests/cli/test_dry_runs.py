@@ -89,6 +89,20 @@ def museum(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "short.csv").write_text("\n".join([COLUMNS, ROWS[0]]) + "\n", encoding="utf-8")
     (folder / "sheet.csv").write_text(SHEET, encoding="utf-8")
     (folder / "wrong.csv").write_text("object_number,gallery,height_m\n9,B,0.2\n", encoding="utf-8")
+    # Columns in centimetres beside texts that say inches, in every row.
+    rows = [f"{at},A,Vase,{at + 20},{at + 5},{at + 20} x {at + 5} in." for at in range(60)]
+    (folder / "other.csv").write_text("\n".join(["n,room,title,h,w,size", *rows]) + "\n", encoding="utf-8")
+    fields = (
+        '[columns]\nobject_number = { column = "n" }\ngallery = { column = "room" }\ntitle = { column = "title" }\n'
+    )
+    sizes = "".join(f'{name}_m = {{ column = "{name[0]}", unit = "cm" }}\n' for name in ("height", "width"))
+    source = '[source]\nformat = "csv"\nencoding = "utf-8"\ndelimiter = ","\n[museum]\nname = "T"\n'
+    texts = '[dimensions]\ncolumns = ["size"]\n'
+    (folder / "other.toml").write_text(source + fields + sizes + texts, encoding="utf-8")
+    # What is added shakes in all three directions: a channel of zeros is refused as dead.
+    state, head, *lines = (folder / "shaking" / "motion-1.csv").read_text("utf-8").splitlines()
+    alive = [",".join([at, x, x, x]) for at, x, *_ in (line.split(",") for line in lines)]
+    (folder / "alive.csv").write_text("\n".join([state, head, *alive]) + "\n", encoding="utf-8")
     manifest = folder / "shaking" / "manifest.toml"
     asked = folder / "asked"
     shutil.copytree(folder / "shaking", asked)
@@ -105,6 +119,7 @@ def museum(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+CONVERT = ["motions", "convert", "shaking/motion-1.csv", "--columns", "time,ew,-,-"]
 DRY: Sequence[tuple[Sequence[str], int, str]] = (
     (["import", "export.csv"], 0, "inventory: 4 objects (1 new, 0 gone, 0 changed)"),
     (["import", "export.csv", "--json"], 0, '"added": 1'),
@@ -113,6 +128,7 @@ DRY: Sequence[tuple[Sequence[str], int, str]] = (
     (["import", "absent.csv"], 5, "absent.csv"),
     (["import", "sqlite:///tms.sqlite", "--mapping", "tms.toml"], 7, "2 usable objects"),
     (["import", "sqlite:///tms.sqlite", "--mapping", "tms.toml", "--shrink-limit", "1"], 0, "2 objects (2 new, 3 gone"),
+    (["import", "other.csv", "--mapping", "other.toml", "--shrink-limit", "1"], 5, '[holds] texts = "columns" or'),
     (["import", "sheet.csv", "--sheet"], 0, "sheet.csv: 1 object"),
     (["import", "wrong.csv", "--sheet"], 5, "no row fills in anything for an object of the inventory"),
     (["import", "--return-to", "1"], 0, "3 objects, as after import 1 (0 new, 0 gone, 0 changed)"),
@@ -141,10 +157,20 @@ DRY: Sequence[tuple[Sequence[str], int, str]] = (
     (["demo", "--folder", "."], 0, "3  objects on display"),
     (["motions", "synthesise", "sine", "amplitude=2", "frequency=2", "cycles=2", "--out", "new"], 0, "manifest.toml"),
     (["motions", "synthesise", "sine", "amplitude=2", "--out", "new"], 2, "sine needs frequency"),
+    (
+        ["motions", "add", "alive.csv", "--site", "new", "--accept", "a sine"],
+        0,
+        "/new/manifest.toml: 1 record",
+    ),
+    (["motions", "add", "absent.csv", "--site", "new"], 4, "absent.csv: file: there is nothing of this name"),
+    (["motions", "export", "shaking", "--geojson", "new.geojson"], 0, "would write new.geojson"),
+    (["motions", "export", "shaking"], 2, "name a file"),
     (["motions", "select", "shaking", "--target", "absent.csv"], 4, "absent.csv: file: cannot be read"),
     (["motions", "process", "shaking", "--out", "new"], 0, "manifest.toml"),
     (["motions", "process", "shaking", "--out", "shaking"], 4, "nothing is overwritten"),
     (["motions", "process", "shaking", "--record", "absent", "--accept", "w"], 2, "there is no record 'absent'"),
+    ([*CONVERT, "--unit", "m/s2", "--out", "new"], 0, "would write new/motion-1.csv"),
+    ([*CONVERT, "--unit", "furlong", "--out", "new"], 4, "'furlong' is no unit that is known"),
     (["validate", "absent"], 2, "absent/experiment.toml: there is no such file"),
 )
 

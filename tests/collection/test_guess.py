@@ -246,6 +246,10 @@ def test_where_columns_are_named() -> None:
         ("材質", "medium"),
         ("Tentoongesteld", "on_display"),
         ("Provenance", None),
+        ("Denomination_1", "object_name"),
+        ("Denomination_2", None),
+        ("Matériaux 01", "medium"),
+        ("H1", None),
     ],
 )
 def test_names_of_columns_in_eight_languages(name: str, field: str | None) -> None:

@@ -89,7 +89,10 @@ def test_one_object_that_no_isolator_saves_refuses_it_for_all(motion: Motion) ->
 
 
 def test_what_cannot_be_assessed_is_named(motion: Motion) -> None:
-    unknown = replace(A, object_number="U", height_m=None, cg_height_m=None)
+    unknown = replace(
+        A, object_number="U", height_m=None, cg_height_m=None, width_m=None, depth_m=None, base_width_m=None,
+        base_depth_m=None,
+    )  # fmt: skip
     a, u = solve_all([A, unknown], [motion])
     assert u == []
     assert said(a[0]).startswith("Put case X (not checked: U) on a horizontal isolator")

@@ -23,6 +23,24 @@ def test_stress_by_hand() -> None:
     assert row["tilt"] == pytest.approx(30.0, rel=1e-12)
 
 
+def test_what_is_hollow_is_as_strong_for_its_weight_as_what_is_solid() -> None:
+    """Below the solid mass of 10 kg the stresses are those of 10 kg; above it those of the mass itself.
+
+    On the safe side: a tube of the same outline with a share s of the metal has s (2 - s) of the modulus, so that its
+    bending stress is 1 / (2 - s) of the solid's, between one half and one.
+    """
+    motion = along_x([0.1, -0.5 * G, 0.2], 0.01)
+    masses = np.array([0.1, 1.0, 10.0, 20.0])
+    found = respond("stress", motion, **{**SECTION, "mass": masses}, solid_mass=10.0)
+    plain = respond("stress", motion, **{**SECTION, "mass": np.maximum(masses, 10.0)})
+    for column in ("tension", "compression", "shear"):
+        np.testing.assert_array_equal(found[column], plain[column])
+    share = masses[:3] / 10.0
+    tube = 10.0 * share * 0.5 * G * 0.3 / (1e-5 * share * (2.0 - share))
+    bending = found["tension"].to_numpy()[:3] + 98066.5
+    assert np.all((0.5 * bending <= tube) & (tube <= bending * (1.0 + 1e-12)))
+
+
 def test_solid_round_ankle_by_hand() -> None:
     """A round section of 8 cm: A = pi d^2/4, S = pi d^3/32; 55 kg, 40 cm above it, 0.7 g.
 

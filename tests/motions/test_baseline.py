@@ -2,11 +2,8 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import cumulative_trapezoid
-from scipy.signal import butter, detrend, sosfilt, sosfiltfilt
 
 from pipeline.motions.baseline import (
-    choose_corner,
     polynomial_baseline,
     remove_pre_event_mean,
     resample,
@@ -132,101 +129,6 @@ def test_pre_event_mean():
     assert "x 0.1 m/s2, y 0.2 m/s2, z -0.3 m/s2" in out.steps[-1]
     with pytest.raises(ValueError, match="at least two samples before"):
         remove_pre_event_mean(motion, 0.0)
-
-
-def noisy(cross, level, seed=2):
-    """A broadband event from 10 to 20 s, plus noise below ``cross`` Hz that was there before the event, too."""
-    rng = np.random.default_rng(seed)
-    noise = sosfilt(butter(4, cross, fs=1 / DT, output="sos"), rng.normal(size=(3, 20_000)))[:, -6000:]
-    event = sosfilt(butter(2, [0.1, 10.0], "bandpass", fs=1 / DT, output="sos"), rng.normal(size=(3, 6000)))
-    t = np.arange(6000) * DT
-    event *= np.where(np.abs(t - 15.0) < 5.0, np.cos(np.pi * (t - 15.0) / 10.0) ** 2, 0.0)
-    return Motion(DT, event + level * noise / noise.std(axis=1, keepdims=True))
-
-
-def test_corner_of_a_clean_record_comes_from_its_length():
-    """60 s hold three periods of 0.05 Hz."""
-    corner = choose_corner(clean())
-    assert corner.frequency == pytest.approx(3.0 / 59.99, rel=1e-12)
-    assert corner.reason.startswith("record length: 3 periods in 59.99 s")
-    assert "no pre-event noise" in corner.reason
-    # Without any noise the pre-event part asks for nothing, and says how far down it can be trusted.
-    quiet = choose_corner(clean(), 5.0)
-    assert quiet.frequency == corner.frequency
-    assert "is there down to 0.2 Hz" in quiet.reason
-
-
-@pytest.mark.parametrize("cross", [0.2, 0.4])
-def test_corner_follows_the_noise(cross):
-    """Noise up to a known frequency: the corner lies where it meets the event, within an octave of that frequency.
-
-    The filter falls off by 24 dB an octave, so that the noise cannot matter much above it; a third of an octave is
-    the resolution.
-    """
-    loud = choose_corner(noisy(cross, 0.03), 10.0, tail_share=0.9, drift_share=0.9)
-    assert cross / 1.3 < loud.frequency < 2.0 * cross
-    assert loud.reason.startswith("pre-event noise")
-
-
-def test_corner_is_raised_by_a_displacement_that_does_not_settle():
-    """Slow noise without a pre-event part to measure it: the tail of the displacement finds it."""
-    unsettled = noisy(0.1, 0.02)
-    corner = choose_corner(unsettled, drift_share=0.9)
-    assert corner.frequency > 3.0 / 59.99
-    assert corner.reason.startswith("displacement tail")
-
-
-def drift(row, frequency):
-    """The share of a quintic in the displacement of one row, and its PGV, computed here by themselves."""
-    pad = int(np.ceil(6.0 / frequency / DT))
-    flat = np.pad(detrend(row), pad)
-    sections = butter(2, frequency, "highpass", fs=1 / DT, output="sos")
-    velocity = cumulative_trapezoid(sosfiltfilt(sections, flat, padtype=None), dx=DT, initial=0.0)
-    moved = cumulative_trapezoid(velocity, dx=DT, initial=0.0)[pad:-pad]
-    s = np.linspace(-1.0, 1.0, moved.size)
-    share = np.abs(np.polyval(np.polyfit(s, moved, 5), s)).max() / np.abs(moved).max()
-    return share, np.abs(velocity[pad:-pad]).max()
-
-
-def test_corner_is_raised_by_a_bent_baseline():
-    """A bend over the whole record, which dies away before its end: only the polynomial sees it.
-
-    The corner found is the lowest of its ladder of tenths that leaves 2 % of drift, by an independent computation, as
-    is the change of the PGV that the reason tells.
-    """
-    s = np.linspace(-1.0, 1.0, 6000)
-    bend = 0.004 * (1 - s**2) ** 2 * np.cos(2 * np.pi * s)
-    bent = Motion(DT, clean().acceleration + np.stack([bend, -bend, 100.0 * bend]), "bent")
-    corner = choose_corner(bent)
-    assert corner.reason.startswith("displacement drift")
-    ladder = (corner.frequency, corner.frequency / 1.1, 3.0 / 59.99)
-    at, below, first = (np.array([drift(row, f) for row in bent.acceleration[:2]]).max(axis=0) for f in ladder)
-    assert at[0] <= 0.02 < below[0]
-    assert (
-        f"raised from 0.05 Hz, which changes the larger horizontal PGV by {at[1] / first[1] - 1:+.1%}" in corner.reason
-    )
-
-
-def test_corner_asks_for_the_displacement_of_the_horizontals_only():
-    """The vertical's may be as unsettled as it likes."""
-    motion = clean()
-    rough = np.array(motion.acceleration)
-    rough[2] = noisy(0.4, 0.5).acceleration[2]
-    assert choose_corner(Motion(DT, rough)) == choose_corner(motion)
-
-
-def test_corner_refusals():
-    with pytest.raises(ValueError, match="no corner up to 1 Hz"):
-        choose_corner(Motion(DT, np.random.default_rng(0).normal(size=(3, 6000))), tail_share=0.02)
-    with pytest.raises(ValueError, match="nowhere 3 times the noise"):
-        choose_corner(Motion(DT, np.random.default_rng(0).normal(size=(3, 6000))), 10.0)
-    with pytest.raises(ValueError, match="pre_event must be"):
-        choose_corner(clean(), 100.0)
-    with pytest.raises(ValueError, match="at most half the record"):
-        choose_corner(clean(), 40.0)
-    for share in ("tail_share", "drift_share"):
-        with pytest.raises(ValueError, match="both shares between 0 and 1"):
-            choose_corner(clean(), **{share: 0.0})
 
 
 @pytest.mark.parametrize(("method", "dt"), [("fft", 0.004), ("fft", 0.02), ("lanczos", 0.004), ("lanczos", 0.0033)])

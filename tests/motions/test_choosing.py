@@ -76,7 +76,7 @@ def test_a_folder_of_files_is_grouped_and_nothing_stops_the_rest(tmp_path: Path)
     # As recorded: the agency's peak of the larger component is 0.53 g.
     assert clc.pga / G == pytest.approx(0.53, abs=0.01)
     told = {one.name: one.reason for one in found.unusable}
-    assert "cannot be read" in told["notes.txt"]
+    assert "is of no format that is known" in told["notes.txt"]
     assert "0111c.smc" in told
     assert "has 2 channels" in told["111..HN 1989-10-18 00:04"]
     raw, processed = (one for one in found.candidates if one.station == ".4225")

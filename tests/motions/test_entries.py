@@ -62,7 +62,9 @@ def test_the_manifest_of_a_new_site_is_valid_and_says_what_comes_next(begun: Pat
     assert load_manifest(begun, begun=True).level == ()
     assert entries(begun) == []
     for use in (load_manifest, read_site, read_motion, inspect):
-        with pytest.raises(MotionError, match="it names no records yet; put a record's files beside it"):
+        with pytest.raises(
+            MotionError, match="it names no records yet; add a record's files with `kouros motions add`"
+        ):
             use(begun)
     shutil.copy(DEMO / "CI.CLC..HNE.mseed", begun)
     (motions,) = (d for d in diagnose(begun.parents[1] / "kouros.toml") if d.what == "motions")

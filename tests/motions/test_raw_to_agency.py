@@ -15,7 +15,7 @@ import obspy
 import pytest
 
 from pipeline.motions import load_manifest, read_motion
-from pipeline.motions.baseline import choose_corner
+from pipeline.motions.corners import choose_corner
 from pipeline.motions.intensity import measures
 from pipeline.motions.reading import read_record
 from pipeline.quantities import G

@@ -36,7 +36,7 @@ CUP = Item(
 
 
 def like(**changes: object) -> object:
-    return likeness(classify(replace(CUP, **changes)))
+    return likeness(Placed(classify(replace(CUP, **changes))))
 
 
 @pytest.mark.parametrize(

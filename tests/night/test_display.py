@@ -24,8 +24,8 @@ from tests.museum import MAPPING, SILENT, workspace
 pytestmark = pytest.mark.slow_file
 
 SHOWN = "1,Hall,Vase,1.2,0.2,0.2,yes"
-ROWS = [SHOWN, "2,Cellar,Vase,1.3,0.2,0.2,no", "3,Cellar,Bowl,,0.2,0.2,no", "4,,Vase,1.4,0.2,0.2,"]
-"""A vase that overturns; one of those in the cellar, a bowl without a height there, and one without a place."""
+ROWS = [SHOWN, "2,Cellar,Vase,1.3,0.2,0.2,no", "3,Cellar,Bowl,,,,no", "4,,Vase,1.4,0.2,0.2,"]
+"""A vase that overturns; one of those in the cellar, a bowl without a size there, and one without a place."""
 
 
 def museum(folder: Path, rows: list[str] = ROWS, *, stores: bool = False) -> Settings:

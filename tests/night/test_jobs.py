@@ -64,7 +64,7 @@ def test_the_exports_say_what_the_store_says(demo_folder: Path) -> None:
 
 def test_a_night_with_bad_input_ends_and_names_it(tmp_path: Path) -> None:
     """Negative, absurd (9,600 inches) and missing dimensions, a hostile title: findings, never a crash."""
-    absurd = ["4,B,Vase,-1.2,0.2,0.2", "5,B,Vase,243.84,0.2,0.2", "6,B,Vase,much,0.2,0.2", "7,,Vase,1.2,0.2,0.2"]
+    absurd = ["4,B,Vase,-1.2,,", "5,B,Vase,243.84,,", "6,B,Vase,much,,", "7,,Vase,1.2,0.2,0.2"]
     summary = run(workspace(tmp_path, ROWS + absurd), SILENT)
     assert (summary.objects, summary.cannot) == (7, 4)
     assert summary.missing["height"] == 4

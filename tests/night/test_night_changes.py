@@ -13,7 +13,7 @@ from pipeline.collection.database import database_url
 from pipeline.night import prepare, units
 from pipeline.night.run import run
 from pipeline.operations.workspace import open_workspace
-from pipeline.records import CauseKind, DecisionKind, Estimate, Origin, RunChanges
+from pipeline.records import CauseKind, DecisionKind, Estimate, Origin, RunChanges, Verdict
 from pipeline.settings import DATABASE_VARIABLE, Settings, load_settings
 from pipeline.tools.decisions import Wish, decide
 from pipeline.tools.rerender import compare
@@ -146,12 +146,12 @@ def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.
     assert [(m.object_number, m.before, m.after) for m in changes.moved] == [("1", "A", "B")]
     assert not changes.inputs
 
-    # Version: another Kouros assumes other room.
+    # Version: another Kouros assumes room for whatever slides; this one does not, and is not sure of it.
     monkeypatch.setattr(prepare, "__version__", "9.9")
     monkeypatch.setattr(prepare, "code_version", lambda: "another")
     monkeypatch.setattr(units, "code_version", lambda: "another")
     monkeypatch.setattr(
-        classify, "_clearance_of", lambda _: Estimate(1e-9, "m", Origin.ASSUMED, 1e-9, 1e-9, "no room", "")
+        classify, "clearance_of", lambda *_: Estimate(50.0, "m", Origin.ASSUMED, 50.0, 50.0, "room", "")
     )
     edit(manifest, "scale = 0.2", "scale = 1.0")
     night(tmp_path)
@@ -160,6 +160,7 @@ def test_each_cause_is_named(tmp_path: Path, database: str, monkeypatch: pytest.
         return  # the address of the server went with the rest
     changes = night(tmp_path)
     assert kinds(changes) == {(CauseKind.VERSION,)}
+    assert {(v.model, v.before, v.after) for v in changes.verdicts} == {("sliding", Verdict.PASS, Verdict.UNDETERMINED)}
     assert {f.name for f in changes.versions} == {"Kouros", "code and tables"}
 
 

@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.browser
 
 
-@pytest.fixture(scope="session", params=("index", "gallery-101", "salon", "not-on-display", "motion", "method"))
+@pytest.fixture(
+    scope="session", params=("index", "objects", "gallery-101", "salon", "not-on-display", "motion", "method")
+)
 def page(request: pytest.FixtureRequest, report: Path) -> Path:
     return next(report.glob(f"{request.param}*.html"))
 

@@ -26,8 +26,11 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.browser
 
-MOST_BYTES = 1_300_000
-"""The aim is 1.5 MB; real galleries of longer sentences and titles need what is left."""
+MOST_BYTES = 1_400_000
+"""The aim is 1.5 MB; real galleries of longer sentences and titles need what is left.
+
+62 % of these objects are to be acted on, and each of them has a card: sizes are assumed where a record has none.
+"""
 SLOW = 5.0
 """Seconds.  The aim is 1 s on a desk; a build machine that runs other tests beside it may take some times that."""
 

@@ -297,7 +297,7 @@ def test_every_phrase_of_a_run_is_extracted() -> None:
     """What models and measures say without a number, over every row: none is missing for a translator."""
     known = {phrase for phrase, _plural in phrases()}
     for model in MODELS:
-        texts = {model.title, model.sentence, model.at_most, model.fails} - {""}
+        texts = {model.title, model.sentence, model.at_most, model.gripped, model.fails} - {""}
         assert texts <= known, model.name
     assert set(NOTES.values()) <= known
     assert {row["title"] for row in table("measures")} <= known

@@ -17,7 +17,7 @@ from pipeline.mitigate.measures.surfaces import Surface
 from pipeline.mitigate.proposals import Deficiency
 from pipeline.mitigate.trials import TrialRunner
 from pipeline.models import MODELS
-from pipeline.records import Furniture, Numerics, Origin, Scene
+from pipeline.records import Furniture, Mount, Numerics, Origin, Scene
 from pipeline.tables import TableError, table
 from pipeline.tables.assumed import assumed, assumed_with, span
 from tests.museum import PAINTING, VASE
@@ -87,9 +87,13 @@ def test_an_own_class_says_how_it_is_held_and_what_is_run(tmp_path: Path) -> Non
     changed = {"support": "fastened", "models": "stress|flexible_stress", "why": "is clamped on our mounts"}
     scene = classify(VASE, rules(own(tmp_path, "classes", **changed)))
     assert (scene.support, scene.models) == ("fastened", ("stress", "flexible_stress"))
-    scene = classify(VASE, rules(own(tmp_path, "classes", models="held", why="lies on our mounts")))
+    scene = classify(VASE, rules(own(tmp_path, "classes", models="none", why="is built into our walls")))
     assert scene.models == ()
-    assert scene.missing == ("no generic model applies: it lies on our mounts",)
+    assert scene.missing == ("no generic model applies: it is built into our walls",)
+    # Whatever the museum says is held by mounts is taken as one of which nobody knows how it grips.
+    scene = classify(VASE, rules(own(tmp_path, "classes", models="held", why="is held by our mounts")))
+    assert scene.mount is Mount.UNKNOWN
+    assert scene.missing == ()
 
 
 def test_an_own_material_is_named(tmp_path: Path) -> None:

@@ -5,7 +5,8 @@ import pytest
 
 from pipeline.analysis.classify import classify
 from pipeline.analysis.likelihood import draws
-from pipeline.analysis.likelihood.sampling import Stood, likelihoods
+from pipeline.analysis.likelihood.analyses import Stood
+from pipeline.analysis.likelihood.sampling import likelihoods
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.cli.console import Console, tradeoff_lines
 from pipeline.execute import Threads
@@ -71,7 +72,8 @@ def test_errors_fall_with_the_number_of_samples_and_keep_what_they_state(found: 
     The stated error is that of independent samples, of which the measured root mean square is half as much again with a
     probability of 1 % at ten objects (chi square: 2.25 times ten degrees of freedom); balanced ones stay below.
     """
-    assert found[3].rms < 0.6 * found[0].rms
+    # Few samples may be lucky with ten objects: then what they state is compared with.
+    assert found[3].rms < 0.6 * max(found[0].rms, found[0].stated)
     for one in found:
         assert one.rms < 1.5 * one.stated
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from pipeline.analysis.house.rule import Span
-from pipeline.records import Anchorage, Estimate, Furniture, Hanging, Item, Origin, Support
+from pipeline.records import Anchorage, Estimate, Furniture, Hanging, Item, Mount, Origin, Support
 
 _WORDS: Mapping[StrEnum, str] = {
     Hanging.WIRE: "hangs from a wire or one hook",
@@ -23,6 +23,11 @@ _WORDS: Mapping[StrEnum, str] = {
     Furniture.RAIL: "hangs from a rail",
     Anchorage.ANCHORED: "stands in furniture that is fastened",
     Anchorage.UNANCHORED: "stands in furniture that is not fastened",
+    Mount.LYING: "lies on its largest face",
+    Mount.STANDING: "stands by itself as its height says",
+    Mount.LEANING: "leans on a stand or against a backing",
+    Mount.RESTING: "rests on its mount, held by nothing else",
+    Mount.SECURED: "is held by clips, wire, pins, wax or screws",
 }
 
 

@@ -14,12 +14,15 @@ from pipeline.analysis.house.effect import HouseEffect, HouseStatement
 from pipeline.analysis.house.rule import ABOVE, CRITERIA, QUANTITIES, SLOTS, STANDING, HouseRule, Span
 from pipeline.analysis.rules import stuff, words_of
 from pipeline.errors import InputError
-from pipeline.records import Furniture, Item, Support
+from pipeline.records import Furniture, Item, Mount, Support
 
 _ON_WALLS = frozenset({Furniture.WALL, Furniture.RAIL})
 
 _WILD = re.compile(r"\[[^]]+\]|[*?]")
 """What makes a pattern of a number, as in names of files."""
+
+MOUNTED_BY = {Support.FASTENED: Mount.SECURED, Support.FREESTANDING: Mount.STANDING}
+"""How a thing is held that lies in a case or cannot stand by itself, by what its record says of its support."""
 
 _Rank = tuple[int, int, int, int]
 """How particular a rule is for an object: see the opening of this module."""
@@ -109,7 +112,7 @@ class HouseRules:
         """Say whether any rule may match an object of that number in that gallery."""
         return any(matcher.placed(number, gallery) for matcher in self._matchers)
 
-    def effect(self, item: Item, object_class: str, support: Support) -> HouseEffect:
+    def effect(self, item: Item, object_class: str, support: Support, *, mounts: bool = False) -> HouseEffect:
         """Return what the rules come to for an object.
 
         Parameters
@@ -120,6 +123,8 @@ class HouseRules:
             Row of classes.csv.
         support
             How it is held, by its record or else by its class.
+        mounts
+            Whether objects of its class lie in a case or are held by mounts.
 
         Returns
         -------
@@ -132,7 +137,7 @@ class HouseRules:
         if held is not None:
             support = Support(str(held.value))
             matching = self._matching(item, object_class, support)
-        for about in ("hanging", "furniture", "furniture_anchorage", *QUANTITIES):
+        for about in ("hanging", "furniture", "furniture_anchorage", *(["mount"] if mounts else []), *QUANTITIES):
             if about not in SLOTS:
                 out.weigh(matching, about, support)
         return HouseEffect(
@@ -215,7 +220,7 @@ def _applies(name: str, value: Span | StrEnum, support: Support) -> bool:
         return True
     if name == "hanging":
         return support is Support.HUNG
-    if name == "furniture_anchorage":
+    if name in ("furniture_anchorage", "mount"):
         return support in STANDING
     if name == "furniture":
         return support in (ABOVE if value in _ON_WALLS else STANDING)
@@ -226,6 +231,8 @@ def _recorded(item: Item, name: str) -> float | StrEnum | None:
     """Return what a record says of what a rule may state."""
     if name == "held":
         return item.support
+    if name == "mount":
+        return None if item.support is None else MOUNTED_BY.get(item.support)
     if name in SLOTS:
         length: float | None = getattr(item, SLOTS[name])
         # Without a height it is recorded, but nothing to compare with.

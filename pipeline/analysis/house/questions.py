@@ -9,7 +9,7 @@ from statistics import median
 from typing import Any
 
 from pipeline.analysis.house.rule import QUANTITIES, STANDING
-from pipeline.records import Anchorage, Furniture, Hanging, MeasurementRequest, Origin, Scene, Support
+from pipeline.records import Anchorage, Furniture, Hanging, MeasurementRequest, Mount, Origin, Scene, Support
 
 MANY = 5
 """Objects of which the same is asked, from which one rule is asked for first."""
@@ -36,6 +36,7 @@ VOCABULARIES: Mapping[str, Sequence[str]] = {
     "furniture": tuple(Furniture),
     "furniture_anchorage": tuple(Anchorage),
     "held": tuple(Support),
+    "mount": tuple(way for way in Mount if way is not Mount.UNKNOWN),
 }
 """What a rule may state as a word."""
 
@@ -153,11 +154,13 @@ def _question(
 
 
 def _unsaid(scenes: Iterable[Scene], supports: Mapping[str, set[Support]]) -> list[RuleQuestion]:
-    """Return the questions how things hang, what they stand on, and whether that is fastened."""
+    """Return the questions how things hang or are held, what they stand on, and whether that is fastened."""
     numbers: Counter[tuple[str, Support, str]] = Counter()
     for scene in scenes:
         if scene.support is Support.HUNG and scene.hanging is None:
             numbers[scene.object_class, scene.support, "hanging"] += 1
+        if scene.mount_origin is Origin.ASSUMED:
+            numbers[scene.object_class, scene.support, "mount"] += 1
         if scene.support in STANDING and scene.furniture_origin is Origin.ASSUMED and scene.models:
             numbers[scene.object_class, scene.support, "furniture"] += 1
         if scene.furniture in _FASTENED_OR_NOT and scene.anchorage is None and scene.models:

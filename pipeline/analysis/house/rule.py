@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, StrictFloat, model_validator
 
 from pipeline.errors import InputError
-from pipeline.records import Anchorage, Furniture, Hanging, Support
+from pipeline.records import Anchorage, Furniture, Hanging, Mount, Support
 
 STANDING = frozenset({Support.FREESTANDING, Support.FASTENED, Support.ISOLATED})
 ABOVE = frozenset({Support.HUNG, Support.SUSPENDED})
@@ -30,7 +30,7 @@ QUANTITIES: Mapping[str, tuple[str, frozenset[Support]]] = {
 }
 """What a rule may state as a number: its unit, and of objects that are held how it can be."""
 
-WORDS = ("hanging", "furniture", "furniture_anchorage", "held")
+WORDS = ("hanging", "furniture", "furniture_anchorage", "held", "mount")
 """What a rule may state as a word of a vocabulary."""
 
 SLOTS = {"cg_ratio": "cg_height_m", "suspension_ratio": "suspension_length_m"}
@@ -113,6 +113,9 @@ class HouseRule(BaseModel):
         default=None, description="whether that furniture is fastened to its floor or a wall"
     )
     held: Support | None = Field(default=None, description="how they are held, where their records do not say it")
+    mount: Mount | None = Field(
+        default=None, description="how things are held that lie in a case or cannot stand by themselves"
+    )
     friction: _Quantity = Field(default=None, description="friction between footing and surface")
     clearance_m: _Quantity = Field(default=None, description="room to the nearest neighbour or edge, in m")
     cg_height_m: _Quantity = Field(default=None, description="height of the centre of gravity above the base, in m")
@@ -135,6 +138,8 @@ class HouseRule(BaseModel):
             raise InputError('name what it is for: class, gallery, medium, number or support (number = "*" is all)')
         if not self.states:
             raise InputError(f"states nothing: say one of {', '.join((*WORDS, *QUANTITIES))}")
+        if self.mount is Mount.UNKNOWN:
+            raise InputError("mount: 'unknown' is what holds without a rule; say how they are held")
         for share, length in SLOTS.items():
             if getattr(self, share) is not None and getattr(self, length) is not None:
                 raise InputError(f"states one thing twice: keep {length} or {share}")

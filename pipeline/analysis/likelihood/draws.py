@@ -17,7 +17,7 @@ Jaynes, E. T. (1968). Prior probabilities. IEEE Transactions on Systems Science 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache, cached_property
 from math import exp
 
@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from pipeline.models import MODELS
 from pipeline.quantities import Array
 from pipeline.records import Estimate
+from pipeline.records.likelihood import CLASS
 
 MOTION, DIRECTION, SCATTER = "motion", "direction", "scatter"
 FREQUENCY, DAMPING, LEAN, UPHILL = "furniture frequency", "furniture damping", "lean", "uphill"
@@ -67,7 +68,7 @@ def _names() -> tuple[str, ...]:
 @cache
 def _places() -> dict[str, int]:
     names = _names()
-    at = {name: place for place, name in enumerate(names)}
+    at = {name: place for place, name in enumerate((*names, CLASS))}
     return at | {name: at[cause] for name, cause in ONE_CAUSE.items() if cause in at}
 
 
@@ -76,7 +77,9 @@ def _shares(samples: int) -> Array:
     from scipy.stats import qmc
 
     drawn = qmc.Sobol(len(_names()), scramble=True, rng=SEED).random(samples)
-    return np.asarray(drawn, dtype=float)
+    # Scrambled by itself: the class being drawn too changes no digit of what is certain.
+    classes = qmc.Sobol(len(_names()) + 1, scramble=True, rng=SEED + 1).random(samples)[:, -1:]
+    return np.hstack([drawn, classes])
 
 
 @dataclass(frozen=True)
@@ -109,19 +112,23 @@ class Ranges:
         Which.
     low, best, high : ndarray, shape (m,)
         Of each object, in the unit of the parameter; the same three times where it is measured, NaN where not given.
+    causes : mapping of str to ndarray of bool, shape (m,)
+        Of which objects another parameter shares the cause of the range: they go up and down together.
     """
 
     name: str
     low: Array
     best: Array
     high: Array
+    causes: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, name: str, estimates: Sequence[Estimate | None], default: float) -> "Ranges":
         """Return the ranges of what is known of some objects, a default where nothing is."""
         told = [(default,) * 3 if one is None else (one.low, one.value, one.high) for one in estimates]
         low, best, high = np.array(told, dtype=float).reshape(-1, 3).T
-        return cls(name, low, best, high)
+        named = np.array(["" if one is None else one.cause for one in estimates])
+        return cls(name, low, best, high, {cause: named == cause for cause in set(named.tolist()) - {""}})
 
     @cached_property
     def _certain(self) -> bool:
@@ -135,7 +142,12 @@ class Ranges:
         """Return the values of a joint sample, of some of the objects, (n,)."""
         if self._certain:
             return self.best[chosen]
-        share = draw.share(self.name)
+        drawn = self._at(draw.share(self.name), chosen)
+        for cause, mine in self.causes.items():
+            drawn = np.where(mine[chosen], self._at(draw.share(cause), chosen), drawn)
+        return drawn
+
+    def _at(self, share: float, chosen: NDArray[np.intp]) -> Array:
         low, best, high = self.low[chosen], self.best[chosen], self.high[chosen]
         if self.name in SWITCHES:
             return switched(share, low, best, high)

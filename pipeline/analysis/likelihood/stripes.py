@@ -33,17 +33,17 @@ from pipeline.analysis.fragility.hazard import Hazard
 from pipeline.analysis.fragility.objects import Stripe, hazards_of, with_rate
 from pipeline.analysis.fragility.published import in_si, published
 from pipeline.analysis.fragility.scaling import FACTORS
-from pipeline.analysis.likelihood.draws import Draw
-from pipeline.analysis.likelihood.sampling import (
-    PART,
+from pipeline.analysis.likelihood.analyses import (
     STATES,
     Groups,
+    Harmful,
     Stood,
     grouped,
     harmful_states,
     possible_states,
-    sampled,
 )
+from pipeline.analysis.likelihood.draws import Draw
+from pipeline.analysis.likelihood.sampling import PART, sampled
 from pipeline.analysis.likelihood.shaking import scatter, which_motion
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.quantities import Array
@@ -199,17 +199,17 @@ def _climbed(
     groups: Groups,
     ladder: _Ladder,
     possible: NDArray[np.bool_],
-    harmful: NDArray[np.bool_],
+    harmful: Harmful,
     each: int,
     executor: Executor,
 ) -> _Counts:
     """Run each object at as many stripes as its curves take.
 
-    possible, harmful : which states it can reach, and which harm it, (s, m)
+    possible : which states it can reach, (s, m)
     """
     places, motions, count = ladder.intensity.size, len(ladder.motions), possible.shape[1]
     asked = possible.any(axis=0)
-    looked_for = np.vstack([asked, possible & harmful])
+    looked_for = np.vstack([asked, possible & harmful.ever])
     enough = np.array([NEARLY, *[HALF] * len(STATES)])[:, None]
     counts = _Counts(
         np.zeros((places, motions, count), dtype=np.intp), np.zeros((places, motions, len(KINDS), count), dtype=np.intp)
@@ -252,7 +252,7 @@ def _run(
     counts: _Counts,
     groups: Groups,
     ladder: _Ladder,
-    harmful: NDArray[np.bool_],
+    harmful: Harmful,
     each: int,
     executor: Executor,
 ) -> None:
@@ -267,11 +267,13 @@ def _run(
         for motion, those in by_motion.items():
             tasks += [(place, motion, those[at : at + PART]) for at in range(0, len(those), PART)]
 
-    def sample(task: tuple[int, int, Sequence[int]]) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    def sample(
+        task: tuple[int, int, Sequence[int]],
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.bool_]]:
         place, _, numbers = task
         return sampled(numbers, groups=groups, wanted=wanted[place], harmful=harmful, level=levels[place], most=most)
 
-    for (place, motion, numbers), (reached, harmed) in zip(tasks, executor.map(sample, tasks), strict=True):
+    for (place, motion, numbers), (reached, _, harmed) in zip(tasks, executor.map(sample, tasks), strict=True):
         counts.taken[place, motion] += len(numbers) * wanted[place]
         counts.reached[place, motion, 0] += harmed.sum(axis=0)
         counts.reached[place, motion, 1:] += reached

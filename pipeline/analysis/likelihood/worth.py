@@ -11,7 +11,7 @@ Strong, M. and Oakley, J. E. (2013). An efficient method for computing single-pa
 perfect information. Medical Decision Making 33, 755-766.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from pipeline.analysis.likelihood.draws import Draw
 from pipeline.quantities import Array
 from pipeline.records import Sampling
+from pipeline.records.likelihood import CLASS
 
 PARTS = 4
 """Parts of its range, as likely as each other, in which a number may be found."""
@@ -30,6 +31,7 @@ def most_telling(
     uncertain: Mapping[str, NDArray[np.bool_]],
     target: float,
     sampling: Sampling,
+    classes: Mapping[int, Sequence[float]] | None = None,
 ) -> tuple[list[str], Array, Array]:
     """Return the number of each object that is best measured, and what that is worth.
 
@@ -45,43 +47,74 @@ def most_telling(
         Probability from which on something is done about harm.
     sampling : Sampling
         How certain the probability of a part has to be.
+    classes : mapping of int to sequence of float, optional
+        Of the objects whose class is not certain the ends of the shares of `CLASS`, class by class: the one question
+        more, what it is.
 
     Returns
     -------
     names : list of str
-        "" where no number alone would change the decision.
+        "" where no number alone would change the decision; `CLASS` for what it is.
     worth : ndarray, shape (m,)
         By how much the expected loss falls, in units of the loss by harm; doing something costs as much as harm of the
         target probability.
     moves : ndarray, shape (m,)
         Probability that it is found where something else is decided than without it.
     """
-    from scipy.special import betainc
-
     n, m = harmed.shape
     names, worth, moves = [""] * m, np.zeros(m), np.zeros(m)
-    counted = np.arange(n)[:, None] < taken
-    acts = np.where(taken > 0, (harmed & counted).sum(axis=0) / np.maximum(taken, 1), 0.0) >= target
+    asked = {at: ends for at, ends in (classes or {}).items() if taken[at]}
     # The best of many that tell nothing looks as if it did: each part of each number has to be that much more certain.
-    tried = PARTS * np.maximum(np.sum([*uncertain.values()], axis=0), 1) if uncertain else np.ones(m)
-    certainty = 1.0 - (1.0 - sampling.certainty) / tried
-    for name, mask in sorted(uncertain.items()):
-        some = np.flatnonzero(mask & (taken > 0))
-        if some.size == 0:
-            continue
-        shares = np.array([Draw(at, sampling.samples).share(name) for at in range(n)])
-        part = np.minimum((PARTS * shares).astype(int), PARTS - 1)
-        better, moved = np.zeros(some.size), np.zeros(some.size)
-        for at in range(PARTS):
-            mine = counted[:, some] & (part == at)[:, None]
-            there, hurt = mine.sum(axis=0), (harmed[:, some] & mine).sum(axis=0)
-            a, b = hurt + 0.5, there - hurt + 0.5
-            below = betainc(a, b, target)
-            p = hurt / np.maximum(there, 1)
-            otherwise = np.where(acts[some], below >= certainty[some], 1.0 - below >= certainty[some])
-            better += np.where(otherwise, np.abs(p - target) * there / taken[some], 0.0)
-            moved += np.where(otherwise, there / taken[some], 0.0)
-        for at, value, share in zip(some.tolist(), better.tolist(), moved.tolist(), strict=True):
+    tried = PARTS * np.sum([*uncertain.values()], axis=0) if uncertain else np.zeros(m, dtype=int)
+    for at, ends in asked.items():
+        tried[at] += len(ends)
+    certainty = 1.0 - (1.0 - sampling.certainty) / np.maximum(tried, 1)
+    counted = np.arange(n)[:, None] < taken
+
+    def better(name: str, some: NDArray[np.intp], part: NDArray[np.intp]) -> None:
+        """Keep what knowing a number is worth where that is the most; part : (n, objects) or (n, 1)."""
+        values = _worth(harmed[:, some], counted[:, some], part, target, certainty[some])
+        for at, value, share in zip(some.tolist(), *values, strict=True):
             if value > worth[at]:
                 names[at], worth[at], moves[at] = name, value, share
+
+    for name, mask in sorted(uncertain.items()):
+        some = np.flatnonzero(mask & (taken > 0))
+        if some.size:
+            better(name, some, np.minimum((PARTS * _shares(name, n, sampling)).astype(int), PARTS - 1)[:, None])
+    if asked:
+        share = _shares(CLASS, n, sampling)
+        part = np.array([np.searchsorted(ends, share, "right") for ends in asked.values()])
+        better(CLASS, np.array([*asked]), part.T)
     return names, worth, moves
+
+
+def _shares(name: str, n: int, sampling: Sampling) -> Array:
+    return np.array([Draw(at, sampling.samples).share(name) for at in range(n)])
+
+
+def _worth(
+    harmed: NDArray[np.bool_],
+    counted: NDArray[np.bool_],
+    part: NDArray[np.intp],
+    target: float,
+    certainty: Array,
+) -> tuple[list[float], list[float]]:
+    """Return of objects what it is worth to know in which part a sample lies, and how likely that moves a decision.
+
+    harmed, counted : (n, m) which samples harmed each, and were taken of it;  part : (n, m) or (n, 1) where each lies
+    """
+    from scipy.special import betainc
+
+    taken = counted.sum(axis=0)
+    acts = (harmed & counted).sum(axis=0) / taken >= target
+    value, moved = np.zeros(taken.size), np.zeros(taken.size)
+    for at in range(int(part.max(initial=-1)) + 1):
+        mine = counted & (part == at)
+        there, hurt = mine.sum(axis=0), (harmed & mine).sum(axis=0)
+        below = betainc(hurt + 0.5, there - hurt + 0.5, target)
+        p = hurt / np.maximum(there, 1)
+        otherwise = np.where(acts, below >= certainty, 1.0 - below >= certainty)
+        value += np.where(otherwise, np.abs(p - target) * there / taken, 0.0)
+        moved += np.where(otherwise, there / taken, 0.0)
+    return value.tolist(), moved.tolist()

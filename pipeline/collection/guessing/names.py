@@ -39,6 +39,7 @@ _STOP = frozenset(
 )
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _ELIDED = re.compile(r"\b(?:d|l|dell|nell|all)['’]", re.IGNORECASE)
+_FIRST = re.compile(r"(.*[^\W\d_]{2})[\s_.-]*0?1", re.DOTALL)
 _OTHER = re.compile(r"[^\w]+|_")
 _WEAK = 1000
 """Rank of a name that is only part of what stands in the head."""
@@ -208,6 +209,10 @@ def _forms(name: str) -> Iterator[str]:
     outside = re.sub(r"[(\[].*?[)\]]", " ", name)
     if outside.strip() and outside != name:
         yield plain(outside)
+    # The first of several columns of one name: "Denomination_1", "Material 1".
+    first = _FIRST.fullmatch(name.strip())
+    if first is not None:
+        yield plain(first[1])
 
 
 def _within(name: str) -> ColumnMeaning | None:

@@ -16,6 +16,7 @@ from pipeline.mitigate.measures.clearance import Clearance
 from pipeline.mitigate.measures.close_hooks import CloseHooks
 from pipeline.mitigate.measures.fasten import Fasten
 from pipeline.mitigate.measures.friction_isolator import FrictionIsolator
+from pipeline.mitigate.measures.hold import Hold
 from pipeline.mitigate.measures.horizontal_isolator import HorizontalIsolator
 from pipeline.mitigate.measures.remove import Remove
 from pipeline.mitigate.measures.restrain import Restrain
@@ -79,6 +80,7 @@ MEASURES: Registry[type[Measure]] = Registry(
         Fasten,
         Brace,
         CloseHooks,
+        Hold,
         Restrain,
         FrictionIsolator,
         HorizontalIsolator,

@@ -13,9 +13,10 @@ from pipeline.mitigate.proposals import Candidate, Deficiency, Numbers, Proposal
 from pipeline.mitigate.rows import MeasureRow
 from pipeline.mitigate.trials import Trial, TrialRunner
 from pipeline.models import settled_by_room
+from pipeline.models.sliding import SLIDING
 from pipeline.models.stress import FLEXIBLE_STRESS
 from pipeline.quantities import Quantity
-from pipeline.records import Check, Estimate, Finding, Hanging, Item, Origin, Scene, Support, Verdict
+from pipeline.records import Check, Estimate, Finding, Hanging, Item, Mount, Origin, Scene, Support, Verdict
 
 MARGIN = 1.1
 """Room asked for over the largest demand of the uncertain inputs: the error of the motion is not in it."""
@@ -200,7 +201,9 @@ def round_up(value: float, step: float = 0.01) -> float:
 
 
 def knows_section(scene: Scene) -> bool:
-    """Say whether the stress of its critical section can be computed."""
+    """Say whether the stress of its critical section can be computed, or nothing of it need be weak."""
+    if scene.mount is not None:
+        return "mass" in scene.parameters
     return all(name in scene.parameters for name in SECTION)
 
 
@@ -219,8 +222,18 @@ def with_parameters(scene: Scene, **found: Estimate) -> Scene:
     return replace(scene, parameters={**scene.parameters, **found})
 
 
+GRIPPED = 100.0
+"""Friction [-] of what cannot slide."""
+
+
 def held(scene: Scene) -> Scene:
-    """Return it held at its base: it neither rocks nor slides, and its critical section bears the push."""
+    """Return it held at its base: it neither rocks nor slides, and its critical section bears the push.
+
+    What lies or is held by a mount has no section that is known to be weak: it stays where it is.
+    """
+    if scene.mount is not None:
+        grips = exactly(GRIPPED, "-", "held by the measure: it does not slide")
+        return replace(with_parameters(scene, friction_static=grips), mount=Mount.SECURED, models=(SLIDING.name,))
     return replace(fixed_at_base(scene), support=Support.FASTENED, models=models_of(Support.FASTENED))
 
 

@@ -63,7 +63,8 @@ class Strengthen(Measure):
         (now,) = runner.run([Trial(held(scene))])
         # Held as it is, its tension and self-weight make up the bending, which falls with the cube of the size.
         tension = max(f.high or 0.0 for f in now)
-        weight = mass.high * G / area.value
+        solid = scene.parameters.get("solid_mass")
+        weight = max(mass.high, 0.0 if solid is None else solid.value) * G / area.value
         bending = max(tension + weight, 0.0)
         times = round_up(SPARE * (bending / allowed.low) ** (1.0 / 3.0)) if allowed.low > 0.0 else inf
         if times <= 1.0:

@@ -9,4 +9,23 @@ or raises a `FormatError` naming file and line.  The samples stay in the file's 
 from pipeline.motions.formats.record_text import FormatError
 from pipeline.motions.formats.trace_headers import Series
 
-__all__ = ["FormatError", "Series"]
+NAMES = {
+    "BHRC": "BHRC (Iran)",
+    "COSMOS": "COSMOS V0 to V2",
+    "CSMIP": "CSMIP V1 and V2",
+    "CSMNC": "CSMNC (China)",
+    "CWA": "CWA (Taiwan)",
+    "ESM": "ESM, ITACA and AFAD (DYNA)",
+    "FILM_V1": "V1 of film (CSMIP, USC, RENADIC)",
+    "GEONET": "GeoNet V1A and V2A",
+    "JMA_CSV": "JMA CSV",
+    "MOTION_COLUMNS": "bare columns of time and acceleration",
+    "MOTION_CSV": "CSV with units in its head",
+    "NSMN": "NSMN (Türkiye)",
+    "PEER_AT2": "PEER AT2",
+    "SMC": "USGS SMC",
+    "UNAM_ASA": "ASA (UNAM, RACM)",
+}
+"""What the readers are called by obspy (the entry points), and by people."""
+
+__all__ = ["NAMES", "FormatError", "Series"]

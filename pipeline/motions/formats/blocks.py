@@ -141,6 +141,52 @@ def free(lines: Lines, start: int, count: int, what: str) -> Array:
     return found
 
 
+def rows(lines: Lines, start: int, columns: int, what: str, separator: bytes | None = None) -> Array:
+    """Read rows of equally many numbers that fill the rest of a file.
+
+    Parameters
+    ----------
+    lines, start : Lines, int
+        The file, and the first row, from 0.
+    columns : int
+        Numbers in a row.
+    what : str
+        What the numbers are, for messages.
+    separator : bytes or None
+        Between the numbers, None for blanks; those that end a row of a spreadsheet are passed over.
+
+    Returns
+    -------
+    array, shape (n, columns)
+        The numbers, in the file's unit.
+
+    Raises
+    ------
+    FormatError
+        At a row that holds something else, or more or fewer numbers, and where there are fewer than two rows.
+    """
+    end = len(lines)
+    while end > start and not lines.lines[end - 1].strip(b" \t\0\x1a" + (separator or b"")):
+        end -= 1
+    values = array("d")
+    for index in range(start, end):
+        line = lines.lines[index].rstrip(b" \t\0\x1a" + (separator or b""))
+        fields = line.split(separator)
+        try:
+            if len(fields) != columns or line.translate(None, _NUMERIC + b"\t" + (separator or b"")):
+                raise ValueError
+            values.extend(map(float, fields))
+        except ValueError:
+            wrong = f"expected {columns} numbers of {what}, found {shown(lines.text(index))}"
+            raise lines.error(index, wrong) from None
+    samples(lines, start, end - start)
+    table = np.array(values).reshape(-1, columns)
+    if not np.isfinite(table).all():
+        bad = start + int(np.flatnonzero(~np.isfinite(table).all(axis=1))[0])
+        raise lines.error(bad, "holds a number beyond all bounds")
+    return table
+
+
 def step(lines: Lines, index: int, seconds: float) -> float:
     """Return a time step that an accelerograph can have.
 

@@ -31,7 +31,7 @@ _DATA = re.compile(
 _END = re.compile(r"^\s*(?:end-of-data|/&)", re.IGNORECASE)
 _CODE = re.compile(r"\bcode:\s*(\w{1,8})-(\w{1,8})", re.IGNORECASE)
 _SCNL = re.compile(r"<SCNL>\s*(\w{1,8})\.(\w{3})\.(\w{1,8})\.(\w{2}|--)")
-_CHANNEL = re.compile(r"sta chan\s*([\d?]{1,3}):\s*(.*?)\s*(?:\(|$)", re.IGNORECASE)
+_CHANNEL = re.compile(r"sta chan?:?\s*([\d?]{1,3}):\s*(.*?)\s*(?:\(|$)", re.IGNORECASE)
 _UNKNOWN = re.compile(r"unknown/unspecified:\s*(-?\d{1,7}),\s*(-?\d{1,7}\.?\d{0,6})", re.IGNORECASE)
 _KINDS = {"accel": "acceleration", "veloc": "velocity", "displ": "displacement"}
 _UNITS = {2: "g", 4: "cm/s2", 7: "in/s2", 10: "gal", 11: "mg", 50: "counts"}
@@ -105,6 +105,7 @@ def _channel(lines: Lines, top: int, traces: list[Any], headonly: bool) -> int:
         raise lines.error(index, "the channel holds no data")
     more = {kind: _si(lines, first, kind, *series[kind]) for kind in series if kind != "acceleration"}
     names = _names(text, comments, integers, absent[0], dt)
+    assumed = _agree(lines, at_integers + 6, names)
     if "acceleration" not in series:
         _beside(lines, top, traces, names, more)
         return index + 1
@@ -115,6 +116,8 @@ def _channel(lines: Lines, top: int, traces: list[Any], headonly: bool) -> int:
     factor = _sensitivity(reals, absent[1]) if units == "counts" else trace_headers.FACTORS[units]
     known = all(integers[i] != absent[0] for i in (39, 41, 42, 43, 44)) and reals[29] != absent[1]
     when = [*(integers[i] for i in (39, 41, 42, 43, 44)), reals[29]]
+    notes = ["si_factor from the header: bit, gain and sensitivity"] if units == "counts" else []
+    notes += [assumed] if assumed else []
     trace = trace_headers.make_trace(
         lines,
         data=values,
@@ -133,7 +136,7 @@ def _channel(lines: Lines, top: int, traces: list[Any], headonly: bool) -> int:
         headonly=headonly,
         peak={"acceleration": None if factor is None or reals[63] == absent[1] else factor * float(reals[63])},
         series=more,
-        more={"notes": "si_factor from the header: bit, gain and sensitivity"} if units == "counts" else {},
+        more={"notes": "; ".join(notes)} if notes else {},
     )
     traces.append(trace)
     return index + 1
@@ -192,6 +195,27 @@ def _names(text: list[str], comments: list[str], integers: Array, absent: float,
         "location": location,
         "channel": channel,
     }
+
+
+def _agree(lines: Lines, index: int, names: dict[str, Any]) -> str:
+    """What the channel's SEED code says of an orientation that is open, or is the zero of a vertical."""
+    direction, code = names["direction"], names["channel"]
+    coded = trace_headers.seed_orientation(code)
+    if coded == "up" and isinstance(direction, float):
+        # Headers made from StationXML have its azimuth, which is 0 for what points up.
+        if direction != 0.0:
+            wrong = f"says an azimuth of {direction:g}, and the channel's code {code} a vertical"
+            raise lines.error(index, wrong, "find out which is right, and mend the other")
+        names["direction"] = "up"
+        return f"up, by the channel's code {code}: the header has the azimuth 0 of a vertical"
+    if (
+        coded is not None
+        and not isinstance(direction, float)
+        and direction not in set(_WORDS.values()) | {"up", "down"}
+    ):
+        names["direction"] = coded
+        return f"orientation by the channel's code {code} (SEED: N and E within 5 degrees)"
+    return ""
 
 
 def _beside(lines: Lines, top: int, traces: list[Any], names: dict[str, Any], series: dict[str, Series]) -> None:

@@ -18,37 +18,46 @@ from pipeline.motions.formats.trace_headers import Series
 from pipeline.quantities import Array
 
 _TITLE = re.compile(r"^\s*(un)?corrected accelerogram\b", re.IGNORECASE)
+_SPECTRA = re.compile(r"^\s*response and fourier amplitude spectra\b", re.IGNORECASE)
 _DATA = re.compile(
-    r"^\s*(?P<count>\d{1,8})\s+(?:points of (?P<kind>accel|veloc|displ)\w* data|accelerogram points)\s+"
+    r"^\s*(?P<count>\d{1,8})\s+(?:points of (?P<kind>acc|vel|dis)\w* data|accelerogram points)\s+"
     r"(?:equally spaced at\s+(?P<step>\d{0,3}\.\d{1,6})\s*sec|at\s+(?P<rate>\d{1,4}(?:\.\d{0,4})?)\s*pts/sec)",
     re.IGNORECASE,
 )
-_UNIT = re.compile(r"\b(?:units\s?:|units of|in)\s*([a-z]{1,3}(?:/sec(?:/sec|2|\*\*2)?)?)(?=[\s).,]|$)", re.IGNORECASE)
+_UNIT = re.compile(
+    r"\b(?:in units(?: of)?|units\s?:|units of|in)\s*([a-z]{1,3}(?:/sec(?:/sec|2|\*\*2)?)?)(?=[\s).,]|$)", re.IGNORECASE
+)
 _FORMAT = re.compile(r"\(\s*(\d{1,2})\s*f\s*(\d{1,2})\.\d{1,2}\s*\)", re.IGNORECASE)
 _CHANNEL = re.compile(r"^\s*chan\s*(\d{1,3}):\s*(.*?)\s*(?:\(|\s{2}|$)", re.IGNORECASE)
-_STATION = re.compile(r"station no\.\s*(\w{1,8})", re.IGNORECASE)
+_COMPONENT = re.compile(r"^\s*comp\s+(\S.{0,20}?)\s*(?:\s\d{1,3})?\s*$", re.IGNORECASE)
+STATION = re.compile(r"station (?:no\.|id\.|usc#)\s*(\w{1,8})", re.IGNORECASE)
 _PEAKS = {
-    "acceleration": re.compile(rf"peak\s+acceleration\s*=\s*({NUMBER})\s*cm/sec/sec", re.IGNORECASE),
-    "velocity": re.compile(rf"peak\s+velocity\s*=\s*({NUMBER})\s*cm/sec\b", re.IGNORECASE),
-    "displacement": re.compile(rf"peak\s+displacement\s*=\s*({NUMBER})\s*cm\b", re.IGNORECASE),
+    "acceleration": re.compile(rf"peak\s+acceleration\s*=\s*({NUMBER})\s*cms?/sec/sec", re.IGNORECASE),
+    "velocity": re.compile(rf"peak\s+velocity\s*=\s*({NUMBER})\s*cms?/sec\b", re.IGNORECASE),
+    "displacement": re.compile(rf"peak\s+displacement\s*=\s*({NUMBER})\s*cms?\b", re.IGNORECASE),
 }
 _UNCORRECTED_PEAK = re.compile(rf"\bmax\s*=\s*({NUMBER})\s*g\b", re.IGNORECASE)
 _TIME = re.compile(
-    r"(?:start|trigger)\s+time:\s*(\d{1,2})/(\d{1,2})/(\d\d),\s*(\d{1,2}):(\d\d):(\d\d(?:\.\d{0,3})?)\s*(UTC|GMT|P[SD]T)",
+    r"(?:start|trigger)\s+time:\s*(\d{1,2})/(\d{1,2})/(\d{4}|\d\d),?\s*"
+    r"(\d{1,2}):(\d\d):(\d\d(?:\.\d{0,3})?)\s*(UTC|GMT|P[SD]T)",
     re.IGNORECASE,
 )
+_EARTHQUAKE = re.compile(r"^([A-Z]{3})[A-Z]*\.? (\d{1,2}), (\d{4})\s+-?(\d\d)(\d\d) GMT")
+_MONTHS = ("JAN", "FEB", "MAR", "APR", "MAY", "JUN", "JUL", "AUG", "SEP", "OCT", "NOV", "DEC")
 _ZONES = {"UTC": 0, "GMT": 0, "PST": 8, "PDT": 7}
 _TEXT_LINES = {1: 13, 2: 25}
 _FARTHEST = 60
 _END = "/&"
-_KINDS = {"accel": "acceleration", "veloc": "velocity", "displ": "displacement"}
+_KINDS = {"acc": "acceleration", "vel": "velocity", "dis": "displacement"}
 _LENGTHS = {"cm": 0.01, "in": 0.0254}
 _UNITS = {"g": "g", "cm/sec/sec": "cm/s2", "cm/sec2": "cm/s2", "cm/sec**2": "cm/s2", "gal": "gal"}
 
 
 def is_format(source: Source) -> bool:
-    """Whether a source is a CSMIP file of volume 1 or 2, from its first channel's header."""
+    """Whether a source is a CSMIP file of volume 1 or 2, from its first channel's header; of volume 3, to say so."""
     lines = record_text.head(source).splitlines()
+    if lines and _SPECTRA.search(lines[0]):
+        return True
     # GeoNet and COSMOS open alike; both say who they are in the same line.
     if not lines or not _TITLE.search(lines[0]) or re.search(r"GNS Science|\(Format v", lines[0], re.IGNORECASE):
         return False
@@ -80,6 +89,8 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     from obspy import Stream
 
     lines = record_text.open_lines(source)
+    if _SPECTRA.search(lines.text(0)):
+        raise lines.error(0, "the file holds response and Fourier spectra", "give the file of volume 1 or 2 (V1, V2)")
     traces: list[Any] = []
     index = 0
     while not traces or not lines.blank_until_end(index):
@@ -91,11 +102,9 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
 def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
     volume = 1 if lines.match(top, _TITLE, "'Corrected accelerogram', or 'Uncorrected ...'")[1] else 2
     text = [lines.text(top + i, "the header") for i in range(_TEXT_LINES[volume])]
-    named = next(((i, found) for i, line in enumerate(text) if (found := _CHANNEL.match(line))), None)
-    if named is None:
-        raise lines.error(top + len(text) - 1, "the header ends without a line 'Chan  1: 360 Deg'")
-    direction = trace_headers.orientation(named[1][2])
-    station = next((found[1] for line in text if (found := _STATION.search(line))), "")
+    number, word, marked = named(lines, top, text)
+    direction, assumed = trace_headers.component(word)
+    station = next((found[1] for line in text if (found := STATION.search(line))), "")
     index = next((i for i in range(top, min(top + _FARTHEST, len(lines))) if _DATA.search(lines.text(i))), None)
     if index is None:
         wrong = f"no line such as '5696 points of accel data equally spaced at .010 sec' in the next {_FARTHEST} lines"
@@ -103,7 +112,13 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
     precise = _precise_step(lines, index) if volume == 2 else None
     series: dict[str, Array] = {}
     unit, dt, count = "", 0.0, 0
-    while not lines.text(index, f"'{_END}', the end of the channel,").startswith(_END):
+    # The University of Southern California closed its channels by nothing: all three series make one there.
+    while not (index >= len(lines) and not marked and len(series) == 3):
+        if lines.text(index, f"'{_END}', the end of the channel,").startswith(_END):
+            break
+        if not marked and len(series) == 3 and (lines.blank_until_end(index) or _TITLE.search(lines.text(index))):
+            index -= 1
+            break
         kind, values, its_unit, its_dt, end = _series(lines, index, precise)
         if kind in series or (not series and kind != "acceleration"):
             raise lines.error(index, f"{kind} is out of order; acceleration, velocity, displacement were expected")
@@ -116,7 +131,13 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
         index = end
     if not series:
         raise lines.error(index, "the channel holds no acceleration")
-    when = _start(lines, top, text)
+    when, start_is = started(lines, top, text)
+    peaks = _peaks(text, volume)
+    if peaks["acceleration"] is not None:
+        at = next(i for i, line in enumerate(text) if _peak_pattern(volume).search(line))
+        digit = 0.001 * (trace_headers.FACTORS["g"] if volume == 1 else 0.01)
+        factor = trace_headers.FACTORS[unit]
+        trace_headers.said_peak(lines, top + at, peaks["acceleration"], digit, series["acceleration"], factor)
     trace = trace_headers.make_trace(
         lines,
         data=series["acceleration"],
@@ -127,20 +148,49 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
         direction=direction,
         processed=volume == 2,
         station=station,
-        location=f"{int(named[1][1]):02d}",
-        channel=trace_headers.channel_code(1.0 / dt, direction, int(named[1][1])),
+        location=f"{number:02d}",
+        channel=trace_headers.channel_code(1.0 / dt, direction, number),
         start=when,
-        start_is="unknown" if when is None else "record",
+        start_is=start_is,
         headonly=headonly,
-        peak=_peaks(text, volume),
+        peak=peaks,
         series={kind: Series(values) for kind, values in series.items() if kind != "acceleration"},
+        more={"notes": assumed} if assumed else {},
     )
     return trace, index + 1
 
 
+def named(lines: Lines, top: int, text: list[str]) -> tuple[int, str, bool]:
+    """Return the number of a channel, the words of its orientation, and whether a line with its number says them.
+
+    Parameters
+    ----------
+    lines, top, text : Lines, int, list of str
+        The file, the channel's first line, from 0, and the text of its header.
+
+    Returns
+    -------
+    int, str, bool
+        1 for a channel that has no number.
+
+    Raises
+    ------
+    FormatError
+        Where no line says it.
+    """
+    for line in text:
+        if found := _CHANNEL.match(line):
+            return int(found[1]), found[2], True
+    # Fields of the text end in the 72nd column; behind it, some say how many characters they have.
+    for line in text:
+        if found := _COMPONENT.match(line[:72]):
+            return 1, found[1], False
+    raise lines.error(top + len(text) - 1, "the header ends without a line 'Chan  1: 360 Deg'")
+
+
 def _series(lines: Lines, index: int, precise: float | None) -> tuple[str, Array, str, float, int]:
     found = lines.match(index, _DATA, f"a line of data, or '{_END}'")
-    kind = _KINDS[(found["kind"] or "accel").lower()]
+    kind = _KINDS[(found["kind"] or "acc").lower()]
     count = blocks.samples(lines, index, int(found["count"]))
     rest = lines.text(index)[found.end() :]
     said = _UNIT.search(rest)
@@ -167,9 +217,16 @@ def _series(lines: Lines, index: int, precise: float | None) -> tuple[str, Array
             dt = precise
     blocks.step(lines, index, dt)
     shape = _FORMAT.search(rest)
-    columns, width = (int(shape[1]), int(shape[2])) if shape else (8, 10)
+    columns, width = (int(shape[1]), int(shape[2])) if shape else _shape(lines, index + 1, count)
     values, end = blocks.fixed(lines, index + 1, count, columns, width, kind)
     return kind, factor * values, unit, dt, end
+
+
+def _shape(lines: Lines, index: int, count: int) -> tuple[int, int]:
+    # Eight fields a line, of ten characters or, in older files of volume 1, of nine; only their line tells.
+    fields = min(8, count)
+    size = len(lines.text(index, "the first line of data"))
+    return 8, 9 if size == 9 * fields else 10
 
 
 def _precise_step(lines: Lines, data_line: int) -> float | None:
@@ -185,15 +242,44 @@ def _precise_step(lines: Lines, data_line: int) -> float | None:
     return float(reals[52]) if reals[52] > 0.0 else None
 
 
-def _start(lines: Lines, top: int, text: list[str]) -> Any:
+def started(lines: Lines, top: int, text: list[str]) -> tuple[Any, str]:
+    """Return when a channel's record began, and what that time is of.
+
+    Parameters
+    ----------
+    lines, top, text : Lines, int, list of str
+        The file, the channel's first line, from 0, and the text of its header.
+
+    Returns
+    -------
+    obspy.UTCDateTime or None, str
+        The time, and "record", "earthquake" or "unknown", as `trace_headers.make_trace` takes them.
+
+    Raises
+    ------
+    FormatError
+        For words that make no time.
+    """
     for offset, line in enumerate(text):
         if found := _TIME.search(line):
             month, day, year, hour, minute, second = (float(part) for part in found.groups()[:6])
-            # Two digits of the year: the first accelerogram was written in 1933.
-            year += 1900 if year >= 33 else 2000
+            if year < 100:
+                # Two digits of the year: the first accelerogram was written in 1933.
+                year += 1900 if year >= 33 else 2000
             when = trace_headers.start_time(lines, top + offset, year, month, day, hour, minute, second)
-            return when + 3600 * _ZONES[found[7].upper()]
-    return None
+            # What a recorder says whose clock was never set.
+            unset = (year, month, day, hour, minute) == (1980, 1, 1, 0, 0)
+            return (None, "unknown") if unset else (when + 3600 * _ZONES[found[7].upper()], "record")
+    for offset, line in enumerate(text):
+        if (found := _EARTHQUAKE.search(line)) and found[1] in _MONTHS:
+            month, *rest = _MONTHS.index(found[1]) + 1, *(float(found[i]) for i in (2, 3, 4, 5))
+            day, year, hour, minute = rest
+            return trace_headers.start_time(lines, top + offset, year, month, day, hour, minute, 0.0), "earthquake"
+    return None, "unknown"
+
+
+def _peak_pattern(volume: int) -> re.Pattern[str]:
+    return _UNCORRECTED_PEAK if volume == 1 else _PEAKS["acceleration"]
 
 
 def _peaks(text: list[str], volume: int) -> dict[str, float | None]:

@@ -1,4 +1,4 @@
-"""ESM ASCII (DYNA 1.2): one component of the European Engineering Strong-Motion database.
+"""ESM ASCII (DYNA 1.2), as ESM, ITACA and AFAD (TADAS) write it: one component.
 
 Lines of "KEY: value" as far as USER5, then one number a line.  The orientation is the one that the channel code stands
 for (SEED: N and E within 5 degrees); a channel that ends in 1 or 2 has none in its file.
@@ -15,7 +15,13 @@ from pipeline.motions.formats import blocks, record_text, trace_headers
 from pipeline.motions.formats.record_text import Lines, Source
 
 _KEY = re.compile(r"^([A-Z][A-Z0-9_/^]{1,59}):(.*)$")
-_DATE = re.compile(r"^(\d{4})(\d\d)(\d\d)_(\d\d)(\d\d)(\d\d(?:\.\d{1,6})?)$")
+_CLOCK = r"(?P<H>\d\d):(?P<M>\d\d):(?P<S>\d\d(?:\.\d{0,9})?)$"
+_DATES = (
+    re.compile(r"^(?P<y>\d{4})(?P<m>\d\d)(?P<d>\d\d)_(?P<H>\d\d)(?P<M>\d\d)(?P<S>\d\d(?:\.\d{1,6})?)$"),
+    # AFAD (TADAS), and its older files, as ESM has them.
+    re.compile(r"^(?P<y>\d{4})/(?P<m>\d\d)/(?P<d>\d\d)[ _]" + _CLOCK),
+    re.compile(r"^(?P<d>\d\d)/(?P<m>\d\d)/(?P<y>\d{4})[ _]" + _CLOCK),
+)
 _NUMBER = re.compile(r"^[+-]?\d{0,9}\.?\d{1,12}(?:[Ee][+-]?\d{1,2})?$")
 _MOST_KEYS = 200
 _UNITS = {"cm/s^2": "cm/s2", "cm/s2": "cm/s2", "cm/s**2": "cm/s2", "m/s^2": "m/s2", "m/s2": "m/s2", "g": "g"}
@@ -73,12 +79,19 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     count = blocks.samples(lines, at, int(number))
     data = blocks.free(lines, start, count, "acceleration")
     at, first = said("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS")
-    date = _DATE.match(first)
+    date = next((found for form in _DATES if (found := form.match(first))), None)
     if first and date is None:
         raise lines.error(at, f"expected a time such as 20190728_160919.870, found {record_text.shown(first)}")
-    when = None if date is None else trace_headers.start_time(lines, at, *map(float, date.groups()))
+    when = None if date is None else trace_headers.start_time(lines, at, *(float(date[part]) for part in "ymdHMS"))
     at, peak = keys.get("PGA_CM/S^2", (0, ""))
+    if peak:
+        digit = 0.01 * 10.0 ** -len(peak.partition(".")[2])
+        trace_headers.said_peak(lines, at, 0.01 * _number(lines, at, peak), digit, data, trace_headers.FACTORS[unit])
     channel = said("STREAM")[1]
+    # A code of two letters in ESM; in the files of AFAD the name of the place.
+    place = keys.get("LOCATION", (0, ""))[1]
+    processed, assumed = _processed(keys)
+    notes = "orientation by the channel code (SEED: N and E within 5 degrees)"
     trace = trace_headers.make_trace(
         lines,
         data=data,
@@ -87,16 +100,16 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
         units=unit,
         si_factor=trace_headers.FACTORS[unit],
         direction=trace_headers.seed_orientation(channel),
-        processed=_processed(keys),
+        processed=processed,
         station=said("STATION_CODE")[1],
         network=said("NETWORK")[1],
-        location=keys.get("LOCATION", (0, ""))[1],
+        location=place if len(place) <= 2 else "",
         channel=channel,
         start=when,
         start_is="unknown" if when is None else "record",
         headonly=headonly,
         peak={"acceleration": 0.01 * _number(lines, at, peak) if peak else None},
-        more={"notes": "orientation by the channel code (SEED: N and E within 5 degrees)"},
+        more={"notes": f"{notes}; {assumed}" if assumed else notes},
     )
     return Stream([trace])
 
@@ -119,10 +132,14 @@ def _number(lines: Lines, index: int, text: str) -> float:
     return float(text)
 
 
-def _processed(keys: dict[str, tuple[int, str]]) -> bool | None:
+def _processed(keys: dict[str, tuple[int, str]]) -> tuple[bool | None, str]:
     how = keys.get("PROCESSING", (0, ""))[1].lower()
     filtered = keys.get("FILTER_TYPE", (0, ""))[1]
+    corners = [keys[key][1] for key in ("LOW_CUT_FREQUENCY_HZ", "HIGH_CUT_FREQUENCY_HZ") if key in keys]
+    if filtered and len(corners) == 2 and not any(corners):
+        # AFAD's raw files name the filter of its processed ones, without order and corners.
+        return False, f"raw: it names the filter {filtered[:20]}, but no corner"
     if how.startswith(("manual", "automatic")) or filtered:
-        return True
+        return True, ""
     baseline = keys.get("BASELINE_CORRECTION", (0, ""))[1].upper()
-    return False if how == "none" or baseline == "BASELINE NOT REMOVED" else None
+    return (False if how == "none" or baseline == "BASELINE NOT REMOVED" else None), ""

@@ -14,16 +14,10 @@ import re
 from datetime import date, timedelta
 from typing import Any
 
-import numpy as np
-
-from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats import blocks, irregular, record_text, trace_headers
 from pipeline.motions.formats.record_text import NUMBER, Lines, Source
 from pipeline.motions.formats.trace_headers import Orientation
 from pipeline.quantities import Array
-
-RESAMPLED = 0.005
-"""Step in s that irregular pairs are resampled onto, unless the caller asks for another: the USGS's own choice for the
-corrected version of such records."""
 
 _TITLE = re.compile(r"^\s*([1-5]) (UNCORRECTED ACCELEROGRAM|CORRECTED ACCELEROGRAM|VELOCITY|DISPLACEMENT|RESPONSE)")
 _INTEGERS = re.compile(r"^(?:[ \d-]{10}){8}$")
@@ -42,7 +36,7 @@ def is_format(source: Source) -> bool:
     return all(_INTEGERS.match(line.rstrip().ljust(80)) for line in lines[_TEXT : _TEXT + _INTEGER_LINES])
 
 
-def read_format(source: Source, headonly: bool = False, resample: float = RESAMPLED, **_: Any) -> Any:
+def read_format(source: Source, headonly: bool = False, resample: float = irregular.RESAMPLED, **_: Any) -> Any:
     """Return the trace of an SMC file.
 
     Parameters
@@ -81,7 +75,7 @@ def read_format(source: Source, headonly: bool = False, resample: float = RESAMP
     more = _rest(lines, end)
     direction = _direction(lines, integers)
     if _missing(reals, reals[1]):
-        data, dt, more["resampled"] = _resampled(lines, index, values, resample)
+        data, dt, more["resampled"] = _pairs(lines, index, values, resample)
     else:
         data, dt = values, blocks.step(lines, _TEXT + _INTEGER_LINES, 1.0 / max(float(reals[1]), 1e-9))
     found, when = _PEAK.search(lines.text(6)), _earthquake(lines, integers)
@@ -166,24 +160,8 @@ def _earthquake(lines: Lines, integers: Array) -> Any:
     return trace_headers.start_time(lines, _TEXT, when.year, when.month, when.day, *parts)
 
 
-def _resampled(lines: Lines, index: int, values: Array, dt: float) -> tuple[Array, float, str]:
+def _pairs(lines: Lines, index: int, values: Array, dt: float) -> tuple[Array, float, str]:
     if len(values) % 2:
         raise lines.error(_TEXT + 2, f"{len(values)} values make no pairs of time and acceleration")
-    blocks.step(lines, index, dt)
-    times, data = values[::2], values[1::2]
-    spacing = np.diff(times)
-    if (spacing < 0.0).any():
-        at = int(np.argmax(spacing < 0.0)) + 1
-        wrong = f"time goes back from {times[at - 1]:g} s to {times[at]:g} s"
-        raise lines.error(index + (2 * at) // 8, wrong)
-    count = int((times[-1] - times[0]) / dt + 1e-9) + 1
-    blocks.samples(lines, index, count)
-    # Digitised times come by the thousandth of a second; a time in days or a typing error would ask for gigabytes.
-    if count > 100 * len(times):
-        wrong = f"{len(times)} pairs over {times[-1] - times[0]:g} s are too few to be resampled to {dt:g} s"
-        raise lines.error(index, wrong, "ask for a longer step, or fetch the file again")
-    told = (
-        f"linearly from {len(times)} pairs at irregular times ({np.median(spacing):.3g} s apart on the middle, at most "
-        f"{spacing.max():.3g} s) to a step of {dt:g} s"
-    )
-    return np.interp(times[0] + dt * np.arange(count), times, data), dt, told
+    data, told = irregular.resampled(lines, index, 4, values[::2], values[1::2], dt)
+    return data, dt, told

@@ -8,8 +8,9 @@ The header row names each column with its unit in parentheses or brackets; a cha
     time (s), H1 90 deg (g), H2 360 (g), V up (g)
     0.000, 0.0012, -0.0003, 0.0004
 
-Comma, semicolon or tab between the columns, a point in the numbers, equal time steps.  A SEED code (HNE) states its
-orientation by itself.  The lines with # are optional, and what they do not say, the file does not say.
+Comma, semicolon, tab or blanks between the columns, a point in the numbers, equal time steps.  A SEED code (HNE) states
+its orientation by itself, and so do the names NS, EW and UD, also as acc_NS; a time without a unit is in seconds.  The
+lines with # are optional, and what they do not say, the file does not say.
 """
 
 from __future__ import annotations
@@ -26,6 +27,9 @@ from pipeline.motions.formats.trace_headers import FACTORS, Orientation
 from pipeline.quantities import Array
 
 _CELL = re.compile(r'^\s*"?\s*([^()\[\]"]{1,60}?)\s*[(\[]\s*([^()\[\]"]{1,20}?)\s*[)\]]\s*"?\s*$')
+_BARE = re.compile(r'^\s*"?\s*(time|t)\s*"?\s*$', re.IGNORECASE)
+_WORD = re.compile(rb"[^\s()\[\]]+[ \t]*(?:[(\[][^()\[\]]*[)\]])?")
+_PREFIX = re.compile(r"^(?:acc(?:el(?:eration)?)?|a)[ _.-]+", re.IGNORECASE)
 _TIME = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 0.001}
 _SPELLINGS = {
     "m/s^2": "m/s2", "m/s**2": "m/s2", "m/s/s": "m/s2", "m/s²": "m/s2", "cm/s^2": "cm/s2", "cm/s**2": "cm/s2",
@@ -76,14 +80,16 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     lines = record_text.open_lines(source)
     top, keys = _top(lines)
     row = lines.lines[top]
-    cells = [cell for cell in _cells(row) if cell is not None]
-    if len(cells) != row.count(_separator(row)) + 1 or not _is_table(cells):
+    named = _cells(row)
+    cells = [cell for cell in named if cell is not None]
+    if len(cells) != len(named) or not _is_table(cells):
         wrong = f"expected 'time (s), name (unit), ...' with units of {', '.join(FACTORS)}, found"
         raise lines.error(top, f"{wrong} {record_text.shown(lines.text(top))}", "declare each column's unit")
     if len(cells) > _MOST_COLUMNS:
         raise lines.error(top, f"{len(cells)} columns are more than a record has", "split it by stations")
     table = _numbers(lines, top + 1, _separator(row), len(cells))
     dt = _step(lines, top + 1, _TIME[cells[0][1]] * table[:, 0], _TIME[cells[0][1]])
+    timed = _BARE.match(record_text.printable(_parts(row)[0])) is None
     processed, network, station, when = _facts(lines, keys)
     traces = []
     for number, (name, unit) in enumerate(cells[1:], start=1):
@@ -105,23 +111,36 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
                 start=when,
                 start_is="unknown" if when is None else "record",
                 headonly=headonly,
-                more={"column": name},
+                more={"column": name} | ({} if timed else {"notes": "its time has no unit and is taken as seconds"}),
             )
         )
     return Stream(traces)
 
 
-def _separator(row: bytes) -> bytes:
-    return max((b",", b";", b"\t"), key=row.count)
+def _separator(row: bytes) -> bytes | None:
+    most = max((b",", b";", b"\t"), key=row.count)
+    return most if most in row else None
+
+
+def _parts(row: bytes) -> list[bytes]:
+    row = row.removeprefix(b"\xef\xbb\xbf")
+    separator = _separator(row)
+    # Between blanks, a cell is a word with its unit; whatever else stands there belongs to none.
+    if separator is None:
+        return _WORD.findall(row) if not _WORD.sub(b"", row).strip() else [row]
+    return row.split(separator)
 
 
 def _cells(row: bytes) -> list[tuple[str, str] | None]:
     cells: list[tuple[str, str] | None] = []
-    for cell in row.removeprefix(b"\xef\xbb\xbf").split(_separator(row)):
+    for cell in _parts(row):
         text = cell.decode("utf-8", errors="replace")
         found = _CELL.match(text) if text.isprintable() or b"\t" in cell else None
-        unit = found[2].lower() if found else ""
-        cells.append((found[1], _SPELLINGS.get(unit, unit)) if found else None)
+        unit = found[2].strip().lower() if found else ""
+        if not cells and (bare := _BARE.match(text)):
+            cells.append((bare[1], "s"))
+        else:
+            cells.append((found[1], _SPELLINGS.get(unit, unit)) if found else None)
     return cells
 
 
@@ -143,7 +162,9 @@ def _top(lines: Lines) -> tuple[int, dict[str, tuple[int, str]]]:
     raise lines.error(min(len(lines), _MOST_COMMENTS), "expected a row such as 'time (s), HNE (cm/s2)'")
 
 
-def _numbers(lines: Lines, start: int, separator: bytes, columns: int) -> Array:
+def _numbers(lines: Lines, start: int, separator: bytes | None, columns: int) -> Array:
+    if separator is None:
+        return blocks.rows(lines, start, columns, "time and acceleration")
     # The whole row at once: a value that is missing is found in its line, and does not shift the values after it.
     row = re.compile(_NUMBER + (re.escape(separator) + _NUMBER) * (columns - 1))
     values = array("d")
@@ -192,7 +213,7 @@ def _channel(name: str) -> tuple[str, Orientation]:
     seed = code if re.fullmatch(r"[A-Z]{2}[A-Z0-9]", code) else ""
     if said.strip():
         return seed, trace_headers.orientation(said)
-    words = trace_headers.orientation(name)
+    words = trace_headers.orientation(_PREFIX.sub("", name))
     known = isinstance(words, float) or words in {"up", "down"}
     return seed, words if known else trace_headers.seed_orientation(name)
 

@@ -13,7 +13,12 @@ from pipeline.motions.formats.record_text import Lines
 from pipeline.quantities import Array, G
 
 FACTORS = {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "gal": 0.01, "in/s2": 0.0254, "g": G, "mg": 0.001 * G}
+FACTORS["g/10"] = 0.1 * G
 """Metres per second squared in one of each unit of acceleration."""
+
+PEAK_TOLERANCE = 0.1
+"""How far a printed peak may be from that of the samples, of itself: what filters, rounding and trends removed between
+the two come to (judgement); a wrong unit, a cut-off peak or another record is farther off."""
 
 Orientation = float | str | None
 
@@ -48,6 +53,8 @@ class Series:
 _QUADRANT = re.compile(r"([NS])\s*(\d{1,2}(?:\.\d*)?)\s*([EW])")
 _AZIMUTH = re.compile(r"(\d{1,3}(?:\.\d*)?)\s*(?:DEG(?:REES)?)?\.?")
 _WORDS: dict[str, Orientation] = {"UP": "up", "DOWN": "down", "DN": "down", "DWN": "down"}
+_WORDS |= {"NS": 0.0, "N-S": 0.0, "EW": 90.0, "E-W": 90.0, "UD": "up", "U-D": "up"}
+_VERTICAL = {"V", "Z", "VER", "VERT", "VERTICAL"}
 _WORDS |= {"N": 0.0, "NORTH": 0.0, "E": 90.0, "EAST": 90.0, "S": 180.0, "SOUTH": 180.0, "W": 270.0, "WEST": 270.0}
 
 
@@ -74,6 +81,61 @@ def orientation(text: str) -> Orientation:
     if (azimuth := _AZIMUTH.fullmatch(word)) and float(azimuth[1]) <= 360.0:
         return float(azimuth[1]) % 360.0
     return text.strip() or None
+
+
+def component(text: str) -> tuple[Orientation, str]:
+    """Return what the one word of a header that has nothing better says of an orientation.
+
+    Parameters
+    ----------
+    text : str
+        Such as "N90E", "V", "L".
+
+    Returns
+    -------
+    float, str or None
+        As `orientation`, and "up" for what is only called vertical.
+    str
+        What was taken for granted, "" for nothing.
+    """
+    said = orientation(text)
+    if isinstance(said, str) and said.upper().strip("+ ") in _VERTICAL:
+        return "up", f"{said} is taken as vertical, positive up"
+    return said, ""
+
+
+def said_peak(lines: Lines, index: int, said: float, digit: float, data: Array, factor: float) -> None:
+    """Refuse a record whose header prints another peak acceleration than its samples have.
+
+    Agencies print the peak of the samples, of the samples about their mean, or with its sign: any of these will do.
+
+    Parameters
+    ----------
+    lines, index : Lines, int
+        The file, and the line that says it, from 0.
+    said : float
+        The peak in m/s2; zero is taken for one that was not filled in.
+    digit : float
+        One in its last printed place, in m/s2.
+    data : array, shape (n,)
+        The samples.
+    factor : float
+        Times the samples gives m/s2.
+
+    Raises
+    ------
+    FormatError
+        That names both, where they are more than PEAK_TOLERANCE apart, and more than the last digit.
+    """
+    said = abs(said)
+    if said == 0.0:
+        return
+    found = factor * float(np.abs(data).max())
+    about = factor * float(np.abs(data - data.mean()).max())
+    slack = PEAK_TOLERANCE * said + digit
+    if min(abs(found - said), abs(about - said)) > slack:
+        wrong = f"says a peak acceleration of {said:.4g} m/s2, and the samples have {found:.4g} m/s2"
+        raise lines.error(index, wrong, "it is damaged, or of another unit or record: fetch it again")
 
 
 def seed_orientation(channel: str) -> Orientation:

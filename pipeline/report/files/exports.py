@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.records import Assessment, Finding, Harm, Recommendation, RunRecord, Scene, Urgency
+from pipeline.report.files.object_list import LISTED
 from pipeline.report.files.ranks import KEYS, keys_part
 from pipeline.report.files.workbook import write_workbook
 from pipeline.report.pages.alike import Memory, finding_key
@@ -65,8 +66,8 @@ TEXTS = ("findings.csv", "findings.jsonl", "recommendations.csv", "objects.csv",
 EXPORTS = (*TEXTS, *(f"{name}.parquet" for name in TABLES))
 """The exports of a report; of every page there is a part of each, a whole file of the same kind."""
 
-PARTS_OF_PAGE = (*EXPORTS, KEYS)
-"""The files with what a page adds to the exports."""
+PARTS_OF_PAGE = (*EXPORTS, KEYS, LISTED)
+"""The files with what a page adds to the exports, to the order of all objects, and to their list."""
 
 WORKBOOK = "findings.xlsx"
 
@@ -158,7 +159,7 @@ def page_exports(
     Returns
     -------
     dict of str to bytes
-        By name of the part, see `PARTS_OF_PAGE`.
+        By name of the part, see `PARTS_OF_PAGE`; without that of the list of all objects.
     """
     decided = Decided(record.decisions, units)
     found, lines, objects = findings.of(run, (f for a in record.assessments for f in a.findings))

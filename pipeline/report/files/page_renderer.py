@@ -4,7 +4,7 @@ import hashlib
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 from jinja2 import Environment
@@ -13,6 +13,7 @@ from markupsafe import Markup
 from pipeline.analysis.stakes import VALUE_PER_C, counting
 from pipeline.records import DecisionStatus, Found, Page, RunRecord, Tally
 from pipeline.report.files.exports import FindingRows, page_exports
+from pipeline.report.files.object_list import LISTED, listed_part, listed_rows
 from pipeline.report.language import Language, speaking
 from pipeline.report.pages.compose import compose, page_head
 from pipeline.report.pages.describe import Sayings
@@ -91,9 +92,11 @@ class PageRenderer:
             if gallery.counts.aside:
                 text = fill(self._environment, "aside.html", context)
             else:
-                context |= drawn(gallery.charts, self.drawings) | self._script
+                context |= {**drawn(gallery.charts, self.drawings), **script_of("gallery")}
                 text = fill(self._environment, "gallery.html", context | {"notes": page_notes(gallery.objects)})
             parts = page_exports(record, page.run, gallery.page.file, made.anchor, made.key, self.units, self._rows)
+            rows = listed_rows(self._environment, context)
+            parts[LISTED] = listed_part([o.number for o in gallery.objects], rows)
         return RenderedPage(text.encode(), made.entry, self.tally(found), parts)
 
     def tally(self, found: Found) -> Tally:
@@ -140,11 +143,13 @@ class PageRenderer:
     def _environment(self) -> Environment:
         return environment(self.language)
 
-    @cached_property
-    def _script(self) -> dict[str, Any]:
-        script = resource("templates", "gallery.js").read_text(encoding="utf-8").strip()
-        allowed = b64encode(hashlib.sha256(script.encode()).digest()).decode()
-        return {"script": Markup(script), "script_hash": allowed}  # noqa: S704 - our own
+
+@cache
+def script_of(name: str) -> Mapping[str, Any]:
+    """Return what a template needs to run a script of ours: the script, and the hash by which it alone may run."""
+    script = resource("templates", f"{name}.js").read_text(encoding="utf-8").strip()
+    allowed = b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    return {"script": Markup(script), "script_hash": allowed}  # noqa: S704 - our own
 
 
 def drawn(keys: Sequence[str], drawings: Mapping[str, Drawing]) -> dict[str, Any]:

@@ -14,6 +14,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+from markupsafe import Markup
+
 from pipeline.planning.plan import PlanTerms
 from pipeline.records import DecisionStatus, Page, RunChanges, RunRecord, Tally
 from pipeline.report.errors import ReportError
@@ -29,7 +31,8 @@ from pipeline.report.files.manifest import (
     sum_of,
     write_manifest,
 )
-from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, drawn
+from pipeline.report.files.object_list import LISTED, OBJECTS, SHOWN, is_list_file, listed_pages
+from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, drawn, script_of
 from pipeline.report.files.plan_files import PLAN_FILES, gathered_from, write_plan_table
 from pipeline.report.files.ranks import KEYS, ranks_of
 from pipeline.report.language import speaking
@@ -77,6 +80,8 @@ class ReportWriter:
         What draws the pages of the run.
     previous : PreviousReport, optional
         Whose pages may be used again.
+    listed : int
+        Rows on a page of the list of all objects.
 
     Raises
     ------
@@ -84,10 +89,12 @@ class ReportWriter:
         If the folder exists.
     """
 
-    def __init__(self, folder: Path, renderer: PageRenderer, previous: PreviousReport | None = None) -> None:
+    def __init__(
+        self, folder: Path, renderer: PageRenderer, previous: PreviousReport | None = None, listed: int = SHOWN
+    ) -> None:
         if folder.exists():
             raise ReportError(f"{folder} exists already; a report never overwrites another: name a new folder")
-        self.folder, self.renderer = folder, renderer
+        self.folder, self.renderer, self._listed = folder, renderer, listed
         self._previous = previous or PreviousReport(folder)
         self._partial = aside_of(folder)
         self._pages: list[KeptPage] = []
@@ -175,7 +182,7 @@ class ReportWriter:
         ReportError
             Where two galleries' files would have one name.
         """
-        self._export(head.started)
+        self._export(head)
         plan = "" if terms is None else self._plan(head, terms)
         for name, text in [*self._shared(head, tally, changes, links, plan=plan), *(beside or {}).items()]:
             self._write(name, text.encode())
@@ -198,7 +205,7 @@ class ReportWriter:
             _link_or_copy(self._previous.folder / name, self._partial / name)
             self._files[name] = self._previous.manifest.files[name]
 
-    def _export(self, started: str) -> None:
+    def _export(self, head: RunRecord) -> None:
         """Write the exports of the whole report, or take those of the earlier one if it has the same pages."""
         same = [page.key for page in self._pages] == self._previous.pages
         parts = [part_files(page.entry.page.file) for page in self._pages]
@@ -206,6 +213,7 @@ class ReportWriter:
         self._link(*taken)
         wanted = {name: [self._partial / part[at] for part in parts] for at, name in enumerate(PARTS_OF_PAGE)}
         keys = wanted.pop(KEYS)
+        self._list(head, wanted.pop(LISTED), same=same)
         left = wanted.keys() - taken
         ranks = ranks_of(keys) if any(map(ranked, left)) else None
         # Copying, checksums and compression leave the other files' threads to work.
@@ -215,8 +223,24 @@ class ReportWriter:
                 for name in left
             }
         self._files |= {name: one.result() for name, one in made.items()}
-        if WORKBOOK not in taken and write_exports_workbook(self._partial, started):
+        if WORKBOOK not in taken and write_exports_workbook(self._partial, head.started):
             self._files[WORKBOOK] = sum_of(self._partial / WORKBOOK)
+
+    def _list(self, head: RunRecord, parts: Sequence[Path], *, same: bool) -> None:
+        """Write the list of all objects, or take that of the earlier report if it has the same pages."""
+        files = [name for name in self._previous.manifest.files if is_list_file(name)]
+        if same and files and self._previous.has(*files):
+            self._link(*files)
+            return
+        pages, rows = listed_pages(parts, self._listed)
+        with speaking(self.renderer.language):
+            shown = page_head(head, Page("", "", True, 1, 1, head.run_id, head.finished))
+            context: dict[str, Any] = {"museum": shown, "here": OBJECTS, "pages": pages}
+            context |= script_of(OBJECTS)
+            env = environment(self.renderer.language)
+            for number, (page, own) in enumerate(zip(pages, rows, strict=True), 1):
+                text = fill(env, f"{OBJECTS}.html", context | {"number": number, "rows": Markup(own)})  # noqa: S704
+                self._write(page.file, text.encode())
 
     def _read(self, head: RunRecord, doubts: Doubts) -> str:
         """Write the page and the list of what reading refused and doubts, or take those of the earlier report."""

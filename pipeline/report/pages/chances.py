@@ -4,10 +4,14 @@ from dataclasses import dataclass
 from functools import cache
 
 from pipeline.analysis.stakes import Term, Worth, doubtful, expected_loss
-from pipeline.analysis.survey import measurables
-from pipeline.records import Assessment, Band, Harm, Likelihood, Recommendation, Scene
+from pipeline.analysis.survey import measurables, size_behind
+from pipeline.records import Assessment, Band, Harm, IfClass, Likelihood, Mount, Recommendation, Scene
+from pipeline.records.likelihood import CLASS
 from pipeline.report.language import _, said
 from pipeline.report.text import clean, words
+
+ACTED = (Band.ALMOST_CERTAIN, Band.LIKELY, Band.POSSIBLE)
+"""Words for what something is done about."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,14 +19,17 @@ class ChanceView:
     """How likely an object comes to harm, what it is likeliest to do, and the numbers behind that.
 
     level : of shaking, at which that is likeliest;  check : why its record is to be looked at first, "" for no reason;
-    measure : what one would measure to decide otherwise
+    ask : what one would measure, or say, to decide otherwise;  classes : what it may be, and how likely harm is then;
+    unnamed : whether naming it decides first, for the class that it is taken for would not be acted on
     """
 
     sentence: str
     numbers: str
     level: str
     check: str = ""
-    measure: str = ""
+    ask: str = ""
+    classes: str = ""
+    unnamed: bool = False
 
 
 def chance_view(assessment: Assessment) -> ChanceView | None:
@@ -30,7 +37,7 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
     found = assessment.likelihood
     if found is None:
         return None
-    numbers = _("%(share)s ± %(error)s of %(samples)s samples of all that is uncertain") % {
+    numbers = _("%(share)s ± %(error)s of %(samples)s samples") % {
         "share": _percent(found.probability),
         "error": f"{100.0 * found.error:.1f} %",
         "samples": found.samples,
@@ -42,7 +49,39 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
     if slender:
         check = _("Check its record first: it is %(times)s times as high as it is deep, and hardly stands by itself.")
         check %= {"times": f"{slender:.1f}"}
-    return ChanceView(_sentence(found), f"{numbers}{more}.", clean(found.level), check, name_of(found.open_for))
+    unnamed = _unnamed(found)
+    if unnamed:
+        check = " ".join(filter(None, (check, _("Say what it is first (kouros decide)."))))
+    classes = ", ".join(map(_if_class, found.classes))
+    return ChanceView(
+        _sentence(found), f"{numbers}{more}.", clean(found.level), check, _asked(assessment), classes, unnamed
+    )
+
+
+def _unnamed(found: Likelihood) -> bool:
+    """Say whether something is done about it only for what else it may be."""
+    if not found.classes or found.band not in ACTED:
+        return False
+    return found.classes[0].band is not None and found.classes[0].band not in ACTED
+
+
+def _if_class(one: IfClass) -> str:
+    """Say what an object may be, and how likely harm is then."""
+    named = _(" or ").join(words(clean(name)) for name in one.classes)
+    told = {"what": named, "chance": f"{one.chance:.2f}"}
+    if one.probability is None or one.samples < _TELLING:
+        return _("%(what)s (%(chance)s): too few samples to tell") % told
+    return _("%(what)s (%(chance)s): harm %(share)s") % (told | {"share": _percent(one.probability)})
+
+
+def _asked(assessment: Assessment) -> str:
+    """Say what is to be found out where that alone may change what is decided; "" for nothing."""
+    parameter, scene = open_for(assessment), assessment.scene
+    if parameter == CLASS:
+        return _("Say what it is.")
+    if parameter == "friction_static" and scene.mount is Mount.UNKNOWN:
+        return _("Say whether its mount holds it by clips, wire or screws, or only carries it.")
+    return _("Measure: %(what)s") % {"what": name_of(size_behind(scene, parameter) or parameter)} if parameter else ""
 
 
 def worth_words(scene: Scene, worth: Worth) -> str:
@@ -104,13 +143,13 @@ def _measured() -> dict[str, str]:
 
 
 def name_of(parameter: str) -> str:
-    """Say what one would measure to know a parameter; "" for none."""
-    if not parameter:
-        return ""
+    """Say what one would measure to know a parameter."""
     return said(_measured()[parameter]) if parameter in _measured() else words(parameter)
 
 
 _LEAST = 0.01
+_TELLING = 16
+"""Samples of one class from which on its probability is told: none of 16 harmed says below 10 % with one of 0.93."""
 
 # Looked up in the language of the page.
 _BANDS = {

@@ -17,6 +17,7 @@ from pipeline.records import (
     Mark,
     MeasurementRequest,
     MotionSummary,
+    Mount,
     Origin,
     Recommendation,
     RunRecord,
@@ -116,6 +117,19 @@ def support(of: Support) -> str:
         Support.ISOLATED: _("isolated"),
     }
     return told[of]
+
+
+def held(scene: Scene) -> str:
+    """Say in words how an object is held where it stands, lies or hangs."""
+    ways = {
+        Mount.LYING: _("lies on its largest face"),
+        Mount.STANDING: _("stands by itself"),
+        Mount.LEANING: _("leans on a stand or against a backing"),
+        Mount.RESTING: _("rests on its mount, held by nothing else"),
+        Mount.SECURED: _("held on its mount"),
+        Mount.UNKNOWN: _("on a mount; how that grips is not recorded"),
+    }
+    return support(scene.support) if scene.mount is None else ways[scene.mount]
 
 
 def furniture(scene: Scene) -> str:
@@ -353,7 +367,7 @@ class Describer:
             object_class=words(clean(scene.object_class)),
             taken=taken_words(scene),
             rule=said(clean(scene.rule)),
-            support=support(scene.support),
+            support=held(scene),
             place=clean(item.case),
             furniture=furniture(scene),
             lead=findings[0] if findings else None,

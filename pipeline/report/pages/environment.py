@@ -55,8 +55,14 @@ def environment(language: Language | None = None) -> Environment:
     env.globals["_"] = lru_cache(maxsize=1024)(lambda text: Markup(phrases.gettext(text)))  # noqa: S704
     env.globals["language"] = spoken
     env.filters["plain"] = plain
+    env.filters["squeezed"] = _squeezed
     env.filters["thousands"] = count
     return env
+
+
+def _squeezed(text: Markup) -> Markup:
+    """Return a piece of a page on one line."""
+    return Markup(" ").join(map(Markup, text.split()))
 
 
 def _present(value: object) -> object:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from math import inf, isfinite
 
-from pipeline.motions.record import NO_VERTICAL
+from pipeline.motions.record import ESTIMATED, NO_VERTICAL
 from pipeline.records import Chart, MotionSummary
 from pipeline.report.language import _
 from pipeline.report.pages.describe import approval, motion_anchor
@@ -26,6 +26,7 @@ def motion_view(motion: MotionSummary, charts: Mapping[str, Chart], units: Units
     table: list[tuple[str, tuple[str, ...]]] = []
     used: set[str] = set()
     flat = NO_VERTICAL in motion.steps
+    up = _("Up (z), estimated") if ESTIMATED in motion.steps else _("Up (z)")
     for stem, title, unit in _ROWS:
         cells = [(f"{stem}{end}", motion.measures.get(f"{stem}{end}")) for end in _ENDS]
         if any(value is not None for _, value in cells):
@@ -50,7 +51,7 @@ def motion_view(motion: MotionSummary, charts: Mapping[str, Chart], units: Units
             "step": f"{motion.dt:.6g}",
             "duration": f"{(motion.samples - 1) * motion.dt:.4g}",
         },
-        columns=(_("East (x)"), _("North (y)"), _("Up (z)"), _("Larger horizontal"), _("Resultant")),
+        columns=(_("East (x)"), _("North (y)"), up, _("Larger horizontal"), _("Resultant")),
         table=tuple(table),
         others=tuple((_name(key), _write(key, value, _unit(key), units)) for key, value in rest.items()),
         charts=tuple(sorted(mine, key=lambda key: _figure(charts[key]))),

@@ -27,14 +27,16 @@ def state_of(assessment: Assessment) -> State:
     """Return where an object stands: by how likely harm is, or where that was not asked for by its verdicts.
 
     A proof beats a probability: what passes in all its models, whatever its uncertain inputs are, is fine, unless the
-    scatter of the models, which no verdict counts, makes harm possible.  What has no verdict at all never is.
+    scatter of the models, which no verdict counts, makes harm possible.  It holds of the class that was run: of what
+    may be of another one the probability decides.  What has no verdict at all never is fine.
     """
     if assessment.aside:
         return State.ASIDE
     verdicts = {f.verdict for f in assessment.findings}
     found = assessment.likelihood
     state = State.FINE if found is None else _STATES.get(found.band, State.ACT)
-    if assessment.assessed and verdicts == {Verdict.PASS} and state is not State.ACT:
+    proved = assessment.assessed and verdicts == {Verdict.PASS} and (found is None or not found.classes)
+    if proved and state is not State.ACT:
         return State.FINE
     if found is None:
         state = State.ACT if Verdict.FAIL in verdicts else State.WATCH

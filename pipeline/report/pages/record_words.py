@@ -2,7 +2,7 @@
 
 from pipeline.motions.inspection import Inspection
 from pipeline.motions.pulses import WaveletPulse
-from pipeline.motions.record import NO_VERTICAL
+from pipeline.motions.record import ESTIMATED, NO_VERTICAL
 from pipeline.report.text import clean, count
 from pipeline.report.units import Units, significant
 
@@ -38,7 +38,7 @@ def origin(one: Inspection) -> tuple[str, str]:
 
 def processing(one: Inspection) -> str:
     """Say in one sentence what was done to the record here."""
-    flat = " No vertical component was recorded: the motion has none." if NO_VERTICAL in one.motion.steps else ""
+    flat = "".join(f" {said[0].upper()}{said[1:]}." for said in (NO_VERTICAL, ESTIMATED) if said in one.motion.steps)
     high, low = one.corners
     if not one.filtered:
         return (

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 DT = 0.01
@@ -84,7 +82,7 @@ def csmip(volume: int = 2, channels: tuple[str, ...] = ("360 Deg", " Up", " 90 D
             "Written by hand", "00001-L1-01001.01      Start time:  1/01/01, 00:00:45.0 UTC (GPS)",
             "Station No. 00001   40.941N, 123.633W      Etna  s/n 1  (3 Chns of  3 at Sta)", "Nowhere", name,
             "Record of Mon Jan  1, 2001", "Hypocenter", "Instr Period =  .0109 sec,  Damping =  .670",
-            "No. of Points =  60", "Units of uncor data are sec and g .        Max  =   .102 g , at  .000 sec.", "RMS",
+            "No. of Points =  60", "Units of uncor data are sec and g .        Max  =  1.000 g , at  .000 sec.", "RMS",
         ]  # fmt: skip
         if volume == 2:
             lines += ["Peak acceleration =   100.000    cm/sec/sec  at    .000   sec."]
@@ -172,21 +170,3 @@ def csv(
     data = [(f"{DT * i:.3f}", f"{100 * a:.6f}", f"{a:.6f}", f"{9 * a:.6f}") for i, a in enumerate(tone())]
     rows = [separator.join(row[: header.count("(") + header.count("[")]) for row in data]
     return joined([*comments.splitlines(), header.replace(",", separator), *rows], "\n")
-
-
-SPECIMENS: dict[str, tuple[str, Callable[[], bytes]]] = {
-    "at2": ("peer", at2),
-    "at2-old": ("peer", lambda: at2(old=True)),
-    "esm": ("esm", esm),
-    "geonet-v1a": ("geonet", lambda: geonet(1)),
-    "geonet-v2a": ("geonet", geonet),
-    "csmip-v1": ("csmip", lambda: csmip(1)),
-    "csmip-v2": ("csmip", csmip),
-    "smc-corrected": ("smc", smc),
-    "smc-uncorrected": ("smc", lambda: smc(corrected=False)),
-    "cosmos-v0": ("cosmos", lambda: cosmos(0)),
-    "cosmos-v1": ("cosmos", cosmos),
-    "cosmos-v2": ("cosmos", lambda: cosmos(2)),
-    "csv": ("table", csv),
-}
-"""Name -> the reader's module in pipeline.motions.formats, and what writes the file."""

@@ -15,7 +15,8 @@ import pytest
 
 from pipeline.motions.formats import trace_headers
 from tests.motions.formats import specimens as hand
-from tests.motions.formats.specimens import DT, SHAPE, SPECIMENS, tone
+from tests.motions.formats.every import SPECIMENS
+from tests.motions.formats.specimens import DT, SHAPE, tone
 
 EXPECTED = {
     # name: unit, factor to m/s2, orientations, processed, amplitude in that unit, half the last printed digit
@@ -30,6 +31,12 @@ EXPECTED = {
     "cosmos-v0": ("counts", 1e-6 / 2.0 * 9.80665, [90.0, 0.0, "up"], False, 1e6, 0.5),
     "cosmos-v1": ("cm/s2", 0.01, [90.0, 0.0, "up"], False, 100.0, 5e-6),
     "cosmos-v2": ("cm/s2", 0.01, [90.0, 0.0, "up"], True, 100.0, 5e-6),
+    "film": ("g/10", 0.980665, [90.0, "up", 180.0], False, 1.0, 5e-4),
+    "film-usc": ("g/10", 0.980665, [90.0], False, 1.0, 5e-4),
+    "csmip-v1-narrow": ("g", 9.80665, [90.0], False, 1.0, 5e-7),
+    "csmip-usc-v2": ("cm/s2", 0.01, [352.0], True, 100.0, 5e-4),
+    "bhrc": ("g/10", 0.980665, [50.0, "up", 140.0], False, 1.0, 5e-7),
+    "csmnc": ("cm/s2", 0.01, [90.0], False, 100.0, 5e-5),
 }
 
 
@@ -61,7 +68,7 @@ def test_as_written(read, name):
 
 def test_velocities_are_there_where_they_were_written(read):
     with_them = {name for name in EXPECTED if "velocity" in read(SPECIMENS[name][1]())[0].stats.kouros}
-    assert with_them == {"geonet-v2a", "csmip-v2", "cosmos-v2"}
+    assert with_them == {"geonet-v2a", "csmip-v2", "cosmos-v2", "csmip-usc-v2"}
 
 
 def test_csv(read):

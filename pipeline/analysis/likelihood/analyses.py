@@ -1,0 +1,323 @@
+"""Analyses of objects in joint samples: the models that each requires, on what is drawn of its numbers and its class.
+
+An object may be of several classes for which something else is computed.  Which of them it is is drawn like its
+numbers: each class has a part of the shares of one role, as wide as its chance, and in a sample the models of the class
+are run in whose part the sample's share lies.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.analysis.furniture import FurnitureFilter
+from pipeline.analysis.likelihood.draws import Draw, Ranges
+from pipeline.analysis.likelihood.shaking import direction
+from pipeline.analysis.plan import Indices, own_angle, requirements, unique_rows
+from pipeline.analysis.verdicts import capacity_of, utilisation
+from pipeline.models.rigid_body import rocking_harms
+from pipeline.quantities import Array
+from pipeline.records import Columns, Estimate, Excitation, Harm, Model, Motion, Scene
+from pipeline.records.likelihood import CLASS
+
+STATES = tuple(Harm)
+
+HARMFUL = (Harm.LEAVES, Harm.FALLS, Harm.BREAKS)
+"""States that harm whatever reaches them; rocking does where neither the museum nor its class says that it does not."""
+
+Transfer = tuple[str, tuple[tuple[str, float], ...]]
+"""An isolator that passes the motion on: its model, and its parameters by name."""
+
+Groups = Mapping[tuple[FurnitureFilter | None, Transfer | None], Sequence["Analyses"]]
+"""Analyses by what their shaking passes through."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A class that an object may be of, or several for which the same is computed.
+
+    Attributes
+    ----------
+    classes : tuple of str
+        Their names; () where it is certain.
+    start, end : float
+        Between which shares of the role `CLASS` a sample has the object be that: 0 to 1 where it is certain.
+    """
+
+    classes: tuple[str, ...] = ()
+    start: float = 0.0
+    end: float = 1.0
+
+    @property
+    def chance(self) -> float:
+        """How likely it is of one of them."""
+        return self.end - self.start
+
+
+CERTAIN = Kind()
+
+
+@dataclass(frozen=True)
+class Stood:
+    """A scene as it is shaken.
+
+    Attributes
+    ----------
+    of : int
+        Which object it belongs to.
+    scene : Scene
+        What is run.
+    isolator : Transfer or None
+        What passes the motion of its furniture on to it.
+    kind : Kind
+        What the object is where this is run.
+    """
+
+    of: int
+    scene: Scene
+    isolator: Transfer | None = None
+    kind: Kind = CERTAIN
+
+
+def kinds_of(stood: Iterable[Stood]) -> dict[int, tuple[Kind, ...]]:
+    """Return of each object whose class is not certain what it may be, the likeliest class first."""
+    out: dict[int, tuple[Kind, ...]] = {}
+    for one in stood:
+        known = out.get(one.of, ())
+        if one.kind is not CERTAIN and one.kind not in known:
+            out[one.of] = (*known, one.kind)
+    return out
+
+
+def grouped(stood: Sequence[Stood], x_azimuth: float) -> Groups:
+    """Return the analyses of scenes by what their shaking passes through.
+
+    x_azimuth : degrees clockwise from north of the x axis of the motions
+    """
+    groups: dict[tuple[FurnitureFilter | None, Transfer | None], list[Analyses]] = {}
+    for model, furniture, members in requirements([one.scene for one in stood])[0]:
+        by_isolator: dict[Transfer | None, list[Stood]] = {}
+        for at in members:
+            by_isolator.setdefault(stood[at].isolator, []).append(stood[at])
+        for isolator, those in by_isolator.items():
+            for angle, alike in _turned(model, those, x_azimuth):
+                groups.setdefault((furniture, isolator), []).append(_analyses(model, alike, angle))
+    return groups
+
+
+@dataclass(frozen=True)
+class Harmful:
+    """Which states harm objects.
+
+    Attributes
+    ----------
+    ever : ndarray of bool, shape (s, m)
+        Each object, whatever it is.
+    others : tuple of (int, Kind, ndarray of bool, shape (s,))
+        The object, what it may be, and the states that harm it then, of those for which that is not the same.
+    """
+
+    ever: NDArray[np.bool_]
+    others: tuple[tuple[int, Kind, NDArray[np.bool_]], ...] = ()
+
+    def at(self, draw: Draw) -> NDArray[np.bool_]:
+        """Return the states that harm each object as it is in a sample, (s, m)."""
+        if not self.others:
+            return self.ever
+        share, out = draw.share(CLASS), self.ever.copy()
+        for of, kind, states in self.others:
+            if kind.start <= share < kind.end:
+                out[:, of] = states
+        return out
+
+
+def harmful_states(stood: Sequence[Stood], count: int) -> Harmful:
+    """Return which states harm each object."""
+    each: dict[tuple[int, Kind], NDArray[np.bool_]] = {}
+    for one in stood:
+        harms = (*HARMFUL, Harm.ROCKS) if rocking_harms(one.scene) else HARMFUL
+        states = np.array([state in harms for state in STATES])
+        # What stands on an isolator comes after it.
+        each[one.of, one.kind] = states
+    ever = np.zeros((len(STATES), count), dtype=bool)
+    for (of, _), states in each.items():
+        ever[:, of] |= states
+    others = tuple((of, kind, states) for (of, kind), states in each.items() if np.any(states != ever[:, of]))
+    return Harmful(ever, others)
+
+
+def possible_states(groups: Groups, count: int) -> NDArray[np.bool_]:
+    """Return which states each object can reach, (s, m)."""
+    possible = np.zeros((len(STATES), count), dtype=bool)
+    for (furniture, _), those in groups.items():
+        tips = (Harm.FALLS,) if furniture is not None and furniture.loose is not None else ()
+        for one in those:
+            for state in (*one.model.reachable, *tips):
+                possible[STATES.index(state), one.of] = True
+    return possible
+
+
+def _turned(model: Model, stood: Sequence[Stood], x_azimuth: float) -> Iterator[tuple[float | None, list[Stood]]]:
+    """Yield those that are turned alike, by the angle of their width; None: nobody says it."""
+    by_angle: dict[float | None, list[Stood]] = {}
+    for one in stood:
+        angle = own_angle(model, one.scene, x_azimuth)
+        by_angle.setdefault(None if np.isnan(angle) else angle, []).append(one)
+    yield from by_angle.items()
+
+
+@dataclass(frozen=True)
+class Analyses:
+    """Analyses of one model on scenes that are turned alike.
+
+    Attributes
+    ----------
+    of : (m,) the object of each
+    start, end : (m,) of each the shares of the role `CLASS` at which its object is what is run
+    angle : of their width, degrees from x towards y; None: drawn
+    ways : by direction, the parameters that a body has along it
+    tied : by direction, parameters that go up and down with another one: by name the other one's, and how many times
+           it, (m,)
+    """
+
+    model: Model
+    of: Indices
+    start: Array
+    end: Array
+    angle: float | None
+    ways: tuple[tuple[Ranges, ...], ...]
+    tied: tuple[Mapping[str, tuple[str, Array]], ...]
+    wider: Array
+    output: tuple[str, ...]
+    capacity: Ranges
+    room: Ranges
+
+    @cached_property
+    def outputs(self) -> frozenset[str]:
+        """The different outputs that are held against capacities."""
+        return frozenset(self.output)
+
+    @cached_property
+    def _certain(self) -> bool:
+        return bool(np.all(self.start <= 0.0) and np.all(self.end >= 1.0))
+
+    def chosen(self, draw: Draw, wanted: NDArray[np.bool_]) -> Indices:
+        """Return the places of those whose objects are wanted, and are in a sample what is run here."""
+        mine = wanted[self.of]
+        if not self._certain:
+            share = draw.share(CLASS)
+            mine = mine & (self.start <= share) & (share < self.end)
+        return np.flatnonzero(mine)
+
+    def uncertain(self, ranges: Ranges) -> NDArray[np.bool_]:
+        """Return of which a measurement would settle a parameter; where the class is not certain, of the likeliest."""
+        free = np.isnan(self.tied[0][ranges.name][1]) if ranges.name in self.tied[0] else np.True_
+        return np.asarray((ranges.low < ranges.high) & free & (self.start <= 0.0))
+
+    def run(self, felt: Motion, draw: Draw, chosen: Indices, reached: NDArray[np.bool_]) -> None:
+        """Add what is reached in a sample, (s, objects), by those at some places."""
+        model = self.model
+        turned = direction(draw) + (90.0 if model.across else 0.0) if self.angle is None else self.angle
+        for at, way in enumerate(self.ways):
+            values = self._values(way, self.tied[at], draw, chosen, wide=bool(at) and self.angle is None)
+            along = None if model.directions != 1 or (model.resultant and self.angle is None) else turned + 90.0 * at
+            excitation = felt.excitation(along)
+            # What it shows to rest need not be integrated: of all hung works it leaves one of six.
+            moves = _moving(model, excitation, values)
+            if not moves.any():
+                continue
+            some = chosen[moves]
+            # Of those that are the same one is run.
+            first, of_each = unique_rows(np.column_stack([one[moves] for one in values.values()]))
+            ran = model.run(excitation, {name: one[moves][first] for name, one in values.items()}, 1, False)
+            columns = {name: column[of_each] for name, column in ran.items()}
+            capacity, room = (one.at(draw, some) for one in (self.capacity, self.room))
+            for state, mask in model.reached(columns, self._exceeded(columns, some, capacity), room).items():
+                reached[STATES.index(state), self.of[some]] |= mask
+
+    def _values(
+        self, way: Sequence[Ranges], tied: Mapping[str, tuple[str, Array]], draw: Draw, chosen: Indices, *, wide: bool
+    ) -> dict[str, Array]:
+        values = {one.name: one.at(draw, chosen) for one in way}
+        for name, (other, times) in tied.items():
+            mine = times[chosen]
+            values[name] = np.where(np.isnan(mine), values[name], mine * values[other])
+        for name in _HALVES if wide else ():
+            if name in values:
+                values[name] = self.wider[chosen] * values[name]
+        return {name: np.ascontiguousarray(one) for name, one in values.items()}
+
+    def _exceeded(self, columns: Columns, chosen: Indices, capacity: Array) -> NDArray[np.bool_]:
+        demand = np.empty(chosen.size)
+        if len(self.outputs) == 1:
+            return ~(utilisation(columns[self.output[0]], capacity) <= 1.0)
+        for output in self.outputs:
+            mine = np.array([self.output[at] == output for at in chosen])
+            demand[mine] = columns[output][mine]
+        # What could not be followed may be anything.
+        return ~(utilisation(demand, capacity) <= 1.0)
+
+
+_HALVES = ("half_width", "half_width_other")
+
+
+def _moving(model: Model, excitation: Excitation, values: Mapping[str, Array]) -> NDArray[np.bool_]:
+    if model.certificate is None or model.rests is None:
+        return np.ones(next(iter(values.values())).size, dtype=bool)
+    return np.asarray(model.certificate(excitation, values) > model.rests)
+
+
+def _analyses(model: Model, stood: Sequence[Stood], angle: float | None) -> Analyses:
+    scenes = [one.scene for one in stood]
+    names = [q.name for q in model.needs]
+    defaults = {q.name: np.nan if q.default is None else q.default for q in model.needs}
+    axes = model.axes if model.directions == 1 and not (model.resultant and angle is None) else ({},)
+    ways, tied = [], []
+    for axis in axes:
+        # What is known along its own axis takes the place of what is known of it as a whole.
+        known = [
+            {n: s.parameters.get(axis.get(n, n) if angle is not None else n) or s.parameters.get(n) for n in names}
+            for s in scenes
+        ]
+        ways.append(tuple(Ranges.of(name, [one[name] for one in known], defaults[name]) for name in names))
+        tied.append(_ties(scenes, known))
+    capacities = [capacity_of(model, scene) for scene in scenes]
+    named = model.capacity if isinstance(model.capacity, str) else ""
+    return Analyses(
+        model,
+        np.array([one.of for one in stood], dtype=np.intp),
+        np.array([one.kind.start for one in stood]),
+        np.array([one.kind.end for one in stood]),
+        angle,
+        tuple(ways),
+        tuple(tied),
+        np.array([_aspect(scene) for scene in scenes]),
+        tuple(output for output, _ in capacities),
+        Ranges.of(named or "clearance", [estimate for _, estimate in capacities], np.nan),
+        Ranges.of("clearance", [scene.parameters.get("clearance") for scene in scenes], np.inf),
+    )
+
+
+def _ties(scenes: Sequence[Scene], known: Sequence[Mapping[str, Estimate | None]]) -> dict[str, tuple[str, Array]]:
+    """Return of parameters that are in proportion to another one which, and how many times that, (m,); NaN: not."""
+    out: dict[str, tuple[str, Array]] = {}
+    for at, (scene, those) in enumerate(zip(scenes, known, strict=True)):
+        for name, estimate in those.items():
+            if estimate is None or not estimate.per or estimate.per not in those:
+                continue
+            other = scene.parameters.get(estimate.per)
+            if other is not None and other.value:
+                times = out.setdefault(name, (estimate.per, np.full(len(scenes), np.nan)))[1]
+                times[at] = estimate.value / other.value
+    return out
+
+
+def _aspect(scene: Scene) -> float:
+    """Return how much wider an object is across its narrow side than along it, 1 where nobody says it."""
+    item = scene.item
+    for width, depth in ((item.base_width_m, item.base_depth_m), (item.width_m, item.depth_m)):
+        if width and depth:
+            return max(width, depth) / min(width, depth)
+    return 1.0

@@ -1,0 +1,82 @@
+"""Mass of an object that nobody weighed: how much of its outline its material fills.
+
+What is made of metal is sheet, cast hollow, or of rods, and fills far less than the same thing of wood or clay.  What
+makes it lighter makes its critical section thinner too, so that one must not be counted without the other.
+"""
+
+from math import pi
+
+from pipeline.records import Estimate, Item, Origin
+from pipeline.tables import Range
+from pipeline.tables.assumed_rows import Material, ObjectClass
+from pipeline.tables.fill_rows import fills
+
+
+def mass_of(item: Item, row: ObjectClass, material: Material, hung: bool) -> Estimate | None:
+    """Return the mass of an object [kg]: as recorded, else by its area where it hangs, else by what fills its outline.
+
+    Parameters
+    ----------
+    item : Item
+        Its record.
+    row : ObjectClass
+        Its class.
+    material : Material
+        What it is made of.
+    hung : bool
+        Whether it hangs.
+
+    Returns
+    -------
+    Estimate or None
+        None where its sizes or its class do not say it.
+    """
+    if item.mass_kg is not None:
+        return Estimate.measured(item.mass_kg, "kg")
+    if hung and item.height_m and item.width_m:
+        area = item.height_m * item.width_m
+        note = "mass: 15 kg (5 to 40 kg) for each square metre of a framed work, assumed"
+        return Estimate.assumed(15.0 * area, 5.0 * area, 40.0 * area, "kg", note, "judgement")
+    box, own = _outline(item, row), _metal_fill(row, material)
+    fill = own or row.filled
+    if fill is None or box is None:
+        return None
+    density = material.density_range
+    note = f"mass: {material.told} of {density.value:g} kg/m3 filling {fill.value:g} of its outline"
+    note += ", assumed for what is made of metal" if own else f"{row.aside}, assumed"
+    low, high = box * fill.low * density.low, box * fill.high * density.high
+    return Estimate.assumed(box * fill.value * density.value, low, high, "kg", note, density.source)
+
+
+def solid_mass(item: Item, row: ObjectClass, material: Material) -> Estimate | None:
+    """Return the mass below which a thing of metal is hollow, and its critical section with it [kg].
+
+    Parameters
+    ----------
+    item, row, material : Item, ObjectClass, Material
+        As of `mass_of`.
+
+    Returns
+    -------
+    Estimate or None
+        None where its section is recorded, or nothing says that it may be hollow.
+    """
+    box, filled = _outline(item, row), row.filled
+    if item.section_width_m is not None or box is None or filled is None or _metal_fill(row, material) is None:
+        return None
+    mass = box * filled.value * material.density_range.value
+    note = f"section: taken as solid from {mass:.2g} kg on and as hollow below, its area with its mass: it is of metal"
+    return Estimate(mass, "kg", Origin.ASSUMED, mass, mass, note, "judgement")
+
+
+def _outline(item: Item, row: ObjectClass) -> float | None:
+    """Return the volume [m3] that a thing takes up; None where its sizes do not say it."""
+    across, along = item.width_m or item.depth_m, item.depth_m or item.width_m
+    if not (item.height_m and across and along):
+        return None
+    return item.height_m * across * along * (0.25 * pi if row.round else 1.0)
+
+
+def _metal_fill(row: ObjectClass, material: Material) -> Range | None:
+    """Return how much of its outline fills.csv says that it fills; a museum's own row of the class goes before."""
+    return None if row.own else fills().get((row.name, material.name))

@@ -1,0 +1,163 @@
+"""How a thing is held that lies in a case or cannot stand by itself, and the numbers that its models need of that.
+
+A coin lies on its largest face; a mask is held by a mount of which hardly any record says how it grips.  Either is
+stated by a house rule, or shown by what the record says of its support, or taken as is usual (tables/mounts.csv).
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import cos, radians, sin
+
+from pipeline.analysis.house.effect import HouseEffect
+from pipeline.analysis.house.matching import MOUNTED_BY
+from pipeline.analysis.section import share_of
+from pipeline.analysis.sizes import SIZES, Sizes, sizes_known
+from pipeline.records import Estimate, Item, Mount, Origin
+from pipeline.tables.assumed_rows import WHEN_HELD, ObjectClass
+from pipeline.tables.mount_rows import MountRow, mount_rows
+
+BULKY, LAID = 0.35, 0.2
+"""Smallest over largest size, and largest size [m], from which on a thing stands rather than lies: judgement."""
+
+_UPRIGHT = (Mount.STANDING, Mount.LEANING)
+
+
+@dataclass(frozen=True)
+class MountGuess:
+    """How a thing is held.
+
+    Attributes
+    ----------
+    row : MountRow
+        Which way.
+    origin : Origin
+        Of that knowledge.
+    note : str
+        In words, where it is assumed; "" where somebody said it.
+    """
+
+    row: MountRow
+    origin: Origin
+    note: str = ""
+
+    @property
+    def way(self) -> Mount:
+        """Which way."""
+        return self.row.mount
+
+    @property
+    def stands(self) -> bool:
+        """Whether it stands by itself as other things do."""
+        return self.way is Mount.STANDING
+
+    @property
+    def models_need_size(self) -> bool:
+        """Whether its models ask how wide it is: it may tip."""
+        return self.way in _UPRIGHT
+
+
+def mount_of(item: Item, row: ObjectClass, house: HouseEffect) -> MountGuess | None:
+    """Return how a thing is held.
+
+    Parameters
+    ----------
+    item : Item
+        Its record, with what house rules say of its support.
+    row : ObjectClass
+        Its class.
+    house : HouseEffect
+        What house rules come to for it.
+
+    Returns
+    -------
+    MountGuess or None
+        None for what stands or hangs by its class, for what hangs by its record, and for what is fastened by a section
+        that was measured.
+    """
+    if WHEN_HELD not in row.models:
+        return None
+    rows, told = mount_rows(), house.stated.get("mount")
+    if told is not None:
+        return MountGuess(rows[Mount(str(told.value))], Origin.STATED)
+    if item.support is not None:
+        way = MOUNTED_BY.get(item.support)
+        if way is None or (way is Mount.SECURED and item.section_width_m is not None):
+            return None
+        return MountGuess(rows[way], Origin.STATED if "held" in house.stated else Origin.MEASURED)
+    usual = next((one for one in rows.values() if one.kind == row.name), rows[Mount.UNKNOWN])
+    if usual.mount is Mount.LYING and _bulky(item):
+        usual = rows[Mount.STANDING]
+    note = f"mount: it {usual.title}, assumed for: {row.told}; not recorded"
+    return MountGuess(usual, Origin.ASSUMED, note)
+
+
+def _bulky(item: Item) -> bool:
+    """Say whether a thing is too thick and too large to be laid down in a case."""
+    sizes = sizes_known(item).values()
+    return len(sizes) == len(SIZES) and min(sizes) >= BULKY * max(sizes) and max(sizes) >= LAID
+
+
+def mount_estimates(guess: MountGuess, row: ObjectClass, sizes: Sizes) -> Mapping[str, Estimate]:
+    """Return what the models of a thing need of how it is held.
+
+    Parameters
+    ----------
+    guess : MountGuess
+        How it is held; not standing as other things do.
+    row : ObjectClass
+        Its class.
+    sizes : Sizes
+        Recorded or assumed.
+
+    Returns
+    -------
+    mapping of str to Estimate
+        ``friction_static`` where its mount grips it, ``clearance`` where it comes off by moving on it, ``half_width``
+        and ``cg_height`` as it lies or leans where its sizes say them.
+    """
+    out: dict[str, Estimate] = {}
+    told = guess.row
+    grip, room, lean = (told.range(name) for name in ("grip", "room", "lean"))
+    if grip is not None:
+        note = f"grip of its mount: {grip.value:g} ({grip.low:g} to {grip.high:g}) times its weight sideways"
+        out["friction_static"] = Estimate.assumed(
+            grip.value, grip.low, grip.high, "-", f"{note}, assumed: it {told.title}", grip.source
+        )
+    if room is not None:
+        low, value, high = (100.0 * one for one in (room.low, room.value, room.high))
+        note = f"clearance: it comes off its mount once it has moved {value:g} cm ({low:g} to {high:g}) on it, assumed"
+        out["clearance"] = Estimate.assumed(room.value, room.low, room.high, "m", note, room.source)
+    known = {name: getattr(sizes.filled, f"{name}_m") for name in SIZES}
+    if lean is not None:
+        lengths = {name: size for name, size in known.items() if size}
+        long = _upright(lengths)
+        if long:
+            out |= _leaning(sizes, long, 0.5 * lengths[long], (lean.low, lean.value, lean.high), lean.source)
+    elif guess.way is Mount.LYING and all(known.values()) and row.cg is not None and row.base is not None:
+        thin, narrow, _ = sorted(known, key=known.__getitem__)
+        cg = share_of(row, row.cg, known[thin], "m", "height of the centre of gravity", f"smallest size, its {thin}")
+        half = share_of(row, row.base, 0.5 * known[narrow], "m", "half width of what it lies on", narrow)
+        out["cg_height"] = sizes.spread(cg, (thin,))
+        out["half_width"] = sizes.spread(half, (narrow,))
+    return out
+
+
+def _upright(lengths: Mapping[str, float]) -> str:
+    """Return along which of its sizes a thing leans: its height, or where that is its thickness the longest."""
+    if "height" in lengths and (len(lengths) == 1 or lengths["height"] > min(lengths.values())):
+        return "height"
+    return max(lengths, key=lengths.__getitem__, default="")
+
+
+def _leaning(
+    sizes: Sizes, long: str, half: float, angles: tuple[float, float, float], source: str
+) -> dict[str, Estimate]:
+    low, best, high = angles
+    note = f"it leans {best:g} ({low:g} to {high:g}) degrees from upright, assumed"
+    wide, least, most = (half * sin(radians(angle)) for angle in (best, low, high))
+    tall = half * cos(radians(best))
+    cg = Estimate(tall, "m", Origin.DERIVED, tall, tall, f"height of the centre of gravity: it leans on its {long}")
+    return {
+        "half_width": sizes.spread(Estimate.assumed(wide, least, most, "m", note, source), (long,)),
+        "cg_height": sizes.spread(cg, (long,)),
+    }

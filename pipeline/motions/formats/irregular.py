@@ -1,0 +1,79 @@
+"""Accelerations at irregular times, as they were digitised from film, brought to equal steps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pipeline.motions.formats import blocks
+from pipeline.motions.formats.record_text import Lines
+from pipeline.quantities import Array
+
+RESAMPLED = 0.005
+"""Step in s that irregular pairs are resampled onto, unless the caller asks for another: the USGS's own choice for the
+corrected version of such records."""
+
+
+def resampled(lines: Lines, index: int, per_line: int, times: Array, data: Array, dt: float) -> tuple[Array, str]:
+    """Return the samples at equal steps, linearly between those that were digitised.
+
+    Parameters
+    ----------
+    lines, index, per_line : Lines, int, int
+        The file, the first line of the pairs, from 0, and pairs in a line.
+    times, data : array, shape (n,)
+        Times in s, and what was recorded then.
+    dt : float
+        Time step in s.
+
+    Returns
+    -------
+    array, str
+        The samples, and what was done, in words.
+
+    Raises
+    ------
+    FormatError
+        For times that go back, or pairs too few for their length.
+    """
+    blocks.step(lines, index, dt)
+    spacing = np.diff(times)
+    if (spacing < 0.0).any():
+        at = int(np.argmax(spacing < 0.0)) + 1
+        wrong = f"time goes back from {times[at - 1]:g} s to {times[at]:g} s"
+        raise lines.error(index + at // per_line, wrong)
+    count = int((times[-1] - times[0]) / dt + 1e-9) + 1
+    blocks.samples(lines, index, count)
+    # Digitised times come by the thousandth of a second; a time in days or a typing error would ask for gigabytes.
+    if count > 100 * len(times):
+        wrong = f"{len(times)} pairs over {times[-1] - times[0]:g} s are too few to be resampled to {dt:g} s"
+        raise lines.error(index, wrong, "ask for a longer step, or fetch the file again")
+    told = (
+        f"linearly from {len(times)} pairs at irregular times ({np.median(spacing):.3g} s apart on the middle, at most "
+        f"{spacing.max():.3g} s) to a step of {dt:g} s"
+    )
+    return np.interp(times[0] + dt * np.arange(count), times, data), told
+
+
+def even_step(times: Array, digit: float) -> float | None:
+    """Return the step of times that are even but for their rounding, None where they are not.
+
+    Parameters
+    ----------
+    times : array, shape (n,)
+        In s.
+    digit : float
+        One in their last printed place, in s.
+
+    Returns
+    -------
+    float or None
+        In s; one over a whole number of samples per second where that is as near.
+    """
+    dt = float(times[-1] - times[0]) / (len(times) - 1)
+    if not blocks.STEP_LEAST <= dt <= blocks.STEP_MOST:
+        return None
+    whole = 1.0 / max(1, round(1.0 / dt))
+    if abs(whole - dt) * (len(times) - 1) <= digit:
+        dt = whole
+    slack = min(1.02 * digit, 0.2 * dt)
+    return dt if np.abs(times - times[0] - dt * np.arange(len(times))).max() <= slack else None

@@ -1,0 +1,126 @@
+"""NSMN text (Türkiye): three components in gal side by side, behind seventeen lines of 'KEY : value'.
+
+source : headers of the files of the Turkish National Strong Motion Network, earlier than TADAS
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats.record_text import Lines, Source
+
+_TITLE = re.compile(r"^STRONG GROUND MOTION RECORDS OF TURK", re.IGNORECASE)
+_KEY = re.compile(r"^([A-Z][A-Z ]{2,30}?)\s*(\([a-z]{1,5}\))?\s*:\s*(.*)$")
+_TIMES = (
+    re.compile(r"^(?P<d>\d\d)/(?P<m>\d\d)/(?P<y>\d{4}) (?P<H>\d\d):(?P<M>\d\d):(?P<S>\d\d(?:\.\d{0,9})?) \(GMT\)$"),
+    re.compile(r"^(?P<y>\d{4})/(?P<m>\d\d)/(?P<d>\d\d) (?P<H>\d\d):(?P<M>\d\d):(?P<S>\d\d(?:\.\d{0,9})?) \(GMT\)$"),
+)
+_PEAK = re.compile(r"\(([NSEWUD]-[NSEWUD])\)\s*(-?\d{1,6}\.(\d{1,9}))")
+_COLUMNS = re.compile(r"^\s*([NSEWUD]-[NSEWUD])\s+([NSEWUD]-[NSEWUD])\s+([NSEWUD]-[NSEWUD])\s*$")
+_MOST_KEYS = 40
+
+
+def is_format(source: Source) -> bool:
+    """Whether a source is an NSMN file, from its first line and its keys."""
+    text = record_text.head(source)
+    return bool(_TITLE.match(text)) and "\nNUMBER OF DATA" in text
+
+
+def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
+    """Return the traces of an NSMN file, one a component.
+
+    Parameters
+    ----------
+    source : str, Path or binary stream
+        The file.
+    headonly : bool
+        Whether the headers alone are wanted.
+    **_ : Any
+        What obspy hands to every reader; not used.
+
+    Returns
+    -------
+    obspy.Stream
+        In gal.  `trace_headers.make_trace` tells what a header holds.
+
+    Raises
+    ------
+    FormatError
+        Naming file and line.
+    """
+    from obspy import Stream
+
+    lines = record_text.open_lines(source)
+    lines.match(0, _TITLE, "'STRONG GROUND MOTION RECORDS OF TURKIYE'")
+    keys, top, names = _header(lines)
+
+    def said(key: str, pattern: str, expected: str) -> tuple[int, re.Match[str]]:
+        if key not in keys:
+            raise lines.error(top, f"the header ends without {key}", "fetch the file again")
+        at, unit, text = keys[key]
+        found = re.match(pattern, f"{text} {unit}".strip())
+        if found is None:
+            raise lines.error(at, f"expected {expected}, found {record_text.shown(text)}")
+        return at, found
+
+    at, found = said("NUMBER OF DATA", r"^(\d{1,8})$", "a number of samples")
+    count = blocks.samples(lines, at, int(found[1]))
+    at, found = said("SAMPLING INTERVAL", r"^(\d?\.\d{1,9}) \(sec\)$", "a step in seconds")
+    dt = blocks.step(lines, at, float(found[1]))
+    at, found = said("RAW PGA VALUES", r"^(.{1,120}) \(gal\)$", "peaks in gal")
+    peaks = {name: (float(text), 10.0 ** -len(digits)) for name, text, digits in _PEAK.findall(found[1])}
+    at_peaks = at
+    table = blocks.rows(lines, top, 3, "acceleration")
+    if len(table) != count:
+        wrong = (
+            f"the file holds {len(table)} rows of acceleration, and line {keys['NUMBER OF DATA'][0] + 1} says {count}"
+        )
+        raise lines.error(len(lines), wrong, "it is cut off or damaged: fetch it again")
+    at, date = said("RECORD TIME", r"^(.{1,60})$", "a time such as '20/07/2017 22:30:58.000000 (GMT)'")
+    when = next((told for form in _TIMES if (told := form.match(date[1]))), None)
+    if when is None:
+        raise lines.error(at, f"expected '20/07/2017 22:30:58.000000 (GMT)', found {record_text.shown(date[1])}")
+    start = trace_headers.start_time(lines, at, *(float(when[part]) for part in "ymdHMS"))
+    gal = trace_headers.FACTORS["gal"]
+    traces = []
+    for number, name in enumerate(names, start=1):
+        direction, data = trace_headers.orientation(name), table[:, number - 1].copy()
+        said_peak, digit = peaks.get(name, (0.0, 0.0))
+        trace_headers.said_peak(lines, at_peaks, gal * said_peak, gal * digit, data, gal)
+        traces.append(
+            trace_headers.make_trace(
+                lines,
+                data=data,
+                dt=dt,
+                form="NSMN",
+                units="gal",
+                si_factor=gal,
+                direction=direction,
+                processed=False,
+                network="TK",
+                station=said("STATION ID", r"^(\w{1,8})$", "the code of a station")[1][1],
+                channel=trace_headers.channel_code(1.0 / dt, direction, number),
+                start=start,
+                start_is="record",
+                headonly=headonly,
+                peak={"acceleration": gal * said_peak or None},
+            )
+        )
+    return Stream(traces)
+
+
+def _header(lines: Lines) -> tuple[dict[str, tuple[int, str, str]], int, tuple[str, ...]]:
+    keys: dict[str, tuple[int, str, str]] = {}
+    for index in range(min(len(lines), _MOST_KEYS)):
+        text = lines.text(index)
+        if columns := _COLUMNS.match(text):
+            if len(set(columns.groups())) < 3:
+                raise lines.error(index, "names a component twice")
+            return keys, index + 1, columns.groups()
+        if found := _KEY.match(text):
+            if found[1] in keys:
+                raise lines.error(index, f"{found[1]} is given twice")
+            keys[found[1]] = (index, found[2] or "", found[3].strip())
+    raise lines.error(min(len(lines), _MOST_KEYS), "expected the columns 'N-S E-W U-D'", "fetch the file again")

@@ -1,0 +1,43 @@
+"""Words for a file of records that no reader knows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pipeline.motions.errors import MotionError, refusal
+from pipeline.motions.formats import NAMES, record_text
+
+_PACKED = {b"\x1f\x8b": "gzip", b"PK\x03\x04": "ZIP", b"BZh": "bzip2", b"\xfd7zXZ": "xz", b"7z\xbc\xaf": "7-Zip"}
+
+
+def unknown(file: Path) -> MotionError:
+    """Return the refusal of a file of an unknown format.
+
+    Parameters
+    ----------
+    file : Path
+        The record file.
+
+    Returns
+    -------
+    MotionError
+        Naming the formats that are read, the file's first line, and the verb that takes any table.
+    """
+    with file.open("rb") as stream:
+        start = stream.read(400)
+    packed = next((name for magic, name in _PACKED.items() if start.startswith(magic)), None)
+    if packed:
+        return refusal(file, "file", f"is packed ({packed})", "unpack it: what is read is what its hash is of")
+    if not start.strip():
+        return refusal(file, "file", "is empty", "fetch it again")
+    if b"\0" in start:
+        first = "it is no text"
+    else:
+        line = next(line for line in start.splitlines() if line.strip())
+        first = f"its first line is {record_text.shown(record_text.printable(line))}"
+    wrong = f"is of no format that is known; {first}.  What is read: {', '.join(NAMES.values())}; MiniSEED, SAC, K-NET"
+    wrong += " and KiK-net, and whatever else obspy reads"
+    remedy = (
+        "a table of numbers becomes a record by: kouros motions convert FILE --columns time,ns,ew,ud --unit gal --out"
+    )
+    return refusal(file, "file", wrong, f"{remedy} FOLDER (and --dt 0.01 where no column is the time)")

@@ -1,0 +1,139 @@
+"""The list of all objects of a report: every page keeps the rows of its own, and all are sorted together by number."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment
+
+from pipeline.report.pages.environment import fill
+
+LISTED = "listed.arrow"
+"""The part of a page with the rows of its objects in the list of all; no export."""
+
+OBJECTS = "objects"
+"""Stem of the list's files."""
+
+SHOWN = 5_000
+"""Rows on a page of the list, which a phone shows and searches at once."""
+
+_FILE = re.compile(rf"{OBJECTS}(?:-\d+)?\.html")
+_DIGITS = re.compile(r"\d+")
+
+
+@dataclass(frozen=True, slots=True)
+class ListPage:
+    """A page of the list: its file, its first and its last number."""
+
+    file: str
+    first: str
+    last: str
+
+
+def sorting_key(number: str) -> str:
+    """Return what sorts object numbers as people count: 1913.3 before 1913.20, whatever the case of letters."""
+    # The length goes before the digits, so that 20 comes behind 3; nothing is lost of a number of any length.
+    return _DIGITS.sub(lambda found: f"{len(found[0].lstrip('0')):04d}{found[0].lstrip('0')}", number.casefold())
+
+
+def is_list_file(name: str) -> bool:
+    """Say whether a file of a report is a page of the list of all objects."""
+    return bool(_FILE.fullmatch(name))
+
+
+@cache
+def _schema() -> Any:
+    import pyarrow as pa
+
+    return pa.schema([(name, pa.large_string()) for name in ("key", "number", "row")])
+
+
+def listed_rows(env: Environment, context: Mapping[str, Any]) -> list[str]:
+    """Return what the list says of each object of a page: rows of an HTML table.
+
+    Parameters
+    ----------
+    env : jinja2.Environment
+        Of the templates.
+    context : mapping of str to any
+        As of the page.
+
+    Returns
+    -------
+    list of str
+        In the order of the page's objects.
+    """
+    # Of texts of the museum no angle bracket is left: each row begins with the tag, and with nothing else.
+    _, *rows = fill(env, "_listed.html", context).split("<tr")
+    return [f"<tr{row}" for row in rows]
+
+
+def listed_part(numbers: Sequence[str], rows: Sequence[str]) -> bytes:
+    """Return the rows of the objects of a page as a file.
+
+    Parameters
+    ----------
+    numbers : sequence of str
+        Of the objects.
+    rows : sequence of str
+        What the list says of each: a row of an HTML table.
+
+    Returns
+    -------
+    bytes
+        A table in Arrow's format of files.
+    """
+    import pyarrow as pa
+
+    columns = ([sorting_key(number) for number in numbers], numbers, rows)
+    sink = pa.BufferOutputStream()
+    with pa.ipc.new_file(sink, _schema()) as out:
+        out.write_table(pa.table([pa.array(one, pa.large_string()) for one in columns], schema=_schema()))
+    return bytes(sink.getvalue().to_pybytes())
+
+
+def listed_pages(parts: Sequence[Path], shown: int = SHOWN) -> tuple[list[ListPage], Iterator[str]]:
+    """Return the pages of the list of all objects, one at least, and the rows of each in turn.
+
+    Parameters
+    ----------
+    parts : sequence of Path
+        The files with the rows of each page of the report.
+    shown : int
+        Rows on a page of the list.
+
+    Returns
+    -------
+    list of ListPage
+        In the order of the objects' numbers.
+    iterator of str
+        For each page its rows, one behind the other.
+
+    Raises
+    ------
+    OSError
+        Where a part cannot be read.
+    """
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    tables = [_schema().empty_table()]
+    for part in parts:
+        with pa.OSFile(str(part)) as source, pa.ipc.open_file(source) as file:
+            tables.append(file.read_all())
+    every = pa.concat_tables(tables)
+    order = pc.sort_indices(every, sort_keys=[("key", "ascending"), ("number", "ascending")])
+    pages = [order.slice(begin, shown) for begin in range(0, max(1, len(order)), shown)]
+    ends = [
+        every["number"].take(page.take([0, len(page) - 1])).to_pylist() if len(page) else ["", ""] for page in pages
+    ]
+    named = [ListPage(page_file(at), *both) for at, both in enumerate(ends, 1)]
+    return named, ("".join(every["row"].take(page).to_pylist()) for page in pages)
+
+
+def page_file(at: int) -> str:
+    """Return the file of a page of the list, counted from 1: the first one's has no number."""
+    return f"{OBJECTS}.html" if at == 1 else f"{OBJECTS}-{at}.html"
