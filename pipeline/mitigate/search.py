@@ -1,7 +1,7 @@
 """The search for what helps: the least intrusive measure that passes when the models of the object are run again."""
 
 import re
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -11,6 +11,7 @@ from pipeline.analysis.figures import chart_key
 from pipeline.analysis.furniture import FurnitureFilter, fastened, filter_of, loose
 from pipeline.analysis.verdicts import LevelMotions
 from pipeline.mitigate.catalogue import MeasureCatalogue, own_catalogue
+from pipeline.mitigate.deficiencies import deficiencies, levels_asked, may_fall, of_unassessed
 from pipeline.mitigate.evidence import checks, passes, passes_at_best, shortfall
 from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.mitigate.measures import Measure
@@ -26,12 +27,9 @@ from pipeline.mitigate.proposals import (
     Proposal,
     case_of,
     company,
-    known_to_swing,
     refused,
 )
 from pipeline.mitigate.trials import HarmAim, Trial, TrialRunner
-from pipeline.models import settled_by_room
-from pipeline.models.unanchored import UNANCHORED
 from pipeline.records import Finding, Likelihood, Mark, Numerics, Recommendation, Scene, Verdict
 from pipeline.records.numerics import VERDICTS
 from pipeline.tables.mount_rows import mount_rows
@@ -111,7 +109,7 @@ def advise(
     """
     have = catalogue or own_catalogue()
     transmitted = transmitted or TransmittedMotions()
-    unassessed = _unassessed(scenes, findings)
+    unassessed = of_unassessed(scenes, findings)
     groups: dict[FurnitureFilter | None, list[int]] = {}
     for index, furniture in enumerate(_furniture(scenes)):
         groups.setdefault(furniture, []).append(index)
@@ -128,7 +126,7 @@ def advise(
             furniture=furniture,
             aim=aim,
         )
-        likely = None if chances is None or aim is None else [_asked(chances[index], aim) for index in members]
+        likely = None if chances is None or aim is None else [levels_asked(chances[index], aim) for index in members]
         for index, one in zip(members, _advised(some, found, levels, have, runner, unassessed, likely), strict=True):
             out[index] = one
     still = [at for at, scene in enumerate(scenes) if loose(scene) and any(r.measure in LAST_RESORTS for r in out[at])]
@@ -148,15 +146,6 @@ def advise(
                 helped = {one.level: one for one in better if one.measure not in LAST_RESORTS}
                 out[at] = [_fastened_too(one, helped.get(one.level), findings[at], starts) for one in out[at]]
     return out
-
-
-def _asked(chances: Sequence[Likelihood], aim: HarmAim) -> frozenset[str]:
-    """Return the levels at which harm is too likely, also if the object is of the class that it is taken for.
-
-    Where only another class that is possible makes it so, no measure for this one helps: naming the object does.
-    """
-    too_likely = (one for one in chances if one.probability >= aim.target)
-    return frozenset(one.level for one in too_likely if not one.classes or one.classes[0].at_least(aim.target))
 
 
 def _furniture(scenes: Sequence[Scene]) -> list[FurnitureFilter | None]:
@@ -213,7 +202,7 @@ def _advised(
         # What holds at all levels stands; the others are looked at level by level.
         stands = {key for key, found in advised.items() if found.measure not in LAST_RESORTS}
         runner = runner_of(some)
-        search = _Search(runner, _deficiencies(scenes, findings, some, stands, likely), unassessed)
+        search = _Search(runner, deficiencies(scenes, findings, some, stands, likely), unassessed)
         for done, measure in enumerate(have.measures, start=1):
             if measure.isolator or measure.last_resort:
                 search.settles()
@@ -229,55 +218,6 @@ def _advised(
 
 def _alone(found: Recommendation) -> Recommendation:
     return found if found.measure in LAST_RESORTS else replace(found, sentence=f"{found.sentence} {ONLY_HERE}")
-
-
-def _deficiencies(
-    scenes: Sequence[Scene],
-    findings: Sequence[Sequence[Finding]],
-    levels: Sequence[LevelMotions],
-    stands: Container[tuple[int, str]],
-    likely: Sequence[frozenset[str]] | None,
-) -> list[Deficiency]:
-    """Return the objects with findings at these levels; for those that stand already nothing more is wanted."""
-    names = [level.name for level in levels]
-    out = []
-    for index, (scene, found) in enumerate(zip(scenes, findings, strict=True)):
-        here = tuple(f for f in found if f.level in names)
-        if likely is not None:
-            falls = {f.level for f in here if _may_fall([f])}
-            wanted = [name for name in names if name in likely[index] or name in falls]
-        elif _wanted(scene, here):
-            wanted = [name for name in names if _wanted(scene, [f for f in here if f.level == name])]
-        else:
-            wanted = []
-        if here:
-            out.append(Deficiency(index, scene, here, tuple(name for name in wanted if (index, name) not in stands)))
-    return out
-
-
-def _wanted(scene: Scene, findings: Sequence[Finding]) -> bool:
-    # Where it is not known whether it swings at all, a look behind it settles more than room.
-    room = known_to_swing(scene) and _for_room_alone(findings)
-    # Furniture that is known not to be fastened and may fall is better fastened than measured.
-    return room or _may_fall(findings) or any(f.verdict is Verdict.FAIL for f in findings)
-
-
-def _may_fall(findings: Sequence[Finding]) -> bool:
-    return any(f.model == UNANCHORED.name and f.verdict is not Verdict.PASS for f in findings)
-
-
-def _for_room_alone(findings: Sequence[Finding]) -> bool:
-    still = [f for f in findings if f.verdict is Verdict.UNDETERMINED]
-    return bool(still) and all(settled_by_room(f.model) for f in still)
-
-
-def _unassessed(scenes: Sequence[Scene], findings: Sequence[Sequence[Finding]]) -> Mapping[Case, tuple[str, ...]]:
-    out: dict[Case, tuple[str, ...]] = {}
-    for scene, found in zip(scenes, findings, strict=True):
-        case = case_of(scene)
-        if case is not None and not found:
-            out[case] = (*out.get(case, ()), scene.item.object_number)
-    return out
 
 
 @dataclass(frozen=True)
@@ -343,7 +283,7 @@ class _Search:
             return refused("it is not for what lies or is held as this is")
         if measure.isolator and any(_band_unknown(one.scene) for one in unit):
             return UNKNOWN_FREQUENCY
-        if measure.isolator and any(_may_fall(one.findings) for one in unit):
+        if measure.isolator and any(may_fall(one.findings) for one in unit):
             return refused("what it would stand in is not fastened and may fall")
         return measure.propose_shared(unit, self.runner) if measure.shared else measure.propose(unit[0], self.runner)
 
