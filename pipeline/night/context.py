@@ -60,6 +60,7 @@ class RunContext:
     units: Units = field(default_factory=Units)
     tongue: str = "en"
     catalogues: Path | None = None
+    paper: str = "A4"
 
     def __getstate__(self) -> dict[str, Any]:
         # What was made on the way is made again where it is needed.
@@ -111,7 +112,7 @@ class RunContext:
 
         raises : ReportError for a language without a catalogue
         """
-        return PageRenderer(self.head, self.units, language(self.tongue, self.catalogues))
+        return PageRenderer(self.head, self.units, language(self.tongue, self.catalogues), self.paper)
 
 
 def motions_of(floors: Mapping[str, Floor]) -> dict[str, Motion]:

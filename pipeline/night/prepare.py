@@ -125,6 +125,7 @@ def run_context(
         units=written["units"],
         tongue=settings.report.language,
         catalogues=settings.path(settings.report.catalogues) if settings.report.catalogues else None,
+        paper=settings.report.paper,
     )
     # The pictures are made before the verdicts, which use their charts; motions that two floors share only once.
     drawn = pictures.of(list(motions.values()), progress)

@@ -1,4 +1,4 @@
-"""The reader's units and language, as the settings ask for them."""
+"""The reader's units, language and paper, as the settings ask for them."""
 
 from typing import TypedDict
 
@@ -13,10 +13,11 @@ class Presentation(TypedDict):
 
     units: Units
     language: Language
+    paper: str
 
 
 def presentation(settings: Settings) -> Presentation:
-    """Return the units and the language that the settings ask for.
+    """Return the units, the language and the paper that the settings ask for.
 
     Parameters
     ----------
@@ -35,7 +36,7 @@ def presentation(settings: Settings) -> Presentation:
     """
     asked = settings.report
     folder = settings.path(asked.catalogues) if asked.catalogues else None
-    return {"units": Units(length=asked.length), "language": language(asked.language, folder)}
+    return {"units": Units(length=asked.length), "language": language(asked.language, folder), "paper": asked.paper}
 
 
 def terms_of(workspace: Workspace) -> PlanTerms | None:

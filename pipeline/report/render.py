@@ -23,6 +23,7 @@ def render(
     *,
     units: Units | None = None,
     language: Language | None = None,
+    paper: str = "A4",
     changes: RunChanges | None = None,
     doubts: Doubts | None = None,
     terms: PlanTerms | None = None,
@@ -32,13 +33,15 @@ def render(
     folder  : a new folder; it appears only when everything in it is written
     units   : the reader's units; centimetres where None
     language: of the pages; English where None.  The exports keep the words of the run, for programs read them.
+    paper   : of the sheets to walk with, "A4" or "Letter"
     changes : since the run before, for the index; None where there was none
     doubts, terms : see `ReportWriter.finish`
     returns : the path of index.html
     raises  : ReportError if the folder exists, or if the record cannot be shown (see `compose`)
     """
     head = replace(record, assessments=(), wishes=None, spacings=())
-    with ReportWriter(Path(folder), PageRenderer(head, units or Units(), language or Language())) as writer:
+    renderer = PageRenderer(head, units or Units(), language or Language(), paper)
+    with ReportWriter(Path(folder), renderer) as writer:
         return draw_all(writer, head, pages_of(record), changes, doubts=doubts, terms=terms)
 
 

@@ -304,6 +304,9 @@ class Report(_Part):
     catalogues: str = Field(
         default="", description="the folder of translations, which holds <language>/LC_MESSAGES/kouros.mo"
     )
+    paper: Literal["A4", "Letter"] = Field(
+        default="A4", description="of the sheets to walk a gallery with (PDF): A4 or Letter"
+    )
 
 
 class Settings(_Part):

@@ -18,6 +18,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 from pipeline.records import Tally
 from pipeline.report.errors import ReportWarning
 from pipeline.report.files.exports import PARTS_OF_PAGE
+from pipeline.report.files.walk_sheet import sheet_file
 from pipeline.report.pages.views import Entry
 
 MANIFEST = ".pages.json"
@@ -46,9 +47,9 @@ class KeptPage:
 
     @property
     def files(self) -> tuple[str, ...]:
-        """The page and its parts of the exports."""
+        """The page, its parts of the exports, and of a gallery the sheet to walk with."""
         page = self.entry.page.file
-        return page, *part_files(page)
+        return page, *part_files(page), *((sheet_file(page),) if self.entry.on_display else ())
 
 
 @dataclass(frozen=True, slots=True)

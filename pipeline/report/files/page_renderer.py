@@ -14,6 +14,7 @@ from pipeline.analysis.stakes import VALUE_PER_C, counting
 from pipeline.records import DecisionStatus, Found, Page, RunRecord, Tally
 from pipeline.report.files.exports import FindingRows, page_exports
 from pipeline.report.files.object_list import LISTED, listed_part, listed_rows
+from pipeline.report.files.walk_sheet import sheet_file, sheet_pdf
 from pipeline.report.language import Language, speaking
 from pipeline.report.pages.compose import compose, page_head
 from pipeline.report.pages.describe import Sayings
@@ -34,24 +35,28 @@ class RenderedPage:
     entry : what the index says of it
     tally : what it adds to the totals of the run
     parts : what it adds to each export, by the names of `PARTS_OF_PAGE`
+    sheet : to walk the gallery with, as PDF; none for what is not on display
     """
 
     page: bytes
     entry: Entry
     tally: Tally
     parts: Mapping[str, bytes]
+    sheet: bytes | None = None
 
 
 @dataclass(frozen=True)
 class PageRenderer:
     """What draws the pages of one run: what they share is made once.
 
-    head : the run without its objects, with all its charts and motions
+    head  : the run without its objects, with all its charts and motions
+    paper : of the sheets to walk with, "A4" or "Letter"
     """
 
     head: RunRecord
     units: Units
     language: Language
+    paper: str = "A4"
 
     def draw(self, page: Page, found: Found, decisions: Sequence[DecisionStatus]) -> RenderedPage:
         """Return a page and what it adds to the report; the same results give the same bytes.
@@ -68,7 +73,7 @@ class PageRenderer:
         Returns
         -------
         RenderedPage
-            Page, entry, tally and parts of the exports.
+            Page, entry, tally, parts of the exports and the sheet to walk with.
 
         Raises
         ------
@@ -87,8 +92,9 @@ class PageRenderer:
                 record, page, self.units, self._sayings, several=len({m.level for m in self.head.motions}) > 1
             )
             gallery = made.gallery
-            context: dict[str, Any] = {"museum": page_head(self.head, page), "units": self.units, "State": State}
-            context |= {"here": "gallery", "gallery": gallery}
+            head = page_head(self.head, page)
+            context: dict[str, Any] = {"museum": head, "units": self.units, "State": State}
+            context |= {"here": "gallery", "gallery": gallery, "sheet": sheet_file(gallery.page.file)}
             if gallery.counts.aside:
                 text = fill(self._environment, "aside.html", context)
             else:
@@ -97,7 +103,8 @@ class PageRenderer:
             parts = page_exports(record, page.run, gallery.page.file, made.anchor, made.key, self.units, self._rows)
             rows = listed_rows(self._environment, context)
             parts[LISTED] = listed_part([o.number for o in gallery.objects], rows)
-        return RenderedPage(text.encode(), made.entry, self.tally(found), parts)
+            sheet = None if made.walk is None else sheet_pdf(made.walk, head, self.language, self.paper)
+        return RenderedPage(text.encode(), made.entry, self.tally(found), parts, sheet)
 
     def tally(self, found: Found) -> Tally:
         """Return what the objects of a page add to the totals of the run."""
@@ -113,8 +120,8 @@ class PageRenderer:
         """What all pages say of the run and how they say it, as one digest."""
         head = self.head
         said = (
-            repr(self.units), self.language.code, self.language.digest, head.museum, head.settings.get("credit"),
-            head.version, head.demonstration, self._value_per_c,
+            repr(self.units), self.paper, self.language.code, self.language.digest, head.museum,
+            head.settings.get("credit"), head.version, head.demonstration, self._value_per_c,
             [(m.hash, m.name, m.level, m.floor, m.approved_by, m.approved_on) for m in head.motions],
             sorted(head.charts),
         )  # fmt: skip

@@ -35,6 +35,7 @@ from pipeline.report.files.object_list import LISTED, OBJECTS, SHOWN, is_list_fi
 from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, drawn, script_of
 from pipeline.report.files.plan_files import PLAN_FILES, gathered_from, write_plan_table
 from pipeline.report.files.ranks import KEYS, ranks_of
+from pipeline.report.files.walk_sheet import sheet_file
 from pipeline.report.language import speaking
 from pipeline.report.pages.class_curves import FILE as CLASS_CURVES
 from pipeline.report.pages.class_curves import class_curves, curves_csv
@@ -140,6 +141,8 @@ class ReportWriter:
             self._write(page, rendered.page)
             for name, export in zip(part_files(page), PARTS_OF_PAGE, strict=True):
                 self._write(name, rendered.parts[export])
+            if rendered.sheet is not None:
+                self._write(sheet_file(page), rendered.sheet)
         self._pages.append(KeptPage(key, rendered.entry, rendered.tally))
         return rendered.tally
 

@@ -34,6 +34,7 @@ from pipeline.report.pages.views import (
     StateCounts,
     TaskView,
 )
+from pipeline.report.pages.walking import WalkView, walk_view
 from pipeline.report.text import clean, count, digest, slug, words
 from pipeline.report.units import Units
 
@@ -86,10 +87,14 @@ def page_head(head: RunRecord, page: Page) -> PageHead:
 
 @dataclass(frozen=True)
 class Composed:
-    """A gallery's page ready to be filled in, what the index says of it, and the ids and ranks of its objects."""
+    """A gallery's page ready to be filled in, what the index says of it, and the ids and ranks of its objects.
+
+    walk : the sheet to walk the gallery with; None for what is not on display
+    """
 
     gallery: GalleryView
     entry: Entry
+    walk: WalkView | None
     anchor: Callable[[Assessment], str]
     key: Callable[[Assessment], Urgency | None]
 
@@ -129,7 +134,10 @@ def compose(record: RunRecord, page: Page, units: Units, sayings: Sayings | None
         shaking=shaking_view(members) if page.on_display else None,
         decisions=decisions_view([(v.decisions, v.settled, pointer(v)) for v in views if v.decisions]),
     )
-    return Composed(gallery, _entry(gallery, pairs), describer.anchor, describer.key)
+    walk = None
+    if page.on_display:
+        walk = walk_view(gallery.name, gallery.page, pairs, gallery.tasks, gallery.survey, describer.decided, units)
+    return Composed(gallery, _entry(gallery, pairs), walk, describer.anchor, describer.key)
 
 
 def _entry(gallery: GalleryView, pairs: Sequence[tuple[Assessment, ObjectView]]) -> Entry:
@@ -307,7 +315,13 @@ def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], describer: Describer,
     size = {view.anchor: _utilisation(assessment) for assessment, view in pairs}
     worst = {key: percent(max(size[o.anchor] for o in objects)) for key, objects in members.items()}
     return tuple(
-        TaskView(said(clean(advice[key][0].title)), tuple(objects), _spans(advice[key], units), worst=worst[key])
+        TaskView(
+            said(clean(advice[key][0].title)),
+            tuple(objects),
+            _spans(advice[key], units),
+            worst=worst[key],
+            measure=key,
+        )
         if key in advice
         else TaskView("", tuple(objects), advised=False, worst=worst[key])
         for key, objects in members.items()

@@ -287,6 +287,7 @@ class TaskView:
     """One line of "What to do first": a measure and the objects it is for, the most urgent ones first.
 
     worst   : the largest utilisation, in words; "" where none is known
+    measure : its name, "" where none helps
     numbers : parameters of the measure with the range over the objects, such as ("clearance", "9 to 14 cm")
     """
 
@@ -295,6 +296,7 @@ class TaskView:
     numbers: tuple[tuple[str, str], ...] = ()
     advised: bool = True
     worst: str = ""
+    measure: str = ""
 
     @property
     def grave(self) -> int:

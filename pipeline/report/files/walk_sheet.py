@@ -1,0 +1,383 @@
+"""The sheet to walk a gallery with as PDF: one line an object, with room for what was measured, by whom and when.
+
+It is set in DejaVu Sans, which comes with matplotlib: Latin, Greek, Cyrillic, Arabic and Hebrew, without a network.  A
+letter that it lacks is a box, and the sheet says so.
+"""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.util import find_spec
+from io import BytesIO
+from itertools import groupby
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from pipeline.report.errors import ReportError
+from pipeline.report.language import Language, _, ngettext
+from pipeline.report.pages.compose import PageHead
+from pipeline.report.pages.walking import WalkRow, WalkView
+from pipeline.report.text import count, plain, short
+
+PAPERS = {"A4": (595.28, 841.89), "Letter": (612.0, 792.0)}
+"""Sizes of paper, in points."""
+
+LACKING = "□"
+"""Stands for a letter that the fonts lack."""
+
+_SANS, _BOLD = "KourosSans", "KourosSans-Bold"
+_FILES = {_SANS: "DejaVuSans.ttf", _BOLD: "DejaVuSans-Bold.ttf"}
+_DRAWING = Lock()
+"""Fonts of reportlab are for one document at a time."""
+
+_MARGIN, _SIZE, _LEADING, _PAD = 30.0, 7.5, 9.0, 3.0
+_LEAST = 21.0
+"""Height of a line in points, 7.4 mm: what people can write in."""
+_LINES = 40
+"""Lines of a cell at most: a third of a page is left where the number of an object has no end."""
+_MOST = 700
+"""Characters of a text at most, more than an object number can have."""
+_ROW = 120
+"""Characters of a line at most: no column holds as many."""
+_FOOT = 26.0
+_GREY = 0.42
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """A column of the sheet: its heading, its width in points, and how many lines it may have."""
+
+    title: str
+    width: float
+    lines: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Line:
+    """A row of the sheet ready to be drawn: the lines of each text, and its height in points.
+
+    band : the heading of a part, which stands in place of a row
+    """
+
+    cells: tuple[tuple[str, ...], ...]
+    height: float
+    ask: tuple[str, ...] = ()
+    band: str = ""
+
+
+def sheet_file(page: str) -> str:
+    """Return the file of the sheet beside the page of a gallery."""
+    return f"{page.removesuffix('.html')}-sheet.pdf"
+
+
+def sheet_pdf(view: WalkView, head: PageHead, language: Language, paper: str = "A4") -> bytes:
+    """Return the sheet as PDF; the same results give the same bytes.
+
+    Parameters
+    ----------
+    view : WalkView
+        What is on it; with nothing to do it says so.
+    head : PageHead
+        Where the results come from.
+    language : Language
+        Of the pages, which is being spoken.
+    paper : {"A4", "Letter"}
+        Its size.
+
+    Returns
+    -------
+    bytes
+        Of the file.
+
+    Raises
+    ------
+    ReportError
+        Where the fonts are not there.
+    """
+    with _DRAWING:
+        return _Sheet(view, head, language, PAPERS[paper]).drawn()
+
+
+class _Sheet:
+    """One sheet that is being drawn."""
+
+    def __init__(self, view: WalkView, head: PageHead, language: Language, size: tuple[float, float]) -> None:
+        from reportlab.pdfgen.canvas import Canvas
+
+        _fonts()
+        self._view, self._head, self._size = view, head, size
+        self._lacks = False
+        self._stream = BytesIO()
+        # Invariant: neither the hour at which it is drawn nor chance is in the file.
+        self._pdf = Canvas(self._stream, pagesize=size, pageCompression=1, invariant=1, lang=language.code)
+        self._width = size[0] - 2.0 * _MARGIN
+        self._columns = self._of_width()
+        self._name = self._fit(plain(view.gallery)) if view.gallery else _("No gallery recorded")
+        if view.page.of > 1:
+            part = _("part %(number)s of %(of)s") % {"number": view.page.number, "of": view.page.of}
+            self._name = f"{self._name}, {part}"
+
+    def _of_width(self) -> tuple[_Column, ...]:
+        fixed = [
+            _Column("", 16.0, 0),
+            _Column(_("Object"), 82.0, _LINES),
+            _Column("", 0.0, 3),
+            _Column(_("What to do"), 96.0, 3),
+            _Column(_("Set to"), 92.0, 4),
+            _Column(_("Measured"), 66.0, 2),
+            _Column(_("Initials"), 36.0, 0),
+            _Column(_("Date"), 42.0, 0),
+        ]
+        fixed[2] = _Column(_("Title"), self._width - sum(one.width for one in fixed), 3)
+        return tuple(fixed)
+
+    def drawn(self) -> bytes:
+        top = self._head_lines()
+        room = self._size[1] - 2.0 * _MARGIN - _FOOT - 14.0
+        # What the fonts lack is known once all is laid out: the note about it has its place in any case.
+        pages = _paged(self._lines(), room - 11.0 * len(top) - 24.0, room)
+        self._pdf.setTitle(f"{plain(self._view.gallery) or _('No gallery recorded')}: {_('sheet to walk with')}")
+        self._pdf.setAuthor(plain(self._head.museum))
+        self._pdf.setCreator("Kouros")
+        for at, lines in enumerate(pages, 1):
+            self._page(lines, at, len(pages), top if at == 1 else ())
+            self._pdf.showPage()
+        self._pdf.save()
+        return self._stream.getvalue()
+
+    # -----------------------------------------------------------------------------------------------------------------
+    # Laying out
+
+    def _head_lines(self) -> tuple[str, ...]:
+        act, measure = len(self._view.act), len(self._view.measure)
+        if not act and not measure:
+            told = _(
+                "Nothing to do here: no object is to be acted on, and no measurement would change what is decided."
+            )
+        else:
+            told = "; ".join(
+                phrase % {"count": count(number)}
+                for phrase, number in (
+                    (ngettext("%(count)s object to act on", "%(count)s objects to act on", act), act),
+                    (ngettext("%(count)s object to measure", "%(count)s objects to measure", measure), measure),
+                )
+                if number
+            )
+            told += ". " + _("Tick what is done; write down what was measured, and who did it when.")
+        return self._wrapped(told, _SANS, self._width, 2)
+
+    def _lines(self) -> list[_Line]:
+        out = []
+        for title, rows in (
+            (_("To act on"), self._view.act),
+            (_("To measure: it may change what is decided"), self._view.measure),
+        ):
+            if rows:
+                out += [_Line((), 16.0, band=title), *map(self._line, rows)]
+        return out
+
+    def _line(self, row: WalkRow) -> _Line:
+        texts = ("", row.number, row.title, row.what, row.numbers)
+        cells = [
+            self._wrapped(text, _BOLD if at == 1 else _SANS, column.width - 2.0 * _PAD, column.lines)
+            for at, (text, column) in enumerate(zip(texts, self._columns, strict=False))
+        ]
+        ask = self._wrapped(row.ask, _SANS, self._columns[5].width - 2.0 * _PAD, 2)
+        # What is to be measured stands above the room for the number.
+        high = max(*map(len, cells), len(ask) + 1 if ask else 0)
+        return _Line(tuple(cells), max(_LEAST, high * _LEADING + 2.0 * _PAD), ask)
+
+    def _fit(self, text: str) -> str:
+        """Return a text with a box for each letter that the fonts lack."""
+        shown = _shown(text)
+        self._lacks |= LACKING in shown and LACKING not in text
+        return shown
+
+    def _wrapped(self, text: str, font: str, width: float, most: int) -> tuple[str, ...]:
+        """Cut a text into lines of a width in points, an ellipsis where there are more than so many."""
+        from reportlab.pdfbase.pdfmetrics import stringWidth
+
+        def fits(piece: str) -> bool:
+            return bool(stringWidth(piece, font, _SIZE) <= width)
+
+        lines, line = [], ""
+        for word in self._fit(plain(text)[:_MOST]).split():
+            joined = f"{line} {word}" if line else word
+            if fits(joined):
+                line = joined
+                continue
+            lines += [line] if line else []
+            line = word
+            while not fits(line):
+                # A word that is wider than its column is cut where it is full.
+                at = next(at for at in range(min(len(line), _ROW), 0, -1) if at == 1 or fits(line[:at]))
+                lines, line = [*lines, line[:at]], line[at:]
+                if len(lines) > most:
+                    break
+        lines += [line] if line else []
+        if len(lines) > most:
+            last = lines[most - 1]
+            while last and not fits(f"{last}…"):
+                last = last[:-1]
+            lines = [*lines[: most - 1], f"{last}…"]
+        return tuple(lines)
+
+    # -----------------------------------------------------------------------------------------------------------------
+    # Drawing
+
+    def _page(self, lines: Sequence[_Line], at: int, of: int, told: Sequence[str]) -> None:
+        pdf, left = self._pdf, _MARGIN
+        y = self._size[1] - _MARGIN
+        if at == 1:
+            y -= 12.0
+            self._text(left, y, self._cut(self._name, _BOLD, 13.0, self._width), _BOLD, 13.0)
+            y -= 3.0
+            for line in told:
+                y -= 11.0
+                self._text(left, y, line, _SANS, 8.0)
+            y -= 9.0
+        if lines:
+            y = self._headings(y)
+        pdf.setLineWidth(0.4)
+        for row in lines:
+            self._row(row, y)
+            y -= row.height
+        self._foot(at, of)
+
+    def _headings(self, y: float) -> float:
+        x = _MARGIN
+        for column in self._columns:
+            self._text(x + _PAD, y - 9.0, self._cut(column.title, _SANS, 6.5, column.width - _PAD), _SANS, 6.5, _GREY)
+            x += column.width
+        self._pdf.setLineWidth(0.9)
+        self._pdf.line(_MARGIN, y - 13.0, _MARGIN + self._width, y - 13.0)
+        return y - 13.0
+
+    def _row(self, line: _Line, y: float) -> None:
+        pdf, bottom = self._pdf, y - line.height
+        if line.band:
+            pdf.setFillGray(0.92)
+            pdf.rect(_MARGIN, bottom, self._width, line.height, stroke=0, fill=1)
+            self._text(_MARGIN + _PAD, bottom + 5.0, line.band, _BOLD, _SIZE)
+            return
+        pdf.rect(_MARGIN + _PAD, y - _PAD - 10.0, 9.0, 9.0)
+        x = _MARGIN
+        for at, column in enumerate(self._columns):
+            if at < len(line.cells):
+                for row, text in enumerate(line.cells[at]):
+                    font = _BOLD if at == 1 else _SANS
+                    self._text(x + _PAD, y - _PAD - 7.0 - row * _LEADING, text, font, _SIZE)
+            else:
+                pdf.setStrokeGray(0.75)
+                pdf.line(x, y, x, bottom)
+            if at == len(line.cells):
+                for row, text in enumerate(line.ask):
+                    self._text(x + _PAD, y - _PAD - 5.0 - row * 7.0, text, _SANS, 5.5, _GREY)
+            x += column.width
+        pdf.line(_MARGIN, bottom, _MARGIN + self._width, bottom)
+        pdf.setStrokeGray(0.0)
+
+    def _foot(self, at: int, of: int) -> None:
+        y = _MARGIN
+        right = _("page %(number)s of %(of)s") % {"number": at, "of": of}
+        date = self._head.finished[:16].replace("T", " ")
+        middle = _("results of %(date)s") % {"date": date} if date else ""
+        name = self._cut(self._name, _SANS, 7.0, 0.45 * self._width)
+        self._text(_MARGIN, y, name, _SANS, 7.0, _GREY)
+        self._pdf.drawCentredString(self._size[0] / 2.0 + 0.1 * self._width, y, _visual(_shown(plain(middle))))
+        self._pdf.drawRightString(_MARGIN + self._width, y, _visual(_shown(right)))
+        if self._lacks:
+            told = _("%(box)s stands for letters that the fonts of this sheet lack; the page in the report has them.")
+            self._text(_MARGIN, y + 10.0, told % {"box": LACKING}, _SANS, 6.5, _GREY)
+
+    def _cut(self, text: str, font: str, size: float, width: float) -> str:
+        from reportlab.pdfbase.pdfmetrics import stringWidth
+
+        shown = short(text, 120)
+        while len(shown) > 1 and stringWidth(shown, font, size) > width:
+            shown = shown[:-2].rstrip("… ") + "…"
+        return shown
+
+    def _text(self, x: float, y: float, text: str, font: str, size: float, grey: float = 0.0) -> None:
+        self._pdf.setFillGray(grey)
+        self._pdf.setFont(font, size)
+        self._pdf.drawString(x, y, _visual(_shown(text)))
+
+
+def _paged(lines: Iterable[_Line], first: float, room: float) -> list[list[_Line]]:
+    """Cut the rows into pages, one at least: none is cut, and no heading of a part stands alone at the end.
+
+    Parameters
+    ----------
+    lines : iterable of _Line
+        All of them.
+    first, room : float
+        Height of the rows of the first page and of each other one, in points.
+    """
+    pages: list[list[_Line]] = [[]]
+    left = first
+    for heading, members in groupby(_kept_together(lines), key=lambda pair: pair[0]):
+        del heading
+        block = [line for _number, line in members]
+        high = sum(line.height for line in block)
+        if high > left and (pages[-1] or left < room):
+            pages.append([])
+            left = room
+        pages[-1] += block
+        left -= high
+    return pages
+
+
+def _kept_together(lines: Iterable[_Line]) -> Iterable[tuple[int, _Line]]:
+    """Number rows: the heading of a part has the number of its first row."""
+    at = 0
+    for line in lines:
+        yield at, line
+        at += not line.band
+
+
+@cache
+def _fonts() -> frozenset[int]:
+    """Register the fonts, and return the letters that both have."""
+    from reportlab.pdfbase.pdfmetrics import registerFont
+    from reportlab.pdfbase.ttfonts import TTFont
+
+    # Found and not imported: of matplotlib nothing but its fonts is wanted.
+    found = find_spec("matplotlib")
+    folder = Path(found.origin or "").parent / "mpl-data" / "fonts" / "ttf" if found else Path()
+    letters: frozenset[int] | None = None
+    for name, file in _FILES.items():
+        if not (folder / file).is_file():
+            raise ReportError(f"{folder / file} is missing, the font of the sheets: install matplotlib again")
+        font: Any = TTFont(name, str(folder / file), asciiReadable=False, shapable=False)
+        registerFont(font)
+        mine = frozenset(font.face.charToGlyph)
+        letters = mine if letters is None else letters & mine
+    return letters or frozenset()
+
+
+_ARABIC = re.compile("[\u0600-\u06ff\u0750-\u077f]")
+_TURNED = re.compile("[\u0590-\u08ff\ufb1d-\ufdff\ufe70-\ufeff]")
+
+
+def _shown(text: str) -> str:
+    """Return a text in letters that the fonts have, Arabic ones joined, a box for each of the others."""
+    if text.isascii():
+        return text
+    if _ARABIC.search(text):
+        from arabic_reshaper import reshape
+
+        text = reshape(text)
+    letters = _fonts()
+    return "".join(one if ord(one) in letters else LACKING for one in text)
+
+
+def _visual(line: str) -> str:
+    """Return a line in the order in which its letters stand from left to right."""
+    if not _TURNED.search(line):
+        return line
+    from bidi import get_display
+
+    return str(get_display(line))

@@ -1,0 +1,221 @@
+"""The sheet to walk a gallery with: what to do there object by object, in few words, and the number to set."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import ceil, isfinite
+from string import Formatter
+
+from pipeline.planning.errands import deciding
+from pipeline.quantities import LENGTHS, MASSES, G
+from pipeline.records import Assessment, Recommendation
+from pipeline.report.language import _, said
+from pipeline.report.pages.chances import name_of
+from pipeline.report.pages.decided import Decided
+from pipeline.report.pages.views import ObjectView, PageView, State, SurveyView, TaskView
+from pipeline.report.text import clean, short, words
+from pipeline.report.units import Units, significant
+
+WORDS = 8
+"""Words at most that say what to do: what is read while walking."""
+
+_TITLE = 60
+"""Characters of a title: two lines of its column."""
+
+_FOLLOWS = frozenset({"movement", "margin", "acceleration", "rotation", "cg_height"})
+"""Numbers in the sentences of measures that follow from a measure: nobody sets them."""
+
+_AT_LEAST = frozenset({"clearance", "clearance_m", "stroke", "platform", "width", "force", "moment"})
+"""Numbers of which less is too little: in eighths of an inch and in pounds they are rounded up."""
+
+_EIGHTHS = ("", "⅛", "¼", "⅜", "½", "⅝", "¾", "⅞")
+_POUND = MASSES["lb"]
+
+
+@dataclass(frozen=True, slots=True)
+class WalkRow:
+    """An object on the sheet.
+
+    Attributes
+    ----------
+    number, title : str
+        Of the object.
+    what : str
+        What to do, in `WORDS` words at most.
+    numbers : str
+        What to set, such as "clearance 14 cm"; "" for nothing.
+    ask : str
+        What is worth measuring on an object to act on, "" for nothing.
+    """
+
+    number: str
+    title: str
+    what: str
+    numbers: str = ""
+    ask: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class WalkView:
+    """The sheet of a page of a gallery: first what to act on, then what is worth a measurement.
+
+    Attributes
+    ----------
+    gallery : str
+        Its name, "" where none is recorded.
+    page : PageView
+        The page of the report that it belongs to.
+    act, measure : tuple of WalkRow
+        No object is in both.
+    """
+
+    gallery: str
+    page: PageView
+    act: tuple[WalkRow, ...]
+    measure: tuple[WalkRow, ...]
+
+
+def walk_view(
+    name: str,
+    page: PageView,
+    pairs: Sequence[tuple[Assessment, ObjectView]],
+    tasks: Sequence[TaskView],
+    survey: Sequence[SurveyView],
+    decided: Decided,
+    units: Units,
+) -> WalkView:
+    """Return the sheet of a page, in the order in which the page lists what to do first and what to measure first.
+
+    What people accepted or overruled is on no sheet.
+
+    Parameters
+    ----------
+    name : str
+        Of the gallery.
+    page : PageView
+        Its page.
+    pairs : sequence of (Assessment, ObjectView)
+        The objects by urgency.
+    tasks, survey : sequence of TaskView, of SurveyView
+        What the page lists first.
+    decided : Decided
+        Say which measures are settled.
+    units : Units
+        The reader's.
+    """
+    open_ = {view.anchor: (found, view) for found, view in pairs if not view.settled}
+    advice = {anchor: _advice(found, decided) for anchor, (found, view) in open_.items() if view.state is State.ACT}
+    listed = [
+        view.anchor
+        for task in tasks
+        for view in task.objects
+        if view.anchor in advice and _measure(advice[view.anchor]) == task.measure
+    ]
+    # Besides, so that none is lost: what fails at another level than that for which something is advised.
+    act = tuple(_act(open_[anchor][1], advice[anchor], units) for anchor in dict.fromkeys([*listed, *advice]))
+    asked = [view.anchor for one in survey for view in one.objects]
+    asked += [anchor for anchor, (_found, view) in open_.items() if view.open_for]
+    measure = tuple(
+        _measuring(open_[anchor][1]) for anchor in dict.fromkeys(asked) if anchor in open_ and anchor not in advice
+    )
+    return WalkView(name, page, act, measure)
+
+
+def _advice(found: Assessment, decided: Decided) -> Recommendation | None:
+    """Return what is advised where harm is likeliest, or else first of what nobody has settled."""
+    left = [one for one in found.recommendations if not decided.covered(found, one.level)]
+    first = deciding(found)
+    return first if first in left else next(iter(left), None)
+
+
+def _measure(advice: Recommendation | None) -> str:
+    return "" if advice is None else advice.measure
+
+
+def _act(view: ObjectView, advice: Recommendation | None, units: Units) -> WalkRow:
+    what = _("No measure found: ask an engineer") if advice is None else said(clean(advice.title))
+    numbers = "" if advice is None else numbers_to_set(advice, units)
+    asked = _asked(view)
+    return WalkRow(view.number, _title(view), few(what), numbers, few(asked[0]) if asked else "")
+
+
+def _measuring(view: ObjectView) -> WalkRow:
+    asked = _asked(view)
+    return WalkRow(view.number, _title(view), few(_("Measure: %(what)s") % {"what": ", ".join(asked)}))
+
+
+def _asked(view: ObjectView) -> list[str]:
+    wishes = [wish.what for wish in view.wishes if not wish.waste]
+    return wishes or ([name_of(view.open_for)] if view.open_for else [])
+
+
+def _title(view: ObjectView) -> str:
+    return short(view.title, _TITLE)
+
+
+def few(text: str) -> str:
+    """Return a text in `WORDS` words at most."""
+    parts = text.split()
+    return " ".join(parts[:WORDS]) + ("…" if len(parts) > WORDS else "")
+
+
+def numbers_to_set(advice: Recommendation, units: Units) -> str:
+    """Return the numbers of a measure that somebody sets, in the order in which its sentence names them.
+
+    Where lengths are in inches or feet they are in eighths of an inch, forces and masses in pounds; else as on the
+    pages.
+
+    Parameters
+    ----------
+    advice : Recommendation
+        With its numbers in SI.
+    units : Units
+        The reader's.
+    """
+    named = dict.fromkeys(name for _text, name, _form, _how in Formatter().parse(advice.sentence) if name)
+    told = []
+    for name in named:
+        if name in advice.parameters and name not in _FOLLOWS:
+            text = _number(name, advice.parameters[name], advice.units, units)
+            told.append(
+                _("%(times)s times its weight") % {"times": text} if name == "times" else f"{words(clean(name))} {text}"
+            )
+    return "; ".join(told)
+
+
+def _number(name: str, value: float, named: Mapping[str, str], units: Units) -> str:
+    unit = named.get(name, "")
+    if units.length not in ("in", "ft") or not isfinite(value):
+        return units.text(value, unit)
+    up = name in _AT_LEAST
+    match unit:
+        case "m":
+            return inches(value, up=up)
+        case "kg":
+            return f"{_pounds(value / _POUND, up=up)} lb"
+        case "N":
+            return f"{_pounds(value / (_POUND * G), up=up)} lb"
+        case "N m":
+            return f"{_pounds(value / (_POUND * G * LENGTHS['ft']), up=up)} ft lb"
+    return units.text(value, unit)
+
+
+def inches(metres: float, *, up: bool) -> str:
+    """Return a length in inches and eighths, such as "5 ⅝ in".
+
+    Parameters
+    ----------
+    metres : float
+        In m.
+    up : bool
+        Whether to take the next eighth above and not the nearest one.
+    """
+    # What is above an eighth by less than a thousandth of an inch is that eighth.
+    eighths = metres / LENGTHS["in"] * 8.0
+    whole, rest = divmod(ceil(eighths - 0.008) if up else round(eighths), 8)
+    return " ".join(part for part in (str(whole) if whole or not rest else "", _EIGHTHS[rest], "in") if part)
+
+
+def _pounds(value: float, *, up: bool) -> str:
+    if abs(value) < 10.0:
+        return significant(ceil(value * 10.0 - 1e-6) / 10.0 if up else value, 2)
+    return f"{ceil(value - 1e-6) if up else round(value):,}"

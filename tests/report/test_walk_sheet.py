@@ -1,0 +1,196 @@
+"""The sheet to walk a gallery with: each object to act on once, on paper of the size that was asked for."""
+
+import re
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+from unicodedata import normalize
+
+import pytest
+from pypdf import PdfReader
+
+from pipeline.quantities import G
+from pipeline.records import Recommendation
+from pipeline.report import render
+from pipeline.report.files.page_renderer import PageRenderer
+from pipeline.report.files.walk_sheet import LACKING, PAPERS, sheet_file, sheet_pdf
+from pipeline.report.language import Language
+from pipeline.report.pages.compose import PageHead
+from pipeline.report.pages.views import PageView, State
+from pipeline.report.pages.walking import WORDS, WalkRow, WalkView, few, inches, numbers_to_set
+from pipeline.report.render import pages_of
+from pipeline.report.units import Units
+
+from . import builder
+from .shown import shown
+
+HEAD = PageHead("Museum", "run", "2031-05-01T02:13:44.000", "1", "", demonstration=False)
+FOOT = re.compile(r"page (\d+) of (\d+)")
+
+
+def words_of(pdf: bytes | Path, folder: Path) -> list[str]:
+    """The text of each page."""
+    file = pdf if isinstance(pdf, Path) else folder / "one.pdf"
+    if isinstance(pdf, bytes):
+        file.write_bytes(pdf)
+    return [page.extract_text() for page in PdfReader(file).pages]
+
+
+def drawn(rows: list[WalkRow], paper: str = "A4", name: str = "Gallery 12", measure: int = 0) -> bytes:
+    at = len(rows) - measure
+    return sheet_pdf(WalkView(name, PageView("g.html"), tuple(rows[:at]), tuple(rows[at:])), HEAD, Language(), paper)
+
+
+def advice(**parameters: tuple[float, str]) -> Recommendation:
+    return Recommendation(
+        "1",
+        "",
+        "design",
+        "m",
+        "A measure",
+        " ".join(f"{{{name}}}" for name in parameters),
+        {name: value for name, (value, _unit) in parameters.items()},
+        {name: unit for name, (_value, unit) in parameters.items()},
+        (),
+    )
+
+
+def test_each_object_to_act_on_is_on_its_gallerys_sheet_once_and_in_the_order_of_the_page(report: Path) -> None:
+    several = 0
+    for gallery in shown(builder.record()).galleries:
+        sheet = report / sheet_file(gallery.page.file)
+        assert sheet.exists() == gallery.on_display
+        assert ("Sheet to walk with" in (report / gallery.page.file).read_text()) == gallery.on_display
+        if not gallery.on_display:
+            continue
+        # Each on a line of its own: the number, in full, is the first text of its row.
+        lines = Counter(line.strip() for page in words_of(sheet, report) for line in page.splitlines())
+        wanted = [o for o in gallery.objects if o.state is State.ACT and not o.settled and len(o.number) < 12]
+        assert {o.number: lines[o.number] for o in wanted} == {o.number: 1 for o in wanted}
+        # What is decided, or fine and not worth a measurement, is on no sheet.
+        measured = {o.number for one in gallery.survey for o in one.objects} | {
+            o.number for o in gallery.objects if o.open_for
+        }
+        others = {o.number for o in gallery.objects if o.settled or o.state is not State.ACT} - measured
+        assert not others & set(lines)
+        told = "\n".join(words_of(sheet, report))
+        places = [
+            told.index(o.number) for t in gallery.tasks for o in t.objects if o in wanted and o.measures[1:] == ()
+        ]
+        assert places == sorted(places)
+        several += len(wanted) > 1
+    assert several
+
+
+@pytest.mark.parametrize("paper", PAPERS)
+def test_pages_are_of_the_size_that_is_set_and_say_gallery_date_and_which_they_are(paper: str, tmp_path: Path) -> None:
+    rows = [WalkRow(f"N.{at}.", "A title of some words", "Padded clamps", "force 24 N") for at in range(150)]
+    pdf = drawn(rows, paper, measure=50)
+    file = tmp_path / "one.pdf"
+    file.write_bytes(pdf)
+    pages = PdfReader(file).pages
+    assert len(pages) > 2
+    for at, page in enumerate(pages, 1):
+        assert (float(page.mediabox.width), float(page.mediabox.height)) == pytest.approx(PAPERS[paper], abs=0.01)
+        text = page.extract_text()
+        (found,) = FOOT.findall(text)
+        assert found == (str(at), str(len(pages)))
+        assert "Gallery 12" in text
+        assert "results of 2031-05-01 02:13" in text
+    every = "\n".join(words_of(pdf, tmp_path))
+    assert all(every.count(row.number) == 1 for row in rows)
+    # A heading of a part is never the last of a page.
+    assert all("To measure" not in text.splitlines()[-4:] for text in words_of(pdf, tmp_path))
+
+
+def test_a_report_is_on_the_paper_of_its_settings(tmp_path: Path) -> None:
+    folder = render(builder.record(), tmp_path / "letter", paper="Letter").parent
+    sheets = sorted(folder.glob("*-sheet.pdf"))
+    assert sheets
+    sizes = {tuple(map(float, page.mediabox[2:])) for sheet in sheets for page in PdfReader(sheet).pages}
+    assert sizes == {PAPERS["Letter"]}
+    one, other = (PageRenderer(builder.record(), Units(), Language(), paper).identity for paper in PAPERS)
+    assert one != other
+
+
+def test_the_same_results_give_the_same_bytes() -> None:
+    page, found = next((p, f) for p, f in pages_of(builder.record()) if p.on_display)
+    sheets = {PageRenderer(builder.record(), Units(), Language()).draw(page, found, ()).sheet for _ in range(2)}
+    assert len(sheets) == 1
+    # Another date of the results is another sheet.
+    later = replace(page, made="2040-01-01T00:00:00")
+    assert PageRenderer(builder.record(), Units(), Language()).draw(later, found, ()).sheet not in sheets
+
+
+def test_with_nothing_to_do_the_sheet_says_so(tmp_path: Path) -> None:
+    (text,) = words_of(drawn([]), tmp_path)
+    assert "Nothing to do here" in text
+    assert FOOT.findall(text) == [("1", "1")]
+
+
+def test_hostile_texts_break_no_sheet(tmp_path: Path) -> None:
+    texts = [
+        *builder.HOSTILE.values(),
+        "x" * 10_000,
+        "a b " * 5_000,
+        "\x00\x1b[31m",
+        "W" * 600,
+        "\u202e" * 50,
+        "😀",
+        "",
+    ]
+    rows = [WalkRow(f"N.{at}.", text, text, text, text) for at, text in enumerate(texts)]
+    rows += [WalkRow(text, "", "") for text in texts]
+    for name in ("Gallery 12", *texts):
+        told = "\n".join(words_of(drawn(rows, name=name), tmp_path))
+        assert all(told.count(f"N.{at}.") == 1 for at in range(len(texts)))
+    assert "\u202e" not in told
+
+
+def test_titles_in_other_scripts_are_shown_or_said_to_be_lacking(tmp_path: Path) -> None:
+    rows = [WalkRow("1", "Πορτρέτο", ""), WalkRow("2", "Chip de bărbat și țăran", "")]
+    told = "\n".join(words_of(drawn(rows), tmp_path))
+    assert "Πορτρέτο" in told
+    assert "țăran" in told
+    assert LACKING not in told
+    # Letters of Arabic are joined (meem has the form of a beginning), and drawn from right to left: pypdf turns such
+    # runs round, so that what it reads is the word only where the sheet has it the other way.
+    told = "\n".join(words_of(drawn([WalkRow("3", "مرحبا", "")]), tmp_path))
+    assert "\ufee3" in told
+    assert "مرحبا" in normalize("NFKC", told)
+    # No font of the sheet has these: the number is there, and the reason.
+    told = "\n".join(words_of(drawn([WalkRow("日-77", "日本の壺", "")]), tmp_path))
+    assert f"{LACKING}-77" in told
+    assert "stands for letters that the fonts of this sheet lack" in told
+
+
+def test_what_to_do_has_few_words() -> None:
+    assert few("one two") == "one two"
+    assert len(few("word " * 40).split()) == WORDS
+    for gallery in shown(builder.record()).galleries:
+        assert all(len(few(task.title).split()) <= WORDS for task in gallery.tasks)
+
+
+def test_numbers_are_those_that_somebody_sets_in_the_museums_units() -> None:
+    one = advice(clearance=(0.2, "m"), movement=(0.1, "m"), force=(100.0, "N"), moment=(50.0, "N m"), mass=(5.0, "kg"))
+    metric = numbers_to_set(one, Units("cm"))
+    assert "clearance 20\u202fcm" in metric
+    assert "movement" not in metric
+    # 0.2 m are 7.874 in, 100 N 22.48 lb, 50 N m 36.88 ft lb and 5 kg 11.02 lb; of the first three less is too little.
+    imperial = "clearance 7 ⅞ in; force 23 lb; moment 37 ft lb; mass 11 lb"
+    assert numbers_to_set(one, Units("in")) == numbers_to_set(one, Units("ft")) == imperial
+    assert numbers_to_set(advice(force=(2.0 * 0.45359237 * G, "N")), Units("in")) == "force 2 lb"
+
+
+@pytest.mark.parametrize(
+    ("metres", "up", "told"),
+    [
+        (0.0254, True, "1 in"),
+        (0.0255, True, "1 ⅛ in"),
+        (0.0255, False, "1 in"),
+        (0.001, True, "⅛ in"),
+        (0.0, False, "0 in"),
+    ],
+)
+def test_inches_are_in_eighths(metres: float, up: bool, told: str) -> None:
+    assert inches(metres, up=up) == told
