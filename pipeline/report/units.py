@@ -1,6 +1,6 @@
 """Numbers for the reader: SI inside, centimetres, g, degrees and MPa on paper."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from math import floor, inf, isfinite, isnan, log10
@@ -112,11 +112,18 @@ class Units:
         first, last = self.number(low, unit), self.number(high, unit)
         return last if first == last else _("%(low)s to %(high)s") % {"low": first, "high": last}
 
-    def fill(self, sentence: str, values: Mapping[str, tuple[float | None, str]], where: str) -> str:
+    def fill(
+        self,
+        sentence: str,
+        values: Mapping[str, tuple[float | None, str]],
+        where: str,
+        write: Callable[[str, float | None, str], str] | None = None,
+    ) -> str:
         """Fill the {placeholders} of a sentence with numbers in the reader's units.
 
         values : name -> (value in SI or None, SI unit)
         where  : what the error names, such as "object 12.3, finding rocking"
+        write  : writes a number by its name, value and SI unit; `text` where it is left out
         raises : ReportError for an unknown placeholder, a format specification or a brace that is not closed
         """
         parts = []
@@ -130,7 +137,7 @@ class Units:
                     f"{where}: the sentence {sentence!r} asks for {{{name}}}; known placeholders: {known}; "
                     "correct the sentence or supply the number"
                 )
-            parts.append(self.text(*values[name]))
+            parts.append(self.text(*values[name]) if write is None else write(name, *values[name]))
         return "".join(parts)
 
 

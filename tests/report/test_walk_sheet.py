@@ -12,12 +12,13 @@ from pypdf import PdfReader
 from pipeline.quantities import G
 from pipeline.records import Recommendation
 from pipeline.report import render
+from pipeline.report.by_hand import inches
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.walk_sheet import LACKING, PAPERS, sheet_file, sheet_pdf
 from pipeline.report.language import Language
 from pipeline.report.pages.compose import PageHead
 from pipeline.report.pages.views import PageView, State
-from pipeline.report.pages.walking import WORDS, WalkRow, WalkView, few, inches, numbers_to_set
+from pipeline.report.pages.walking import WORDS, WalkRow, WalkView, few, numbers_to_set
 from pipeline.report.render import pages_of
 from pipeline.report.units import Units
 
@@ -176,10 +177,15 @@ def test_numbers_are_those_that_somebody_sets_in_the_museums_units() -> None:
     metric = numbers_to_set(one, Units("cm"))
     assert "clearance 20\u202fcm" in metric
     assert "movement" not in metric
+    # 100 N are the weight of 10.197 kg, 50 N m that of 5.099 kg at 1 m; of both less is too little.
+    assert "force 11\u202fkg" in metric
+    assert "moment 5.1\u202fkg at an arm of 1\u202fm" in metric
     # 0.2 m are 7.874 in, 100 N 22.48 lb, 50 N m 36.88 ft lb and 5 kg 11.02 lb; of the first three less is too little.
-    imperial = "clearance 7 ⅞ in; force 23 lb; moment 37 ft lb; mass 11 lb"
+    imperial = "clearance 7 ⅞ in; force 23\u202flb; moment 37\u202flb at an arm of 1 ft; mass 11\u202flb"
     assert numbers_to_set(one, Units("in")) == numbers_to_set(one, Units("ft")) == imperial
-    assert numbers_to_set(advice(force=(2.0 * 0.45359237 * G, "N")), Units("in")) == "force 2 lb"
+    assert numbers_to_set(advice(force=(2.0 * 0.45359237 * G, "N")), Units("in")) == "force 2\u202flb"
+    # Three digits above a hundred, the last one up: 1,234 N are 125.83 kg.
+    assert numbers_to_set(advice(force=(1234.0, "N")), Units("cm")) == "force 126\u202fkg"
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.records import Assessment, Finding, Harm, Recommendation, RunRecord, Scene, Urgency
+from pipeline.report.by_hand import by_hand
 from pipeline.report.files.object_list import LISTED
 from pipeline.report.files.ranks import KEYS, keys_part
 from pipeline.report.files.workbook import write_workbook
@@ -228,7 +229,7 @@ def exported_unit(unit: str) -> str:
 def sentence_of(r: Recommendation, units: Units) -> str:
     """Return the words of a recommendation with its numbers in the reader's units."""
     values: dict[str, tuple[float | None, str]] = {k: (v, r.units.get(k, "")) for k, v in r.parameters.items()}
-    return units.fill(r.sentence, values, f"object {r.object_number}, recommendation {r.measure}")
+    return units.fill(r.sentence, values, f"object {r.object_number}, recommendation {r.measure}", by_hand(units))
 
 
 def _recommendation(run: str, r: Recommendation, units: Units) -> dict[str, Any]:

@@ -27,6 +27,7 @@ from pipeline.records import (
     Verdict,
 )
 from pipeline.records.result import BOUNDS
+from pipeline.report.by_hand import by_hand
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, said
 from pipeline.report.pages.alike import Memory, finding_key
@@ -408,7 +409,7 @@ class Describer:
             measure=clean(r.measure),
             title=said(clean(r.title)),
             level=clean(r.level),
-            sentence=clean(self._units.fill(said(r.sentence), values, where)) + left_over(r),
+            sentence=clean(self._units.fill(said(r.sentence), values, where, by_hand(self._units))) + left_over(r),
             checks=tuple(self._check(c, before.get(c.model)) for c in r.checks),
             ended=self._ended(r, before),
             rejected=tuple(clean(text) for text in r.rejected),

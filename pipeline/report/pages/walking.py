@@ -1,19 +1,18 @@
 """The sheet to walk a gallery with: what to do there object by object, in few words, and the number to set."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, isfinite
 from string import Formatter
 
 from pipeline.planning.errands import deciding
-from pipeline.quantities import LENGTHS, MASSES, G
 from pipeline.records import Assessment, Recommendation
+from pipeline.report.by_hand import by_hand
 from pipeline.report.language import _, said
 from pipeline.report.pages.chances import name_of
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.views import ObjectView, PageView, State, SurveyView, TaskView
 from pipeline.report.text import clean, short, words
-from pipeline.report.units import Units, significant
+from pipeline.report.units import Units
 
 WORDS = 8
 """Words at most that say what to do: what is read while walking."""
@@ -23,12 +22,6 @@ _TITLE = 60
 
 _FOLLOWS = frozenset({"movement", "margin", "acceleration", "rotation", "cg_height"})
 """Numbers in the sentences of measures that follow from a measure: nobody sets them."""
-
-_AT_LEAST = frozenset({"clearance", "clearance_m", "stroke", "platform", "width", "force", "moment"})
-"""Numbers of which less is too little: in eighths of an inch and in pounds they are rounded up."""
-
-_EIGHTHS = ("", "⅛", "¼", "⅜", "½", "⅝", "¾", "⅞")
-_POUND = MASSES["lb"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,9 +154,6 @@ def few(text: str) -> str:
 def numbers_to_set(advice: Recommendation, units: Units) -> str:
     """Return the numbers of a measure that somebody sets, in the order in which its sentence names them.
 
-    Where lengths are in inches or feet they are in eighths of an inch, forces and masses in pounds; else as on the
-    pages.
-
     Parameters
     ----------
     advice : Recommendation
@@ -172,50 +162,11 @@ def numbers_to_set(advice: Recommendation, units: Units) -> str:
         The reader's.
     """
     named = dict.fromkeys(name for _text, name, _form, _how in Formatter().parse(advice.sentence) if name)
-    told = []
+    told, write = [], by_hand(units)
     for name in named:
         if name in advice.parameters and name not in _FOLLOWS:
-            text = _number(name, advice.parameters[name], advice.units, units)
+            text = write(name, advice.parameters[name], advice.units.get(name, ""))
             told.append(
                 _("%(times)s times its weight") % {"times": text} if name == "times" else f"{words(clean(name))} {text}"
             )
     return "; ".join(told)
-
-
-def _number(name: str, value: float, named: Mapping[str, str], units: Units) -> str:
-    unit = named.get(name, "")
-    if units.length not in ("in", "ft") or not isfinite(value):
-        return units.text(value, unit)
-    up = name in _AT_LEAST
-    match unit:
-        case "m":
-            return inches(value, up=up)
-        case "kg":
-            return f"{_pounds(value / _POUND, up=up)} lb"
-        case "N":
-            return f"{_pounds(value / (_POUND * G), up=up)} lb"
-        case "N m":
-            return f"{_pounds(value / (_POUND * G * LENGTHS['ft']), up=up)} ft lb"
-    return units.text(value, unit)
-
-
-def inches(metres: float, *, up: bool) -> str:
-    """Return a length in inches and eighths, such as "5 ⅝ in".
-
-    Parameters
-    ----------
-    metres : float
-        In m.
-    up : bool
-        Whether to take the next eighth above and not the nearest one.
-    """
-    # What is above an eighth by less than a thousandth of an inch is that eighth.
-    eighths = metres / LENGTHS["in"] * 8.0
-    whole, rest = divmod(ceil(eighths - 0.008) if up else round(eighths), 8)
-    return " ".join(part for part in (str(whole) if whole or not rest else "", _EIGHTHS[rest], "in") if part)
-
-
-def _pounds(value: float, *, up: bool) -> str:
-    if abs(value) < 10.0:
-        return significant(ceil(value * 10.0 - 1e-6) / 10.0 if up else value, 2)
-    return f"{ceil(value - 1e-6) if up else round(value):,}"
