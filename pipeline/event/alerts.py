@@ -11,8 +11,8 @@ from pipeline.event.message import (
     ACCELERATIONS,
     FIRST_SIGMA,
     VELOCITIES,
-    Earthquake,
     Message,
+    ReportedEarthquake,
     SiteShaking,
     cancelled,
     in_unit,
@@ -111,7 +111,7 @@ def read_alert(file: Path, root: Any) -> Alert:
     if core is None:
         raise refused(file, "core_info", "is missing", "it was cut off, or is no event message: fetch it again")
     north, east = position(file, "core_info", core.findtext("lat"), core.findtext("lon"))
-    quake = Earthquake(
+    quake = ReportedEarthquake(
         id=str(core.get("id") or "")[:100],
         magnitude=number(file, "core_info mag", core.findtext("mag")),
         latitude=north,

@@ -16,8 +16,8 @@ from pipeline.event.message import (
     PGA_SIGMA,
     PGV_SIGMA,
     VELOCITIES,
-    Earthquake,
     Message,
+    ReportedEarthquake,
     SiteShaking,
     cancelled,
     in_unit,
@@ -181,12 +181,12 @@ def read_grid(file: Path, root: Any) -> Grid:
     )  # fmt: skip
 
 
-def _quake(file: Path, root: Any, events: list[Any]) -> Earthquake:
+def _quake(file: Path, root: Any, events: list[Any]) -> ReportedEarthquake:
     if not events:
         raise refused(file, "event", "is missing", "it was cut off, or is no grid.xml: fetch it again")
     one = events[0]
     north, east = position(file, "event", one.get("lat"), one.get("lon"))
-    return Earthquake(
+    return ReportedEarthquake(
         id=str(root.get("event_id") or one.get("event_id") or "")[:100],
         name=str(one.get("event_description") or "")[:200],
         magnitude=number(file, "event magnitude", one.get("magnitude")),

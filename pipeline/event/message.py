@@ -64,7 +64,7 @@ def refused(file: Path, place: str, wrong: str, remedy: str) -> MessageError:
 
 
 @dataclass(frozen=True)
-class Earthquake:
+class ReportedEarthquake:
     """An earthquake as a message has it.
 
     Attributes
@@ -182,7 +182,7 @@ class Message:
     file: Path
     kind: str
     rank: int
-    quake: Earthquake
+    quake: ReportedEarthquake
     cancelled: bool = False
     notes: tuple[str, ...] = ()
 
@@ -329,7 +329,7 @@ def cancelled(word: str | None) -> bool:
     return (word or "").strip().lower() in _CANCELLED
 
 
-def check_quake(file: Path, quake: Earthquake, now: datetime) -> None:
+def check_quake(file: Path, quake: ReportedEarthquake, now: datetime) -> None:
     """Refuse an earthquake that cannot be what it says.
 
     Raises

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from pipeline.event.message import Earthquake, MessageError, SiteShaking, kilometres
+from pipeline.event.message import MessageError, ReportedEarthquake, SiteShaking, kilometres
 from pipeline.motions.errors import MotionError
 from pipeline.motions.gathering import gather
 from pipeline.motions.placing import changed, commit, plan
@@ -23,7 +23,9 @@ SIGMA = 0.10
 rooms of one building, and by what is filtered out."""
 
 
-def recorded_shaking(files: Sequence[Path], latitude: float, longitude: float) -> tuple[SiteShaking, Earthquake]:
+def recorded_shaking(
+    files: Sequence[Path], latitude: float, longitude: float
+) -> tuple[SiteShaking, ReportedEarthquake]:
     """Return the shaking that the museum's own instrument recorded, and what its files say of the earthquake.
 
     Parameters
@@ -79,9 +81,9 @@ def recorded_shaking(files: Sequence[Path], latitude: float, longitude: float) -
     return shaking, _quake(record.event)
 
 
-def _quake(said: EventTable | None) -> Earthquake:
+def _quake(said: EventTable | None) -> ReportedEarthquake:
     if said is None:
-        return Earthquake()
-    return Earthquake(
+        return ReportedEarthquake()
+    return ReportedEarthquake(
         said.id or "", said.name or "", said.magnitude, said.latitude, said.longitude, said.depth_km, said.time
     )

@@ -12,9 +12,9 @@ from pathlib import Path
 from pipeline.event.alerts import read_alert
 from pipeline.event.grids import read_grid
 from pipeline.event.message import (
-    Earthquake,
     Message,
     MessageError,
+    ReportedEarthquake,
     check_quake,
     content,
     kilometres,
@@ -30,7 +30,7 @@ SAME_KM, SAME_S = 100.0, 120.0
 
 
 @dataclass(frozen=True)
-class Told:
+class EventFiles:
     """What files say of one earthquake.
 
     Attributes
@@ -45,13 +45,13 @@ class Told:
         SHA-256 of all of them.
     """
 
-    quake: Earthquake
+    quake: ReportedEarthquake
     messages: tuple[Message, ...]
     records: tuple[Path, ...]
     digest: str
 
 
-def read_files(files: Sequence[Path], now: datetime) -> Told:
+def read_files(files: Sequence[Path], now: datetime) -> EventFiles:
     """Read the files about one earthquake.
 
     Parameters
@@ -81,13 +81,13 @@ def read_files(files: Sequence[Path], now: datetime) -> Told:
     ordered = tuple(sorted(messages, key=lambda one: (-one.rank, -_version(one.quake.version))))
     for one in ordered[1:]:
         _same(ordered[0], one)
-    quake = Earthquake()
+    quake = ReportedEarthquake()
     for one in ordered:
         quake = with_more(quake, one.quake)
-    return Told(quake, ordered, tuple(records), hashlib.sha256("\n".join(sorted(digests)).encode()).hexdigest())
+    return EventFiles(quake, ordered, tuple(records), hashlib.sha256("\n".join(sorted(digests)).encode()).hexdigest())
 
 
-def with_more(quake: Earthquake, other: Earthquake) -> Earthquake:
+def with_more(quake: ReportedEarthquake, other: ReportedEarthquake) -> ReportedEarthquake:
     """Return an earthquake with what another message knows of it besides."""
     missing = {
         name: getattr(other, name)

@@ -30,8 +30,8 @@ import numpy as np
 from pipeline.event.message import (
     PGA_SIGMA,
     PGV_SIGMA,
-    Earthquake,
     Message,
+    ReportedEarthquake,
     SiteShaking,
     kilometres,
     number,
@@ -167,7 +167,7 @@ def read_station_xml(file: Path, root: Any) -> StationList:
         time = datetime(*when, tzinfo=UTC)  # type: ignore[misc,arg-type]
     except ValueError:
         raise refused(file, "earthquake", "its time is none", "fetch the list again") from None
-    quake = Earthquake(
+    quake = ReportedEarthquake(
         id=f"{one.get('network') or ''}{one.get('id') or ''}"[:100],
         name=str(one.get("locstring") or "")[:200],
         magnitude=number(file, "earthquake mag", one.get("mag")),
@@ -212,7 +212,7 @@ def read_station_json(file: Path, data: bytes) -> StationList:
     features = said.get("features") if isinstance(said, dict) else None
     if not isinstance(features, list):
         raise refused(file, "features", "is no list", "take stationlist.json of the event's ShakeMap")
-    return _listed(file, Earthquake(), list(_features(file, features[: MOST + 1])))
+    return _listed(file, ReportedEarthquake(), list(_features(file, features[: MOST + 1])))
 
 
 def _features(file: Path, features: Sequence[Any]) -> Iterator[Station]:
@@ -253,7 +253,7 @@ def _plain(value: Any) -> float:
     return found if math.isfinite(found) else 0.0
 
 
-def _listed(file: Path, quake: Earthquake, stations: Sequence[Station]) -> StationList:
+def _listed(file: Path, quake: ReportedEarthquake, stations: Sequence[Station]) -> StationList:
     if not stations or len(stations) > MOST:
         wrong = "has no station" if not stations else f"has more than {MOST:,} stations"
         raise refused(file, "stations", wrong, "take the station list of the event's ShakeMap")

@@ -15,13 +15,13 @@ from pipeline.event.answer import Answer, answered, drawn
 from pipeline.event.capacities import FloorMotions, capacities, floors_of
 from pipeline.event.message import (
     FIRST_SIGMA,
-    Earthquake,
     MessageError,
+    ReportedEarthquake,
     SiteShaking,
     kilometres,
 )
 from pipeline.event.own_record import recorded_shaking
-from pipeline.event.reading import SAME_KM, SAME_S, Told, read_files, with_more
+from pipeline.event.reading import SAME_KM, SAME_S, EventFiles, read_files, with_more
 from pipeline.motions.manifest import load_manifest
 from pipeline.motions.summary import summaries
 from pipeline.operations.presentation import presentation
@@ -178,8 +178,8 @@ def _site(workspace: Workspace, at: tuple[float, float] | None) -> tuple[float, 
 
 
 def _shaking(
-    told: Told, typed: TypedShaking | None, site: tuple[float, float]
-) -> tuple[SiteShaking, Earthquake, tuple[int, float]]:
+    told: EventFiles, typed: TypedShaking | None, site: tuple[float, float]
+) -> tuple[SiteShaking, ReportedEarthquake, tuple[int, float]]:
     quake = told.quake
     try:
         version = float(quake.version)
@@ -209,7 +209,7 @@ def _assessments(workspace: Workspace, pages: Sequence[Page]) -> list[Assessment
     return [one for page in found for one in page.assessments if one.scene.item.on_display]
 
 
-def _event_folder(root: Path, quake: Earthquake) -> str:
+def _event_folder(root: Path, quake: ReportedEarthquake) -> str:
     """Return the name of an earthquake's folder: one that is there already where another agency sent it."""
     if quake.time is not None and quake.latitude is not None and quake.longitude is not None and root.is_dir():
         for there in sorted(root.iterdir()):
@@ -226,11 +226,11 @@ def _event_folder(root: Path, quake: Earthquake) -> str:
 
 
 def _version(
-    told: Told,
+    told: EventFiles,
     typed: TypedShaking | None,
     site: tuple[float, float],
     head: RunRecord,
-    quake: Earthquake,
+    quake: ReportedEarthquake,
     rank: int,
 ) -> str:
     """Return the name of an answer's folder, by all that it depends on: the same again is the same answer."""
@@ -271,7 +271,7 @@ def _rank_shown(folder: Path) -> tuple[int, float]:
 
 
 def _event(
-    quake: Earthquake,
+    quake: ReportedEarthquake,
     site: tuple[float, float],
     rank: tuple[int, float],
     shaking: SiteShaking,
@@ -304,7 +304,7 @@ def _write(
     workspace: Workspace,
     head: RunRecord,
     found: Answer,
-    quake: Earthquake,
+    quake: ReportedEarthquake,
     site: tuple[float, float],
     event: Mapping[str, Any],
     *,

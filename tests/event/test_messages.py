@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 from pipeline.event.message import NINETY, MessageError, SiteShaking, kilometres
-from pipeline.event.reading import Told, read_files
+from pipeline.event.reading import EventFiles, read_files
 from pipeline.event.stations import StationList
 from tests.event.messages import DATA, NOW, PARK, alert
 
 
-def told(*files: Path) -> Told:
+def told(*files: Path) -> EventFiles:
     return read_files(files, NOW)
 
 
@@ -56,9 +56,7 @@ def test_versions_of_the_map_agree_on_their_units() -> None:
     assert (fourth.pga_ln_sd, fourth.pgv_ln_sd) == (0.70, 0.65)
     assert sum("Boore" in note for note in fourth.notes) == 2
     quakes = [told(DATA / f"hawaii_v{version}_grid.xml").quake for version in (3, 4)]
-    assert [quake.time for quake in quakes] == [
-        datetime(2018, 5, 4, 22, 32, second, tzinfo=UTC) for second in (55, 54)
-    ]
+    assert [quake.time for quake in quakes] == [datetime(2018, 5, 4, 22, 32, second, tzinfo=UTC) for second in (55, 54)]
 
 
 def test_a_packed_map_reads_the_same(tmp_path: Path) -> None:
@@ -111,7 +109,7 @@ def test_napa_stations_lie_within_what_the_others_say_of_their_place() -> None:
 
 
 def test_a_station_list_of_version_4_is_read_as_one_of_version_3(tmp_path: Path) -> None:
-    """The same peaks as GeoJSON, with a flagged channel, a vertical one, and what people felt, which count for nothing."""
+    """The same peaks as GeoJSON; a flagged channel, a vertical one, and what people felt count for nothing."""
     old = told(DATA / "napa_stationlist.xml").messages[0]
     assert isinstance(old, StationList)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from pipeline.event.answer import Answer, GalleryAnswer, ObjectAnswer
 from pipeline.event.capacities import KINDS
-from pipeline.event.message import Earthquake
+from pipeline.event.message import ReportedEarthquake
 from pipeline.report.language import Language
 from pipeline.report.pages.compose import PageHead
 from pipeline.report.pages.event_page import event_page, event_sheets, told_of
@@ -91,7 +91,7 @@ def _object(one: ObjectAnswer) -> dict[str, Any]:
 def write_event(
     folder: Path,
     answer: Answer,
-    quake: Earthquake,
+    quake: ReportedEarthquake,
     site: tuple[float, float],
     event: Mapping[str, Any],
     head: PageHead,
@@ -105,7 +105,7 @@ def write_event(
         Empty.
     answer : Answer
         What the shaking did.
-    quake : Earthquake
+    quake : ReportedEarthquake
         Which it was.
     site : (float, float)
         Of the museum, degrees north and east.
@@ -146,7 +146,7 @@ def _row(at: int, one: ObjectAnswer) -> list[str]:
     return [*row, *rest, *said, safe_cell(one.reported)]
 
 
-def _places(document: Mapping[str, Any], quake: Earthquake, site: tuple[float, float]) -> dict[str, Any]:
+def _places(document: Mapping[str, Any], quake: ReportedEarthquake, site: tuple[float, float]) -> dict[str, Any]:
     """Return the museum, the epicentre and the galleries as GeoJSON; a gallery has no place of its own on a map."""
     shaken = {**document["shaking"], **document["expected"]}
     features = [_feature(site, {"kind": "museum", **shaken})]

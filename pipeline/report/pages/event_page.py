@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pipeline.event.answer import Answer, GalleryAnswer, ObjectAnswer
-from pipeline.event.message import Earthquake
+from pipeline.event.message import ReportedEarthquake
 from pipeline.report.language import Language, _, ngettext, said, speaking
 from pipeline.report.pages.compose import PageHead
 from pipeline.report.pages.environment import environment, fill
@@ -70,14 +70,16 @@ class EventView:
     aftershock: tuple[EventObject, ...]
 
 
-def event_page(answer: Answer, quake: Earthquake, distance_km: float | None, head: PageHead, language: Language) -> str:
+def event_page(
+    answer: Answer, quake: ReportedEarthquake, distance_km: float | None, head: PageHead, language: Language
+) -> str:
     """Return the page as HTML.
 
     Parameters
     ----------
     answer : Answer
         What the shaking did.
-    quake : Earthquake
+    quake : ReportedEarthquake
         Which it was.
     distance_km : float or None
         Of its epicentre from the museum.
@@ -91,7 +93,7 @@ def event_page(answer: Answer, quake: Earthquake, distance_km: float | None, hea
         return fill(environment(language), "event.html", {"museum": head, "event": view, "here": "event"})
 
 
-def event_sheets(answer: Answer, quake: Earthquake, head: PageHead, language: Language) -> dict[str, str]:
+def event_sheets(answer: Answer, quake: ReportedEarthquake, head: PageHead, language: Language) -> dict[str, str]:
     """Return a sheet to print for each gallery, by file name."""
     by_gallery: dict[str, list[ObjectAnswer]] = {}
     for one in answer.objects:
@@ -117,7 +119,7 @@ def sheet_name(gallery: str) -> str:
     return f"sheet-{slug(gallery)}.html"
 
 
-def event_view(answer: Answer, quake: Earthquake, distance_km: float | None) -> EventView:
+def event_view(answer: Answer, quake: ReportedEarthquake, distance_km: float | None) -> EventView:
     """Return what the page shows."""
     shaken = [one for one in answer.objects if one.probability is not None]
     safe = sorted((one for one in shaken if one.make_safe), key=lambda one: -one.danger * (one.moved + one.fallen))
@@ -155,7 +157,7 @@ def lede(answer: Answer) -> str:
     )
 
 
-def _facts(answer: Answer, quake: Earthquake, distance_km: float | None) -> list[tuple[str, str]]:
+def _facts(answer: Answer, quake: ReportedEarthquake, distance_km: float | None) -> list[tuple[str, str]]:
     shaking = answer.shaking
     low, high = shaking.pga_range()
     facts = []
