@@ -24,6 +24,11 @@ _LISTED = 10
 @click.option("--pga", type=float, help="Peak ground acceleration there in g, where you have no file.")
 @click.option("--pgv", type=float, help="Peak ground velocity there in cm/s; estimated from --pga where left out.")
 @click.option("--ln-sd", "ln_sd", type=float, help="How sure these are: standard deviation of ln. Default: 0.86.")
+@click.option(
+    "--report",
+    type=click.Path(path_type=Path),
+    help="What people found: a CSV file, columns object and state (standing, moved, fallen, broken).",
+)
 @dry_run("Say what is probably down")
 @as_json
 @click.pass_obj
@@ -34,6 +39,7 @@ def event(
     pga: float | None,
     pgv: float | None,
     ln_sd: float | None,
+    report: Path | None,
     dry_run: bool,
     as_json: bool,
 ) -> None:
@@ -56,7 +62,7 @@ def event(
 
     place, typed = _place(at), _typed(pga, pgv, ln_sd)
     with rehearsed(options.settings(), dry_run) as settings:
-        done = answer_event(open_workspace(settings), files, at=place, typed=typed, dry_run=dry_run)
+        done = answer_event(open_workspace(settings), files, at=place, typed=typed, report=report, dry_run=dry_run)
         if not (dry_run or done.again):
             tell_shaken(settings, _sentence(done.document), done.document, hider(settings))
     if as_json:

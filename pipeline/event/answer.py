@@ -8,8 +8,8 @@ the range that a common shaking gives it, and not the narrow one of objects that
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,8 +20,9 @@ from pipeline.quantities import Array, G
 from pipeline.records import Assessment, Band, Harm, Sampling
 from pipeline.records.fragility import HARM
 
-DRAWS = 512
-"""Draws of what all objects have in common; a power of two."""
+DRAWS, FEWER, MANY = 512, 128, 20_000
+"""Draws of what all objects have in common, powers of two: fewer of more objects than so many, as a minute is all that
+there is; the ends of a range are then told by 6 draws."""
 
 LOW, HIGH = 0.05, 0.95
 """Shares of the draws between which the number of objects down is told."""
@@ -54,24 +55,26 @@ class Draws:
     weights: Array
 
 
-def drawn(shaking: SiteShaking, count: int = DRAWS) -> Draws:
+def drawn(shaking: SiteShaking, objects: int = 0) -> Draws:
     """Return draws of the shaking: one Sobol' sequence, always the same.
 
     Parameters
     ----------
     shaking : SiteShaking
         With a peak velocity.
-    count : int
-        How many; a power of two.
+    objects : int
+        How many these are for.
     """
-    return placed(shaking, _normals(count))
+    return placed(shaking, normals(objects))
 
 
-def _normals(count: int) -> Array:
+def normals(objects: int = 0, *, count: int = 0) -> Array:
+    """Return standard normal points (s, 3) of one Sobol' sequence, for so many objects, or a count of them."""
     from scipy.special import ndtri
     from scipy.stats import qmc
 
-    points = qmc.Sobol(3, scramble=True, rng=np.random.default_rng(1)).random(count)
+    wanted = count or (DRAWS if objects <= MANY else FEWER)
+    points = qmc.Sobol(3, scramble=True, rng=np.random.default_rng(1)).random(wanted)
     return np.asarray(ndtri(points))
 
 
@@ -103,9 +106,11 @@ def chances(capacities: Capacities, draws: Draws, objects: slice) -> Array:
         z = ((1.0 - beta) * pga + beta * pgv - ln_c + common * record) / own
     out = np.nan_to_num(ndtr(z), nan=0.0)
     start = objects.start or 0
-    for (kind, at), (ln_a, shares) in capacities.shares.items():
-        if start <= at < start + out.shape[2]:
-            out[kind, :, at - start] = np.interp(draws.ln_pga, ln_a, shares)
+    for kind in range(len(KINDS)):
+        for at in range(out.shape[2]):
+            told = capacities.shares.get((kind, start + at))
+            if told is not None:
+                out[kind, :, at] = np.interp(draws.ln_pga, *told)
     # What falls has rocked, and what reaches a state that harms is harmed: curves that are fitted apart may cross.
     falls = out[KINDS.index(Harm.FALLS.value)]
     rocks, harm = KINDS.index(Harm.ROCKS.value), KINDS.index(HARM)
@@ -222,7 +227,12 @@ class Answer:
 
 
 def answered(
-    assessments: Sequence[Assessment], capacities: Capacities, shaking: SiteShaking, sampling: Sampling, draws: Draws
+    assessments: Sequence[Assessment],
+    capacities: Capacities,
+    shaking: SiteShaking,
+    sampling: Sampling,
+    draws: Draws,
+    found: Mapping[int, str] | None = None,
 ) -> Answer:
     """Return what the shaking did to objects.
 
@@ -238,7 +248,10 @@ def answered(
         Whose words are used.
     draws : Draws
         Of the shaking.
+    found : mapping of int to str or None
+        By place of an object, what people found: standing, moved, fallen or broken.
     """
+    found = found or {}
     names = {name: at for at, name in enumerate(dict.fromkeys(one.scene.item.gallery for one in assessments))}
     member = np.array([names[one.scene.item.gallery] for one in assessments], dtype=np.intp)
     counts = np.zeros((draws.weights.size, len(names)))
@@ -248,6 +261,7 @@ def answered(
     for start in range(0, len(assessments), _AT_ONCE):
         part = slice(start, min(start + _AT_ONCE, len(assessments)))
         chance = chances(capacities, draws, part)
+        _put_found(chance, found, start)
         expected[:, part] = np.einsum("s,ksn->kn", draws.weights, chance)
         moved[part] = draws.weights @ moved_of(chance)
         falls = chance[KINDS.index(Harm.FALLS.value)]
@@ -256,7 +270,18 @@ def answered(
             counts[:, gallery] += down[:, member[part] == gallery].sum(axis=1)
     known = capacities.known
     objects = [
-        _object(one, expected[:, at], float(moved[at]), capacities, at, known=bool(known[at]), sampling=sampling)
+        replace(
+            _object(
+                one,
+                expected[:, at],
+                float(moved[at]),
+                capacities,
+                at,
+                known=bool(known[at]) or at in found,
+                sampling=sampling,
+            ),
+            reported=found.get(at, ""),
+        )
         for at, one in enumerate(assessments)
     ]
     falls = expected[KINDS.index(Harm.FALLS.value)]
@@ -271,6 +296,20 @@ def answered(
         tuple(sorted(galleries, key=lambda one: (-one.expected_loss, one.name))),
         tuple(sorted(objects, key=lambda one: (one.probability is None, -one.expected_loss, one.number, one.gallery))),
     )
+
+
+def _put_found(chance: Array, found: Mapping[int, str], start: int) -> None:
+    """Put what was found in place of probabilities."""
+    sure = {
+        "moved": (Harm.SHIFTS.value,),
+        "fallen": (HARM, Harm.FALLS.value),
+        "broken": (HARM, Harm.BREAKS.value),
+    }
+    for at, state in found.items():
+        if start <= at < start + chance.shape[2]:
+            chance[:, :, at - start] = 0.0
+            for name in sure.get(state, ()):
+                chance[KINDS.index(name), :, at - start] = 1.0
 
 
 def _count(expected: float, counts: Array, weights: Array) -> Count:

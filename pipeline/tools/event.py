@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.analysis.stakes import counting
-from pipeline.event.answer import Answer, answered, drawn
+from pipeline.event.answer import Answer, answered
 from pipeline.event.capacities import FloorMotions, capacities, floors_of
 from pipeline.event.message import (
     FIRST_SIGMA,
@@ -22,6 +22,7 @@ from pipeline.event.message import (
 )
 from pipeline.event.own_record import recorded_shaking
 from pipeline.event.reading import SAME_KM, SAME_S, EventFiles, read_files, with_more
+from pipeline.event.reports import STATES, conditioned, read_reports
 from pipeline.motions.manifest import load_manifest
 from pipeline.motions.summary import summaries
 from pipeline.operations.presentation import presentation
@@ -106,6 +107,7 @@ def answer_event(
     *,
     at: tuple[float, float] | None = None,
     typed: TypedShaking | None = None,
+    report: Path | None = None,
     now: datetime | None = None,
     dry_run: bool = False,
 ) -> EventDone:
@@ -121,6 +123,8 @@ def answer_event(
         Place of the museum, degrees north and east; None: as its site's manifest says.
     typed : TypedShaking or None
         Numbers typed by hand; they go before messages, and after the museum's own record.
+    report : Path or None
+        What people found in the galleries, see `read_reports`; what was told of the same earthquake before still holds.
     now : datetime or None
         By the clock; None: this machine's.
     dry_run : bool
@@ -139,7 +143,8 @@ def answer_event(
     """
     if not files and typed is None:
         raise UsageError("give a file about the earthquake, or its shaking by --pga and --pgv")
-    told = read_files(files, now or datetime.now(UTC))
+    clock = now or datetime.now(UTC)
+    told = read_files(files, clock)
     for one in told.messages[:1]:
         if one.cancelled:
             raise MessageError(f"{one.file}: takes the earthquake back: it is cancelled, and earlier answers stay")
@@ -150,17 +155,25 @@ def answer_event(
     head, pages = load_head(workspace.engine, whole[0])
     shaking, quake, rank = _shaking(told, typed, site)
     root = workspace.settings.path(EVENTS)
-    folder = root / _event_folder(root, quake) / _version(told, typed, site, head, quake, rank[0])
+    whole_event = root / _event_folder(root, quake, clock)
+    assessments = _assessments(workspace, pages)
+    numbers = {one.scene.item.object_number: at for at, one in enumerate(assessments)}
+    reports = _earlier_reports(whole_event, numbers)
+    if report is not None:
+        reports |= read_reports(report, numbers)
+    folder = whole_event / _version(told, typed, site, head, quake, rank[0], reports)
     if (folder / ANSWER).is_file():
         return EventDone(None, _kept(folder / ANSWER), folder, again=True, newest=_shown(folder.parent) == folder.name)
     floors = _floors(workspace, head)
-    assessments = _assessments(workspace, pages)
     ground = floors[""]
     # The ratio of SI peaks, s, as cm/s for each g.
     shaking = shaking.with_velocity(_in_cm_s_a_g(ground.ratio), ground.ratio_sd)
     sampling = workspace.settings.likelihood.sampling
     with counting(workspace.settings.museum.value_per_c):
-        found = answered(assessments, capacities(assessments, floors), shaking, sampling, drawn(shaking))
+        able = capacities(assessments, floors)
+        places = {numbers[name]: state for name, state in reports.items()}
+        draws, shaking = conditioned(able, places, shaking, len(assessments))
+        found = answered(assessments, able, shaking, sampling, draws, places)
     newest = rank >= _rank_shown(folder.parent)
     event = _event(quake, site, rank, shaking, head, folder, root)
     if not dry_run:
@@ -209,7 +222,7 @@ def _assessments(workspace: Workspace, pages: Sequence[Page]) -> list[Assessment
     return [one for page in found for one in page.assessments if one.scene.item.on_display]
 
 
-def _event_folder(root: Path, quake: ReportedEarthquake) -> str:
+def _event_folder(root: Path, quake: ReportedEarthquake, now: datetime) -> str:
     """Return the name of an earthquake's folder: one that is there already where another agency sent it."""
     if quake.time is not None and quake.latitude is not None and quake.longitude is not None and root.is_dir():
         for there in sorted(root.iterdir()):
@@ -221,8 +234,16 @@ def _event_folder(root: Path, quake: ReportedEarthquake) -> str:
                 continue
             if seconds <= SAME_S and apart <= SAME_KM:
                 return there.name
-    when = "" if quake.time is None else f"{quake.time:%Y%m%dT%H%M%S}-"
+    # Of what nobody says when it was, all of one day is one earthquake.
+    when = f"{now:%Y%m%d}-" if quake.time is None else f"{quake.time:%Y%m%dT%H%M%S}-"
     return f"{when}{slug(quake.id or quake.name or 'by hand')}"
+
+
+def _earlier_reports(folder: Path, known: Mapping[str, int]) -> dict[str, str]:
+    """Return what was found by object number, as the answer that is shown has it."""
+    objects = _shown_document(folder).get("objects")
+    said = {str(one.get("object_number")): str(one.get("reported") or "") for one in objects or ()}
+    return {name: state for name, state in said.items() if state in STATES and name in known}
 
 
 def _version(
@@ -232,9 +253,10 @@ def _version(
     head: RunRecord,
     quake: ReportedEarthquake,
     rank: int,
+    reports: Mapping[str, str],
 ) -> str:
     """Return the name of an answer's folder, by all that it depends on: the same again is the same answer."""
-    parts = [told.digest, repr(typed), repr(site), head.run_id, head.version]
+    parts = [told.digest, repr(typed), repr(site), head.run_id, head.version, repr(sorted(reports.items()))]
     digest = hashlib.sha256("\n".join(parts).encode()).hexdigest()[:12]
     version = re.sub("[^0-9A-Za-z]", "", quake.version)[:20] or "0"
     return f"{_KINDS[rank]}-{version}-{digest}"

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from lxml import etree
 
+from pipeline.errors import InputError
 from pipeline.event.message import MessageError
 from pipeline.operations.workspace import UsageError, open_workspace
 from pipeline.report.files.event_files import EVENT_COLUMNS
@@ -199,6 +200,22 @@ def test_refusals_keep_earlier_answers(museum: Path, tmp_path: Path) -> None:
         code, _, message = say(museum, "event", str(MAP), *words)
         assert code == 2
         assert words[0] in message
+
+
+def test_reports_from_the_galleries_condition_the_rest_and_stay(museum: Path, tmp_path: Path) -> None:
+    first = ask(museum, typed=TypedShaking(0.3))
+    found = tmp_path / "found.csv"
+    found.write_text("object,state\n1,standing\n", encoding="utf-8")
+    second = ask(museum, typed=TypedShaking(0.3), report=found)
+    assert second.document["shaking"]["pga_g"] < first.document["shaking"]["pga_g"], "what is tall still stands"
+    one = next(one for one in second.document["objects"] if one["object_number"] == "1")
+    assert (one["reported"], one["states"].get("falls", 0.0)) == ("standing", 0.0)
+    assert "found: standing" in (second.folder / "objects.csv").read_text("utf-8")
+    # What was told holds for whatever comes later of the same earthquake.
+    third = ask(museum, typed=TypedShaking(0.4))
+    assert [one["reported"] for one in third.document["objects"]].count("standing") == 1
+    with pytest.raises(InputError, match="give a CSV file"):
+        ask(museum, typed=TypedShaking(0.3), report=tmp_path / "absent.csv")
 
 
 def test_without_a_run_it_says_how_to_make_one(tmp_path: Path) -> None:
