@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -25,6 +26,9 @@ _LISTED = 10
 @click.option("--pgv", type=float, help="Peak ground velocity there in cm/s; estimated from --pga where left out.")
 @click.option("--ln-sd", "ln_sd", type=float, help="How sure these are: standard deviation of ln. Default: 0.86.")
 @click.option(
+    "--drill", is_flag=True, help="An exercise: the strongest level of the site, as if it had come; it is timed."
+)
+@click.option(
     "--report",
     type=click.Path(path_type=Path),
     help="What people found: a CSV file, columns object and state (standing, moved, fallen, broken).",
@@ -40,6 +44,7 @@ def event(
     pgv: float | None,
     ln_sd: float | None,
     report: Path | None,
+    drill: bool,
     dry_run: bool,
     as_json: bool,
 ) -> None:
@@ -53,22 +58,31 @@ def event(
     \b
     Example: kouros event grid.xml --at 37.77,-122.47
     Example: kouros event --pga 0.144 --pgv 18.9 --ln-sd 0.3
+    Example: kouros event --drill
     """
     from pipeline.operations.dry_run import rehearsed
     from pipeline.operations.job_monitor import tell_shaken
     from pipeline.operations.secrets import hider
     from pipeline.operations.workspace import open_workspace
-    from pipeline.tools.event import answer_event
+    from pipeline.tools.event import answer_event, exercise
 
+    began = perf_counter()
     place, typed = _place(at), _typed(pga, pgv, ln_sd)
     with rehearsed(options.settings(), dry_run) as settings:
-        done = answer_event(open_workspace(settings), files, at=place, typed=typed, report=report, dry_run=dry_run)
-        if not (dry_run or done.again):
+        workspace, quake = open_workspace(settings), None
+        if drill:
+            if files or typed is not None:
+                raise click.UsageError("--drill has a shaking of its own: leave files, --pga and --pgv out")
+            typed, quake = exercise(workspace)
+        done = answer_event(workspace, files, at=place, typed=typed, report=report, drill=quake, dry_run=dry_run)
+        if not (dry_run or done.again or drill):
             tell_shaken(settings, _sentence(done.document), done.document, hider(settings))
     if as_json:
         click.echo(json.dumps(done.document, indent=2, allow_nan=False))
     else:
         click.echo("\n".join(map(printable, _lines(done, dry=dry_run))))
+        if drill:
+            click.echo(f"This was an exercise.  From the question to the page it took {perf_counter() - began:.1f} s.")
     if dry_run:
         say_dry(as_json)
 

@@ -108,6 +108,7 @@ def answer_event(
     at: tuple[float, float] | None = None,
     typed: TypedShaking | None = None,
     report: Path | None = None,
+    drill: ReportedEarthquake | None = None,
     now: datetime | None = None,
     dry_run: bool = False,
 ) -> EventDone:
@@ -125,6 +126,8 @@ def answer_event(
         Numbers typed by hand; they go before messages, and after the museum's own record.
     report : Path or None
         What people found in the galleries, see `read_reports`; what was told of the same earthquake before still holds.
+    drill : ReportedEarthquake or None
+        What the page is to say of an exercise, with the numbers typed.
     now : datetime or None
         By the clock; None: this machine's.
     dry_run : bool
@@ -149,11 +152,9 @@ def answer_event(
         if one.cancelled:
             raise MessageError(f"{one.file}: takes the earthquake back: it is cancelled, and earlier answers stay")
     site = _site(workspace, at)
-    whole = whole_runs(workspace.engine)
-    if not whole:
-        raise StoreError("there is no finished run of the whole collection to answer from; make one with `kouros run`")
-    head, pages = load_head(workspace.engine, whole[0])
+    head, pages = load_head(workspace.engine, _newest(workspace))
     shaking, quake, rank = _shaking(told, typed, site)
+    quake = quake if drill is None else drill
     root = workspace.settings.path(EVENTS)
     whole_event = root / _event_folder(root, quake, clock)
     assessments = _assessments(workspace, pages)
@@ -179,6 +180,29 @@ def answer_event(
     if not dry_run:
         _write(folder, workspace, head, found, quake, site, event, newest=newest)
     return EventDone(found, event_document(found, event), folder, again=False, newest=newest)
+
+
+def exercise(workspace: Workspace) -> tuple[TypedShaking, ReportedEarthquake]:
+    """Return the shaking of an exercise: that of the strongest level of the newest run, within 0.3 of ln (judgement).
+
+    Raises
+    ------
+    StoreError
+        Where there is no run yet.
+    """
+    head = load_head(workspace.engine, _newest(workspace))[0]
+    levels = _floors(workspace, head)[""].levels
+    name, (pga, pgv) = max(levels.items(), key=lambda one: one[1])
+    return TypedShaking(exp(pga) / G, 100.0 * exp(pgv), 0.3), ReportedEarthquake(
+        name=f"Exercise: {name}", scenario=True
+    )
+
+
+def _newest(workspace: Workspace) -> str:
+    whole = whole_runs(workspace.engine)
+    if not whole:
+        raise StoreError("there is no finished run of the whole collection to answer from; make one with `kouros run`")
+    return whole[0]
 
 
 def _site(workspace: Workspace, at: tuple[float, float] | None) -> tuple[float, float]:

@@ -218,6 +218,23 @@ def test_reports_from_the_galleries_condition_the_rest_and_stay(museum: Path, tm
         ask(museum, typed=TypedShaking(0.3), report=tmp_path / "absent.csv")
 
 
+def test_a_drill_is_said_to_be_one_and_is_timed(museum: Path) -> None:
+    """The sine of 4 m/s2 at 1.5 Hz: its peak velocity is about 4 / (2 pi 1.5) m/s."""
+    code, out, message = say(museum, "event", "--drill", "--at", "37.77,-122.47")
+    assert code == 0, message
+    assert "This was an exercise." in out
+    folder = museum / EVENTS
+    (page,) = (path for path in folder.glob("*/*/index.html") if not path.parent.is_symlink())
+    assert "This is an exercise. The earthquake did not happen." in page.read_text("utf-8")
+    said = json.loads((page.parent / "answer.json").read_text("utf-8"))
+    assert said["event"]["scenario"]
+    assert said["shaking"]["pga_g"] == pytest.approx(4.0 / 9.80665, rel=0.05)
+    # A filtered or started sine may overshoot its steady velocity up to twice.
+    assert 0.9 < said["shaking"]["pgv_cm_s"] / 42.4 < 2.1
+    code, _, message = say(museum, "event", "--drill", "--pga", "0.1")
+    assert (code, "leave files" in message) == (2, True)
+
+
 def test_without_a_run_it_says_how_to_make_one(tmp_path: Path) -> None:
     workspace(tmp_path)
     with pytest.raises(StoreError, match="make one with `kouros run`"):
