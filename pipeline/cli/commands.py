@@ -11,6 +11,7 @@ import click
 
 from pipeline.cli.console import listed, response_lines, summary_lines, tradeoff_lines
 from pipeline.cli.deciding import decide
+from pipeline.cli.event import event
 from pipeline.cli.explaining import print_explanation
 from pipeline.cli.importing import import_
 from pipeline.cli.motions import motions
@@ -484,6 +485,7 @@ ALL = (
     decide,
     diff,
     plan,
+    event,
     motions,
     models,
     respond,

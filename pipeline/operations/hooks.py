@@ -36,6 +36,7 @@ SUBJECTS: Mapping[Event, str] = {
     "changed": "verdicts changed",
     "failed": "the run failed",
     "shrunk": "collection shrank",
+    "shaken": "after an earthquake",
 }
 
 _SAID = 500
@@ -78,7 +79,7 @@ def tell(
     ----------
     hooks : Hooks
         Those of the settings.
-    event : {"changed", "failed", "shrunk"}
+    event : {"changed", "failed", "shrunk", "shaken"}
         What happened.
     document : mapping
         Of schemas/event.schema.json, JSON-ready.

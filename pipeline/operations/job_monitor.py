@@ -2,7 +2,7 @@
 
 import logging
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from datetime import UTC, datetime
 from threading import Lock
@@ -128,6 +128,25 @@ def _finished(settings: Settings, summary: Summary, hide: Callable[[str], str], 
         document = _document(settings, "changed", words, plain["exit_code"], None, plain)
         _tell(settings, "changed", document, hide)
     _beside("tidying up", lambda: _tidy(settings), hide)
+
+
+def tell_shaken(settings: Settings, message: str, answer: Mapping[str, Any], hide: Callable[[str], str]) -> None:
+    """Tell hooks what an earthquake probably did.
+
+    Parameters
+    ----------
+    settings : Settings
+        With log and hooks.
+    message : str
+        What happened, in a sentence.
+    answer : mapping
+        As `kouros event --json` prints it; its objects are not sent, only where they are.
+    hide : callable
+        Takes the secrets out of a text.
+    """
+    note("event.answered", message=message, folder=answer["event"]["folder"])
+    told = {name: answer[name] for name in ("event", "shaking", "expected", "galleries")}
+    _tell(settings, "shaken", _document(settings, "shaken", message, 0, None, None) | {"earthquake": told}, hide)
 
 
 def _tidy(settings: Settings) -> None:

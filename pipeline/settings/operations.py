@@ -7,10 +7,11 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator, model_valida
 
 from pipeline.errors import InputError
 
-Event = Literal["changed", "failed", "shrunk"]
-"""Verdicts changed; the run failed; the collection shrank suspiciously, and nothing was published."""
+Event = Literal["changed", "failed", "shrunk", "shaken"]
+"""Verdicts changed; the run failed; the collection shrank suspiciously, and nothing was published; an earthquake was
+answered by `kouros event`."""
 
-EVENTS: tuple[Event, ...] = ("changed", "failed", "shrunk")
+EVENTS: tuple[Event, ...] = ("changed", "failed", "shrunk", "shaken")
 
 _VARIABLE = r"^KOUROS_[A-Z0-9_]+$"
 
@@ -110,7 +111,7 @@ class EmailHook(_Hook):
 
 
 class Hooks(SettingsPart):
-    """Who is told when verdicts "changed", when a run "failed", and when the collection "shrunk" suspiciously.
+    """Who is told when verdicts "changed", when a run "failed", when the collection "shrunk", and when it was "shaken".
 
     Each may be repeated.  Secrets never stand here: url_from, token_from and password_from name variables KOUROS_... of
     the environment.

@@ -171,6 +171,8 @@ DRY: Sequence[tuple[Sequence[str], int, str]] = (
     (["motions", "process", "shaking", "--record", "absent", "--accept", "w"], 2, "there is no record 'absent'"),
     ([*CONVERT, "--unit", "m/s2", "--out", "new"], 0, "would write new/motion-1.csv"),
     ([*CONVERT, "--unit", "furlong", "--out", "new"], 4, "'furlong' is no unit that is known"),
+    (["event", "--pga", "0.2", "--at", "37.77,-122.47"], 0, "would write"),
+    (["event"], 2, "give a file about the earthquake"),
     (["validate", "absent"], 2, "absent/experiment.toml: there is no such file"),
 )
 

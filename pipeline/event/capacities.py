@@ -1,0 +1,217 @@
+r"""What each object can take, in the two peaks of the shaking, from the curves or probabilities that a run found.
+
+A run keeps a lognormal curve of each state by the peak acceleration A of the floor, and one by its peak velocity V,
+from the same samples under the same motions.  Motions that are scaled keep the ratio V / A, so that one capacity lies
+behind both curves:
+
+.. math::
+
+    z = \frac{(1 - \beta) \ln A + \beta \ln V - \ln c}{\sigma}, \quad
+    \beta = \frac{1}{2} \left(1 + \frac{D_A^2 - D_V^2}{s^2}\right), \quad
+    \ln c = (1 - \beta) \ln m_A + \beta \ln m_V, \quad
+    \sigma^2 = D_A^2 - \beta^2 s^2 = D_V^2 - (1 - \beta)^2 s^2
+
+with m and D the medians and dispersions of the curves, and s the standard deviation of ln V / A over the motions (and
+over those that might have come: 1 / n of its published square is added for n motions).  With both peaks known nothing
+has to be run again, and what else differs from record to record is the rest of sigma.
+
+Of what a run found no curve for, the shares of its samples at each acceleration are taken between its stripes; where it
+made no curves, the probabilities at its levels, with the dispersions of tables/dispersion.csv.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.analysis.fragility.curve import stated
+from pipeline.event.message import RATIO_SIGMA
+from pipeline.quantities import Array
+from pipeline.records import Assessment, Fragility, Harm, Likelihood, MotionSummary
+from pipeline.records.fragility import HARM
+
+KINDS = (HARM, *(one.value for one in Harm))
+"""What there is a capacity of: any harm, then each state."""
+
+UP_SIGMA = 0.3
+"""Standard deviation of ln of how many times as strong a floor shakes, where its motions do not tell: judgement."""
+
+
+@dataclass(frozen=True)
+class FloorMotions:
+    """Motions of a run on one floor.
+
+    Attributes
+    ----------
+    levels : mapping of str to (float, float)
+        By level, ln of the geometric means of PGA [m/s2] and PGV [m/s].
+    ratio, ratio_sd : float
+        Mean and standard deviation of ln of PGV over PGA [s], the latter over all motions that might have come.
+    up : (float, float, float)
+        ln of how many times as strong as on the ground PGA and PGV are, and its standard deviation.
+    """
+
+    levels: Mapping[str, tuple[float, float]]
+    ratio: float
+    ratio_sd: float
+    up: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+def floors_of(motions: Sequence[MotionSummary], ground: Sequence[MotionSummary]) -> dict[str, FloorMotions]:
+    """Return the floors of a run by name, "" for the ground.
+
+    Parameters
+    ----------
+    motions : sequence of MotionSummary
+        Of all floors that the run has.
+    ground : sequence of MotionSummary
+        Those of the ground, in the order of each floor's.
+    """
+    by_floor: dict[str, list[MotionSummary]] = {"": list(ground)}
+    for one in motions:
+        if one.floor:
+            by_floor.setdefault(one.floor, []).append(one)
+    below = _peaks(ground)
+    return {name: _floor(those, below if name else _peaks(those)) for name, those in by_floor.items()}
+
+
+def _peaks(motions: Sequence[MotionSummary]) -> Array:
+    """Return ln of PGA and PGV, (n, 2)."""
+    peaks = np.array([[one.measures["pga"], one.measures["pgv"]] for one in motions], dtype=float).reshape(-1, 2)
+    return np.asarray(np.log(np.maximum(peaks, 1e-12)))
+
+
+def _floor(motions: Sequence[MotionSummary], below: Array) -> FloorMotions:
+    peaks = _peaks(motions)
+    ratios = peaks[:, 1] - peaks[:, 0]
+    levels: dict[str, list[int]] = {}
+    for at, one in enumerate(motions):
+        levels.setdefault(one.level, []).append(at)
+    means = {name: tuple(peaks[places].mean(axis=0).tolist()) for name, places in levels.items()}
+    n = ratios.size
+    sd = math.sqrt(float(ratios.var()) + RATIO_SIGMA**2 / n)
+    times = peaks - below if below.shape == peaks.shape else peaks.mean(axis=0) - below.mean(axis=0)[None]
+    spread = float(times.std(axis=0).max()) if times.shape[0] > 1 else UP_SIGMA
+    up = tuple(times.mean(axis=0).tolist())
+    return FloorMotions(means, float(ratios.mean()), sd, (up[0], up[1], 0.0 if not np.any(times) else spread))
+
+
+@dataclass
+class Capacities:
+    """Capacities of m objects by kind (k, m), NaN where an object cannot reach a state or nothing is known of it.
+
+    Attributes
+    ----------
+    ln_capacity, beta : ndarray, shape (k, m)
+        ln c [m/s2 and m/s] and the share of the velocity, on the ground.
+    common, own : ndarray, shape (k, m)
+        Parts of sigma that all objects have in common, being of the record, and that each has for itself.
+    shares : mapping of (int, int) to (ndarray, ndarray)
+        By kind and object, ln of PGA of the ground and the shares of samples there, where no curve tells it.
+    """
+
+    ln_capacity: Array
+    beta: Array
+    common: Array
+    own: Array
+    shares: dict[tuple[int, int], tuple[Array, Array]] = field(default_factory=dict)
+
+    @property
+    def known(self) -> NDArray[np.bool_]:
+        """Of which objects anything is known, (m,)."""
+        found = np.asarray(np.isfinite(self.ln_capacity).any(axis=0))
+        for _, at in self.shares:
+            found[at] = True
+        return found
+
+
+def capacities(assessments: Sequence[Assessment], floors: Mapping[str, FloorMotions]) -> Capacities:
+    """Return what objects can take.
+
+    Parameters
+    ----------
+    assessments : sequence of Assessment
+        As a run found them.
+    floors : mapping of str to FloorMotions
+        Of the run.
+    """
+    shape = len(KINDS), len(assessments)
+    ln_capacity, beta, common, own = np.full((4, *shape), np.nan)
+    found = Capacities(ln_capacity, beta, common, own)
+    for at, one in enumerate(assessments):
+        floor = floors.get(one.scene.floor)
+        if floor is None:
+            continue
+        curves = {curve.state: curve for curve in one.fragilities if curve.state in KINDS}
+        for kind, name in enumerate(KINDS):
+            if name in curves:
+                _by_curve(found, kind, at, curves[name], floor)
+            elif not curves and one.likelihoods:
+                _by_levels(found, kind, at, one.likelihoods, floor)
+    return found
+
+
+def _by_curve(found: Capacities, kind: int, at: int, curve: Fragility, floor: FloorMotions) -> None:
+    if curve.bound or curve.median_pgv is None or curve.dispersion_pgv is None:
+        rows = [(math.log(pga) - floor.up[0], reached / taken) for pga, taken, reached in curve.stripes if taken]
+        if rows:
+            ln_a, shares = np.array(rows).T
+            # More shaking never spares what less did not: samples that are few may say so.
+            found.shares[kind, at] = ln_a, np.maximum.accumulate(shares)
+        return
+    own = math.hypot(curve.inputs, curve.modelling)
+    medians = math.log(curve.median), math.log(curve.median_pgv)
+    _put(found, kind, at, medians, (curve.dispersion, curve.dispersion_pgv), own, floor)
+
+
+def _by_levels(found: Capacities, kind: int, at: int, said: Sequence[Likelihood], floor: FloorMotions) -> None:
+    from scipy.special import ndtri
+
+    name = KINDS[kind]
+    own, record, by_speed = _stated()
+    spread = math.hypot(own, record), math.hypot(own, by_speed)
+    medians = []
+    for one in said:
+        if one.level not in floor.levels or (name != HARM and name not in one.states):
+            continue
+        share = one.probability if name == HARM else one.states[name]
+        # Of none and of all half a sample is off.
+        share = min(max(share, 0.5 / (one.samples + 1.0)), 1.0 - 0.5 / (one.samples + 1.0))
+        peaks = floor.levels[one.level]
+        medians.append([peak - sd * float(ndtri(share)) for peak, sd in zip(peaks, spread, strict=True)])
+    if medians:
+        ln_a, ln_v = np.mean(medians, axis=0).tolist()
+        _put(found, kind, at, (ln_a, ln_v), spread, own, floor)
+
+
+@cache
+def _stated() -> tuple[float, float, float]:
+    return stated("modelling").value, stated("record").value, stated("record_velocity").value
+
+
+def _put(
+    found: Capacities,
+    kind: int,
+    at: int,
+    medians: tuple[float, float],
+    spread: tuple[float, float],
+    own: float,
+    floor: FloorMotions,
+) -> None:
+    """Put the capacity behind two curves in its place, as one of the shaking of the ground."""
+    by_a, by_v = (sd * sd for sd in spread)
+    square = floor.ratio_sd**2
+    beta = min(max(0.5 * (1.0 + (by_a - by_v) / square), 0.0), 1.0)
+    # Equal, unless beta is at an end.
+    rest = 0.5 * (by_a - beta * beta * square + by_v - (1.0 - beta) ** 2 * square)
+    own = max(own, 0.05)
+    up_a, up_v, up_sd = floor.up
+    found.ln_capacity[kind, at] = (1.0 - beta) * (medians[0] - up_a) + beta * (medians[1] - up_v)
+    found.beta[kind, at] = beta
+    found.own[kind, at] = own
+    found.common[kind, at] = math.sqrt(max(rest - own * own, 0.0) + up_sd * up_sd)

@@ -1,0 +1,156 @@
+"""Files about an earthquake: which of them say its shaking, which are records, and what is taken."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+from pathlib import Path
+
+from pipeline.event.alerts import read_alert
+from pipeline.event.grids import read_grid
+from pipeline.event.message import (
+    Message,
+    MessageError,
+    ReportedEarthquake,
+    check_quake,
+    content,
+    kilometres,
+    refused,
+    xml_root,
+)
+from pipeline.event.stations import read_station_json, read_station_xml
+
+_READERS = {"shakemap_grid": read_grid, "event_message": read_alert, "shakemap-data": read_station_xml}
+
+SAME_KM, SAME_S = 100.0, 120.0
+"""How far two messages may be apart about one earthquake: judgement."""
+
+
+@dataclass(frozen=True)
+class EventFiles:
+    """What files say of one earthquake.
+
+    Attributes
+    ----------
+    quake : Earthquake
+        By the message that is believed most, with what others know besides.
+    messages : tuple of Message
+        Those of the shaking, what is believed most first.
+    records : tuple of Path
+        Files that are none: records of the museum's own.
+    digest : str
+        SHA-256 of all of them.
+    """
+
+    quake: ReportedEarthquake
+    messages: tuple[Message, ...]
+    records: tuple[Path, ...]
+    digest: str
+
+
+def read_files(files: Sequence[Path], now: datetime) -> EventFiles:
+    """Read the files about one earthquake.
+
+    Parameters
+    ----------
+    files : sequence of Path
+        Messages and records.
+    now : datetime
+        By this machine's clock.
+
+    Raises
+    ------
+    MessageError
+        For a message that cannot be used, and for messages about different earthquakes.
+    """
+    messages: list[Message] = []
+    records: list[Path] = []
+    digests = []
+    for file in files:
+        data = content(file)
+        digests.append(hashlib.sha256(data).hexdigest())
+        message = read_message(file, data)
+        if message is None:
+            records.append(file)
+            continue
+        check_quake(file, message.quake, now)
+        messages.append(message)
+    ordered = tuple(sorted(messages, key=lambda one: (-one.rank, -_version(one.quake.version))))
+    for one in ordered[1:]:
+        _same(ordered[0], one)
+    quake = ReportedEarthquake()
+    for one in ordered:
+        quake = with_more(quake, one.quake)
+    return EventFiles(quake, ordered, tuple(records), hashlib.sha256("\n".join(sorted(digests)).encode()).hexdigest())
+
+
+def with_more(quake: ReportedEarthquake, other: ReportedEarthquake) -> ReportedEarthquake:
+    """Return an earthquake with what another message knows of it besides."""
+    missing = {
+        name: getattr(other, name)
+        for name in ("id", "name", "magnitude", "latitude", "longitude", "depth_km", "time", "version", "scenario")
+        if not getattr(quake, name) and getattr(other, name)
+    }
+    return replace(quake, **missing)
+
+
+def read_message(file: Path, data: bytes) -> Message | None:
+    """Return what a file says of the shaking; None for what is no message, and so may be a record.
+
+    Raises
+    ------
+    MessageError
+        For a message that cannot be used.
+    """
+    text = data.removeprefix(b"\xef\xbb\xbf").lstrip()
+    if text.startswith(b"<") and not (b"FDSNStationXML" in data[:65536] or b"quakeml" in data[:65536].lower()):
+        root = xml_root(file, data)
+        from lxml import etree
+
+        name = etree.QName(root).localname
+        reader = _READERS.get(name)
+        if reader is None:
+            raise refused(
+                file, "file", f"is XML of another kind ({name[:40]})",
+                "give a ShakeMap grid.xml or stationlist, or a ShakeAlert event message",
+            )  # fmt: skip
+        return reader(file, root)
+    if text.startswith(b"{") and b'"FeatureCollection"' in text[:200_000] and _is_station_list(text):
+        return read_station_json(file, data)
+    return None
+
+
+def _is_station_list(text: bytes) -> bool:
+    """Whether it is cut off, which its reader says, or has what stations of ShakeMap have."""
+    try:
+        said = json.loads(text)
+    except (ValueError, RecursionError):
+        return True
+    features = said.get("features")
+    return isinstance(features, list) and any(
+        isinstance(one, dict) and isinstance(one.get("properties"), dict) and "pga" in one["properties"]
+        for one in features[:100]
+    )
+
+
+def _version(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return 0.0
+
+
+def _same(first: Message, other: Message) -> None:
+    a, b = first.quake, other.quake
+    if None in (a.latitude, a.longitude, b.latitude, b.longitude) or a.time is None or b.time is None:
+        return
+    apart = kilometres(a.latitude or 0.0, a.longitude or 0.0, b.latitude or 0.0, b.longitude or 0.0)
+    seconds = abs((a.time - b.time).total_seconds())
+    if apart > SAME_KM or seconds > SAME_S:
+        raise MessageError(
+            f"{first.file} and {other.file}: about different earthquakes, {apart:,.0f} km and {seconds:,.0f} s apart; "
+            "give the files of one"
+        )
