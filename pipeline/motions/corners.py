@@ -18,9 +18,11 @@ CYCLES = 3.0
 """Periods of the corner frequency that a record must hold."""
 
 NOISE_MARGIN = 3.0
-"""Least ratio of what is recorded during the event to the noise before it, above the corner.
+"""Least ratio of what is recorded during the event to the noise before it, in the displacement above the corner.
 
-Three in all are two of the event itself over its noise.
+Three in all are two of the event itself over its noise.  All frequencies above the corner count together, each as much
+as it moves the ground: between the lines of its spectrum an event is as quiet as the noise, and a gap above 0.5 Hz says
+nothing of what is below.
 
 source : Ancheta, T. D. et al. (2013), PEER NGA-West2 database, PEER 2013/03; Boore and Bommer (2005)
 """
@@ -47,7 +49,7 @@ Without them the waves that still run at the last sample would bend the polynomi
 DOUBT_SHARE = 0.1
 """Drift with which a lower corner is still possible, where it would change the motion (judgement)."""
 
-DOUBT_PGV = 1.1
+DOUBT_PGV = 1.05
 """Ratio of the PGV at two possible corners from which on the record alone does not decide between them (judgement)."""
 
 HIGHEST_CORNER = 1.0
@@ -110,8 +112,8 @@ def choose_corner(
     cycles : float
         The record must hold so many periods of the corner.
     margin : float
-        Above the corner the Fourier amplitude is at least so many times that of the noise, in bands of a third of an
-        octave, down from the band where it is best; nothing is known below 1 / pre_event.
+        The displacement above the corner, from Fourier amplitudes in bands of a third of an octave, is at least so many
+        times that of the noise; nothing is known below 1 / pre_event.
     drift_share : float
         A polynomial fitted to the displacement stays below this share of its peak, see DRIFT_SHARE.
 
@@ -154,15 +156,17 @@ def choose_corner(
     if by_noise > least:
         least, decided = by_noise, "pre-event noise"
     drift = _Drift(motion)
-    corner, lower = _settled(drift, least, HIGHEST_CORNER, drift_share), None
-    if pre_event is None and least > floor:
-        # An arrival that was found may be a later wave of the event: what its noise asks for is no certainty.
-        lower = _settled(drift, floor, HIGHEST_CORNER, drift_share)
-        if corner is None and lower is not None:
+    corner = _settled(drift, least, HIGHEST_CORNER, drift_share)
+    possible = []
+    # An arrival that was found may be a later wave of the event: what its noise asks for is no certainty.
+    sure = floor if pre_event is None else least
+    if sure < least:
+        possible.append(_settled(drift, sure, HIGHEST_CORNER, drift_share))
+        if corner is None and possible[0] is not None:
             reasons.append("which no displacement bears out: an arrival within the event was found")
-            corner, least, decided = lower, floor, "record length"
-    elif corner is not None:
-        lower = _settled(drift, max(least, 0.5 * corner), corner, max(DOUBT_SHARE, drift_share))
+            corner, least, decided = possible[0], floor, "record length"
+    if corner is not None:
+        possible.append(_settled(drift, max(sure, 0.5 * corner), corner, max(DOUBT_SHARE, drift_share)))
     if corner is None:
         raise InputError(
             f"motion {motion.name!r}: no corner up to {HIGHEST_CORNER:g} Hz is enough ({'; '.join(reasons)}); give "
@@ -173,7 +177,9 @@ def choose_corner(
         reasons.append(f"raised from {least:.3g} Hz, where the drift is {drift(least):.1%} of the displacement's peak")
     flat, _ = remove_baseline(motion.acceleration, motion.dt)
     pgv = _fastest(flat, motion.dt, corner)
-    if lower is not None and (stronger := _fastest(flat, motion.dt, lower)) > DOUBT_PGV * pgv:
+    fastest = [(_fastest(flat, motion.dt, one), one) for one in possible if one is not None]
+    stronger, lower = max(fastest, default=(pgv, corner))
+    if stronger > DOUBT_PGV * pgv:
         reasons.append(
             f"the record does not decide between {lower:.3g} Hz with a larger horizontal PGV of "
             f"{100 * stronger:.3g} cm/s and {corner:.3g} Hz with {100 * pgv:.3g} cm/s: the stronger motion is used; "
@@ -299,10 +305,10 @@ def _by_noise(motion: Motion, pre_event: float | None, margin: float) -> tuple[f
 
 def _noise_corner(motion: Motion, count: int, margin: float) -> float | None:
     """The frequency in Hz down to which both horizontals stand out from the noise; 0: all the way; None: nowhere."""
-    centres, noise = _bands(motion.acceleration[:2, :count], motion.dt, count)
+    centres, noise = _displacements(motion.acceleration[:2, :count], motion.dt, count)
     # The strong part only: the quiet end of a long record would thin the event out.
     end = max(int(strong_part(motion)[1] / motion.dt) + 1, 2 * count)
-    _, signal = _bands(motion.acceleration[:2, count:end], motion.dt, count)
+    _, signal = _displacements(motion.acceleration[:2, count:end], motion.dt, count)
     worst = 0.0
     for loud, quiet in zip(signal, noise, strict=True):
         silent = quiet == 0.0
@@ -316,12 +322,12 @@ def _noise_corner(motion: Motion, count: int, margin: float) -> float | None:
     return worst
 
 
-def _bands(data: Array, dt: float, count: int) -> tuple[Array, Array]:
-    """Root mean square Fourier amplitude per square root of a second in third octaves from 1 / (count dt) up."""
+def _displacements(data: Array, dt: float, count: int) -> tuple[Array, Array]:
+    """Root mean square displacement in and above each third of an octave from 1 / (count dt) up, in any one unit."""
     n = data.shape[1]
     window = np.hanning(n)
     level = data.mean(axis=1, keepdims=True)
-    lines = np.abs(np.fft.rfft((data - level) * window, axis=1)) / np.sqrt(float(window @ window))
+    power = np.abs(np.fft.rfft((data - level) * window, axis=1)) ** 2 / float(window @ window)
     frequency = np.fft.rfftfreq(n, dt)
     lowest = 2 ** (1 / 6) / (count * dt)
     centres = lowest * 2 ** (np.arange(max(1, int(np.floor(3 * np.log2(0.4 / dt / lowest))) + 1)) / 3)
@@ -330,5 +336,6 @@ def _bands(data: Array, dt: float, count: int) -> tuple[Array, Array]:
         inside = (frequency >= centre * 2 ** (-1 / 6)) & (frequency < centre * 2 ** (1 / 6))
         if not inside.any():
             inside[np.argmin(np.abs(frequency - centre))] = True
-        out[:, k] = np.sqrt(np.mean(lines[:, inside] ** 2, axis=1))
-    return np.asarray(centres, dtype=np.float64), out
+        # The band is as wide as its centre is high, and the displacement is the acceleration over its square.
+        out[:, k] = power[:, inside].mean(axis=1) / centre**3
+    return np.asarray(centres, dtype=np.float64), np.sqrt(np.cumsum(out[:, ::-1], axis=1)[:, ::-1])

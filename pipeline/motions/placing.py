@@ -130,7 +130,6 @@ def plan(
     level : str
         Of shaking.
     proposals : sequence of RecordProposal
-        Without questions.
     reason : str
         Why refusals that are a matter of judgement are overruled; "" where they are not.
     before, known : str or None, Manifest or None
@@ -139,6 +138,11 @@ def plan(
     Returns
     -------
     PlacingPlan
+
+    Raises
+    ------
+    MotionError
+        For a proposal with questions; a record that is refused is told in the plan.
     """
     made = PlacingPlan(folder, before, known, level)
     there = [] if known is None else [(record, _level_of(known, record)) for _, record in known.records()]
@@ -149,7 +153,10 @@ def plan(
     for proposal in proposals:
         record = proposal.record
         if record is None:
-            raise AssertionError(f"{proposal.name}: a proposal with questions cannot be placed")
+            asked = "; ".join(f"{one.text}: {one.option}" for one in proposal.questions)
+            raise refusal(
+                folder, f"record {proposal.name!r}", f"has unanswered questions ({asked})", "answer them first"
+            )
         twin = next((r for r in [*(r for r, _ in there), *(p.record for p in made.placed)] if _same(r, record)), None)
         if twin is not None:
             made.already.append((proposal.name, twin.name))

@@ -13,6 +13,7 @@ from pipeline.motions.onset import first_arrival
 from pipeline.records import Motion
 
 from .test_baseline import DT, clean
+from .test_window import shaken
 
 
 def noisy(cross, level, seed=2):
@@ -132,27 +133,68 @@ def test_corner_is_raised_by_a_bent_baseline():
     assert pgv(bent, corner.frequency) == pytest.approx(pgv(bent, peer), rel=0.05)
 
 
-def test_what_the_record_does_not_decide_is_the_stronger_motion_and_told():
-    """A slow wave that began before the arrival: as noise it is filtered out, as part of the event it is the PGV."""
-    motion = undecided()
-    corner = choose_corner(motion)
-    assert "the record does not decide between" in corner.reason
+@pytest.mark.parametrize("kind", ["noise", "drift"])
+def test_what_the_record_does_not_decide_is_the_stronger_motion_and_told(kind):
+    """A slow wave under a sharper event: as noise or drift it is filtered out, as part of the event it is the PGV."""
+    corner = choose_corner(motion := undecided(kind))
+    assert corner.reason.startswith("pre-event noise" if kind == "noise" else "displacement drift")
     words = corner.reason.split("does not decide between ")[1].split()
     low, high = float(words[0]), float(words[words.index("and") + 1])
     assert low < high
     assert corner.frequency == pytest.approx(low, rel=5e-3)
     strong, weak = pgv(motion, corner.frequency), pgv(motion, high)
-    assert strong > 1.1 * weak
+    assert strong > 1.05 * weak
     assert f"{100 * strong:.3g} cm/s" in corner.reason
     assert f"{100 * weak:.3g} cm/s" in corner.reason
 
 
-def undecided():
-    """A slow wave about 20 s under a sharper event at 15 s: what leads to the arrival of that may be noise or event."""
+def undecided(kind):
+    """A sharp event at 15 s, and a wave of 6 s period that runs all the time, or one of 10 s about 12 s."""
     t = np.arange(6000) * DT
-    u = 0.3 * np.exp(-(((t - 20.0) / 6.0) ** 2)) * np.sin(0.2 * np.pi * (t - 20.0))
+    if kind == "noise":
+        u = 0.1 * tukey(6000, 0.4) * np.sin(2 * np.pi / 6.0 * t)
+    else:
+        u = 0.3 * np.exp(-(((t - 12.0) / 4.0) ** 2)) * np.sin(0.2 * np.pi * (t - 12.0))
     slow = np.stack([np.gradient(np.gradient(u, DT), DT)] * 3)
     return Motion(DT, slow + 0.05 * clean().acceleration + 1e-5 * np.random.default_rng(0).normal(size=(3, 6000)))
+
+
+@pytest.mark.parametrize("second", [4.0, 8.0, 12.0])
+def test_noise_where_an_event_has_nothing_does_not_take_its_waves(second):
+    """Tones of 0.5 Hz and above, in noise of a five-hundredth, which adds about as little to the PGV: 1 %.
+
+    Judged by single bands, the noise below the lowest tone asked for 0.22 Hz, which takes 3 % of the PGV.
+    """
+    rng = np.random.default_rng(3)
+    t = np.arange(6000) * DT
+    shape = np.where(np.abs(t - 30.0) < 15.0, np.cos(np.pi * (t - 30.0) / 30.0) ** 2, 0.0)
+    tones = np.sin(np.pi * t) + np.sin(2.0 * np.pi * second * t)
+    still = np.stack([shape * tones] * 3)
+    motion = Motion(DT, still + 2e-3 * rng.normal(size=(3, 6000)))
+    corner = choose_corner(motion)
+    assert corner.frequency < 0.25
+    true = np.abs(integrate(Motion(DT, still))[0][:2]).max()
+    assert pgv(motion, corner.frequency) == pytest.approx(true, rel=0.01)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_corner_does_not_hang_on_the_window(seed):
+    """Windows of 115 to 150 s about one earthquake in noise: a factor of two about the middle, 0.5 % in the PGV.
+
+    It has nothing below 0.5 Hz, of which a corner of 0.06 Hz takes less than 0.1 %; the noise adds up to 0.2 %.
+    Judged by single bands the corners of such windows were from 0.05 to 0.76 Hz.
+    """
+    data = shaken(150.0, 50.0, seed=seed) * 1e-3
+    found = []
+    for begin, end in ((0.0, 150.0), (12.0, 129.0), (32.0, 149.0), (20.0, 135.0)):
+        row = data[int(begin / DT) : int(end / DT)]
+        motion = Motion(DT, np.stack([row, 0.8 * row, 0.5 * row]))
+        corner = choose_corner(motion).frequency
+        found.append((corner, pgv(motion, corner)))
+    corners, peaks = zip(*found, strict=True)
+    assert max(corners) < 2.0 * np.median(corners)
+    assert min(corners) > 0.5 * np.median(corners)
+    assert max(peaks) < 1.005 * min(peaks)
 
 
 def test_corner_asks_for_the_displacement_of_the_horizontals_only():

@@ -16,7 +16,8 @@ import pytest
 
 from pipeline.motions import load_manifest, read_motion
 from pipeline.motions.corners import choose_corner
-from pipeline.motions.intensity import measures
+from pipeline.motions.filtering import highpass, remove_baseline
+from pipeline.motions.intensity import measures, strong_part
 from pipeline.motions.reading import read_record
 from pipeline.quantities import G
 from pipeline.records import Motion
@@ -131,6 +132,31 @@ def test_with_a_corner_chosen_without_the_agency(site, agency, name, pre_event):
     (motion,) = read_motion(site(name, pre_event_s=pre_event))
     judge(motion, *agency(name)[1:])
     assert f"high-pass corner {corner.frequency:.4g} Hz chosen" in " | ".join(motion.steps)
+
+
+@pytest.mark.parametrize("name", RECORDS)
+@pytest.mark.parametrize("begin", [0.0, 0.15, 0.3])
+@pytest.mark.parametrize("end", [0.0, 0.15, 0.3])
+def test_the_corner_does_not_hang_on_the_window(site, name, begin, end):
+    """Begun later and ended earlier by shares of what is before and after the strong shaking.
+
+    Within a factor of two of the corner of the whole record, and 5 % of its PGV: as near as corners of different
+    methods are to each other.
+    """
+    recording = read_record(folder := site(name), load_manifest(folder).level[0].record[0])
+    whole = Motion(recording.dt, remove_baseline(recording.data, recording.dt)[0])
+    first, last = strong_part(whole)
+    a, b = begin * (first - 1.0), whole.duration - end * (whole.duration - last - 5.0)
+    data = recording.data[:, int(a / whole.dt) : int(b / whole.dt) + 1]
+    peaks, corners = [], []
+    for part in (recording.data, data):
+        motion = Motion(whole.dt, remove_baseline(part, whole.dt)[0])
+        corners.append(choose_corner(Motion(whole.dt, part)).frequency)
+        filtered, _, start = highpass(motion.acceleration, motion.dt, corners[-1])
+        found = measures(Motion(motion.dt, filtered, start=start))
+        peaks.append(max(found["pgv_x"], found["pgv_y"]))
+    assert 0.5 < corners[1] / corners[0] < 2.0
+    assert peaks[1] == pytest.approx(peaks[0], rel=0.05)
 
 
 def test_the_displacement_is_the_agencys(site, agency_file):

@@ -12,6 +12,7 @@ import pytest
 
 from pipeline.motions import MotionError, read_motion
 from pipeline.motions import parts as parts_module
+from pipeline.motions.corners import STEP
 from pipeline.motions.earthquakes import earthquakes
 from pipeline.motions.entries import entries
 from pipeline.motions.intensity import measures
@@ -62,7 +63,10 @@ COMMON = {
 
 
 def test_a_window_of_a_day_is_that_window_alone(tmp_path, write_manifest):
-    """The same corner; filtered with the record around it instead of zeros, the peaks differ by far less than 1 %."""
+    """The same corner to a step of the search; filtered with the record around it, peaks differ by far less than 1 %.
+
+    The straight line that goes first is that of what was read, which moves the arrival that is found by a few samples.
+    """
     whole = shaken(4 * 3600.0, 7200.0)
     write(tmp_path, whole)
     (part,) = read_motion(write_manifest(**COMMON, window_s=[7150.0, 7300.0]))
@@ -71,7 +75,7 @@ def test_a_window_of_a_day_is_that_window_alone(tmp_path, write_manifest):
     assert part.samples == alone.samples == 15001
     a, b = measures(part), measures(alone)
     corners = [next(s for s in m.steps if s.startswith("high-pass corner")).split()[2] for m in (part, alone)]
-    assert corners[0] == corners[1]
+    assert float(corners[0]) == pytest.approx(float(corners[1]), rel=STEP - 1.0)
     for name in ("pga_x", "pga_y", "pga_z", "pgv_x", "pgv_y", "pgv_z"):
         assert a[name] == pytest.approx(b[name], rel=2e-3)
 
@@ -196,9 +200,9 @@ def test_several_earthquakes_are_listed_and_one_is_chosen(tmp_path, write_manife
     (second,) = read_motion(write_manifest(**COMMON, origin_time="2020-01-01T00:33:10Z"))
     (same,) = read_motion(write_manifest(**COMMON, window_s=[1950.0, 2100.0]))
     assert any("that of the earthquake found there" in step for step in second.steps)
-    assert measures(second)["pga"] == pytest.approx(
-        measures(same)["pga"], rel=0.02
-    )  # other windows get other corners, 0.71 and 0.05 Hz
+    # Other windows get other corners, both far below what shakes.
+    for name in ("pga", "pgv"):
+        assert measures(second)[name] == pytest.approx(measures(same)[name], rel=2e-3)
     (exact,) = read_motion(write_manifest(**COMMON, origin_time="2020-01-01T00:33:10Z", window_s=[-40.0, 110.0]))
     assert np.array_equal(exact.acceleration, same.acceleration)
     with pytest.raises(MotionError, match=r"no earthquake is found within 300 s.*00:08:2"):
