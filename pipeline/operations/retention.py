@@ -19,7 +19,7 @@ from pipeline.store.runs import FINISHED, RunSummary, list_runs
 
 _RUN = r"(?P<run>(?P<day>\d{8})T(?P<time>\d{6})\.\d{3}-\d+)"
 _REPORT = re.compile(rf"{_RUN}(-\d+)?")
-_OURS = frozenset({".html", ".csv", ".jsonl", ".json", ".parquet", ".xlsx", ".arrow"})
+_OURS = frozenset({".html", ".csv", ".jsonl", ".json", ".parquet", ".xlsx", ".arrow", ".pdf"})
 _ALWAYS = ("index.html", "findings.jsonl", "objects.csv")
 
 

@@ -51,8 +51,8 @@ def test_an_unchanged_night_finds_nothing_anew_and_shows_the_same_files(settings
     curves = "fragility_classes.csv"  # a few lines, written every night: the same ones
     assert (before / curves).read_bytes() == (after / curves).read_bytes()
     names = {p.relative_to(before).as_posix() for p in before.rglob("*") if p.is_file()}
-    # Pages, their parts, the exports with a workbook, what was read, the plan, the list of all objects.
-    assert len(names - own) == 3 + 3 * 10 + 9 + 2 + 2 + 1
+    # Pages, their parts, sheets to walk with, the exports with a workbook, what was read, the plan, the list of all.
+    assert len(names - own) == 3 + 3 * 10 + 3 + 9 + 2 + 2 + 1
     for name in names - own:
         # The very same file, so that a large museum's unchanged night costs nothing.
         assert (before / name).samefile(after / name), name
