@@ -333,8 +333,20 @@ def _class_of(item: Item, rules: RuleTable | None, decided: tuple[str, str] | No
     read = readings(item, rules)
     chances = chances_of(item, read)
     if not chances or (read.silent and chances[0].probability < SURE):
-        return _Taken(read.decided.rule.object_class, read.decided.words, _told(chances))
+        return _open(read, _told(chances))
     return _Taken(chances[0].object_class, _why(read, chances[0]), _told(chances))
+
+
+def _open(read: Readings, chances: tuple[tuple[str, float], ...]) -> _Taken:
+    """Return what a record that names no class is taken for: what is left, with the chance that the others leave."""
+    name = read.decided.rule.object_class
+    others = tuple(pair for pair in chances if pair[0] != name)
+    words = f"{read.decided.words}; its record names no class"
+    if not others:
+        return _Taken(name, words)
+    words += f", {others[0][0]} is the likeliest ({others[0][1]:.2f})"
+    left = (name, round(1.0 - sum(chance for _, chance in others), 2))
+    return _Taken(name, words, tuple(sorted((*others, left), key=lambda pair: -pair[1])))
 
 
 @lru_cache(maxsize=65536)

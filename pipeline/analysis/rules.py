@@ -34,7 +34,7 @@ from pipeline.tables.rows import Entries, checked, once
 _IDENTIFIER = re.compile(r"(?<!\d)300\d{6}(?!\d)")
 _WORD = re.compile(r"[^\W\d_]+")
 _BREAK = re.compile(
-    r"[,:;|()\[\]/\"]|\s(?:of|with|for|in|from|by|and|on|showing|depicting|mit|von|aus|und|avec|de|du|des|et|di|da|con|y|e|met|van|en)\s"
+    r"[,:;|()\[\]/\"]|\s(?:of|with|for|in|from|by|and|on|showing|depicting|mit|von|aus|und|avec|de|du|des|et|di|da|con|y|e|met|van|en|銘)\s"
 )
 """Where the name of a thing ends and its description begins."""
 _MARK = re.compile(r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\b|n[°o]|#|series\b|[a-z-]*\d)")
@@ -47,10 +47,14 @@ _READ = 10_000
 """Characters of a text that are searched for the name of the thing."""
 PICTURES = ("framed",)
 """Classes of what hangs flat whatever its title says."""
+FORMATS = ("screen", "handscroll")
+"""Rules of pictures that do not hang: a title that names one says what the thing is, not what it shows."""
 _SHOWN = 80
 """Characters of a cell that a message repeats."""
 _STEM = 2
 """Letters that must precede an ending such as *statuette."""
+_PLURAL = 6
+"""Letters from which an e at the end may be that of a plural (Handschuhe): plane is no plan, and cane no can."""
 _IDEOGRAPH = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
 """Letters of scripts that put no spaces between words: there one letter may precede an ending."""
 _PART = re.compile(
@@ -357,8 +361,9 @@ def readings(item: Item, among: RuleTable | None = None) -> Readings:
     if classed is None and item.classification:
         classed = _named(item, item.classification, kinds, of)
     title = _named(item, item.title, kinds, of)
-    # What is painted, drawn or printed is flat, whatever its title says that it shows.
-    speaks = title if made is None or made.rule.object_class not in PICTURES else None
+    # What is painted, drawn or printed is flat, whatever its title says that it shows, but for its own format.
+    flat = made is not None and made.rule.object_class in PICTURES
+    speaks = title if not flat or (title is not None and title.rule.name in FORMATS) else None
     found = [one for one in (name or speaks, classed, made) if one is not None]
     decided = min(found, key=lambda one: one.rule.position, default=RuleMatch(of.rules[-1]))
     return Readings(decided, decided.rule.name in of.own, name, classed, made, title)
@@ -437,6 +442,8 @@ def _forms(word: str) -> tuple[str, ...]:
         if word.endswith("ies"):
             forms.append(word[:-3] + "y")
         forms.extend(word[: -len(end)] for end in ("s", "es", "n", "en", "x") if word.endswith(end))
+    if len(word) >= _PLURAL and word.endswith("e"):
+        forms.append(word[:-1])
     return tuple(forms)
 
 

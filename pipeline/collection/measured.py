@@ -10,6 +10,7 @@ from typing import Any
 from pipeline.collection.cells import Cells
 from pipeline.collection.dimensions import Choice, DimensionNote, Dimensions, agree, choose, doubts, parse
 from pipeline.collection.dimensions.lexicon import unit_words
+from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.mapping import ColumnMap, Texts
 from pipeline.collection.measured_cell import written
 from pipeline.collection.record import TEXT_LIMIT
@@ -103,6 +104,7 @@ def fill(
     texts_hold : bool
         Whether a text holds where a column says something else; else the column does.
     """
+    texts = [plain_text(text) for text in texts]
     # Lines are how such texts are written, and no fault of theirs.
     lines = ["; ".join(filter(None, (line.strip() for line in text.splitlines()))) for text in texts]
     values["dimensions"] = cells.text("dimensions", _joined(mapping.columns), lines, limit=TEXT_LIMIT)

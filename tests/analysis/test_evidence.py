@@ -240,3 +240,16 @@ def test_another_class_that_would_be_computed_otherwise_is_told() -> None:
     ]
     assert told
     assert all("kouros decide" in text for text in told)
+
+
+def test_a_record_that_names_no_class_says_so_and_its_chances_add_up() -> None:
+    """What is left is taken, with the chance that the classes leave that are likely; both are said."""
+    scene = classify(Item("1", "G", title="Minikitchen", medium="aluminum, steel", height_m=0.889, width_m=1.143))
+    assert scene.object_class == "object"
+    assert "its record names no class" in scene.rule
+    assert sum(chance for _, chance in scene.chances) == pytest.approx(1.0)
+    assert dict(scene.chances)["object"] > 0.0
+    assert scene.next_class is not None
+    bare = classify(Item("1", "G"))
+    assert (bare.object_class, bare.chances) == ("object", ())
+    assert "its record names no class" in bare.rule

@@ -44,7 +44,7 @@ def choose(dimensions: Dimensions, *, hung: bool = False) -> Chosen:
     best = min((_rank(g, hung) for g in bodies), default=_LAST)
     alike = [g for g in bodies if _rank(g, hung) == best < _LAST]
     if alike and not _is_lost(dimensions, alike):
-        chosen = max(_telling(alike), key=_size)
+        chosen = _upright_and_round(alike) or max(_telling(alike), key=_size)
         if dimensions.having("round"):
             chosen = [replace(part, dimension="diameter") if part.dimension == "depth" else part for part in chosen]
         out = _extents(chosen, _reason(chosen, len(alike), hung and best == 0))
@@ -76,6 +76,19 @@ def _telling(alike: list[list[DimensionPart]]) -> list[list[DimensionPart]]:
     if not any("height" in one or len(one) > 1 for one in said):
         return alike
     return [g for g, one in zip(alike, said, strict=True) if one]
+
+
+def _upright_and_round(alike: list[list[DimensionPart]]) -> list[DimensionPart]:
+    """Return height and diameter of "Diameter: 20 cm; Overall: 9 cm", where each is a group of one number; else none.
+
+    One number "overall" beside a diameter is the other extent of the same thing.
+    """
+    if len(alike) != 2 or any(len(group) != 1 for group in alike):
+        return []
+    tall, wide = sorted((group[0] for group in alike), key=lambda part: part.dimension == "diameter")
+    if (tall.dimension, wide.dimension, tall.name, wide.name) != ("unlabelled", "diameter", "overall", "overall"):
+        return []
+    return [replace(tall, dimension="height"), wide] if tall.words else []
 
 
 def _is_lost(dimensions: Dimensions, alike: list[list[DimensionPart]]) -> bool:

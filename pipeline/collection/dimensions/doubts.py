@@ -39,10 +39,15 @@ def doubts(read: Dimensions, chosen: Chosen, about: str = "") -> tuple[Dimension
     used = {(c.start, c.end) for name in Chosen.__slots__ if (c := getattr(chosen, name)) is not None}
     body = chosen.height or chosen.width or chosen.depth or chosen.diameter
     groups = {part.group for part in read.parts if body and (part.start, part.end) == (body.start, body.end)}
+    # Where width and depth are both given, a diameter beside them fills neither.
+    open_ = _OPEN | {"diameter"} if chosen.width and chosen.depth else _OPEN
     out = [
         DimensionNote("unused", f"the text also gives {_shown(part, read)}, which no field holds", part.start, part.end)
         for part in read.parts
-        if part.group in groups and (part.start, part.end) not in used and part.dimension in _OPEN and part.value
+        if part.group in groups
+        and ((part.start, part.end) not in used or part.dimension == "diameter")
+        and part.dimension in open_
+        and part.value
     ]
     out += [
         DimensionNote("unused", f"what {part.words!r} means is not known", part.start, part.end)

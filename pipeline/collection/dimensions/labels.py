@@ -35,6 +35,8 @@ _UPRIGHT = "縦"
 _COMPONENTS = frozenset("ab")
 """A text that has both numbers its components with letters."""
 _NUMBERING = frozenset("abcdefg")
+_ROUND = ("en", "nl", "de")
+"""Languages whose D is the depth or thickness, but beside no width the diameter."""
 _IN_PLAN = frozenset({"width", "depth", "length", "thickness"})
 
 
@@ -78,7 +80,12 @@ def labelled(tokens: list[Token], text: str, language: str, notes: list[Dimensio
         token = tokens[at]
         written = text[token.start : token.end]
         meaning = chosen.meaning(written)
-        if chosen.name == "en" and meaning == "depth" and token.word == "d" and _is_diameter(tokens, places):
+        if (
+            chosen.name in _ROUND
+            and meaning in ("depth", "thickness")
+            and token.word == "d"
+            and _is_diameter(tokens, places)
+        ):
             message = f"{written!r} without a width beside it is taken as the diameter"
             notes.append(DimensionNote("round", message, token.start, token.end))
             return tokens
@@ -131,12 +138,12 @@ def _sized(meanings: list[str]) -> bool:
 
 def _is_diameter(tokens: list[Token], places: list[int]) -> bool:
     """Whether a D stands beside no width, length or unlabelled number, as the depth of a box would."""
-    inside = 0
-    for token in tokens:
-        inside += (token.type == OPEN) - (token.type == CLOSE)
-        if token.type == JOIN and inside < 1:
-            return False
     labels = {tokens[at].word for at in places}
+    inside = 0
+    for at, token in enumerate(tokens):
+        inside += (token.type == OPEN) - (token.type == CLOSE)
+        if token.type == JOIN and inside < 1 and NUMBER in (tokens[0].type, tokens[at + 1].type):
+            return False
     spoken = {token.meaning[1] for token in tokens if token.type == DIMENSION and token.meaning}
     return labels <= {"h", "d", "ht"} and spoken <= {"height", "depth", "weight"}
 

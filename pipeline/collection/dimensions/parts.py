@@ -7,6 +7,7 @@ DETAILS = frozenset(
     {"rim", "seat", "lid", "top", "mouth", "handle", "stem", "neck", "cord", "label", "crate", "storage", "opening"}
 )
 BASES = frozenset({"base", "foot", "feet", "plinth", "pedestal", "bottom"})
+ROUND = frozenset({"foot", "rim", "mouth", "neck", "opening"})
 _HOLLOW = "inside"
 _WHOLE = ("with ", "without ")
 
@@ -14,6 +15,11 @@ _WHOLE = ("with ", "without ")
 def is_base(name: str) -> bool:
     """Say whether a name is that of a base or foot, and not of an object with or without one."""
     return not name.startswith(_WHOLE) and bool(BASES.intersection(name.split()))
+
+
+def is_opening(name: str) -> bool:
+    """Say whether a name is that of a foot, rim or mouth: of a height and a diameter only the diameter is theirs."""
+    return not name.startswith(_WHOLE) and bool(ROUND.intersection(name.split()))
 
 
 def is_detail(name: str) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pipeline.collection.dimensions.pairing import agree, pair
-from pipeline.collection.dimensions.parts import is_base, is_detail
+from pipeline.collection.dimensions.parts import is_base, is_detail, is_opening
 from pipeline.collection.dimensions.phrases import Phrase, phrase_of
 from pipeline.collection.dimensions.quantities import DimensionQuantity, Group
 from pipeline.collection.dimensions.result import DimensionNote
@@ -375,6 +375,8 @@ class Reader:
     def _split(self, group: Group, phrase: Phrase) -> Group:
         """Give the last number of a group one of its own: in "H. 12 cm, Diam. 8 cm (rim)" only it is the rim's."""
         last = [q for q in group.quantities if q.run == group.quantities[-1].run]
+        if last[-1].dimension == "diameter" and is_opening(phrase.name) and all(q.dimension for q in last):
+            last = last[-1:]  # "h 17 cm x diameter 9 cm (foot)": what is round is the foot, what is high the whole
         if group.name != "overall" or len(last) == len(group.quantities) or len(last) > 1:
             return group
         group.quantities = [q for q in group.quantities if q not in last]

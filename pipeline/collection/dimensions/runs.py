@@ -28,6 +28,8 @@ _UP_TO = frozenset({"to", "bis", "à", "a", "tot", "al", "até", "până", "か�
 _ENDS = frozenset({END, BREAK, COMMA, CLOSE, OPEN, JOIN, DASH, DOT, OTHER, DIMENSION})
 _AND = frozenset({"and", "und", "et", "en", "y", "e", "și"})
 _OF = frozenset({"de", "di", "in", "of", "da", "en"})
+_SPACELESS = "\u3000"
+"""Before the letters of the scripts that put no spaces between words."""
 _AREAS = frozenset({"sq", "square", "cubic", "cu", "quadrat"})
 
 
@@ -241,6 +243,8 @@ def _label_behind(tokens: list[Token], at: int, quantity: DimensionQuantity, tex
         if tokens[behind].type != CLOSE:
             return at
         behind += 1
+    elif token.word[:1] > _SPACELESS and tokens[behind].type == NUMBER:
+        return at  # "150cm 裄70cm": such labels stand before their numbers
     elif tokens[behind].type == COLON or (
         tokens[behind].type == WORD and tokens[behind].unit is None and tokens[behind].word not in _AND
     ):

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from pipeline.collection.dimensions import parse
+from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.names import LENGTH, TEXTS, ColumnMeaning, bare, named
 from pipeline.collection.sources.measurement_terms import kind_of, unit_of
 
@@ -53,7 +54,7 @@ class Column:
     def dimensional(self) -> float:
         """Share of its texts that hold a dimension with a unit."""
         some = self.filled[:_SOME]
-        return sum(any(p.unit for p in parse(text).parts) for text in some) / len(some) if some else 0.0
+        return sum(any(p.unit for p in parse(plain_text(text)).parts) for text in some) / len(some) if some else 0.0
 
     @cached_property
     def sized(self) -> float:

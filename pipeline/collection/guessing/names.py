@@ -205,6 +205,10 @@ def _forms(name: str) -> Iterator[str]:
     halves = [half for half in re.split(r"[/|,;]| - |\n", unit_in(name)[0]) if half.strip()]
     if len(halves) > 1:
         yield from map(plain, reversed(halves) if between else halves)
+    # A path of names: what its last one says, "_currentLocation__onDisplay", "location.onView".
+    last = re.split(r"__|\.(?=[^\W\d_]{3})", name.strip("_ ."))[-1]
+    if last != name:
+        yield plain(last)
     # What stands in brackets may be a language.
     outside = re.sub(r"[(\[].*?[)\]]", " ", name)
     if outside.strip() and outside != name:

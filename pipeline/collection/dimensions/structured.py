@@ -1,0 +1,100 @@
+"""Dimensions that a cell holds as JSON, as catalogues on the web publish them -> the same as a text."""
+
+from __future__ import annotations
+
+import json
+import re
+from ast import literal_eval
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+LONGEST = 20_000
+"""Characters of a cell that are looked at: thirty measurements with all that a catalogue says of each."""
+DEEPEST = 6
+"""Levels of lists and objects in one another that are looked into."""
+
+_OPENS = re.compile(r"\s*[\[{]\s*[\[{\"']")
+_NAMES = ("dimension", "dimensiontype", "type", "measurementtype", "name", "label")
+_VALUES = ("value", "amount", "dimensionvalue", "measurementvalue", "measurement", "content", "display")
+_UNITS = ("unit", "units", "dimensionunit", "measurementunit", "unitname")
+_PARTS = ("part", "element", "extent")
+_WHOLE = ("overall", "whole", "estimate", "estimated")
+"""Of a part: that there is none, or how it was measured."""
+_ALL = ("dimension", "dimensions", "measurement", "measurements", "size")
+_MOST = 200
+"""Characters of one cell of a measurement."""
+
+
+def plain_text(text: str) -> str:
+    """Return a cell of dimensions as a text that can be read like any other.
+
+    Parameters
+    ----------
+    text : str
+        Of the cell: `[{"dimension": "Height", "value": "24.5", "unit": "cm", "part": ""}]`, the same as Python writes
+        it, `{"height": 450, "width": 320, "unit": "mm"}`, `{"framed": {"height": 0.6, "width": 0.5}}`, or any text.
+
+    Returns
+    -------
+    str
+        "Height 24.5 cm, Width 12 cm"; those of a part behind its name. The text itself where it is no such cell.
+    """
+    if len(text) > LONGEST or not _OPENS.match(text):
+        return text
+    found = _parsed(text.strip())
+    parts: dict[str, list[str]] = {}
+    for part, said in () if found is None else _lines(found, "", 0):
+        parts.setdefault(part, []).append(said)
+    return "; ".join(f"{part}: {', '.join(said)}" if part else ", ".join(said) for part, said in parts.items()) or text
+
+
+def _parsed(text: str) -> Any:
+    for read in (json.loads, literal_eval):
+        try:
+            return read(text)
+        except (ValueError, SyntaxError, RecursionError, MemoryError):
+            continue
+    return None
+
+
+def _lines(of: Any, part: str, depth: int) -> Iterator[tuple[str, str]]:
+    """Yield each measurement in a value, however it is nested: the part that it is of, and what is said of it."""
+    if depth > DEEPEST:
+        return
+    if isinstance(of, list):
+        for one in of:
+            yield from _lines(one, part, depth + 1)
+    elif isinstance(of, Mapping):
+        cells = {re.sub(r"[\W_]", "", str(key)).casefold(): value for key, value in of.items()}
+        value = _first(cells, _VALUES)
+        if value:
+            yield _measured(cells, value, part)
+            return
+        unit = _first(cells, _UNITS)
+        for key, one in of.items():
+            if isinstance(one, Mapping | list):
+                yield from _lines(one, part if str(key).casefold() in _ALL else str(key)[:_MOST], depth + 1)
+            elif isinstance(one, int | float | str) and not isinstance(one, bool) and str(one) not in ("", unit):
+                yield part, f"{str(key)[:_MOST]} {str(one)[:_MOST]} {unit}".strip()
+    elif isinstance(of, str) and of.strip():
+        yield part, of[:_MOST]
+
+
+def _measured(cells: Mapping[str, Any], value: str, part: str) -> tuple[str, str]:
+    name = _first(cells, _NAMES)
+    own = [one for key in _PARTS if (one := _first(cells, (key,))) and one != name and one.casefold() not in _WHOLE]
+    said = f"{'' if name.casefold() in _ALL else name} {value} {_first(cells, _UNITS)}".strip()
+    return " ".join((part, *own)).strip(), said
+
+
+def _first(cells: Mapping[str, Any], names: tuple[str, ...]) -> str:
+    """Return the first cell of some names that says something, as text."""
+    for name in names:
+        value = cells.get(name)
+        if isinstance(value, Mapping):
+            value = next((value[key] for key in ("name", "label", "text", "value") if value.get(key)), None)
+        if isinstance(value, str | int | float) and not isinstance(value, bool):
+            text = str(value).strip()
+            if text.casefold() not in ("", "none", "null"):
+                return text[:_MOST]
+    return ""
