@@ -95,11 +95,15 @@ class Notes:
 
 @dataclass(frozen=True, slots=True)
 class PageNotes:
-    """The three lists of a gallery's page, and the sources of the measures on it by their titles."""
+    """The three lists of a gallery's page, and the sources of the measures on it by their titles.
+
+    alone : why a model was left out, where that is said of one object of the page only
+    """
 
     assumed: Notes
     rejected: Notes
     skipped: Notes
+    alone: frozenset[str] = frozenset()
     sources: tuple[tuple[str, str], ...] = ()
 
     def numbers(self, numbers: Sequence[NumberView], cited: Collection[str] = ()) -> Markup:
@@ -116,10 +120,16 @@ class PageNotes:
         )
         return Markup(". ".join(groups) + "." if numbers else "")  # noqa: S704 - each part is escaped above
 
+    def left_out(self, view: ObjectView) -> Markup:
+        """Return the models that were not run for an object in one line, with the reasons or links to them."""
+        return self.skipped.cite(_left_out(view, self.alone))
+
 
 def page_notes(objects: Iterable[ObjectView]) -> PageNotes:
     """Collect what the objects of a page share, in the order in which the page first needs it."""
     told = [o for o in objects if o.carded]
+    uses = Counter(text for o in told for text in o.skipped)
+    alone = frozenset(text for text, times in uses.items() if times == 1)
     return PageNotes(
         assumed=Notes(
             "A",
@@ -133,15 +143,21 @@ def page_notes(objects: Iterable[ObjectView]) -> PageNotes:
             ),
         ),
         rejected=Notes("R", ((text, "") for o in told for m in o.measures for text in m.rejected)),
-        # Objects of one kind leave out the same models for the same reasons: one note for all of an object's.
-        skipped=Notes("M", ((left_out(o), "") for o in told if o.skipped), headed=False),
+        skipped=Notes("M", ((text, "") for o in told for text in _left_out(o, alone)), headed=False),
+        alone=alone,
         sources=tuple(dict.fromkeys((m.title, m.source) for o in told for m in o.measures if m.source)),
     )
 
 
-def left_out(view: ObjectView) -> str:
-    """Return the models that were not run for an object, with the reasons, in one text."""
-    return "; ".join(view.skipped)
+def _left_out(view: ObjectView, alone: Collection[str]) -> list[str]:
+    """Return the models that were not run for an object, with the reasons.
+
+    Objects of one kind leave out the same ones for the same reasons, but for what names the object itself: first what
+    is said of this one alone, then all others in one text.
+    """
+    own = [text for text in view.skipped if text in alone]
+    others = "; ".join(text for text in view.skipped if text not in alone)
+    return [*own, others] if others else own
 
 
 def _head(text: str) -> str:
