@@ -29,7 +29,7 @@ DRAWS = ("pipeline.report.files.report_writer", "pipeline.report.files.page_rend
 
 GROUPS, OURS = ("obspy.plugin.waveform",), "pipeline."
 
-MODULES = {"lxml": "lxml", "pywt": "pywavelets"}
+MODULES = {"lxml": "lxml", "pywt": "pywavelets", "bidi": "python-bidi", "arabic_reshaper": "arabic-reshaper"}
 """Libraries that are imported by another name than they are installed by."""
 
 HARMLESS = {

@@ -15,6 +15,7 @@ import numpy as np
 import openpyxl
 import pyarrow.parquet as pq
 import pytest
+from pypdf import PdfReader
 
 from pipeline.collection.mapping import load_mapping
 from pipeline.collection.reading import read_items
@@ -36,6 +37,7 @@ STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u20
 """What may reach no terminal: control characters but tabs and line ends, and marks of direction."""
 
 PAGE = re.compile(r"(index|motion|method|objects|reading-[0-9]+)\.html|[a-z0-9-]{1,60}-[0-9a-f]{8}\.html")
+SHEET = re.compile(r"[a-z0-9-]{1,60}-[0-9a-f]{8}(-[0-9]+)?-sheet\.pdf")
 PART = re.compile(
     r"parts|parts/[a-z0-9-]{1,60}-[0-9a-f]{8}\.((findings|recommendations|objects)\.(csv|jsonl|parquet)|(keys|listed)\.arrow)"
 )
@@ -171,14 +173,37 @@ def test_nothing_was_written_elsewhere(night: Night) -> None:
     for folder in (night.folder / "reports").iterdir():
         if folder.is_dir() and not folder.is_symlink():
             names = {path.relative_to(folder).as_posix() for path in folder.rglob("*")} - EXPORTS
-            assert [name for name in names if not (PAGE.fullmatch(name) or PART.fullmatch(name))] == []
+            assert [
+                name for name in names if not (PAGE.fullmatch(name) or PART.fullmatch(name) or SHEET.fullmatch(name))
+            ] == []
 
 
 def test_what_is_left_holds_no_objects_of_python(night: Night) -> None:
     """Texts, tables, JSON, SQL and plain arrays: nothing that runs when it is read."""
     kept = [path for path in night.folder.rglob("*") if path.is_file()]
-    kinds = {*(".toml", ".sqlite", ".lock", ".html", ".csv", ".jsonl", ".json", ".parquet", ".arrow", ".xlsx", ".kept")}
+    kinds = {
+        *(
+            ".toml",
+            ".sqlite",
+            ".lock",
+            ".html",
+            ".csv",
+            ".jsonl",
+            ".json",
+            ".parquet",
+            ".arrow",
+            ".xlsx",
+            ".kept",
+            ".pdf",
+        )
+    }
     assert {path.suffix or path.name for path in kept} - {".kouros.lock"} <= kinds
+    sheets = [path for path in kept if path.suffix == ".pdf"]
+    assert sheets
+    for path in sheets:
+        read = PdfReader(path)
+        assert not {"/OpenAction", "/AA", "/Names", "/AcroForm"} & set(read.root_object)
+        assert not [key for page in read.pages for key in ("/Annots", "/AA") if key in page]
     sealed = [
         path for path in [*kept, *(night.folder / ".kouros-kept" / "charts").rglob("*")] if path.suffix == ".kept"
     ]
