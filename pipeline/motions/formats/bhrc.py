@@ -30,37 +30,9 @@ def is_format(source: Source) -> bool:
     return len(lines) == _TEXT and bool(_TITLE.search(lines[0])) and lines[6].startswith("COMP")
 
 
-def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the traces of a BHRC file, one a component.
-
-    Parameters
-    ----------
-    source : str, Path or binary stream
-        The file.
-    headonly : bool
-        Whether the headers alone are wanted.
-    **_ : Any
-        What obspy hands to every reader; not used.
-
-    Returns
-    -------
-    obspy.Stream
-        In tenths of g.  `trace_headers.make_trace` tells what a header holds.
-
-    Raises
-    ------
-    FormatError
-        Naming file and line.
-    """
-    from obspy import Stream
-
-    lines = record_text.open_lines(source)
-    traces: list[Any] = []
-    index = 0
-    while not traces or not lines.blank_until_end(index):
-        trace, index = _component(lines, index, len(traces) + 1, headonly)
-        traces.append(trace)
-    return Stream(traces)
+def _traces(lines: Lines, headonly: bool) -> list[Any]:
+    """Return the traces of a BHRC file, one a component."""
+    return record_text.one_after_other(lines, lambda top, number: _component(lines, top, number, headonly))
 
 
 def _component(lines: Lines, top: int, number: int, headonly: bool) -> tuple[Any, int]:
@@ -108,3 +80,6 @@ def _step(lines: Lines, top: int, count: int, said: str) -> float:
     if not rate or abs(rate - round(rate)) > rate * max(digit / max(seconds, digit), 1e-3):
         raise lines.error(top + 10, f"{count} points in {said} s make no whole number of samples per second")
     return blocks.step(lines, top + 10, 1.0 / round(rate))
+
+
+read_format = record_text.reader(_traces)

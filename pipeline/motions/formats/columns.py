@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from pipeline.motions.formats import blocks, cwa, irregular, record_text, trace_headers
-from pipeline.motions.formats.record_text import Source
+from pipeline.motions.formats.record_text import Lines, Source
 
 _NUMBER = re.compile(r"^[+-]?(?:\d{1,20}(?:\.\d{0,20})?|\.\d{1,20})(?:[Ee][+-]?\d{1,3})?$")
 _LEAST_ROWS, _MOST_COLUMNS = 5, 4
@@ -35,31 +35,8 @@ def is_format(source: Source) -> bool:
     return bool(np.isfinite(times).all()) and irregular.even_step(times, _digit([row[0] for row in rows])) is not None
 
 
-def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the traces of columns, one for each after the time.
-
-    Parameters
-    ----------
-    source : str, Path or binary stream
-        The file.
-    headonly : bool
-        Whether the headers alone are wanted.
-    **_ : Any
-        What obspy hands to every reader; not used.
-
-    Returns
-    -------
-    obspy.Stream
-        In a unit that the file does not say (`units` is "").  `trace_headers.make_trace` tells what a header holds.
-
-    Raises
-    ------
-    FormatError
-        Naming file and line.
-    """
-    from obspy import Stream
-
-    lines = record_text.open_lines(source)
+def _traces(lines: Lines, headonly: bool) -> list[Any]:
+    """Return the traces of columns, one for each after the time, in a unit that the file does not say (`units` is "")."""
     top = _top([lines.text(index) for index in range(min(len(lines), _MOST_COMMENTS + 1))])
     text = lines.text(top, "the first row of numbers")
     columns = len(_split(text))
@@ -71,7 +48,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     if dt is None:
         raise lines.error(*_uneven(top, table[:, 0]), "give equal time steps: resample the record first")
     blocks.step(lines, top, dt)
-    return Stream(
+    return [
         trace_headers.make_trace(
             lines,
             data=table[:, number].copy(),
@@ -86,7 +63,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
             headonly=headonly,
         )
         for number in range(1, columns)
-    )
+    ]
 
 
 def _uneven(top: int, times: Any) -> tuple[int, str]:
@@ -117,3 +94,6 @@ def _digit(cells: list[str]) -> float:
         shift = int(power) if re.fullmatch(r"[+-]?\d{1,3}", power) else 0
         digits = max(digits, len(mantissa.partition(".")[2]) - shift)
     return float(10.0 ** -min(digits, 15))
+
+
+read_format = record_text.reader(_traces)

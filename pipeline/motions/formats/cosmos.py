@@ -47,36 +47,13 @@ def is_format(source: Source) -> bool:
     return title is not None and any(_HEADER.search(line) for line in lines[: int(title[2]) + 2])
 
 
-def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the traces of a COSMOS file, one a channel of acceleration.
-
-    Parameters
-    ----------
-    source : str, Path or binary stream
-        The file.
-    headonly : bool
-        Whether the headers alone are wanted.
-    **_ : Any
-        What obspy hands to every reader; not used.
-
-    Returns
-    -------
-    obspy.Stream
-        In the unit that the file says (V0: counts).  `trace_headers.make_trace` tells what a header holds.
-
-    Raises
-    ------
-    FormatError
-        Naming file and line.
-    """
-    from obspy import Stream
-
-    lines = record_text.open_lines(source)
+def _traces(lines: Lines, headonly: bool) -> list[Any]:
+    """Return the traces of a COSMOS file, one a channel of acceleration."""
     traces: list[Any] = []
     index = 0
     while index == 0 or not lines.blank_until_end(index):
         index = _channel(lines, index, traces, headonly)
-    return Stream(traces)
+    return traces
 
 
 def _channel(lines: Lines, top: int, traces: list[Any], headonly: bool) -> int:
@@ -228,3 +205,6 @@ def _beside(lines: Lines, top: int, traces: list[Any], names: dict[str, Any], se
         if kind in owner.stats.kouros or len(values) != owner.stats.npts:
             raise lines.error(top, f"{kind} of {seed} comes twice, or is of another length than its acceleration")
         owner.stats.kouros[kind] = values
+
+
+read_format = record_text.reader(_traces)

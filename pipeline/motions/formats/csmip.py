@@ -64,39 +64,11 @@ def is_format(source: Source) -> bool:
     return any(_DATA.search(line) for line in lines[:_FARTHEST])
 
 
-def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the traces of a CSMIP file, one a channel.
-
-    Parameters
-    ----------
-    source : str, Path or binary stream
-        The file.
-    headonly : bool
-        Whether the headers alone are wanted.
-    **_ : Any
-        What obspy hands to every reader; not used.
-
-    Returns
-    -------
-    obspy.Stream
-        In g (volume 1) or cm/s2 (volume 2).  `trace_headers.make_trace` tells what a header holds.
-
-    Raises
-    ------
-    FormatError
-        Naming file and line.
-    """
-    from obspy import Stream
-
-    lines = record_text.open_lines(source)
+def _traces(lines: Lines, headonly: bool) -> list[Any]:
+    """Return the traces of a CSMIP file, one a channel."""
     if _SPECTRA.search(lines.text(0)):
         raise lines.error(0, "the file holds response and Fourier spectra", "give the file of volume 1 or 2 (V1, V2)")
-    traces: list[Any] = []
-    index = 0
-    while not traces or not lines.blank_until_end(index):
-        trace, index = _channel(lines, index, headonly)
-        traces.append(trace)
-    return Stream(traces)
+    return record_text.one_after_other(lines, lambda top, _number: _channel(lines, top, headonly))
 
 
 def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
@@ -291,3 +263,6 @@ def _peaks(text: list[str], volume: int) -> dict[str, float | None]:
         found = next((found for line in text if (found := pattern.search(line))), None)
         peaks[kind] = None if found is None else 0.01 * float(found[1])
     return peaks
+
+
+read_format = record_text.reader(_traces)

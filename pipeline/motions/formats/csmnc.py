@@ -29,31 +29,8 @@ def is_format(source: Source) -> bool:
     return any(_POINTS.match(line) for line in lines) and any(_KIND.match(line) for line in lines)
 
 
-def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the trace of a CSMNC file.
-
-    Parameters
-    ----------
-    source : str, Path or binary stream
-        The file.
-    headonly : bool
-        Whether the header alone is wanted.
-    **_ : Any
-        What obspy hands to every reader; not used.
-
-    Returns
-    -------
-    obspy.Stream
-        In the unit that the file says.  `trace_headers.make_trace` tells what a header holds.
-
-    Raises
-    ------
-    FormatError
-        Naming file and line.
-    """
-    from obspy import Stream
-
-    lines = record_text.open_lines(source)
+def _traces(lines: Lines, headonly: bool) -> list[Any]:
+    """Return the trace of a CSMNC file."""
     at, kind = _said(lines, _KIND, "'UNCORRECTED ACCELERATION UNIT: CM/SEC/SEC'")
     if kind[2] != "ACCELERATION":
         raise lines.error(at, f"the file holds {kind[2].lower()}", "give the file of the acceleration")
@@ -93,7 +70,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
         peak={"acceleration": None if peak is None else factor * float(peak[1][1])},
         more={"notes": assumed} if assumed else {},
     )
-    return Stream([trace])
+    return [trace]
 
 
 def _said(lines: Lines, pattern: re.Pattern[str], expected: str) -> tuple[int, re.Match[str]]:
@@ -109,3 +86,6 @@ def _time(lines: Lines, top: int) -> Any:
             when = trace_headers.start_time(lines, index, *(float(part) for part in found.groups()[:6]))
             return when - 8 * 3600 if found[7] in {"BTM", "BJT"} else when
     return None
+
+
+read_format = record_text.reader(_traces)

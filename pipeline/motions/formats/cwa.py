@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pipeline.motions.formats import blocks, record_text, trace_headers
-from pipeline.motions.formats.record_text import NUMBER, Lines, Source
+from pipeline.motions.formats.record_text import NUMBER, Keys, Lines, Source
 from pipeline.motions.formats.trace_headers import Orientation
 
 _KEY = re.compile(r"^#\s?([A-Za-z][A-Za-z ]{0,40}?\.?(?: [A-Z])?)\s?(\([^)]{0,12}\))?:\s*(.*)$")
@@ -35,54 +35,30 @@ def is_format(source: Source) -> bool:
     return text.startswith("#Earthquake Information") and "\n#StationCode" in text and "\n#SampleRate" in text
 
 
-def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the traces of a CWA file, one a component.
+def _traces(lines: Lines, headonly: bool) -> list[Any]:
+    """Return the traces of a CWA file, one a component."""
+    keys, units = _header(lines)
+    top = keys.end
 
-    Parameters
-    ----------
-    source : str, Path or binary stream
-        The file.
-    headonly : bool
-        Whether the headers alone are wanted.
-    **_ : Any
-        What obspy hands to every reader; not used.
-
-    Returns
-    -------
-    obspy.Stream
-        In gal.  `trace_headers.make_trace` tells what a header holds.
-
-    Raises
-    ------
-    FormatError
-        Naming file and line.
-    """
-    from obspy import Stream
-
-    lines = record_text.open_lines(source)
-    keys, top = _header(lines)
-
-    def said(key: str, pattern: str, expected: str) -> tuple[int, str, re.Match[str]]:
-        if key not in keys:
-            raise lines.error(top, f"the header ends without {key}", "fetch the file again")
-        at, unit, text = keys[key]
+    def said(key: str, pattern: str, expected: str) -> tuple[int, re.Match[str]]:
+        at, text = keys.said(key)
         found = re.match(pattern, text)
         if found is None:
             raise lines.error(at, f"expected {expected}, found {record_text.shown(text)}")
-        return at, unit, found
+        return at, found
 
-    at, _unit, found = said("SampleRate", r"^(\d{1,4}(?:\.\d{0,4})?)$", "'SampleRate(Hz): 200'")
+    at, found = said("SampleRate", r"^(\d{1,4}(?:\.\d{0,4})?)$", "'SampleRate(Hz): 200'")
     dt = blocks.step(lines, at, 1.0 / max(float(found[1]), 1e-9))
-    at, _unit, found = said("RecordLength", r"^(\d{1,5}(?:\.\d{0,4})?)$", "'RecordLength(sec): 120'")
+    at, found = said("RecordLength", r"^(\d{1,5}(?:\.\d{0,4})?)$", "'RecordLength(sec): 120'")
     announced = round(float(found[1]) / dt)
     blocks.samples(lines, at, announced)
     said("AmplitudeUnit", r"(?i)^gals?\b", "the unit 'gal'")
-    at, _unit, found = said("DataSequence", r"^Time\s+(.{1,60})$", "'Time U(+); N(+); E(+)'")
+    at, found = said("DataSequence", r"^Time\s+(.{1,60})$", "'Time U(+); N(+); E(+)'")
     words = found[1].split(";")
     columns = [column for word in words if (column := _COLUMN.match(word.strip())) and column[1] in _TURNS]
     if len(columns) != len(words):
         raise lines.error(at, f"expected columns such as 'U(+); N(+); E(+)', found {record_text.shown(found[1])}")
-    at, _unit, found = said("Data", _SHAPE.pattern, "'4F10.3'")
+    at, found = said("Data", _SHAPE.pattern, "'4F10.3'")
     if int(found[1]) != len(columns) + 1:
         raise lines.error(at, f"announces {found[1]} columns; time and {len(columns)} components make another number")
     end = len(lines)
@@ -99,12 +75,12 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     if off.max() > 0.2 * dt + 0.001:
         at = int(np.argmax(off > 0.2 * dt + 0.001))
         raise lines.error(top + at, f"time {table[at, 0]:g} s is off the even step of {dt:g} s")
-    at, zone, found = said("StartTime", _TIME.pattern, "a time such as '2018/02/06-23:50:29.000'")
-    hours = _ZONE.match(zone)
+    at, found = said("StartTime", _TIME.pattern, "a time such as '2018/02/06-23:50:29.000'")
+    hours = _ZONE.match(units["StartTime"])
     if hours is None:
-        raise lines.error(at, f"expected a zone such as (GMT+08), found {record_text.shown(zone)}")
+        raise lines.error(at, f"expected a zone such as (GMT+08), found {record_text.shown(units['StartTime'])}")
     when = trace_headers.start_time(lines, at, *map(float, found.groups())) - 3600 * int(hours[1])
-    corrected = "dcoffset(corr)" in keys["AmplitudeUnit"][2].lower().replace(" ", "")
+    corrected = "dcoffset(corr)" in keys["AmplitudeUnit"][1].lower().replace(" ", "")
     traces = []
     for number, column in enumerate(columns, start=1):
         name, data = column[1], table[:, number].copy()
@@ -121,7 +97,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
                 direction=direction,
                 processed=False,
                 network="TW",
-                station=keys["StationCode"][2] if "StationCode" in keys else "",
+                station=keys["StationCode"][1] if "StationCode" in keys else "",
                 channel=trace_headers.channel_code(1.0 / dt, direction, number),
                 start=when + float(table[0, 0]),
                 start_is="record",
@@ -130,28 +106,32 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
                 more={"notes": "the agency removed the offset, and nothing else"} if corrected else {},
             )
         )
-    return Stream(traces)
+    return traces
 
 
-def _header(lines: Lines) -> tuple[dict[str, tuple[int, str, str]], int]:
-    keys: dict[str, tuple[int, str, str]] = {}
+def _header(lines: Lines) -> tuple[Keys, dict[str, str]]:
+    """Return what the header says, and by key the unit, or the zone, that stands beside it."""
+    keys, units = Keys(lines), dict[str, str]()
     for index in range(min(len(lines), _MOST_KEYS)):
         text = lines.text(index)
         if text.strip() and not text.startswith("#"):
-            return keys, index
+            keys.end = index
+            return keys, units
         if found := _KEY.match(text):
-            if found[1] in keys:
-                raise lines.error(index, f"{found[1]} is given twice")
-            keys[found[1]] = (index, found[2] or "", found[3].strip())
+            keys.add(index, found[1], found[3].strip())
+            units[found[1]] = found[2] or ""
     raise lines.error(min(len(lines), _MOST_KEYS), "expected the first row of numbers", "fetch the file again")
 
 
-def _peak(lines: Lines, keys: dict[str, tuple[int, str, str]], name: str, data: Any) -> float | None:
+def _peak(lines: Lines, keys: Keys, name: str, data: Any) -> float | None:
     key = f"AmplitudeMAX. {name}"
-    found = _RANGE.match(keys[key][2]) if key in keys else None
+    found = _RANGE.match(keys[key][1]) if key in keys else None
     if found is None:
         return None
     gal = trace_headers.FACTORS["gal"]
     said = gal * max(abs(float(part)) for part in found.groups())
     trace_headers.said_peak(lines, keys[key][0], said, 0.001 * gal, data, gal)
     return said
+
+
+read_format = record_text.reader(_traces)

@@ -12,7 +12,7 @@ import re
 from typing import Any
 
 from pipeline.motions.formats import blocks, record_text, trace_headers
-from pipeline.motions.formats.record_text import Lines, Source
+from pipeline.motions.formats.record_text import Keys, Lines, Source
 
 _KEY = re.compile(r"^([A-Z][A-Z0-9_/^]{1,59}):(.*)$")
 _CLOCK = r"(?P<H>\d\d):(?P<M>\d\d):(?P<S>\d\d(?:\.\d{0,9})?)$"
@@ -33,38 +33,10 @@ def is_format(source: Source) -> bool:
     return text.startswith("EVENT_NAME:") and "\nSTATION_CODE:" in text and "\nSAMPLING_INTERVAL_S:" in text
 
 
-def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the trace of acceleration of an ESM file.
-
-    Parameters
-    ----------
-    source : str, Path or binary stream
-        The file.
-    headonly : bool
-        Whether the headers alone are wanted.
-    **_ : Any
-        What obspy hands to every reader; not used.
-
-    Returns
-    -------
-    obspy.Stream
-        In the unit that the file says.  `trace_headers.make_trace` tells what a header holds.
-
-    Raises
-    ------
-    FormatError
-        Naming file and line.
-    """
-    from obspy import Stream
-
-    lines = record_text.open_lines(source)
-    keys, start = _header(lines)
-
-    def said(key: str) -> tuple[int, str]:
-        if key not in keys:
-            raise lines.error(start, f"the header ends without {key}", "fetch the file again")
-        return keys[key]
-
+def _traces(lines: Lines, headonly: bool) -> list[Any]:
+    """Return the trace of acceleration of an ESM file."""
+    keys = _header(lines)
+    said = keys.said
     at, kind = said("DATA_TYPE")
     if kind.upper() != "ACCELERATION":
         raise lines.error(at, f"the file holds {record_text.shown(kind)}", "give the file of the acceleration")
@@ -77,7 +49,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     if not re.fullmatch(r"\d{1,9}", number):
         raise lines.error(at, f"expected the number of samples, found {record_text.shown(number)}")
     count = blocks.samples(lines, at, int(number))
-    data = blocks.free(lines, start, count, "acceleration")
+    data = blocks.free(lines, keys.end, count, "acceleration")
     at, first = said("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS")
     date = next((found for form in _DATES if (found := form.match(first))), None)
     if first and date is None:
@@ -111,18 +83,17 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
         peak={"acceleration": 0.01 * _number(lines, at, peak) if peak else None},
         more={"notes": f"{notes}; {assumed}" if assumed else notes},
     )
-    return Stream([trace])
+    return [trace]
 
 
-def _header(lines: Lines) -> tuple[dict[str, tuple[int, str]], int]:
-    keys: dict[str, tuple[int, str]] = {}
+def _header(lines: Lines) -> Keys:
+    keys = Keys(lines)
     for index in range(min(len(lines), _MOST_KEYS)):
         found = _KEY.match(lines.text(index))
         if found is None:
-            return keys, index
-        if found[1] in keys:
-            raise lines.error(index, f"{found[1]} is given twice")
-        keys[found[1]] = (index, found[2].strip())
+            keys.end = index
+            return keys
+        keys.add(index, found[1], found[2].strip())
     raise lines.error(min(len(lines), _MOST_KEYS), "expected the first value of acceleration", "fetch the file again")
 
 
@@ -143,3 +114,6 @@ def _processed(keys: dict[str, tuple[int, str]]) -> tuple[bool | None, str]:
         return True, ""
     baseline = keys.get("BASELINE_CORRECTION", (0, ""))[1].upper()
     return (False if how == "none" or baseline == "BASELINE NOT REMOVED" else None), ""
+
+
+read_format = record_text.reader(_traces)

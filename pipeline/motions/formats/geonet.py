@@ -32,37 +32,9 @@ def is_format(source: Source) -> bool:
     return len(lines) == 2 and bool(_TITLE.search(lines[0])) and bool(_SITE.search(lines[1]))
 
 
-def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the traces of a GeoNet file, one a component.
-
-    Parameters
-    ----------
-    source : str, Path or binary stream
-        The file.
-    headonly : bool
-        Whether the headers alone are wanted.
-    **_ : Any
-        What obspy hands to every reader; not used.
-
-    Returns
-    -------
-    obspy.Stream
-        In mm/s2.  `trace_headers.make_trace` tells what a header holds.
-
-    Raises
-    ------
-    FormatError
-        Naming file and line.
-    """
-    from obspy import Stream
-
-    lines = record_text.open_lines(source)
-    traces: list[Any] = []
-    index = 0
-    while not traces or not lines.blank_until_end(index):
-        trace, index = _component(lines, index, len(traces) + 1, headonly)
-        traces.append(trace)
-    return Stream(traces)
+def _traces(lines: Lines, headonly: bool) -> list[Any]:
+    """Return the traces of a GeoNet file, one a component."""
+    return record_text.one_after_other(lines, lambda top, number: _component(lines, top, number, headonly))
 
 
 def _component(lines: Lines, top: int, number: int, headonly: bool) -> tuple[Any, int]:
@@ -122,3 +94,6 @@ def _component(lines: Lines, top: int, number: int, headonly: bool) -> tuple[Any
 def _peak(lines: Lines, index: int) -> float | None:
     found = _PEAK.search(lines.text(index))
     return None if found is None else 0.001 * float(found[1])
+
+
+read_format = record_text.reader(_traces)

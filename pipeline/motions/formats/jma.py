@@ -12,7 +12,7 @@ import re
 from typing import Any
 
 from pipeline.motions.formats import blocks, record_text, trace_headers
-from pipeline.motions.formats.record_text import Lines, Source
+from pipeline.motions.formats.record_text import Keys, Lines, Source
 
 _KEY = re.compile(r"^\s*(SITE CODE|LAT\.|LON\.|SAMPLING RATE|SAMPLING FREQ|UNIT|INITIAL TIME)\s*=\s*(.*?)[\s,]*$", re.I)
 _RATE = re.compile(r"^(\d{1,4}(?:\.\d{0,4})?)\s*Hz$", re.IGNORECASE)
@@ -29,35 +29,12 @@ def is_format(source: Source) -> bool:
     return bool(lines) and lines[0].lstrip("\xef\xbb\xbf ").upper().startswith("SITE CODE") and "INITIAL TIME" in keys
 
 
-def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the three traces of a JMA file.
-
-    Parameters
-    ----------
-    source : str, Path or binary stream
-        The file.
-    headonly : bool
-        Whether the headers alone are wanted.
-    **_ : Any
-        What obspy hands to every reader; not used.
-
-    Returns
-    -------
-    obspy.Stream
-        In gal.  `trace_headers.make_trace` tells what a header holds.
-
-    Raises
-    ------
-    FormatError
-        Naming file and line.
-    """
-    from obspy import Stream
-
-    lines = record_text.open_lines(source)
-    keys, top, names = _header(lines)
+def _traces(lines: Lines, headonly: bool) -> list[Any]:
+    """Return the three traces of a JMA file."""
+    keys, names = _header(lines)
 
     def said(pattern: re.Pattern[str], expected: str, *names: str) -> tuple[int, re.Match[str]]:
-        at, text = next((keys[name] for name in names if name in keys), (top, ""))
+        at, text = next((keys[name] for name in names if name in keys), (keys.end, ""))
         found = pattern.match(text)
         if found is None:
             raise lines.error(at, f"expected {names[0]}= {expected}, found {record_text.shown(text)}")
@@ -71,7 +48,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     # Two digits of the year in the oldest files, of the 1990s.
     year += 0 if year >= 100 else 1900 if year >= 33 else 2000
     when = trace_headers.start_time(lines, at, year, *rest) - 9 * 3600
-    table = blocks.rows(lines, top, 3, "acceleration", b",")
+    table = blocks.rows(lines, keys.end, 3, "acceleration", b",")
     code = re.match(r"[A-Za-z0-9]{1,8}", keys.get("SITE CODE", (0, ""))[1])
     traces = []
     for number, name in enumerate(names, start=1):
@@ -93,20 +70,22 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
                 headonly=headonly,
             )
         )
-    return Stream(traces)
+    return traces
 
 
-def _header(lines: Lines) -> tuple[dict[str, tuple[int, str]], int, tuple[str, ...]]:
-    keys: dict[str, tuple[int, str]] = {}
+def _header(lines: Lines) -> tuple[Keys, tuple[str, ...]]:
+    keys = Keys(lines)
     for index in range(min(len(lines), _MOST_KEYS)):
         text = lines.text(index)
         if names := _NAMES.match(text):
             columns = tuple(name.upper() for name in names.groups())
             if len(set(columns)) < 3:
                 raise lines.error(index, "names a component twice")
-            return keys, index + 1, columns
+            keys.end = index + 1
+            return keys, columns
         if found := _KEY.match(text.lstrip("\xef\xbb\xbf")):
-            if found[1].upper() in keys:
-                raise lines.error(index, f"{found[1]} is given twice")
-            keys[found[1].upper()] = (index, found[2])
+            keys.add(index, found[1].upper(), found[2])
     raise lines.error(min(len(lines), _MOST_KEYS), "expected the columns 'NS,EW,UD'", "fetch the file again")
+
+
+read_format = record_text.reader(_traces)

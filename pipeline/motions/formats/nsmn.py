@@ -9,7 +9,7 @@ import re
 from typing import Any
 
 from pipeline.motions.formats import blocks, record_text, trace_headers
-from pipeline.motions.formats.record_text import Lines, Source
+from pipeline.motions.formats.record_text import Keys, Lines, Source
 
 _TITLE = re.compile(r"^STRONG GROUND MOTION RECORDS OF TURK", re.IGNORECASE)
 _KEY = re.compile(r"^([A-Z][A-Z ]{2,30}?)\s*(\([a-z]{1,5}\))?\s*:\s*(.*)$")
@@ -28,39 +28,14 @@ def is_format(source: Source) -> bool:
     return bool(_TITLE.match(text)) and "\nNUMBER OF DATA" in text
 
 
-def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the traces of an NSMN file, one a component.
-
-    Parameters
-    ----------
-    source : str, Path or binary stream
-        The file.
-    headonly : bool
-        Whether the headers alone are wanted.
-    **_ : Any
-        What obspy hands to every reader; not used.
-
-    Returns
-    -------
-    obspy.Stream
-        In gal.  `trace_headers.make_trace` tells what a header holds.
-
-    Raises
-    ------
-    FormatError
-        Naming file and line.
-    """
-    from obspy import Stream
-
-    lines = record_text.open_lines(source)
+def _traces(lines: Lines, headonly: bool) -> list[Any]:
+    """Return the traces of an NSMN file, one a component."""
     lines.match(0, _TITLE, "'STRONG GROUND MOTION RECORDS OF TURKIYE'")
-    keys, top, names = _header(lines)
+    keys, units, names = _header(lines)
 
     def said(key: str, pattern: str, expected: str) -> tuple[int, re.Match[str]]:
-        if key not in keys:
-            raise lines.error(top, f"the header ends without {key}", "fetch the file again")
-        at, unit, text = keys[key]
-        found = re.match(pattern, f"{text} {unit}".strip())
+        at, text = keys.said(key)
+        found = re.match(pattern, f"{text} {units[key]}".strip())
         if found is None:
             raise lines.error(at, f"expected {expected}, found {record_text.shown(text)}")
         return at, found
@@ -72,7 +47,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     at, found = said("RAW PGA VALUES", r"^(.{1,120}) \(gal\)$", "peaks in gal")
     peaks = {name: (float(text), 10.0 ** -len(digits)) for name, text, digits in _PEAK.findall(found[1])}
     at_peaks = at
-    table = blocks.rows(lines, top, 3, "acceleration")
+    table = blocks.rows(lines, keys.end, 3, "acceleration")
     if len(table) != count:
         wrong = (
             f"the file holds {len(table)} rows of acceleration, and line {keys['NUMBER OF DATA'][0] + 1} says {count}"
@@ -108,19 +83,23 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
                 peak={"acceleration": gal * said_peak or None},
             )
         )
-    return Stream(traces)
+    return traces
 
 
-def _header(lines: Lines) -> tuple[dict[str, tuple[int, str, str]], int, tuple[str, ...]]:
-    keys: dict[str, tuple[int, str, str]] = {}
+def _header(lines: Lines) -> tuple[Keys, dict[str, str], tuple[str, ...]]:
+    """Return what the header says, by key the unit that stands beside it, and the names of the columns."""
+    keys, units = Keys(lines), dict[str, str]()
     for index in range(min(len(lines), _MOST_KEYS)):
         text = lines.text(index)
         if columns := _COLUMNS.match(text):
             if len(set(columns.groups())) < 3:
                 raise lines.error(index, "names a component twice")
-            return keys, index + 1, columns.groups()
+            keys.end = index + 1
+            return keys, units, columns.groups()
         if found := _KEY.match(text):
-            if found[1] in keys:
-                raise lines.error(index, f"{found[1]} is given twice")
-            keys[found[1]] = (index, found[2] or "", found[3].strip())
+            keys.add(index, found[1], found[3].strip())
+            units[found[1]] = found[2] or ""
     raise lines.error(min(len(lines), _MOST_KEYS), "expected the columns 'N-S E-W U-D'", "fetch the file again")
+
+
+read_format = record_text.reader(_traces)

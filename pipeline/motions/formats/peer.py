@@ -13,7 +13,7 @@ import re
 from typing import Any
 
 from pipeline.motions.formats import blocks, record_text, trace_headers
-from pipeline.motions.formats.record_text import Source
+from pipeline.motions.formats.record_text import Lines, Source
 
 _UNIT = re.compile(r"ACCELERATION TIME (SERIES|HISTORY) IN UNITS OF (G\b|CM/S|.*)", re.IGNORECASE)
 _NEW = re.compile(r"NPTS\s*=\s*(\d{1,9})\s*,\s*DT\s*=\s*(\d{0,4}\.\d{1,9}(?:E-?\d)?)", re.IGNORECASE)
@@ -26,31 +26,8 @@ def is_format(source: Source) -> bool:
     return len(lines) == 4 and bool(_UNIT.search(lines[2])) and bool(_NEW.search(lines[3]) or _OLD.search(lines[3]))
 
 
-def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the trace of a PEER AT2 file.
-
-    Parameters
-    ----------
-    source : str, Path or binary stream
-        The file.
-    headonly : bool
-        Whether the headers alone are wanted.
-    **_ : Any
-        What obspy hands to every reader; not used.
-
-    Returns
-    -------
-    obspy.Stream
-        In g.  `trace_headers.make_trace` tells what a header holds.
-
-    Raises
-    ------
-    FormatError
-        Naming file and line.
-    """
-    from obspy import Stream
-
-    lines = record_text.open_lines(source)
+def _traces(lines: Lines, headonly: bool) -> list[Any]:
+    """Return the trace of a PEER AT2 file."""
     unit = lines.match(2, _UNIT, "'ACCELERATION TIME SERIES IN UNITS OF G'")
     if unit[2].upper() != "G":
         wrong = f"the unit is {record_text.shown(unit[2])}, and an AT2 file is in g"
@@ -77,4 +54,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
         headonly=headonly,
         more={"title": title},
     )
-    return Stream([trace])
+    return [trace]
+
+
+read_format = record_text.reader(_traces)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 from pipeline.motions.errors import MotionError
 
@@ -197,3 +198,100 @@ def open_lines(source: Source) -> Lines:
     if not lines[-1].strip(b"\0\x1a "):
         lines.pop()
     return Lines(file, lines)
+
+
+def reader(traces: Callable[[Lines, bool], list[Any]]) -> Callable[..., Any]:
+    """Return the reader of a format as obspy's plugins have it.
+
+    Parameters
+    ----------
+    traces : callable
+        Makes traces of the lines of a file, and of whether the headers alone are wanted, by `trace_headers.make_trace`,
+        which tells what a header holds.  It raises FormatError, naming file and line.
+    """
+
+    def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
+        """Return the traces of a file.
+
+        Parameters
+        ----------
+        source : str, Path or binary stream
+            The file.
+        headonly : bool
+            Whether the headers alone are wanted.
+        **_ : Any
+            What obspy hands to every reader; not used.
+
+        Returns
+        -------
+        obspy.Stream
+            In the unit that its format or the file itself says.
+
+        Raises
+        ------
+        FormatError
+            Naming file and line.
+        """
+        from obspy import Stream
+
+        return Stream(traces(open_lines(source), headonly))
+
+    return read_format
+
+
+def one_after_other(lines: Lines, read: Callable[[int, int], tuple[Any, int]]) -> list[Any]:
+    """Return what stands one after the other in a file, until nothing but blanks is left.
+
+    Parameters
+    ----------
+    lines : Lines
+        Of the file.
+    read : callable
+        Given the index of its first line and its number, from 1, returns one of them, and the index behind it.
+    """
+    found: list[Any] = []
+    index = 0
+    while not found or not lines.blank_until_end(index):
+        one, index = read(index, len(found) + 1)
+        found.append(one)
+    return found
+
+
+class Keys(dict[str, tuple[int, str]]):
+    """What the lines 'KEY: value' of a header say: of each key the index of its line, and its value.
+
+    Attributes
+    ----------
+    lines : Lines
+        Of the file.
+    end : int
+        Index of the first line behind the header.
+    """
+
+    def __init__(self, lines: Lines) -> None:
+        super().__init__()
+        self.lines, self.end = lines, 0
+
+    def add(self, index: int, key: str, value: str) -> None:
+        """Take what a line says.
+
+        Raises
+        ------
+        FormatError
+            For a key that another line has given.
+        """
+        if key in self:
+            raise self.lines.error(index, f"{key} is given twice")
+        self[key] = index, value
+
+    def said(self, key: str) -> tuple[int, str]:
+        """Return what has to be there.
+
+        Raises
+        ------
+        FormatError
+            Where it is not.
+        """
+        if key not in self:
+            raise self.lines.error(self.end, f"the header ends without {key}", "fetch the file again")
+        return self[key]

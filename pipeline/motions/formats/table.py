@@ -53,31 +53,8 @@ def is_format(source: Source) -> bool:
     return False
 
 
-def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the traces of a table, one a column.
-
-    Parameters
-    ----------
-    source : str, Path or binary stream
-        The file.
-    headonly : bool
-        Whether the headers alone are wanted.
-    **_ : Any
-        What obspy hands to every reader; not used.
-
-    Returns
-    -------
-    obspy.Stream
-        In the unit that the column declares.  `trace_headers.make_trace` tells what a header holds.
-
-    Raises
-    ------
-    FormatError
-        Naming file and line.
-    """
-    from obspy import Stream
-
-    lines = record_text.open_lines(source)
+def _traces(lines: Lines, headonly: bool) -> list[Any]:
+    """Return the traces of a table, one a column."""
     top, keys = _top(lines)
     row = lines.lines[top]
     named = _cells(row)
@@ -114,7 +91,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
                 more={"column": name} | ({} if timed else {"notes": "its time has no unit and is taken as seconds"}),
             )
         )
-    return Stream(traces)
+    return traces
 
 
 def _separator(row: bytes) -> bytes | None:
@@ -233,3 +210,6 @@ def _facts(lines: Lines, keys: dict[str, tuple[int, str]]) -> tuple[bool | None,
         raise lines.error(at, f"expected start: 2019-07-06T03:19:53Z, found {record_text.shown(word)}")
     when = None if start is None else trace_headers.start_time(lines, at, *map(float, start.groups()))
     return processed, (station[1] or "") if station else "", station[2] if station else "", when
+
+
+read_format = record_text.reader(_traces)

@@ -30,31 +30,8 @@ def is_format(source: Source) -> bool:
     return any(line.startswith(_TITLE) for line in record_text.head(source).splitlines()[:12])
 
 
-def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
-    """Return the traces of an ASA file, one a channel.
-
-    Parameters
-    ----------
-    source : str, Path or binary stream
-        The file.
-    headonly : bool
-        Whether the headers alone are wanted.
-    **_ : Any
-        What obspy hands to every reader; not used.
-
-    Returns
-    -------
-    obspy.Stream
-        In gal.  `trace_headers.make_trace` tells what a header holds.
-
-    Raises
-    ------
-    FormatError
-        Naming file and line.
-    """
-    from obspy import Stream
-
-    lines = record_text.open_lines(source)
+def _traces(lines: Lines, headonly: bool) -> list[Any]:
+    """Return the traces of an ASA file, one a channel."""
     keys, top = _header(lines)
 
     def said(key: str) -> tuple[int, str]:
@@ -64,8 +41,7 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
 
     def channels(key: str, size: int) -> tuple[int, list[str]]:
         said(key)
-        # Channels one to six, and seven to twelve, stand in lines of their own.
-        parts = [part.strip() for _, text in keys[key] for part in text.strip().strip("/").split("/") if text.strip()]
+        parts = _parts(keys[key])
         if len(parts) != size:
             raise lines.error(keys[key][0][0], f"names {len(parts)} channels, where the file has {size}")
         return keys[key][0][0], parts
@@ -79,11 +55,8 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
     at, unit = said("UNIDADES DE LOS DATOS")
     if not re.match(r"(?i)^gal\b", unit):
         raise lines.error(at, f"expected the unit Gal, found {record_text.shown(unit)}")
-    at, text = (
-        said("FORMATO DATOS (FORTRAN,10 campos/dato)")
-        if "FORMATO DATOS (FORTRAN,10 campos/dato)" in keys
-        else (said("FORMATO DATOS"))
-    )
+    whole = "FORMATO DATOS (FORTRAN,10 campos/dato)"
+    at, text = said(whole if whole in keys else "FORMATO DATOS")
     shape = _SHAPE.match(text)
     if shape is None:
         raise lines.error(at, f"expected a format such as 3F10.3, found {record_text.shown(text)}")
@@ -137,12 +110,16 @@ def read_format(source: Source, headonly: bool = False, **_: Any) -> Any:
                 more={"notes": "; ".join(filter(None, (assumed, extra)))} if assumed or extra else {},
             )
         )
-    return Stream(traces)
+    return traces
+
+
+def _parts(said: list[tuple[int, str]]) -> list[str]:
+    """Return the values of the channels: one to six, and seven to twelve, stand in lines of their own."""
+    return [part.strip() for _, text in said for part in text.strip().strip("/").split("/") if text.strip()]
 
 
 def _digit(said: list[tuple[int, str]], number: int) -> float:
-    parts = [part.strip() for _, text in said for part in text.strip().strip("/").split("/") if text.strip()]
-    return float(10.0 ** -len(parts[number].partition(".")[2]))
+    return float(10.0 ** -len(_parts(said)[number].partition(".")[2]))
 
 
 def _header(lines: Lines) -> tuple[dict[str, list[tuple[int, str]]], int]:
@@ -174,3 +151,6 @@ def _start(lines: Lines, keys: dict[str, list[tuple[int, str]]]) -> Any:
         # Only the earthquake has a date: around midnight the record's may be the next, or the one before.
         when += 86400 * round((began - when) / 86400)
     return when
+
+
+read_format = record_text.reader(_traces)

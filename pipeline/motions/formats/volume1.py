@@ -63,12 +63,7 @@ def read_format(source: Source, headonly: bool = False, resample: float = irregu
     from obspy import Stream
 
     lines = record_text.open_lines(source)
-    traces: list[Any] = []
-    index = 0
-    while not traces or not lines.blank_until_end(index):
-        trace, index = _channel(lines, index, headonly, resample)
-        traces.append(trace)
-    return Stream(traces)
+    return Stream(record_text.one_after_other(lines, lambda top, _number: _channel(lines, top, headonly, resample)))
 
 
 def _channel(lines: Lines, top: int, headonly: bool, resample: float) -> tuple[Any, int]:
