@@ -14,6 +14,7 @@ from typing import Any
 
 import click
 
+from docs.table_words import COLUMN_WORDS, TABLE_WORDS
 from pipeline.cli import kouros
 from pipeline.collection.mapping import MAPPABLE, PRESETS
 from pipeline.errors import KourosError
@@ -34,131 +35,6 @@ from pipeline.tables import FOLDER as TABLES
 ROOT = Path(__file__).resolve().parents[1]
 
 Schema = Mapping[str, Any]
-
-TABLE_WORDS = {
-    "bending": "What holds of whatever bends: how firmly it is held, its damping, stress concentration at a held base.",
-    "classes": "What a class of objects assumes where the museum's record is silent.",
-    "contacts": "How much of a base that is only assumed may really bear.",
-    "column_names": "Names of columns by which `kouros import --guess` knows a field.",
-    "damping": "Damping of a hung object by wall and back (Table 4 of the paper).",
-    "dimension_labels": "Short labels of dimension texts by language.",
-    "dimension_units": "Units of dimension texts.",
-    "dimension_words": "Words of dimension texts.",
-    "display_words": "Words by which museums say what is on display, in flags and names of places: yes and no of any "
-    "flag; shown and away; a store whatever else its name says, or where only a code follows (code); what makes a "
-    "store a gallery; who lends.",
-    "dispersion": "What a fragility curve's dispersion is made of.",
-    "efforts": "Hours, cost and trade of each measure, of one that is not named, and of setting out in a gallery.",
-    "fills": "How much of its outline a thing of some materials fills, where its class alone says too much.",
-    "fixings": "What wax, putty, pins, ties, clips, brackets and clamps hold, and which materials they harm.",
-    "fragility": "Published medians and dispersions that stand beside the computed ones.",
-    "friction": "Friction between object and surface (Table 3 of the paper, handbooks and judgement).",
-    "generic_models": "The paper's Tables 1 and 2, and the model that answers each row.",
-    "hangings": "Ways to hang on a wall: whether a work swings or may be lifted off, its hooks and its hangers.",
-    "furniture": "What objects stand on or in, or hang from: frequency [Hz], damping [-], degrees off level, and size.",
-    "usual_furniture": "What objects of a class usually stand on or hang from, by height [m]; * is any other class.",
-    "usual_hangings": "Ways in which works of a class usually hang, the likeliest first; * is any other class.",
-    "isolators": "The isolators that advice may choose from; a museum's own catalogue takes the place of this table.",
-    "materials": "Density, strength and stiffness of materials, and the words that name them.",
-    "measures": "The measures, in the order of their intrusiveness, with limits, words and sources.",
-    "mounts": "How a thing is held that lies in a case or cannot stand by itself: models, measures, grip in weights, "
-    "room [m] and lean [degrees].",
-    "overturning": "Published medians of overturning that `kouros validate --published` is held against.",
-    "plausible": "What a number of a record may be.",
-    "proportions": "One size over another one by class: 5th, 50th and 95th percentile; known: how many must be "
-    "recorded.",
-    "rules": "Which class a record names; the first rule that holds decides.",
-    "class_signs": "Words of materials and titles that say something of the class, in eight languages.",
-    "class_weights": "What each sign says for each class: logarithms of odds, found from labelled objects.",
-    "slender": "How much of an object of a class is about as slender as its critical section, by share of its height.",
-    "stakes": "What is at stake: weights of the classes of value and of a person, and the energy that is dangerous.",
-    "survey": "The questions of the survey's sheet.",
-    "validation": "What `kouros validate` assumes of a body for which nothing is fitted.",
-}
-"""What each table holds; a table that is not named here stops the build."""
-
-COLUMN_WORDS = {
-    "run": "the run that found it, which may be an earlier one",
-    "object_number": "the museum's number of the object",
-    "title": "of the object, or of the measure",
-    "gallery": "the gallery it stands in",
-    "level": "the level of shaking, as the site's manifest names it; empty: all",
-    "measure": "a row of the table of measures",
-    "sentence": "the advice in the reader's language and units",
-    "parameters": "what to build or buy, in SI units",
-    "checks": "each model that was run again: demand before and after, capacity, passes or fails",
-    "rejected": "the less intrusive measures, and why none of them will do",
-    "source": "who says so",
-    "on_display": "whether it is on display",
-    "state": "act, watch, fine, unknown, or not on display",
-    "object_class": "the class it was taken for: a row of the table of classes",
-    "class_probability": "how likely that class is by what the record says; empty where a person decided",
-    "class_next": "the next likely class, where it has more than 0.1",
-    "class_next_probability": "how likely that one is",
-    "furniture": "what it stands on or in, or hangs from: a row of the table of furniture",
-    "furniture_origin": (
-        "where that is known from: its record (measured), the case that it names (derived), a house rule (stated), or "
-        "what is usual for its class (assumed)"
-    ),
-    "missing": "what is not recorded, so that it cannot be assessed",
-    "median_g": "the peak ground acceleration at which half of such objects fail first, in g",
-    "settled": "whether people accepted or overruled all that does not pass at that level",
-    "case": "the case that it stands in, as its record says",
-    "errand": "its number on the way through the museum",
-    "needs": "number of the errand that has to be done first",
-    "do": "whether the plan has it, within [plan] hours and cost",
-    "place": "its place in the order of what avoids most for an hour; empty for what takes objects from view",
-    "objects": "numbers of the objects that it is for",
-    "trade": "whose work it is: handler, mount-maker, engineer",
-    "hours": "of work, of all who work together",
-    "hours_low": "if it goes well",
-    "hours_high": "if it does not",
-    "cost": "of material and outside work, in the museum's currency",
-    "cost_low": "if it goes well",
-    "cost_high": "if it does not",
-    "loss": "expected loss of its objects without it, in objects of class C; 0 where it only prepares another",
-    "avoided": "what of that it avoids",
-    "takes_from_view": "whether it takes objects off display",
-    "remaining": "probability of harm that remains with it; empty where its checks exclude harm",
-    "probability": "of coming to harm at the level where that is likeliest; empty where nobody knows",
-    "probability_error": "standard error of it, by the number of samples",
-    "band": "the word for it: almost certain, likely, possible, unlikely, very unlikely",
-    "harm": "the state of harm that is likeliest: leaves, rocks without a fall, falls, breaks; empty for none",
-    "harm_level": "the level of shaking at which harm is likeliest",
-    "p_shifts": "probability that it shifts by a millimetre; empty where no model tells it, as of the others",
-    "p_leaves": "probability that it leaves its place or hits something",
-    "p_rocks": "probability that it rocks",
-    "p_falls": "probability that it falls",
-    "p_breaks": "probability that it breaks",
-    "open_for": "the parameter whose measurement alone may change what is decided; `class` for what it is",
-    "worth": "by how much that measurement lowers the expected loss, as a share of the loss by harm",
-    "expected_loss": "probability times what is at stake, in objects of class C",
-    "median_is": "empty where the median was found; above, below: it is only a bound; flat: no curve tells it",
-    "dispersion": "of the fragility curve, lognormal",
-    "median_pgv_m_s": "the same median in peak velocity, in m/s",
-    "goodness": "probability of a deviance from the curve as large by chance",
-    "annual_rate": "how often a year it comes to harm; empty without a hazard curve or two return periods",
-    "chance_50_years": "of coming to harm within 50 years",
-    "chance_50_years_low": "lower end of its range: 1 case of 20 is below",
-    "chance_50_years_high": "upper end of its range",
-    "yearly_shifts": "how often a year it shifts; empty where no curve tells it, as of the others",
-    "yearly_leaves": "how often a year it leaves its place or hits something",
-    "yearly_rocks": "how often a year it rocks",
-    "yearly_falls": "how often a year it falls",
-    "yearly_breaks": "how often a year it breaks",
-    "page": "the page and place of the object in the report",
-    "rank": "its place among all objects on display, 1 the most urgent: act before watch, cannot be assessed and fine; "
-    "in each, what nobody has settled, what is not to be checked first, and what is expected to be lost come first",
-    "row": "of the source",
-    "line": "of a text file, where it differs from the row",
-    "field": "of the object record",
-    "what": "source, choice, refused, sheet, or doubtful",
-    "message": "what is wrong",
-    "remedy": "what mends it",
-    "characters": "what stands in the museum's record, where that is kept: a column; behind | a text of it",
-    "used": "what is used of the field, in SI units; empty for nothing",
-}
-"""Of the exports' columns that no schema describes."""
 
 
 def write(folder: Path) -> None:
