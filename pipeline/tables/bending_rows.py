@@ -6,9 +6,8 @@ from types import MappingProxyType
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from pipeline.errors import InputError
 from pipeline.tables import Range, table
-from pipeline.tables.rows import Number, RangeRow, TableRow, Text, checked, in_order, once
+from pipeline.tables.rows import Number, RangeRow, TableRow, Text, checked, once, share_in_order
 
 
 class SlenderRow(TableRow):
@@ -33,10 +32,7 @@ class SlenderRow(TableRow):
     @field_validator("slender_high")
     @classmethod
     def _shares(cls, high: float, info: ValidationInfo) -> float | None:
-        low = info.data.get("slender_low")
-        if high > 1.0 or (low is not None and low <= 0.0):
-            raise InputError("is a share of the height: low must be above 0 and high at most 1")
-        return in_order(high, info, "slender_low", "slender")
+        return share_in_order(high, info, "slender_low", "slender", "height")
 
     @property
     def range(self) -> Range:

@@ -9,9 +9,8 @@ from types import MappingProxyType
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from pipeline.errors import InputError
 from pipeline.tables import Range, table
-from pipeline.tables.rows import Entries, Number, TableRow, Text, checked, in_order, once
+from pipeline.tables.rows import Entries, Number, TableRow, Text, checked, once, share_in_order
 
 
 class FillRow(TableRow):
@@ -39,10 +38,7 @@ class FillRow(TableRow):
     @field_validator("fill_high")
     @classmethod
     def _shares(cls, high: float, info: ValidationInfo) -> float | None:
-        low = info.data.get("fill_low")
-        if high > 1.0 or (low is not None and low <= 0.0):
-            raise InputError("is a share of the outline: low must be above 0 and high at most 1")
-        return in_order(high, info, "fill_low", "fill")
+        return share_in_order(high, info, "fill_low", "fill", "outline")
 
 
 @cache

@@ -7,8 +7,8 @@ from pydantic import ValidationInfo, field_validator
 
 from pipeline.errors import InputError
 from pipeline.records import Hanging
-from pipeline.tables import Range, TableError, table
-from pipeline.tables.rows import Entries, Number, Optional, TableRow, Text, YesNo, checked, in_order, once
+from pipeline.tables import Range, table
+from pipeline.tables.rows import Entries, Number, Optional, TableRow, Text, YesNo, checked, in_order, one_each
 
 Ways = Annotated[tuple[Hanging, ...], Entries.__metadata__[0]]
 """A cell with ways to hang, parted by `|`."""
@@ -93,12 +93,7 @@ def hanging_rows() -> dict[Hanging, HangingRow]:
         For a cell that cannot be used, naming it, and for a way without a row.
     """
     rows = checked(HangingRow, table("hangings"), "hangings.csv", named="hanging")
-    once([row.hanging for row in rows], "hanging", "hangings.csv")
-    found = {row.hanging: row for row in rows}
-    missing = [way.value for way in Hanging if way not in found]
-    if missing:
-        raise TableError(f"hangings.csv: there is no row for {', '.join(missing)}; give each way to hang one")
-    return found
+    return one_each(rows, Hanging, "hanging", "hangings.csv", "way to hang")
 
 
 @cache

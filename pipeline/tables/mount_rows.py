@@ -7,8 +7,8 @@ from pydantic import ValidationInfo, field_validator
 
 from pipeline.errors import InputError
 from pipeline.records import Mount
-from pipeline.tables import Range, TableError, table
-from pipeline.tables.rows import Entries, Optional, TableRow, Text, checked, in_order, once
+from pipeline.tables import Range, table
+from pipeline.tables.rows import Entries, Optional, TableRow, Text, checked, in_order, one_each
 
 _RANGES = ("grip", "room", "lean")
 
@@ -74,9 +74,4 @@ def mount_rows() -> dict[Mount, MountRow]:
         For a cell that cannot be used, naming it, and for a way without a row.
     """
     rows = checked(MountRow, table("mounts"), "mounts.csv", named="mount")
-    once([row.mount for row in rows], "mount", "mounts.csv")
-    found = {row.mount: row for row in rows}
-    missing = [way.value for way in Mount if way not in found]
-    if missing:
-        raise TableError(f"mounts.csv: there is no row for {', '.join(missing)}; give each way to be held one")
-    return found
+    return one_each(rows, Mount, "mount", "mounts.csv", "way to be held")

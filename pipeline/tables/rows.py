@@ -1,6 +1,7 @@
 """Rows of tables checked by models: each table has one class that says what its columns may hold."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from enum import StrEnum
 from typing import Annotated, TypeVar
 
 from pydantic import (
@@ -19,6 +20,8 @@ from pipeline.errors import InputError
 from pipeline.tables import Range, Row, TableError
 
 Model = TypeVar("Model")
+RowOfWay = TypeVar("RowOfWay", bound="TableRow")
+Way = TypeVar("Way", bound=StrEnum)
 
 _SHOWN = 80
 """Characters of a cell that a message repeats."""
@@ -109,6 +112,14 @@ def in_order(high: float | None, info: ValidationInfo, low: str, value: str) -> 
     return high
 
 
+def share_in_order(high: float, info: ValidationInfo, low: str, value: str, whole: str) -> float | None:
+    """Return the high end of a range of shares of a whole, as `in_order` does: above 0, and at most all of it."""
+    least = info.data.get(low)
+    if high > 1.0 or (least is not None and least <= 0.0):
+        raise InputError(f"is a share of the {whole}: low must be above 0 and high at most 1")
+    return in_order(high, info, low, value)
+
+
 def checked(
     model: type[Model],
     rows: Sequence[Row],
@@ -194,3 +205,30 @@ def once(values: Iterable[str], column: str, file: str) -> None:
                 "give each row its own"
             )
         seen[value] = line
+
+
+def one_each(rows: Sequence[RowOfWay], ways: type[Way], column: str, file: str, way: str) -> dict[Way, RowOfWay]:
+    """Return rows by the way that each is about, of which there is one for every way.
+
+    Parameters
+    ----------
+    rows : sequence of TableRow
+        Of the table, the first on line 2.
+    ways : type of StrEnum
+        All that there are.
+    column, file : str
+        What names the way, and for messages.
+    way : str
+        What a message calls one.
+
+    Raises
+    ------
+    TableError
+        For a way with two rows, and for one without.
+    """
+    found: dict[Way, RowOfWay] = {getattr(row, column): row for row in rows}
+    once([getattr(row, column) for row in rows], column, file)
+    missing = [one.value for one in ways if one not in found]
+    if missing:
+        raise TableError(f"{file}: there is no row for {', '.join(missing)}; give each {way} one")
+    return found
