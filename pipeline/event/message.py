@@ -6,6 +6,7 @@ import gzip
 import math
 import re
 import zlib
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
@@ -97,6 +98,21 @@ class ReportedEarthquake:
             return None
         return kilometres(self.latitude, self.longitude, latitude, longitude)
 
+    def apart(self, other: ReportedEarthquake) -> tuple[float, float] | None:
+        """Return how far another earthquake is in km and in s; None where place or time of one is not known."""
+        if other.latitude is None or other.longitude is None or self.time is None or other.time is None:
+            return None
+        far = self.distance_km(other.latitude, other.longitude)
+        return None if far is None else (far, abs((self.time - other.time).total_seconds()))
+
+    @property
+    def version_number(self) -> float:
+        """The version of the message as a number, 0 where it is none."""
+        try:
+            return float(self.version)
+        except ValueError:
+            return 0.0
+
 
 @dataclass(frozen=True)
 class SiteShaking:
@@ -162,7 +178,7 @@ def _range(median: float, sd: float) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class Message:
+class Message(ABC):
     """A file about an earthquake.
 
     Attributes
@@ -186,6 +202,7 @@ class Message:
     cancelled: bool = False
     notes: tuple[str, ...] = ()
 
+    @abstractmethod
     def at(self, latitude: float, longitude: float) -> SiteShaking:
         """Return the shaking at a place.
 
@@ -194,7 +211,6 @@ class Message:
         MessageError
             For a place that it says nothing of, with the distance.
         """
-        raise NotImplementedError
 
 
 def kilometres(lat1: float, lon1: float, lat2: float, lon2: float) -> float:

@@ -17,7 +17,6 @@ from pipeline.event.message import (
     ReportedEarthquake,
     check_quake,
     content,
-    kilometres,
     refused,
     xml_root,
 )
@@ -78,7 +77,7 @@ def read_files(files: Sequence[Path], now: datetime) -> EventFiles:
             continue
         check_quake(file, message.quake, now)
         messages.append(message)
-    ordered = tuple(sorted(messages, key=lambda one: (-one.rank, -_version(one.quake.version))))
+    ordered = tuple(sorted(messages, key=lambda one: (-one.rank, -one.quake.version_number)))
     for one in ordered[1:]:
         _same(ordered[0], one)
     quake = ReportedEarthquake()
@@ -136,21 +135,16 @@ def _is_station_list(text: bytes) -> bool:
     )
 
 
-def _version(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return 0.0
-
-
 def _same(first: Message, other: Message) -> None:
-    a, b = first.quake, other.quake
-    if None in (a.latitude, a.longitude, b.latitude, b.longitude) or a.time is None or b.time is None:
-        return
-    apart = kilometres(a.latitude or 0.0, a.longitude or 0.0, b.latitude or 0.0, b.longitude or 0.0)
-    seconds = abs((a.time - b.time).total_seconds())
-    if apart > SAME_KM or seconds > SAME_S:
+    apart = first.quake.apart(other.quake)
+    if apart is not None and not is_same(apart):
+        far, seconds = apart
         raise MessageError(
-            f"{first.file} and {other.file}: about different earthquakes, {apart:,.0f} km and {seconds:,.0f} s apart; "
+            f"{first.file} and {other.file}: about different earthquakes, {far:,.0f} km and {seconds:,.0f} s apart; "
             "give the files of one"
         )
+
+
+def is_same(apart: tuple[float, float]) -> bool:
+    """Say whether two messages that are so far apart, in km and in s, are about one earthquake."""
+    return apart[0] <= SAME_KM and apart[1] <= SAME_S

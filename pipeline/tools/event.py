@@ -18,10 +18,9 @@ from pipeline.event.message import (
     MessageError,
     ReportedEarthquake,
     SiteShaking,
-    kilometres,
 )
 from pipeline.event.own_record import recorded_shaking
-from pipeline.event.reading import SAME_KM, SAME_S, EventFiles, read_files, with_more
+from pipeline.event.reading import EventFiles, is_same, read_files, with_more
 from pipeline.event.reports import STATES, conditioned, read_reports
 from pipeline.motions.manifest import load_manifest
 from pipeline.motions.summary import summaries
@@ -36,7 +35,7 @@ from pipeline.report.pages.compose import page_head
 from pipeline.report.text import clean, slug
 from pipeline.resources import aside_of, small_text, sweep
 from pipeline.store.codec import StoreError
-from pipeline.store.pages import load_page
+from pipeline.store.pages import load_members, load_page
 from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import load_head
 
@@ -157,14 +156,14 @@ def answer_event(
     quake = quake if drill is None else drill
     root = workspace.settings.path(EVENTS)
     whole_event = root / _event_folder(root, quake, clock)
-    assessments = _assessments(workspace, pages)
-    numbers = {one.scene.item.object_number: at for at, one in enumerate(assessments)}
+    numbers = _numbers(workspace, pages)
     reports = _earlier_reports(whole_event, numbers)
     if report is not None:
         reports |= read_reports(report, numbers)
     folder = whole_event / _version(told, typed, site, head, quake, rank[0], reports)
     if (folder / ANSWER).is_file():
         return EventDone(None, _kept(folder / ANSWER), folder, again=True, newest=_shown(folder.parent) == folder.name)
+    assessments = _assessments(workspace, pages)
     floors = _floors(workspace, head)
     ground = floors[""]
     # The ratio of SI peaks, s, as cm/s for each g.
@@ -218,10 +217,7 @@ def _shaking(
     told: EventFiles, typed: TypedShaking | None, site: tuple[float, float]
 ) -> tuple[SiteShaking, ReportedEarthquake, tuple[int, float]]:
     quake = told.quake
-    try:
-        version = float(quake.version)
-    except ValueError:
-        version = 0.0
+    version = quake.version_number
     if told.records:
         shaking, said = recorded_shaking(told.records, *site)
         return shaking, with_more(quake, said), (OWN, version)
@@ -240,6 +236,14 @@ def _floors(workspace: Workspace, head: RunRecord) -> dict[str, FloorMotions]:
     return floors_of(head.motions, ground or summaries(workspace.site().levels))
 
 
+def _numbers(workspace: Workspace, pages: Sequence[Page]) -> dict[str, int]:
+    """Return the places of objects on display by number, in the order of `_assessments`; no result is read."""
+    with workspace.engine.connect() as connection:
+        found = [load_members(connection, page.key) for page in pages if page.on_display]
+    pairs = [pair for one in found for pair in zip(one.column("object_number"), one.column("on_display"), strict=True)]
+    return {number: at for at, number in enumerate(number for number, shown in pairs if shown)}
+
+
 def _assessments(workspace: Workspace, pages: Sequence[Page]) -> list[Assessment]:
     with workspace.engine.connect() as connection:
         found = [load_page(connection, page.key) for page in pages if page.on_display]
@@ -252,11 +256,12 @@ def _event_folder(root: Path, quake: ReportedEarthquake, now: datetime) -> str:
         for there in sorted(root.iterdir()):
             said = _shown_document(there).get("event", {})
             try:
-                seconds = abs((datetime.fromisoformat(said["time"]) - quake.time).total_seconds())
-                apart = kilometres(quake.latitude, quake.longitude, said["latitude"], said["longitude"])
+                time = datetime.fromisoformat(said["time"])
+                other = ReportedEarthquake(latitude=said["latitude"], longitude=said["longitude"], time=time)
+                apart = quake.apart(other)
             except (KeyError, TypeError, ValueError):
                 continue
-            if seconds <= SAME_S and apart <= SAME_KM:
+            if apart is not None and is_same(apart):
                 return there.name
     # Of what nobody says when it was, all of one day is one earthquake.
     when = f"{now:%Y%m%d}-" if quake.time is None else f"{quake.time:%Y%m%dT%H%M%S}-"
