@@ -80,10 +80,13 @@ class Unusable:
         The record, or the file.
     reason : str
         What is wrong with it, and the remedy where there is one.
+    chosen : bool
+        Whether it is sound, and another one of the same shaking was taken.
     """
 
     name: str
     reason: str
+    chosen: bool = False
 
 
 @dataclass(frozen=True, eq=False)

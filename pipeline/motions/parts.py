@@ -165,10 +165,28 @@ def _chunks(file: Path, size: int, step: int) -> Iterator[tuple[int, int, Any]]:
             headers = _unpacked(file, raw, at, headonly=True)
             if at == 0:
                 length = max((trace.stats.mseed.record_length for trace in headers), default=512)
-                if size % length:
-                    wrong = f"is cut off: {size} bytes are not a whole number of records of {length} bytes"
-                    raise refusal(file, "file", wrong, "fetch it again")
+                check_whole(file, size, length)
             yield at, len(raw), headers
+
+
+def check_whole(file: Path, size: int, length: int) -> None:
+    """Refuse a MiniSEED file that ends within a record.
+
+    Parameters
+    ----------
+    file : Path
+        The file.
+    size, length : int
+        Bytes of it, and of each of its records.
+
+    Raises
+    ------
+    MotionError
+        Naming it.
+    """
+    if size % length:
+        wrong = f"is cut off: {size} bytes are not a whole number of records of {length} bytes"
+        raise refusal(file, "file", wrong, "fetch it again")
 
 
 def _unpacked(file: Path, raw: bytes, at: int, **how: Any) -> Any:

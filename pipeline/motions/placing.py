@@ -60,8 +60,6 @@ class PlacingPlan:
         Of the site.
     before : str or None
         Its manifest's text as it is; None where there is none.
-    manifest : Manifest or None
-        What that says.
     level : str
         Where the records belong.
     placed : list of PlacedRecords
@@ -78,7 +76,6 @@ class PlacingPlan:
 
     folder: Path
     before: str | None
-    manifest: Manifest | None
     level: str
     placed: list[PlacedRecords] = field(default_factory=list)
     already: list[tuple[str, str]] = field(default_factory=list)
@@ -144,7 +141,7 @@ def plan(
     MotionError
         For a proposal with questions; a record that is refused is told in the plan.
     """
-    made = PlacingPlan(folder, before, known, level)
+    made = PlacingPlan(folder, before, level)
     there = [] if known is None else [(record, _level_of(known, record)) for _, record in known.records()]
     table = next((one for one in known.level if one.name == level), None) if known is not None else None
     names = {record.name for record, _ in there}

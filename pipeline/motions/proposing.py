@@ -138,7 +138,7 @@ def propose(found: GatheredFiles, answers: Answers) -> tuple[list[RecordProposal
         else:
             kept.append((of, picked.traces, list(picked.told)))
     out = dict(one_version([traces for _, traces, _ in kept], answers.processed.get("") is False))
-    left += [Unusable(_label(kept[i][0]), why) for i, why in out.items()]
+    left += [Unusable(_label(kept[i][0]), why, chosen=True) for i, why in out.items()]
     made = []
     for i, (of, picked_traces, told) in enumerate(kept):
         if i in out:
@@ -264,8 +264,7 @@ class _Making:
     def _response(self) -> Path | None:
         """The StationXML that turns counts into an acceleration; asks for a unit where there is neither."""
         silent = [one for one in self.traces if self._silent(one[1])]
-        keyed = self._answer({k: v for k, v in self.answers.units.items() if k}, plain=False)
-        if not silent or keyed:
+        if not silent or self._answer(self.answers.units, plain=False):
             return None
         partly = []
         for path, inventory in self.found.catalogues.inventories.items():
@@ -297,7 +296,7 @@ class _Making:
     def _unit(self, response: Path | None) -> str | None:
         if response is not None:
             return None
-        keyed = self._answer({k: v for k, v in self.answers.units.items() if k}, plain=False)
+        keyed = self._answer(self.answers.units, plain=False)
         if keyed or any(self._silent(trace) for _, trace in self.traces):
             return keyed or self.answers.units.get("")
         plain, own = self.answers.units.get(""), own_unit(self.first.stats)

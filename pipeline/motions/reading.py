@@ -19,7 +19,18 @@ from pipeline.motions.earthquakes import earthquakes, listed, window_of
 from pipeline.motions.errors import MotionError, judged, refusal
 from pipeline.motions.joining import Row, aligned, channel_of, check_common, check_together, only_piece
 from pipeline.motions.orientation import by_station, oriented
-from pipeline.motions.parts import LARGEST, Part, Piece, holding, is_continuous, part_of, scan, whole, zero_of
+from pipeline.motions.parts import (
+    LARGEST,
+    Part,
+    Piece,
+    check_whole,
+    holding,
+    is_continuous,
+    part_of,
+    scan,
+    whole,
+    zero_of,
+)
 from pipeline.motions.plateaus import full_scale
 from pipeline.motions.quality import clipped
 from pipeline.motions.record import ESTIMATED, NO_VERTICAL, Component, Record
@@ -337,10 +348,7 @@ def _read_of(file: Path, trace: Any) -> str:
 def _check_complete(file: Path, stream: Any) -> None:
     form = stream[0].stats._format if len(stream) else ""
     if form == "MSEED":
-        length, size = stream[0].stats.mseed.record_length, file.stat().st_size
-        if size % length:
-            wrong = f"is cut off: {size} bytes are not a whole number of records of {length} bytes"
-            raise refusal(file, "file", wrong, "fetch it again")
+        check_whole(file, file.stat().st_size, stream[0].stats.mseed.record_length)
     elif form in {"SLIST", "TSPAIR"}:
         text = file.read_text(encoding="ascii", errors="replace")
         declared = sum(int(n) for n in re.findall(r"^TIMESERIES [^,\n]*, *(\d+) samples", text, re.MULTILINE))

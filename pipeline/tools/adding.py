@@ -179,7 +179,7 @@ def add(
     if wish.answers.name and len(proposals) > 1:
         names = ", ".join(one.name for one in proposals)
         raise UsageError(f"--name is for one record, and the files hold {len(proposals)}: {names}")
-    _nothing_wrong(proposals, left, [*left, *found.unusable], guess=wish.guess)
+    _nothing_wrong(proposals, [*left, *found.unusable], guess=wish.guess)
     made = plan(folder, level, proposals, wish.accept, before, known)
     left = [*left, *found.unusable, *(Unusable(name, str(problem)) for name, problem in made.refused)]
     _clash(wish, made.level, made.already, known)
@@ -231,12 +231,9 @@ def _listed(missing: Sequence[MissingAnswer]) -> str:
     return f"{counted(len(missing), 'answer')} missing, and nobody to ask:\n  " + "\n  ".join(lines)
 
 
-def _nothing_wrong(
-    proposals: Sequence[RecordProposal], left: Sequence[Unusable], every: Sequence[Unusable], *, guess: bool
-) -> None:
+def _nothing_wrong(proposals: Sequence[RecordProposal], every: Sequence[Unusable], *, guess: bool) -> None:
     """Refuse files that are no records where each was named, and files among which there is no record at all."""
-    by_design = ("the raw version", "the processed version", "another instrument", "the same station")
-    wrong = [one for one in every if not (one in left and one.reason.startswith(by_design))]
+    wrong = [one for one in every if not one.chosen]
     if not proposals or (wrong and not guess):
         told = [(one.name, one.reason) for one in (wrong or every)]
         raise _refused(told or [("files", "there is no record among them")])

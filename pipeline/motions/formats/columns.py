@@ -36,7 +36,7 @@ def is_format(source: Source) -> bool:
 
 
 def _traces(lines: Lines, headonly: bool) -> list[Any]:
-    """Return the traces of columns, one for each after the time, in a unit that the file does not say (`units` is "")."""
+    """Return the traces of columns, one for each after the time; the file says no unit (`units` is "")."""
     top = _top([lines.text(index) for index in range(min(len(lines), _MOST_COMMENTS + 1))])
     text = lines.text(top, "the first row of numbers")
     columns = len(_split(text))
