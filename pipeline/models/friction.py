@@ -11,6 +11,7 @@ from pipeline.kernels.flags import UNRESOLVED
 from pipeline.kernels.friction_line import CAP, friction_line_batch
 from pipeline.kernels.friction_plane import friction_plane_batch
 from pipeline.models.common import ROUNDING, SENSITIVE, Quiet, after_record, contact_lost, lift_ratios, magnified
+from pipeline.models.sharing import shared
 from pipeline.quantities import Array, G
 from pipeline.records import Bounds, Columns, Excitation
 
@@ -126,22 +127,25 @@ def _line(quiet: Quiet, bodies: Sequence[Array], tail: float, results: Array, hi
 
 def _plane(quiet: Quiet, bodies: Sequence[Array], tail: float, steps: Steps, results: Array, history: Array) -> None:
     # bodies: w, zeta, mu_s, mu_k;  steps: as from _steps
-    friction_plane_batch(
-        quiet.x,
-        quiet.y,
-        quiet.z,
-        quiet.ratio,
-        quiet.maxima,
-        quiet.push,
-        quiet.pushes,
-        quiet.dt,
-        quiet.peak,
-        *bodies,
-        tail,
-        *steps,
-        results,
-        history,
-    )
+    def follow(part: slice) -> None:
+        friction_plane_batch(
+            quiet.x,
+            quiet.y,
+            quiet.z,
+            quiet.ratio,
+            quiet.maxima,
+            quiet.push,
+            quiet.pushes,
+            quiet.dt,
+            quiet.peak,
+            *(one[part] for one in bodies),
+            tail,
+            *steps,
+            results[part],
+            history,
+        )
+
+    shared(follow, results.shape[0], quiet.x.size, together=1)
 
 
 def _moves(motion: Excitation, times: float, mu_s: Array) -> Array:

@@ -22,6 +22,7 @@ from pipeline.kernels.oscillator import oscillator_batch, oscillator_history
 from pipeline.kernels.resultant import resultant_batch
 from pipeline.models.common import ROUNDING, after_record, curve, grid
 from pipeline.models.horizontal_isolator import DAMPING, FREQUENCY
+from pipeline.models.sharing import shared
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Axis, Bounds, Chart, Columns, Excitation, Figure, Model, Motion, Scene, Trials
 
@@ -61,7 +62,12 @@ def oscillate(motion: Excitation, w: Array, zeta: Array, share: Array) -> tuple[
     max_u, max_y = np.empty(w.size), np.empty(w.size)
     tail = -1.0 if motion.tail is None else float(motion.tail)
     arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta, share)]
-    oscillator_batch(samples(motion.x), motion.dt, *arrays, tail, max_u, max_y)
+    x = samples(motion.x)
+
+    def run(part: slice) -> None:
+        oscillator_batch(x, motion.dt, *(p[part] for p in arrays), tail, max_u[part], max_y[part])
+
+    shared(run, w.size, x.size)
     return max_u, max_y
 
 
@@ -91,7 +97,12 @@ def oscillate_any(motion: Excitation, w: Array, zeta: Array) -> Array:
     most, angle = np.empty(w.size), np.empty(w.size)
     tail = -1.0 if motion.tail is None else float(motion.tail)
     arrays = [np.ascontiguousarray(p, dtype=np.float64) for p in (w, zeta)]
-    resultant_batch(samples(motion.x), samples(motion.y), motion.dt, *arrays, tail, most, angle)
+    x, y = samples(motion.x), samples(motion.y)
+
+    def run(part: slice) -> None:
+        resultant_batch(x, y, motion.dt, *(p[part] for p in arrays), tail, most[part], angle[part])
+
+    shared(run, w.size, x.size)
     return most
 
 

@@ -86,6 +86,7 @@ from pipeline.models.rigid_body import (
     tipped,
     tipping,
 )
+from pipeline.models.sharing import shared
 from pipeline.models.sliding import FRICTION_KINETIC, FRICTION_STATIC
 from pipeline.quantities import Array, G, Quantity
 from pipeline.records import Bounds, Columns, Estimate, Excitation, Harm, Model, Origin, Scene, Support, Trials
@@ -186,21 +187,25 @@ def _integrate(motion: Excitation, body: Array, refine: int, until: Array | None
     quiet = Quiet(motion)
     results = np.empty((body.shape[0], kernel.FOUND))
     ends = np.full(body.shape[0], np.inf) if until is None else until
-    standing_batch(
-        quiet.x,
-        quiet.z,
-        quiet.ratio,
-        quiet.maxima,
-        quiet.dt,
-        quiet.peak,
-        body,
-        quiet.tail,
-        ends,
-        refine,
-        rest,
-        results,
-        history,
-    )
+
+    def follow(part: slice) -> None:
+        standing_batch(
+            quiet.x,
+            quiet.z,
+            quiet.ratio,
+            quiet.maxima,
+            quiet.dt,
+            quiet.peak,
+            body[part],
+            quiet.tail,
+            ends[part],
+            refine,
+            rest,
+            results[part],
+            history,
+        )
+
+    shared(follow, body.shape[0], quiet.x.size, together=1)
     return results
 
 

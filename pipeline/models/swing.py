@@ -23,6 +23,7 @@ methods for museum objects. Studies in Conservation 36. Sec. 2.4 and Figure 5.
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +35,7 @@ from pipeline.kernels.pendulum import MOST_STEPS, pendulum_batch
 from pipeline.kernels.spherical import spherical_batch
 from pipeline.models.common import NO_HISTORY, ROUNDING, broadcast, grid, magnified, needs, shaken
 from pipeline.models.horizontal_isolator import DAMPING
+from pipeline.models.sharing import shared
 from pipeline.quantities import Array, Quantity
 from pipeline.records import Axis, ChartAxis, ChartFigure, Columns, Excitation, Hanging, Model, Scene, Support, Trials
 
@@ -105,10 +107,24 @@ def _run(motion: Excitation, parameters: Mapping[str, Array], refine: int, estim
     coarse, fine = np.full((length.size, 2), np.nan), np.empty((length.size, 2))
     runs = ((refine, coarse), (2 * refine, fine)) if estimate else ((refine, fine),)
     for steps, results in runs:
-        pendulum_batch(x, z, motion.dt, shaken(motion), length, zeta, tail, steps, results, np.empty((0, 1)))
+        shared(partial(_swing, (x, z), motion, length, zeta, tail, steps, results), length.size, x.size)
     displacement = length * _swept(fine[:, 0]) / times
     error = np.abs(displacement - length * _swept(coarse[:, 0]) / times) + _least(refine) * displacement
     return {**_told(length, fine[:, 1], displacement, error), "rotation": fine[:, 0] / times}
+
+
+def _swing(
+    ways: tuple[Array, Array],
+    motion: Excitation,
+    length: Array,
+    zeta: Array,
+    tail: float,
+    steps: int,
+    results: Array,
+    part: slice,
+) -> None:
+    peak, none = shaken(motion), np.empty((0, 1))
+    pendulum_batch(*ways, motion.dt, peak, length[part], zeta[part], tail, steps, results[part], none)
 
 
 def _run_3d(motion: Excitation, parameters: Mapping[str, Array], refine: int, estimate: bool) -> Columns:

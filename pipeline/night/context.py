@@ -17,6 +17,7 @@ from pipeline.execute import Threads
 from pipeline.mitigate import MeasureCatalogue
 from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.models.band import sharing_spectra
+from pipeline.models.sharing import share_among
 from pipeline.night.floors import Floor
 from pipeline.records import (
     Motion,
@@ -104,7 +105,9 @@ class RunContext:
     @cached_property
     def executor(self) -> Threads:
         """Where the parts of the work run."""
-        return Threads(self.threads)
+        threads = Threads(self.threads)
+        share_among(threads.workers)
+        return threads
 
     @cached_property
     def renderer(self) -> PageRenderer:

@@ -39,7 +39,7 @@ from pipeline.records import Progress
 from pipeline.store.pages import Members, known_pages, page_digest
 from pipeline.store.results import KeptResult, Made, Stored, copy, fetch, forget, keep, known
 
-FEW = 1_000
+FEW = 4_000
 """Objects to be assessed or shown for which other processes do not pay: they take seconds to start."""
 
 BATCH = 16_000

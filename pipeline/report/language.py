@@ -1,37 +1,55 @@
-"""The language of the pages: phrases are English in the code, and looked up in the museum's catalogue when shown."""
+"""The language of the pages: phrases are English in the code, and looked up in a catalogue when shown.
+
+Catalogues of some languages travel with Kouros, as texts (.po) that a person can read, correct and sign; the museum's
+own, compiled, goes before them.  Numbers and times are written as the language's people do, by the data of Unicode's
+CLDR that Babel carries.
+"""
 
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+from datetime import datetime
+from functools import lru_cache
 from gettext import GNUTranslations, NullTranslations, find
 from hashlib import sha256
 from io import BytesIO
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pipeline.report.errors import ReportError
+from pipeline.resources import resource
 
 DOMAIN = "kouros"
 """The name of a catalogue: <folder>/<language>/LC_MESSAGES/kouros.mo."""
 
 _RIGHT_TO_LEFT = ("ar", "fa", "he", "ur", "yi")
 
+if TYPE_CHECKING:
+    from babel import Locale
+
 # The language holds for the rendering of one report, in the thread that renders it; nothing outlives that.
 _PHRASES: ContextVar[NullTranslations | None] = ContextVar("phrases", default=None)
+_TAG: ContextVar[str] = ContextVar("tag", default="en")
+
+SIGNED = "X-Reviewed-By"
+"""The header of a catalogue in which the person who reviewed it signs: a name, and a date."""
 
 
 @dataclass(frozen=True, slots=True)
 class Language:
     """A language of the pages; English, which needs no catalogue, where nothing is said.
 
-    code   : a language tag, such as "it" or "pt-BR"
-    digest : of its catalogues; "" where there is none
+    code     : a language tag, such as "it" or "pt-BR"
+    digest   : of its catalogues; "" where there is none
+    reviewed : who signed the catalogue that travels with Kouros; "" where nobody did, None where it is not used
     """
 
     code: str = "en"
     phrases: NullTranslations = field(default_factory=NullTranslations, compare=False)
     digest: str = ""
+    reviewed: str | None = None
 
     @property
     def direction(self) -> str:
@@ -40,35 +58,67 @@ class Language:
 
 
 def language(code: str, catalogues: Path | None) -> Language:
-    """Return a language with its phrases; what a catalogue lacks stays English.
+    """Return a language with its phrases: the museum's own, then those that travel with Kouros, and else English.
 
-    catalogues : the folder of the catalogues; None where the settings name none
-    raises     : ReportError for another language than English without a catalogue, or with a damaged one
+    catalogues : the folder of the museum's catalogues; None where the settings name none
+    raises     : ReportError for a language without any catalogue, or with a damaged one
     """
     tag = code.replace("_", "-")
-    if catalogues is None:
-        if tag.partition("-")[0].lower() == "en":
-            return Language(tag)
-        raise ReportError(f"[report] language is {code!r}, and [report] catalogues names no folder: name it")
     locale = tag.replace("-", "_")
     try:
         # Not by `gettext.translation`: it reads a file once in the life of a process, whatever becomes of it.
-        contents = [Path(file).read_bytes() for file in find(DOMAIN, str(catalogues), [locale], all=True)]
+        files = find(DOMAIN, str(catalogues), [locale], all=True) if catalogues is not None else []
+        contents = [Path(file).read_bytes() for file in files]
         read = [GNUTranslations(BytesIO(content)) for content in contents]
     except (OSError, UnicodeDecodeError, ValueError) as error:
         raise ReportError(
             f"the catalogue of {code!r} in {catalogues} is damaged ({error}); compile it again"
         ) from error
-    if not read and locale != "en":
+    shipped = _shipped(locale)
+    if not read and shipped is None and locale.partition("_")[0].lower() != "en":
+        if catalogues is None:
+            raise ReportError(
+                f"[report] language is {code!r}: no catalogue of it travels with Kouros ({', '.join(languages())} do), "
+                "and [report] catalogues names no folder: name it"
+            )
         raise ReportError(
             f"there is no {catalogues / locale / 'LC_MESSAGES' / f'{DOMAIN}.mo'}; compile the catalogue, "
             "or correct [report] language and catalogues"
         )
+    if shipped is not None:
+        contents.append(shipped)
+        read.append(GNUTranslations(BytesIO(shipped)))
     phrases: NullTranslations = read[0] if read else NullTranslations()
     for more in read[1:]:
         phrases.add_fallback(more)
     _check(phrases, code)
-    return Language(tag, phrases, sha256(b"".join(contents)).hexdigest() if contents else "")
+    reviewed = None if shipped is None else read[-1].info().get(SIGNED.lower(), "").strip()
+    return Language(tag, phrases, sha256(b"".join(contents)).hexdigest() if contents else "", reviewed)
+
+
+def languages() -> list[str]:
+    """Return the languages whose catalogues travel with Kouros."""
+    return sorted(file.parents[1].name for file in _CATALOGUES.glob(f"*/LC_MESSAGES/{DOMAIN}.po"))
+
+
+_CATALOGUES = resource("templates").joinpath("catalogues")
+
+
+@lru_cache
+def _shipped(locale: str) -> bytes | None:
+    """Return the catalogue of a language that travels with Kouros, compiled; None where there is none."""
+    # Babel and its data take a third of a second, which English need not wait for.
+    from babel.messages.mofile import write_mo
+    from babel.messages.pofile import read_po
+
+    for name in (locale, locale.partition("_")[0]):
+        file = _CATALOGUES / name / "LC_MESSAGES" / f"{DOMAIN}.po"
+        if name.isidentifier() and file.is_file():
+            made = BytesIO()
+            with file.open("rb") as text:
+                write_mo(made, read_po(text, locale=name))
+            return made.getvalue()
+    return None
 
 
 _NAMES = re.compile(r"%\((\w+)\)s|\{(\w+)\}")
@@ -91,11 +141,54 @@ def _check(phrases: NullTranslations, code: str) -> None:
 @contextmanager
 def speaking(chosen: Language) -> Iterator[None]:
     """Look all phrases up in this language, until the end of the block."""
-    token = _PHRASES.set(chosen.phrases)
+    phrases, tag = _PHRASES.set(chosen.phrases), _TAG.set(chosen.code)
     try:
         yield
     finally:
-        _PHRASES.reset(token)
+        _PHRASES.reset(phrases)
+        _TAG.reset(tag)
+
+
+def local(number: str) -> str:
+    """Return a number as the reader's language writes it: "2,000.5" is "2.000,5" in Italian."""
+    tag = _TAG.get()
+    return number if tag == "en" else number.translate(_marks(tag))
+
+
+def moment(text: str) -> str:
+    """Return a time, ISO 8601 in UTC, to the minute, as the reader's language writes it; in English as it is."""
+    try:
+        when = datetime.fromisoformat(text)
+    except ValueError:
+        return text
+    tag = _TAG.get()
+    if _locale(tag) is None or tag.partition("-")[0] == "en":
+        return f"{when:%Y-%m-%d %H:%M}"
+    from babel.dates import format_date
+
+    return f"{format_date(when, 'medium', locale=_locale(tag))}, {when:%H:%M}"
+
+
+@lru_cache
+def _locale(tag: str) -> "Locale | None":
+    """Return what Babel knows of a language; None where it does not know it."""
+    from babel import Locale, UnknownLocaleError
+
+    try:
+        return Locale.parse(tag, sep="-")
+    except (UnknownLocaleError, ValueError):
+        return None
+
+
+@lru_cache
+def _marks(tag: str) -> dict[int, str]:
+    """Return what stands for the decimal point, and for the comma between thousands."""
+    from babel.numbers import get_decimal_symbol, get_group_symbol
+
+    locale = _locale(tag)
+    if locale is None:
+        return {}
+    return {ord("."): get_decimal_symbol(locale), ord(","): get_group_symbol(locale)}
 
 
 def _(phrase: str) -> str:

@@ -5,7 +5,7 @@ import re
 import unicodedata
 from functools import lru_cache
 
-from pipeline.report.language import _
+from pipeline.report.language import _, local
 
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 _BIDI = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
@@ -37,7 +37,7 @@ def short(text: str, limit: int = 90) -> str:
 
 def count(number: int) -> str:
     """Write how many there are, such as "2,000"."""
-    return f"{number:,}"
+    return local(f"{number:,}")
 
 
 def words(name: str) -> str:

@@ -8,7 +8,7 @@ from string import Formatter
 
 from pipeline.quantities import LENGTHS, G
 from pipeline.report.errors import ReportError
-from pipeline.report.language import _
+from pipeline.report.language import _, local
 
 _FIXED: dict[str, tuple[str, float]] = {
     "m/s2": ("g", 1.0 / G),
@@ -23,9 +23,13 @@ _POWERS = {"m": ("", 1), "m2": ("²", 2), "m3": ("³", 3), "m/s": ("/s", 1)}
 _THIN = "\u202f"
 
 
-@lru_cache(maxsize=65536)
 def significant(value: float, digits: int, *, keep: bool = False) -> str:
     """Write a finite number with that many significant digits; zeros at the end go unless they are to be kept."""
+    return local(_significant(value, digits, keep))
+
+
+@lru_cache(maxsize=65536)
+def _significant(value: float, digits: int, keep: bool) -> str:
     if value == 0.0:
         return "0"
     decimals = digits - 1 - floor(log10(abs(value)))
@@ -38,15 +42,15 @@ def significant(value: float, digits: int, *, keep: bool = False) -> str:
 
 def ratio(value: float) -> str:
     """Write a finite ratio with two significant digits, and more where two would hide on which side of 1 it lies."""
-    return _digits(value) or (_("just above 1") if value > 1.0 else _("just below 1"))
+    return local(_digits(value)) or (_("just above 1") if value > 1.0 else _("just below 1"))
 
 
 @lru_cache(maxsize=65536)
 def _digits(value: float) -> str:
     if value == round(value):
-        return significant(value, 2 if abs(value) >= 100.0 else 3)
+        return _significant(value, 2 if abs(value) >= 100.0 else 3, False)
     for digits in range(2, 7):
-        text = significant(value, digits, keep=True)
+        text = _significant(value, digits, True)
         if float(text.replace("−", "-")) != 1.0:
             return text
     return ""

@@ -7,7 +7,7 @@ from pipeline.analysis.stakes import Term, Worth, doubtful, expected_loss
 from pipeline.analysis.survey import measurables, size_behind
 from pipeline.records import Assessment, Band, Harm, IfClass, Likelihood, Mount, Recommendation, Scene
 from pipeline.records.likelihood import CLASS
-from pipeline.report.language import _, said
+from pipeline.report.language import _, local, said
 from pipeline.report.text import clean, words
 
 ACTED = (Band.ALMOST_CERTAIN, Band.LIKELY, Band.POSSIBLE)
@@ -39,7 +39,7 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
         return None
     numbers = _("%(share)s ± %(error)s of %(samples)s samples") % {
         "share": _percent(found.probability),
-        "error": f"{100.0 * found.error:.1f} %",
+        "error": local(f"{100.0 * found.error:.1f} %"),
         "samples": found.samples,
     }
     others = [f"{_STATES[Harm(name)]()} {p:.0%}" for name, p in found.states.items() if p >= _LEAST]
@@ -48,7 +48,7 @@ def chance_view(assessment: Assessment) -> ChanceView | None:
     check = ""
     if slender:
         check = _("Check its record first: it is %(times)s times as high as it is deep, and hardly stands by itself.")
-        check %= {"times": f"{slender:.1f}"}
+        check %= {"times": local(f"{slender:.1f}")}
     unnamed = _unnamed(found)
     if unnamed:
         check = " ".join(filter(None, (check, _("Say what it is first (kouros decide)."))))
@@ -68,7 +68,7 @@ def _unnamed(found: Likelihood) -> bool:
 def _if_class(one: IfClass) -> str:
     """Say what an object may be, and how likely harm is then."""
     named = _(" or ").join(words(clean(name)) for name in one.classes)
-    told = {"what": named, "chance": f"{one.chance:.2f}"}
+    told = {"what": named, "chance": local(f"{one.chance:.2f}")}
     if one.probability is None or one.samples < _TELLING:
         return _("%(what)s (%(chance)s): too few samples to tell") % told
     return _("%(what)s (%(chance)s): harm %(share)s") % (told | {"share": _percent(one.probability)})
@@ -89,12 +89,12 @@ def worth_words(scene: Scene, worth: Worth) -> str:
     item = scene.item
     told = {
         Term.CLASS: _("class %(name)s") % {"name": clean(item.value_class)},
-        Term.VALUE: _("valued at %(money)s") % {"money": f"{item.value or 0.0:,.0f}"},
+        Term.VALUE: _("valued at %(money)s") % {"money": local(f"{item.value or 0.0:,.0f}")},
         Term.IRREPLACEABLE: _("irreplaceable"),
         Term.ON_LOAN: _("on loan"),
     }
     rests = ", ".join(told[term] for term in worth.terms) or _("nothing is recorded of its value")
-    return _("counts %(weight)s: %(rests)s") % {"weight": f"{worth.weight:.3g}", "rests": rests}
+    return _("counts %(weight)s: %(rests)s") % {"weight": local(f"{worth.weight:.3g}"), "rests": rests}
 
 
 def left_over(advice: Recommendation) -> str:

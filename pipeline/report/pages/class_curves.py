@@ -15,7 +15,7 @@ from pipeline.analysis.fragility.counts import fit_counts
 from pipeline.quantities import G
 from pipeline.records import Assessment, Fragility, Tally
 from pipeline.records.fragility import ABOVE, BELOW, HARM
-from pipeline.report.language import _
+from pipeline.report.language import _, local
 from pipeline.report.pages.judging import in_g
 from pipeline.report.text import clean, count, safe_cell, words
 
@@ -212,7 +212,7 @@ def _view(one: ClassCurve) -> ClassCurveView:
         median = "–"
     harmed = "–"
     if one.harmed is not None:
-        harmed = _("%(harmed)s of %(told)s") % {"harmed": f"{one.harmed:.1f}", "told": count(one.told)}
+        harmed = _("%(harmed)s of %(told)s") % {"harmed": local(f"{one.harmed:.1f}"), "told": count(one.told)}
     return ClassCurveView(
         words(clean(one.object_class)) if one.object_class else _("All on display"),
         count(one.objects),

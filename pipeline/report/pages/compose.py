@@ -7,7 +7,7 @@ from math import inf, isnan
 
 from pipeline.records import Assessment, Page, Recommendation, RunRecord, Tally, Urgency, Verdict
 from pipeline.report.errors import ReportError
-from pipeline.report.language import _, ngettext, said
+from pipeline.report.language import _, local, ngettext, said
 from pipeline.report.pages.class_curves import class_curve_views, class_curves
 from pipeline.report.pages.decided import Decided, decisions_view, merged
 from pipeline.report.pages.describe import Describer, Sayings, furniture_known, percent
@@ -244,7 +244,7 @@ def _levels(head: RunRecord, tally: Tally) -> tuple[LevelRow, ...]:
     rows = []
     for name in names:
         years = periods.get(name)
-        period = "" if years is None else _("%(years)s years") % {"years": f"{years:,g}"}
+        period = "" if years is None else _("%(years)s years") % {"years": local(f"{years:,g}")}
         rows.append(LevelRow(clean(name), period, StateCounts(**tally.levels[name])))
     return tuple(rows)
 

@@ -9,7 +9,7 @@ from jinja2.bccache import Bucket
 from markupsafe import Markup
 
 from pipeline.report.errors import ReportError
-from pipeline.report.language import Language
+from pipeline.report.language import Language, moment
 from pipeline.report.text import clean, count, plain
 from pipeline.resources import resource
 
@@ -57,6 +57,7 @@ def environment(language: Language | None = None) -> Environment:
     env.filters["plain"] = plain
     env.filters["squeezed"] = _squeezed
     env.filters["thousands"] = count
+    env.filters["moment"] = moment
     return env
 
 

@@ -6,7 +6,7 @@ from math import inf, isfinite
 
 from pipeline.motions.record import ESTIMATED, NO_VERTICAL
 from pipeline.records import Chart, MotionSummary
-from pipeline.report.language import _
+from pipeline.report.language import _, local
 from pipeline.report.pages.describe import approval, motion_anchor
 from pipeline.report.pages.views import MotionView
 from pipeline.report.text import clean, count, plain, words
@@ -48,8 +48,8 @@ def motion_view(motion: MotionSummary, charts: Mapping[str, Chart], units: Units
         sampling=_("%(samples)s samples, %(step)s s apart, %(duration)s s")
         % {
             "samples": count(motion.samples),
-            "step": f"{motion.dt:.6g}",
-            "duration": f"{(motion.samples - 1) * motion.dt:.4g}",
+            "step": local(f"{motion.dt:.6g}"),
+            "duration": local(f"{(motion.samples - 1) * motion.dt:.4g}"),
         },
         columns=(_("East (x)"), _("North (y)"), up, _("Larger horizontal"), _("Resultant")),
         table=tuple(table),
@@ -85,4 +85,4 @@ def _write(key: str, value: float, unit: str, units: Units) -> str:
     if unit or not isfinite(value):
         return units.text(value, unit)
     # The Arias intensity is quoted in m/s everywhere; anything that is not known here is shown in SI and says so.
-    return f"{value:.3g} m/s" if key.startswith("arias") else f"{value:.3g} (SI)"
+    return local(f"{value:.3g} m/s") if key.startswith("arias") else local(f"{value:.3g} (SI)")

@@ -12,7 +12,7 @@ from pipeline.quantities import G
 from pipeline.records import Assessment, Finding, Fragility, Harm, Spacing, Support, Verdict
 from pipeline.records.fragility import ABOVE, BELOW, FLAT, HARM
 from pipeline.records.result import BOUNDS
-from pipeline.report.language import _, ngettext, said
+from pipeline.report.language import _, local, ngettext, said
 from pipeline.report.pages.chances import state_word
 from pipeline.report.plots.panel import Panel
 from pipeline.report.plots.scales import Scale
@@ -145,11 +145,11 @@ def _sources(f: Fragility) -> str:
     # That few motions cannot tell it is said once a gallery.
     record = _("stated") if f.stated else _("of %(motions)s") % {"motions": motions}
     return _("Dispersion %(whole)s: records %(record)s (%(how)s), measures %(inputs)s, model %(model)s.") % {
-        "whole": f"{f.dispersion:.2f}",
-        "record": f"{f.record:.2f}",
+        "whole": local(f"{f.dispersion:.2f}"),
+        "record": local(f"{f.record:.2f}"),
         "how": record,
-        "inputs": f"{f.inputs:.2f}",
-        "model": f"{f.modelling:.2f}",
+        "inputs": local(f"{f.inputs:.2f}"),
+        "model": local(f"{f.modelling:.2f}"),
     }
 
 
@@ -163,7 +163,7 @@ def _goodness(f: Fragility) -> str:
     if f.goodness is not None and f.deviance is not None:
         told = _("Deviance %(deviance)s with %(degrees)s degrees of freedom: by chance as large in %(share)s of cases.")
         share = f"{f.goodness:.0%}"
-        said_so += " " + told % {"deviance": f"{f.deviance:.1f}", "degrees": count(f.degrees), "share": share}
+        said_so += " " + told % {"deviance": local(f"{f.deviance:.1f}"), "degrees": count(f.degrees), "share": share}
     if f.median_pgv is not None:
         told = (
             _("By peak velocity, in which the motions differ less: %(at)s cm/s.")

@@ -12,7 +12,7 @@ from typing import Any
 from pipeline.records import Doubt
 from pipeline.records.reading import CHOICE, DOUBTFUL, REFUSED, SHEET, SOURCE
 from pipeline.report.language import _
-from pipeline.report.text import clean, safe_cell, short, words
+from pipeline.report.text import clean, count, safe_cell, short, words
 
 READING = "reading"
 """Key of a run's settings under which it is kept what was refused and is doubted, and stem of the report's files."""
@@ -172,8 +172,8 @@ def _order(one: Doubt) -> tuple[int, bool, int, str]:
 def _view(one: Doubt) -> DoubtView:
     return DoubtView(
         what=one.what,
-        row="" if one.row is None else f"{one.row:,}",
-        line="" if one.line is None else f"{one.line:,}",
+        row="" if one.row is None else count(one.row),
+        line="" if one.line is None else count(one.line),
         number=short(one.object_number, 120),
         field=words(clean(one.field)),
         message=short(one.message, _LONGEST),

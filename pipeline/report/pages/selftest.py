@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from pipeline.records import RunRecord
-from pipeline.report.language import _
+from pipeline.report.language import _, local
 from pipeline.report.text import clean
 
 
@@ -53,11 +53,11 @@ def self_test_view(record: RunRecord) -> SelfTestView | None:
 
 
 def _case(case: Mapping[str, Any]) -> CaseView:
-    result = _("no number") if case["result"] is None else f"{case['result']:.2g}"
+    result = _("no number") if case["result"] is None else local(f"{case['result']:.2g}")
     return CaseView(
         what=clean(str(case["what"])),
         truth=clean(str(case["truth"])),
         result=clean(f"{result}: {case['problem']}" if case["problem"] else result),
-        limit=f"{case['limit']:.2g}",
+        limit=local(f"{case['limit']:.2g}"),
         passes=bool(case["ok"]),
     )

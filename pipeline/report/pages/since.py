@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pipeline.records import Cause, CauseKind, FieldChange, InputChange, RunChanges, Verdict, VerdictChange
-from pipeline.report.language import _, said
+from pipeline.report.language import _, moment, said
 from pipeline.report.pages.views import ChangeView, Pointer, SinceView, TurnView
 from pipeline.report.text import clean, count, short, words
 from pipeline.report.units import Units
@@ -39,7 +39,7 @@ def since_view(changes: RunChanges, objects: Mapping[str, Pointer], units: Units
     told = [(_why(kind), count(causes[kind])) for kind in CauseKind if causes[kind]]
     unknown = sum(not change.causes for change in changes.verdicts)
     return SinceView(
-        before=clean(changes.started[:16].replace("T", " ")),
+        before=clean(moment(changes.started)),
         changed=bool(changes),
         worse=_cut(worse),
         fixed=_cut(fixed),

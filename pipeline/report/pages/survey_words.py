@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from pipeline.analysis.survey import ENDS, measurables
 from pipeline.records import Assessment, MeasurementRequest, Tally
-from pipeline.report.language import _, ngettext, said
+from pipeline.report.language import _, local, ngettext, said
 from pipeline.report.pages.views import ObjectView, SurveyView, WishView
 from pipeline.report.text import clean, count, words
 from pipeline.report.units import Units, significant
@@ -66,7 +66,7 @@ def survey_sentence(tally: Tally, seconds: float) -> str:
         )
         told.append(others % {"count": count(tally.waste)})
     if seconds:
-        told.append(_("Finding this out took %(seconds)s s.") % {"seconds": f"{seconds:.1f}"})
+        told.append(_("Finding this out took %(seconds)s s.") % {"seconds": local(f"{seconds:.1f}")})
     return " ".join(told)
 
 
