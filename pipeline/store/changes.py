@@ -31,7 +31,7 @@ from pipeline.store.reuse import CODE, DISPLAY, HOUSE, KERNELS, LEVELS, RULES, T
 from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_PAGE
 
 
-class _Place(NamedTuple):
+class _InRun(NamedTuple):
     """An object of a run: key of its page, gallery, title, whether on display, digest of its record, and its result."""
 
     page: str
@@ -81,7 +81,7 @@ class _Comparison:
         )
 
     @cached_property
-    def _places(self) -> tuple[dict[str, _Place], dict[str, _Place]]:
+    def _places(self) -> tuple[dict[str, _InRun], dict[str, _InRun]]:
         """Where the objects are, by number, before and after, of those pages that only one of the two runs has."""
         sides = []
         for run_id in (self.old, self.new):
@@ -94,13 +94,13 @@ class _Comparison:
             self._on([key for key in sides[1] if key not in before]),
         )
 
-    def _on(self, pages: Iterable[str]) -> dict[str, _Place]:
-        found: dict[str, _Place] = {}
+    def _on(self, pages: Iterable[str]) -> dict[str, _InRun]:
+        found: dict[str, _InRun] = {}
         for page in pages:
             members = load_members(self.connection, page)
             told = zip(*map(members.column, _NAMED), members.digests, members.results, strict=True)
             found |= {
-                number: _Place(page, intern(gallery), title, shown, digest, *result)
+                number: _InRun(page, intern(gallery), title, shown, digest, *result)
                 for number, gallery, title, shown, digest, result in told
             }
         return found
@@ -116,7 +116,7 @@ class _Comparison:
             sides.append(self._outlined(left))
         return sides[0], sides[1]
 
-    def _outlined(self, places: Mapping[str, _Place]) -> dict[str, Outline]:
+    def _outlined(self, places: Mapping[str, _InRun]) -> dict[str, Outline]:
         found = outlines(self.connection, {place.key for place in places.values()})
         return {number: place.outline(number, found) for number, place in places.items()}
 
@@ -156,7 +156,7 @@ class _Comparison:
                 found.append(InputChange(number, scene.item.gallery, tuple(fields)))
         return tuple(sorted(found, key=lambda change: (change.gallery, change.object_number)))
 
-    def _scenes(self, places: Mapping[str, _Place], numbers: Set[str]) -> dict[str, Scene]:
+    def _scenes(self, places: Mapping[str, _InRun], numbers: Set[str]) -> dict[str, Scene]:
         """Return the scenes of some objects."""
         found: dict[str, Scene] = {}
         for page in dict.fromkeys(places[number].page for number in sorted(numbers)):
@@ -223,7 +223,7 @@ class _Comparison:
     def _unchanged(self, numbers: Set[str]) -> dict[str, Seen]:
         """Return those of some objects that are in both runs as they were."""
         left = set(numbers)
-        places: dict[str, _Place] = {}
+        places: dict[str, _InRun] = {}
         query = select(RUN_PAGE.c.key).where(RUN_PAGE.c.run_id == self.new).order_by(RUN_PAGE.c.position)
         for page in self.connection.execute(query).scalars().all() if left else ():
             here = self._on([page])

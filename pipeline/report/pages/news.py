@@ -254,7 +254,8 @@ def _text(kind: NewsKind, one: ObjectChange) -> str:
     if kind is NewsKind.DANGER:
         return f": {to_do(now)}"
     if kind is NewsKind.STILL:
-        return f"{bracket}: {to_do(now)}"
+        turned = _turned(one.before, now) if one.before and one.before.band != now.band else ""
+        return f"{bracket}: {f'{turned}: ' if turned else ''}{to_do(now)}"
     if kind is NewsKind.NEW:
         return f": {_stands(now)}{_missing(now)}"
     if kind is NewsKind.LOST:
@@ -267,6 +268,8 @@ def _turned(was: Brief, now: Brief) -> str:
     """Say what an object was and what it is."""
     if was.state is now.state and was.band and now.band:
         return _("harm was %(before)s, and is %(after)s") % {"before": _band(was), "after": _band(now)}
+    if was.state is State.UNKNOWN:
+        return _("could not be assessed, is %(after)s") % {"after": _stands(now)}
     return _("was %(before)s, is %(after)s") % {"before": _stands(was), "after": _stands(now)}
 
 
@@ -286,7 +289,11 @@ def _stands(brief: Brief) -> str:
 
 
 def _missing(brief: Brief) -> str:
-    return f": {short(said(clean(brief.missing)), 120)}" if brief.missing else ""
+    if not brief.missing:
+        return ""
+    what = short(words(clean(brief.missing)), 120)
+    # Some of what is missing is a sentence of its own.
+    return f": {what}" if ": " in what.partition("(")[0] else ": " + _("not recorded: %(what)s") % {"what": what}
 
 
 def _moved(one: ObjectChange) -> str:
