@@ -130,9 +130,12 @@ def summary_lines(summary: "Summary") -> list[str]:
     lines += _decision_lines(summary)
     lines += _stored_lines(summary)
     if summary.changes is not None:
+        from pipeline.report.pages.news import sentences
+
         changes = summary.changes
         lines += [
             "",
+            *(f"  {printable(sentence)}" for sentence in sentences(changes)),
             f"  Since the last run: {len(changes.added)} objects new, {len(changes.removed)} gone, "
             f"{len(changes.moved)} moved, {len(changes.inputs)} changed; {len(changes.worsened)} verdicts worse, "
             f"{len(changes.fixed)} fixed, {len(changes.others)} other; {len(changes.motions)} motions changed",

@@ -6,13 +6,17 @@ from typing import Any
 
 import click
 
-from pipeline.cli.console import listed
+from pipeline.cli.console import listed, printable
 from pipeline.operations.run_summary import json_ready, plain_changes
 from pipeline.records import FieldChange, RunChanges, VerdictChange
+from pipeline.report.pages.news import sentences
+
+NEWS = 20
+"""Objects whose news is printed; JSON has all."""
 
 
 def print_changes(changes: RunChanges, wanted_json: bool) -> None:
-    """Print what changed; lines show the first of each kind, JSON has all.
+    """Print what changed, news of objects first; lines show the first of each kind, JSON has all.
 
     Parameters
     ----------
@@ -25,6 +29,8 @@ def print_changes(changes: RunChanges, wanted_json: bool) -> None:
         click.echo(json.dumps(json_ready(plain_changes(changes)), indent=2))
         return
     click.echo(f"from {changes.old} to {changes.new}")
+    for sentence in sentences(changes, NEWS):
+        click.echo(f"  {printable(sentence)}")
     for title, lines in _kinds(changes):
         listed(title, lines)
     if not changes:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from requests import PreparedRequest
 
 SUBJECTS: Mapping[Event, str] = {
-    "changed": "verdicts changed",
+    "changed": "what changed",
     "failed": "the run failed",
     "shrunk": "collection shrank",
     "shaken": "after an earthquake",
@@ -318,7 +318,7 @@ def _mail(hook: EmailHook, event: Event, document: Mapping[str, Any], body: byte
     message["Auto-Submitted"] = "auto-generated"
     good = document["last_good"]
     lines = [
-        plain(document["message"]),
+        *_told_lines(document),
         "",
         f"The last good report: {good['report']} in the folder of reports." if good else "There is no good report yet.",
         f"At {document['time']}, by Kouros {document['version']}.  The attachment says more, for programs.",
@@ -326,3 +326,10 @@ def _mail(hook: EmailHook, event: Event, document: Mapping[str, Any], body: byte
     message.set_content("\n".join(lines) + "\n")
     message.add_attachment(body, maintype="application", subtype="json", filename="kouros.json")
     return message
+
+
+def _told_lines(document: Mapping[str, Any]) -> list[str]:
+    """Return what happened, news of objects one a line."""
+    news = (((document["summary"] or {}).get("changes") or {}).get("news") or {}).get("sentences", [])
+    rest = plain(document["message"].removeprefix(" ".join(news)))
+    return [*(f"- {plain(sentence)}" for sentence in news), *([rest] if rest else [])]

@@ -19,6 +19,8 @@ from pipeline.operations.run_summary import Summary, exit_code_of, summary_docum
 from pipeline.operations.stopping import stoppable
 from pipeline.operations.workspace import LockedError
 from pipeline.quantities import counted
+from pipeline.records import RunChanges
+from pipeline.report.pages.news import sentences
 from pipeline.settings import Settings
 from pipeline.settings.operations import Event
 
@@ -111,23 +113,30 @@ def _finished(settings: Settings, summary: Summary, hide: Callable[[str], str], 
         not_on_display=summary.objects - summary.on_display,
         refused=None if summary.reading is None else summary.reading["refused"],
         doubtful=None if summary.reading is None else summary.reading["doubtful"],
+        objects_changed=None if changes is None else len(changes.objects) + sum(changes.shared.values()),
         verdicts_changed=None if changes is None else len(changes.verdicts),
         report=None if summary.report is None else str(summary.report),
     )
     if not whole:
         return
-    if changes is not None and changes.verdicts:
-        objects = len({change.object_number for change in changes.verdicts})
-        words = (
-            f"{counted(len(changes.verdicts), 'verdict')} of {counted(objects, 'object')} changed: "
-            f"{len(changes.worsened):,} passed and no longer, {len(changes.fixed):,} failed and now pass, "
-            f"{len(changes.others):,} otherwise."
-        )
+    if changes is not None and (changes.objects or changes.shared or changes.verdicts):
+        words = " ".join([*sentences(changes), *_verdicts_said(changes)])
         root = settings.path(settings.report.folder)
         plain = summary_document(summary, most=TOLD, base=root)
         document = _document(settings, "changed", words, plain["exit_code"], None, plain)
         _tell(settings, "changed", document, hide)
     _beside("tidying up", lambda: _tidy(settings), hide)
+
+
+def _verdicts_said(changes: RunChanges) -> list[str]:
+    if not changes.verdicts:
+        return []
+    objects = len({change.object_number for change in changes.verdicts})
+    return [
+        f"{counted(len(changes.verdicts), 'verdict')} of {counted(objects, 'object')} changed: "
+        f"{len(changes.worsened):,} passed and no longer, {len(changes.fixed):,} failed and now pass, "
+        f"{len(changes.others):,} otherwise."
+    ]
 
 
 def tell_shaken(settings: Settings, message: str, answer: Mapping[str, Any], hide: Callable[[str], str]) -> None:

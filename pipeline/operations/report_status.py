@@ -7,7 +7,7 @@ page reports/index.html, which links to the last good report.
 import json
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -17,6 +17,7 @@ from pipeline.operations.presentation import presentation
 from pipeline.operations.run_summary import SUMMARY, Summary, exit_code_of, write_aside
 from pipeline.report import Language, ReportError
 from pipeline.report.pages.landing import MARK, landing_page
+from pipeline.report.pages.news import OPEN
 from pipeline.settings import Settings
 
 STATUS = "status.json"
@@ -27,7 +28,12 @@ LANDING = "index.html"
 _RENDERED = re.compile(r"(\d{8}T\d{6}\.\d{3}-\d+)(-\d+)?")
 """A run's id, and which rendering of it a folder holds."""
 
-GOOD, RUNNING, FAILED = "good", "running", "failed"
+GOOD, RUNNING, FAILED, INTERRUPTED = "good", "running", "failed", "interrupted"
+
+NIGHTS = 60
+"""Runs that are kept: a few for each of the days that the landing page shows."""
+
+_NIGHT = ("began", "ended", "state", "run_id")
 
 
 @dataclass(frozen=True)
@@ -44,12 +50,19 @@ class LastGood:
         Its index, from the folder of reports on.
     reading : mapping or None
         What its records' reading came to, as summary.json beside it says; None where that is not known.
+    counts : mapping or None
+        Objects on display to act on, to watch, that nobody can assess ("unknown"), and that are fine; from there too.
+    news : mapping or None
+        What its night found changed: the first objects, how many of each kind; None where there was nothing to compare
+        with.
     """
 
     run_id: str
     finished: str
     report: str
     reading: Mapping[str, Any] | None = None
+    counts: Mapping[str, int] | None = None
+    news: Mapping[str, Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -72,6 +85,10 @@ class Status:
         Of the failure; 0 where there was none.
     began : str
         When the run began that said so, ISO 8601, UTC; empty where no run did.
+    nights : sequence of mapping
+        The last runs of the whole collection that ended or were cut off, the oldest first: "began" and "ended" (ISO
+        8601, UTC; ended empty where nobody knows), "state" (good, failed, interrupted) and "run_id" (empty where none
+        was made). Retention of runs and reports leaves them.
     """
 
     state: str
@@ -82,6 +99,7 @@ class Status:
     message: str = ""
     exit_code: int = 0
     began: str = ""
+    nights: Sequence[Mapping[str, str]] = ()
 
     @property
     def stale(self) -> bool:
@@ -91,8 +109,12 @@ class Status:
 
 def mark_running(settings: Settings) -> None:
     """Say that a run of the whole collection has begun; should it be killed, this stays."""
-    now = _now()
-    _write(settings, Status(RUNNING, now, os.getpid(), last_good(settings), began=now))
+    now, before = _now(), status(settings)
+    nights = _nights(before)
+    if before is not None and before.state == RUNNING:
+        # Runs follow one another under a lock: that one is gone.
+        nights = _with(nights, INTERRUPTED, before.began or before.since, "")
+    _write(settings, Status(RUNNING, now, os.getpid(), last_good(settings), began=now, nights=nights))
 
 
 def mark_good(settings: Settings, summary: Summary) -> None:
@@ -114,8 +136,11 @@ def mark_good(settings: Settings, summary: Summary) -> None:
         raise ValueError("a run without a report is not the last good one")
     root = _root(settings)
     report = summary.report.resolve().relative_to(root.resolve()).as_posix()
-    good = LastGood(summary.run_id, summary.finished, report, summary.reading)
-    _write(settings, Status(GOOD, _now(), os.getpid(), good, began=_began(settings)))
+    told = _kept(_told(summary.report.resolve().parent))
+    good = LastGood(summary.run_id, summary.finished, report, summary.reading, **told)
+    now, began = _now(), _began(settings)
+    nights = _with(_nights(status(settings)), GOOD, began, now, summary.run_id)
+    _write(settings, Status(GOOD, now, os.getpid(), good, began=began, nights=nights))
 
 
 def mark_failed(settings: Settings, problem: BaseException, message: str) -> None:
@@ -131,8 +156,25 @@ def mark_failed(settings: Settings, problem: BaseException, message: str) -> Non
         Without secrets, for everybody who may read the reports.
     """
     good, kind = last_good(settings), type(problem).__name__
-    code = exit_code_of(problem)
-    _write(settings, Status(FAILED, _now(), os.getpid(), good, kind, message, code, _began(settings)))
+    code, now, began = exit_code_of(problem), _now(), _began(settings)
+    # Who stops a run interrupts it; nothing failed.
+    outcome = FAILED if isinstance(problem, Exception) else INTERRUPTED
+    nights = _with(_nights(status(settings)), outcome, began, now)
+    _write(settings, Status(FAILED, now, os.getpid(), good, kind, message, code, began, nights))
+
+
+def _nights(known: Status | None) -> list[Mapping[str, str]]:
+    """Return the nights that a status keeps, as far as they can be read."""
+    kept = [] if known is None or not isinstance(known.nights, list | tuple) else known.nights
+    whole = [night for night in kept if isinstance(night, dict) and night.keys() == set(_NIGHT)]
+    return [night for night in whole if all(isinstance(text, str) for text in night.values())]
+
+
+def _with(
+    nights: Sequence[Mapping[str, str]], state: str, began: str, ended: str, run_id: str = ""
+) -> list[Mapping[str, str]]:
+    told = dict(zip(_NIGHT, (began, ended, state, run_id), strict=True))
+    return [*nights, told][-NIGHTS:]
 
 
 def _began(settings: Settings) -> str:
@@ -170,7 +212,7 @@ def last_good(settings: Settings) -> LastGood | None:
         run = rendered[1] if rendered else folder.name
         told = _told(folder)
         finished = str(told.get("finished") or (said.finished if said is not None and said.run_id == run else ""))
-        return LastGood(run, finished, f"{folder.name}/{LANDING}", told.get("reading"))
+        return LastGood(run, finished, f"{folder.name}/{LANDING}", told.get("reading"), **_kept(told))
     return said if said is not None and (root / said.report).is_file() else None
 
 
@@ -191,6 +233,25 @@ def _told(folder: Path) -> Mapping[str, Any]:
     return found if isinstance(found, dict) else {}
 
 
+def _kept(told: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the numbers and the first news of a report's summary; None for what it does not say."""
+    counts = {name: told.get(of) for name, of in _COUNTED.items()}
+    changes = told.get("changes")
+    news = None
+    if isinstance(changes, dict) and isinstance(changes.get("news"), dict) and isinstance(changes.get("objects"), list):
+        news = {
+            "since": changes.get("started", ""),
+            "counts": changes["news"].get("counts", {}),
+            "because": changes["news"].get("because", []),
+            "shared": changes.get("shared", {}),
+            "objects": changes["objects"][:OPEN],
+        }
+    return {"counts": counts if all(isinstance(n, int) for n in counts.values()) else None, "news": news}
+
+
+_COUNTED = {"act": "act", "watch": "watch", "unknown": "cannot", "fine": "fine"}
+
+
 def _write(settings: Settings, now: Status) -> None:
     root = _root(settings)
     root.mkdir(parents=True, exist_ok=True)
@@ -201,7 +262,7 @@ def _write(settings: Settings, now: Status) -> None:
     page = root / LANDING
     # Somebody else's page is not ours to replace.
     if not page.exists() or MARK in page.read_text(encoding="utf-8", errors="replace"):
-        write_aside(page, landing_page(asdict(now), settings.museum.name, spoken))
+        write_aside(page, landing_page(asdict(now), settings.museum.name, spoken, settings.museum.time_zone))
     write_aside(root / STATUS, json.dumps(asdict(now), indent=2) + "\n")
 
 

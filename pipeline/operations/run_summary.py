@@ -11,6 +11,7 @@ from typing import Any
 
 from pipeline.errors import KourosError, fault_words
 from pipeline.records import RunChanges
+from pipeline.report.pages.news import kind_counts, news_line, sentences, shared_causes
 from pipeline.resources import replacing
 
 SUMMARY = "summary.json"
@@ -21,7 +22,7 @@ LISTED = 1000
 
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT})
 
-_KINDS = ("added", "removed", "moved", "inputs", "verdicts", "motions", "decisions", "settings", "versions")
+_KINDS = ("objects", "added", "removed", "moved", "inputs", "verdicts", "motions", "decisions", "settings", "versions")
 
 
 @dataclass(frozen=True)
@@ -172,12 +173,20 @@ def _counted(changes: RunChanges, most: int | None) -> dict[str, Any]:
     counts = {kind: len(getattr(changes, kind)) for kind in _KINDS}
     counts |= {"worsened": len(changes.worsened), "fixed": len(changes.fixed)}
     plain = plain_changes(changes)
-    return {"counts": counts, **{name: v[:most] if name in _KINDS else v for name, v in plain.items()}}
+    news = {
+        "counts": kind_counts(changes),
+        "because": shared_causes(changes),
+        "sentences": sentences(changes),
+    }
+    return {"counts": counts, "news": news, **{name: v[:most] if name in _KINDS else v for name, v in plain.items()}}
 
 
 def plain_changes(changes: RunChanges) -> dict[str, Any]:
-    """Return the changes for JSON; each verdict's says whether it is fixed or worsened."""
+    """Return the changes for JSON; each verdict's says whether it is fixed or worsened, each object's is a sentence."""
     plain = asdict(changes)
+    for row, one in zip(plain["objects"], changes.objects, strict=True):
+        line = news_line(one)
+        row |= {"kind": line.kind.value, "text": line.sentence}
     for row, change in zip(plain["verdicts"], changes.verdicts, strict=True):
         row |= {"fixed": change.fixed, "worsened": change.worsened}
     return plain

@@ -19,6 +19,7 @@ from pipeline.records.likelihood import Band, Harm, IfClass, Likelihood, Samplin
 from pipeline.records.measurement_request import MeasurementRequest
 from pipeline.records.model import Bounds, ChartAxis, ChartFigure, Columns, Figure, Model, Trials
 from pipeline.records.motion import Excitation, Motion, MotionSummary
+from pipeline.records.news import Brief, NewsKind, ObjectChange, Settled
 from pipeline.records.numerics import Numerics
 from pipeline.records.part import Errors, Found, Outline, Page, Result, Tally, Urgency, Urgent
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
@@ -41,6 +42,7 @@ from pipeline.records.scene import (
     Scene,
     Support,
 )
+from pipeline.records.state import State, standing, state_of
 
 __all__ = [
     "ITEM_FIELDS",
@@ -52,6 +54,7 @@ __all__ = [
     "Band",
     "Basis",
     "Bounds",
+    "Brief",
     "Cause",
     "CauseKind",
     "Chart",
@@ -90,7 +93,9 @@ __all__ = [
     "MotionSummary",
     "Mount",
     "Move",
+    "NewsKind",
     "Numerics",
+    "ObjectChange",
     "ObjectPlace",
     "Origin",
     "Outline",
@@ -104,8 +109,10 @@ __all__ = [
     "RunRecord",
     "Sampling",
     "Scene",
+    "Settled",
     "Silent",
     "Spacing",
+    "State",
     "Support",
     "Tally",
     "Trials",
@@ -115,4 +122,6 @@ __all__ = [
     "VerdictChange",
     "Zone",
     "in_force",
+    "standing",
+    "state_of",
 ]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
 from pipeline.records.decision import Decision
+from pipeline.records.news import ObjectChange
 from pipeline.records.result import Verdict
 
 
@@ -198,6 +200,11 @@ class RunChanges:
         Of the runs themselves, by name, those only that verdicts rest on.
     started : str
         When the older run began (ISO 8601).
+    objects : tuple of ObjectChange
+        News of objects one by one, in the order in which it is told.
+    shared : mapping of str to int
+        How many objects there is news of only because motions, floors, settings or Kouros itself changed, by the kind
+        of the news: these are not among the objects.
     """
 
     old: str
@@ -212,10 +219,12 @@ class RunChanges:
     settings: tuple[FieldChange, ...] = ()
     versions: tuple[FieldChange, ...] = ()
     started: str = ""
+    objects: tuple[ObjectChange, ...] = ()
+    shared: Mapping[str, int] = field(default_factory=dict)
 
     def __bool__(self) -> bool:
         """Whether anything changed."""
-        objects = self.added or self.removed or self.moved or self.inputs
+        objects = self.objects or self.shared or self.added or self.removed or self.moved or self.inputs
         return bool(objects or self.verdicts or self.motions or self.decisions or self.settings or self.versions)
 
     @property

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pipeline.records.fragility import Fragility
 from pipeline.records.likelihood import Likelihood
 from pipeline.records.measurement_request import MeasurementRequest
+from pipeline.records.news import Brief
 from pipeline.records.result import Assessment, Finding, Recommendation, Spacing
 from pipeline.records.scene import Anchorage, Estimate, Furniture, Hanging, Mount, Origin, Support
 
@@ -212,6 +213,8 @@ class Outline:
         Digests of the record, and of what else it was run with.
     verdicts : tuple of (str, str, str)
         Model, level and the worst verdict of each.
+    brief : Brief
+        What is said of it in short.
     """
 
     object_number: str
@@ -220,6 +223,7 @@ class Outline:
     item: str
     scene: str
     verdicts: tuple[tuple[str, str, str], ...]
+    brief: Brief
 
 
 @dataclass(frozen=True, slots=True)

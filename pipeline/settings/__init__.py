@@ -4,8 +4,10 @@ import os
 import re
 import tomllib
 from datetime import date
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Literal
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError, available_timezones
 
 from pydantic import ConfigDict, Field, RootModel, ValidationError, field_validator, model_validator
 
@@ -50,6 +52,11 @@ class MuseumSettings(_Part):
     """Whose collection it is."""
 
     name: str = Field(default="", description="shown on every page")
+    time_zone: str = Field(
+        default="UTC",
+        description="in which the landing page tells times, by its name in the IANA database, such as "
+        '"America/Los_Angeles" or "Europe/Athens"',
+    )
     value_per_c: float = Field(
         default=0.0,
         ge=0.0,
@@ -58,6 +65,17 @@ class MuseumSettings(_Part):
         description="what an object of its class of value C is worth in its own money, where values are recorded; 0: "
         "as Kouros's stakes.csv takes it",
     )
+
+    @field_validator("time_zone")
+    @classmethod
+    def _known_zone(cls, name: str) -> str:
+        try:
+            ZoneInfo(name)
+        except (ZoneInfoNotFoundError, ValueError, OSError):
+            close = get_close_matches(name[:64], available_timezones(), 3, 0.5)
+            hint = f"; close to it: {', '.join(close)}" if close else ""
+            raise ValueError(f'there is no time zone {name!a}; name one such as "Europe/Rome"{hint}') from None
+        return name
 
 
 class Inventory(_Part):

@@ -41,7 +41,7 @@ class Causes:
 
     def of(self, object_number: str, level: str, floor_before: str, floor_after: str) -> tuple[Cause, ...]:
         """Return what changed for the verdicts of an object at a level, in the order of `CauseKind`."""
-        found = self._recorded(object_number)
+        found = [Cause(CauseKind.INPUT, name) for name in self.fields(object_number)]
         found += [
             Cause(CauseKind.DECISION, f"{'made' if change.new else 'ended'}: {_decided(change)}")
             for change in self._decisions.get(object_number, ())
@@ -50,12 +50,13 @@ class Causes:
             found.append(Cause(CauseKind.FLOOR, f"{floor_before or GROUND} -> {floor_after or GROUND}"))
         return (*found, *self._shaking(level, floor_before, floor_after), *self._settings, *self._versions)
 
-    def _recorded(self, object_number: str) -> list[Cause]:
+    def fields(self, object_number: str) -> tuple[str, ...]:
+        """Return the fields of an object's record that changed and that something computed may rest on."""
         change = self._inputs.get(object_number)
         if change is None:
-            return []
+            return ()
         # What is of the scene follows from the item, a decision or Kouros's own code: each of these is told for itself.
-        return [Cause(CauseKind.INPUT, f.name) for f in change.fields if "." not in f.name and f.name not in _INERT]
+        return tuple(f.name for f in change.fields if "." not in f.name and f.name not in _INERT)
 
     def _shaking(self, level: str, floor_before: str, floor_after: str) -> tuple[Cause, ...]:
         key = (level, floor_before, floor_after)

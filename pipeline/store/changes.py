@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Set
 from functools import cached_property
 from sys import intern
-from typing import Any, get_type_hints
+from typing import Any, NamedTuple, get_type_hints
 
 from sqlalchemy import Connection, select
 
@@ -14,6 +14,7 @@ from pipeline.records import (
     InputChange,
     MotionChange,
     Move,
+    ObjectChange,
     ObjectPlace,
     Outline,
     RunChanges,
@@ -23,13 +24,29 @@ from pipeline.records import (
 )
 from pipeline.store import codec
 from pipeline.store.causes import Causes, MotionKey
+from pipeline.store.news import Seen, news
 from pipeline.store.pages import found_of, load_members
-from pipeline.store.results import DamagedRunError, fetch, outline_of, outlines
+from pipeline.store.results import DamagedRunError, Digests, fetch, outline_of, outlines
 from pipeline.store.reuse import CODE, DISPLAY, HOUSE, KERNELS, LEVELS, RULES, TABLES
 from pipeline.store.tables import RUN, RUN_DECISION, RUN_MOTION, RUN_PAGE
 
-_Place = tuple[str, str, str, str, int]
-"""An object of a run: key of its page, gallery, digest of its record, key of its result, place in that."""
+
+class _InRun(NamedTuple):
+    """An object of a run: key of its page, gallery, title, whether on display, digest of its record, and its result."""
+
+    page: str
+    gallery: str
+    title: str
+    on_display: bool
+    digest: str
+    key: str
+    at: int
+
+    def outline(self, number: str, found: Mapping[str, tuple[Digests, ...]]) -> Outline:
+        return outline_of(number, self.gallery, self.digest, found[self.key][self.at])
+
+    def seen(self, outline: Outline) -> Seen:
+        return Seen(self.title, self.gallery, self.on_display, outline.floor, outline.brief)
 
 
 def changes(connection: Connection, old: str, new: str) -> RunChanges:
@@ -45,6 +62,7 @@ class _Comparison:
         self.before, self.after = (_run(connection, run_id) for run_id in (old, new))
 
     def made(self) -> RunChanges:
+        objects, shared = self._news()
         return RunChanges(
             self.old,
             self.new,
@@ -55,13 +73,15 @@ class _Comparison:
             verdicts=self._verdicts(),
             motions=self._motions(),
             decisions=self.decisions,
-            settings=_differing(_settings(self.before), _settings(self.after)),
-            versions=_differing(_versions(self.before), _versions(self.after)),
+            settings=self.settings,
+            versions=self.versions,
             started=self.before["started"],
+            objects=objects,
+            shared=shared,
         )
 
     @cached_property
-    def _places(self) -> tuple[dict[str, _Place], dict[str, _Place]]:
+    def _places(self) -> tuple[dict[str, _InRun], dict[str, _InRun]]:
         """Where the objects are, by number, before and after, of those pages that only one of the two runs has."""
         sides = []
         for run_id in (self.old, self.new):
@@ -74,14 +94,15 @@ class _Comparison:
             self._on([key for key in sides[1] if key not in before]),
         )
 
-    def _on(self, pages: Iterable[str]) -> dict[str, _Place]:
-        found: dict[str, _Place] = {}
+    def _on(self, pages: Iterable[str]) -> dict[str, _InRun]:
+        found: dict[str, _InRun] = {}
         for page in pages:
             members = load_members(self.connection, page)
-            told = zip(
-                *map(members.column, ("object_number", "gallery")), members.digests, members.results, strict=True
-            )
-            found |= {number: (page, intern(gallery), digest, *result) for number, gallery, digest, result in told}
+            told = zip(*map(members.column, _NAMED), members.digests, members.results, strict=True)
+            found |= {
+                number: _InRun(page, intern(gallery), title, shown, digest, *result)
+                for number, gallery, title, shown, digest, result in told
+            }
         return found
 
     @cached_property
@@ -92,14 +113,12 @@ class _Comparison:
         sides = []
         for places in (before, after):
             left = {number: place for number, place in places.items() if number not in same}
-            found = outlines(self.connection, {key for *_, key, _ in left.values()})
-            sides.append(
-                {
-                    number: outline_of(number, gallery, digest, found[key][at])
-                    for number, (_, gallery, digest, key, at) in left.items()
-                }
-            )
+            sides.append(self._outlined(left))
         return sides[0], sides[1]
+
+    def _outlined(self, places: Mapping[str, _InRun]) -> dict[str, Outline]:
+        found = outlines(self.connection, {place.key for place in places.values()})
+        return {number: place.outline(number, found) for number, place in places.items()}
 
     @cached_property
     def _both(self) -> list[tuple[Outline, Outline]]:
@@ -137,10 +156,10 @@ class _Comparison:
                 found.append(InputChange(number, scene.item.gallery, tuple(fields)))
         return tuple(sorted(found, key=lambda change: (change.gallery, change.object_number)))
 
-    def _scenes(self, places: Mapping[str, _Place], numbers: Set[str]) -> dict[str, Scene]:
+    def _scenes(self, places: Mapping[str, _InRun], numbers: Set[str]) -> dict[str, Scene]:
         """Return the scenes of some objects."""
         found: dict[str, Scene] = {}
-        for page in dict.fromkeys(places[number][0] for number in sorted(numbers)):
+        for page in dict.fromkeys(places[number].page for number in sorted(numbers)):
             members = load_members(self.connection, page)
             kept, broken = fetch(self.connection, members.wanted)
             if broken:
@@ -178,15 +197,44 @@ class _Comparison:
         keys = sorted(key for key in before.keys() | after.keys() if before.get(key) != after.get(key))
         return tuple(MotionChange(*key, before.get(key), after.get(key)) for key in keys)
 
+    @cached_property
+    def settings(self) -> tuple[FieldChange, ...]:
+        return _differing(_settings(self.before), _settings(self.after))
+
+    @cached_property
+    def versions(self) -> tuple[FieldChange, ...]:
+        return _differing(_versions(self.before), _versions(self.after))
+
+    @cached_property
+    def causes(self) -> Causes:
+        return Causes(self.inputs, self.decisions, self.motions, self.settings, self.versions)
+
+    def _news(self) -> tuple[tuple[ObjectChange, ...], dict[str, int]]:
+        sides = []
+        for places, found in zip(self._places, self._outlines, strict=True):
+            sides.append({number: places[number].seen(outline) for number, outline in found.items()})
+        before, after = sides
+        # A decision that changes nothing leaves its object's page as it is.
+        quiet = {c.decision.object_number for c in self.decisions} - before.keys() - after.keys()
+        same = self._unchanged(quiet)
+        shared = bool(self.motions[0] != self.motions[1] or self.settings or self.versions)
+        return news(before | same, after | same, self.decisions, self.causes, shared=shared)
+
+    def _unchanged(self, numbers: Set[str]) -> dict[str, Seen]:
+        """Return those of some objects that are in both runs as they were."""
+        left = set(numbers)
+        places: dict[str, _InRun] = {}
+        query = select(RUN_PAGE.c.key).where(RUN_PAGE.c.run_id == self.new).order_by(RUN_PAGE.c.position)
+        for page in self.connection.execute(query).scalars().all() if left else ():
+            here = self._on([page])
+            places |= {number: here[number] for number in left & here.keys()}
+            left -= here.keys()
+            if not left:
+                break
+        return {number: places[number].seen(outline) for number, outline in self._outlined(places).items()}
+
     def _verdicts(self) -> tuple[VerdictChange, ...]:
-        causes = Causes(
-            self.inputs,
-            self.decisions,
-            self.motions,
-            _differing(_settings(self.before), _settings(self.after)),
-            _differing(_versions(self.before), _versions(self.after)),
-        )
-        found = []
+        causes, found = self.causes, []
         for was, now in self._both:
             before, after = ({(model, level): verdict for model, level, verdict in o.verdicts} for o in (was, now))
             for model, level in dict.fromkeys([*before, *after]):
@@ -204,6 +252,8 @@ def _verdict(text: str | None) -> Verdict | None:
 _HINTS = get_type_hints(Scene)
 _SCENE = ("support", "hanging", "furniture", "furniture_origin", "anchorage", "object_class", "models", "parameters")
 """What an object is run with besides its item; the floor has a cause of its own."""
+
+_NAMED = ("object_number", "gallery", "title", "on_display")
 
 _OTHERWISE = frozenset({"gallery", "provenance"})
 """Fields of an item that are told otherwise (as a move) or only say where another field comes from."""

@@ -13,7 +13,18 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection, Engine, Table, delete, insert, select
 
 from pipeline.collection.sealing import damaged_rows, sealed, sound_rows
-from pipeline.records import Assessment, Item, MeasurementRequest, Outline, Result, Scene, Spacing, Verdict
+from pipeline.records import (
+    Assessment,
+    Brief,
+    Item,
+    MeasurementRequest,
+    Outline,
+    Result,
+    Scene,
+    Spacing,
+    Verdict,
+    standing,
+)
 from pipeline.store import codec
 from pipeline.store.codec import StoreError
 from pipeline.store.compression import deflated, inflated
@@ -66,10 +77,13 @@ class Made(NamedTuple):
     run: str
 
 
-Digests = tuple[str, str, tuple[tuple[str, str, str], ...]]
-"""Of a result: floor, digest of what else its object was run with, and model, level and worst verdict of each."""
+Digests = tuple[str, str, tuple[tuple[str, str, str], ...], Brief]
+"""Of a result: floor, digest of what else its object was run with, model, level and worst verdict of each, in short."""
 
 _OUTLINES = tuple[Digests, ...]
+_WITHOUT_BRIEF = tuple[tuple[str, str, tuple[tuple[str, str, str], ...]], ...]
+"""The same as earlier versions kept it: nothing in short."""
+
 _RESULTS = tuple[Result, ...]
 _SPACINGS = tuple[tuple[Spacing, ...], dict[str, str]]
 
@@ -308,7 +322,15 @@ def outlines(connection: Connection, keys: Collection[str]) -> dict[str, tuple[D
         if lost:
             why = "changed in the database since it was written" if broken else "is gone"
             raise DamagedRunError(f"result {min(lost)[:12]} {why}")
-        told |= {key: codec.of_json(_OUTLINES, one.outline) for key, one in found.items()}
+        told |= {key: _outlines(one.outline) for key, one in found.items()}
+    return told
+
+
+def _outlines(text: str) -> tuple[Digests, ...]:
+    try:
+        told: tuple[Digests, ...] = codec.of_json(_OUTLINES, text)
+    except StoreError:
+        return tuple((*one, Brief()) for one in codec.of_json(_WITHOUT_BRIEF, text))
     return told
 
 
@@ -352,7 +374,21 @@ def _digests(result: Result) -> Digests:
     held = (result.support, result.hanging, result.furniture, result.furniture_origin, result.anchorage)
     run_with = (held, result.object_class, result.models, dict(result.parameters))
     verdicts = tuple((model, level, verdict.value) for (model, level), verdict in worst.items())
-    return result.floor, _digest(_RunWith, run_with), verdicts
+    return result.floor, _digest(_RunWith, run_with), verdicts, _brief(result)
+
+
+def _brief(result: Result) -> Brief:
+    found = max(result.likelihoods, key=lambda one: one.probability, default=None)
+    state = standing(result.findings, found, complete=not result.missing, aside=result.aside)
+    # As the report names it first: what is advised where harm is likeliest, or else at another level.
+    mine = [one for one in result.recommendations if found is not None and one.level == found.level]
+    advice = next(iter([*mine, *result.recommendations]), None)
+    return Brief(
+        state,
+        "" if found is None else found.band.value,
+        *(("", "") if advice is None else (advice.measure, advice.title)),
+        next(iter(result.missing), ""),
+    )
 
 
 _RunWith = tuple[tuple[Any, Any, Any, Any, Any], str, tuple[str, ...], dict[str, Any]]
@@ -372,8 +408,8 @@ def outline_of(number: str, gallery: str, digest: str, found: Digests) -> Outlin
     found
         Of its result.
     """
-    floor, scene, verdicts = found
-    return Outline(number, gallery, floor, digest, scene, verdicts)
+    floor, scene, verdicts, brief = found
+    return Outline(number, gallery, floor, digest, scene, verdicts, brief)
 
 
 def _packed(hint: Any, value: Any) -> bytes:

@@ -273,6 +273,7 @@ def accepted(museum: Changing) -> None:
         # A setting of each group.
         (setting("name", '"Another museum"'), PAGES),
         (setting("value_per_c", "500.0"), PAGES),
+        (setting("time_zone", '"Europe/Rome"'), NOTHING),
         (setting("shrink_limit", "0.5"), NOTHING),
         (setting("azimuth_step", "30.0"), SHOWN),
         (setting("fidelity", '"history"'), SHOWN),

@@ -25,6 +25,8 @@ LOW = ROWS[0].replace("1.2,0.2,0.2", "0.1,0.3,0.3")
 TIPPING = ROWS[0].replace("1.2,0.2,0.2", "0.8,0.1,0.1")
 """The first object, so slender that the shaking lifts its edge: b/h below 1/8 against 0.12 g."""
 
+STANDS = {"fine": "fine", "watch": "to be watched", "act": "in danger"}
+
 TOKEN = "t0ken-that-nobody-may-read"
 
 
@@ -90,6 +92,8 @@ def test_a_week_of_nights(museum: Callable[..., Path], server: Web, monkeypatch:
     # Rendered again: the same run, in another folder, with the time that is known of it.
     again = standing(folder)["last_good"]
     same = {name: printed[name] for name in ("run_id", "finished", "reading")}
+    numbers = {"act": "act", "watch": "watch", "unknown": "cannot", "fine": "fine"}
+    same |= {"counts": {name: printed[of] for name, of in numbers.items()}, "news": None}
     assert again == same | {"report": again["report"]}
     assert (again["reading"]["rows"], again["reading"]["refused"]) == (3, 0)
     assert again["report"] == f"{printed['run_id']}-2/index.html"
@@ -107,8 +111,15 @@ def test_a_week_of_nights(museum: Callable[..., Path], server: Web, monkeypatch:
     assert (event["event"], event["error"]) == ("changed", None)
     counts = event["summary"]["changes"]["counts"]
     changed = "1 verdict" if counts["verdicts"] == 1 else f"{counts['verdicts']} verdicts"
-    assert event["message"].startswith(f"{changed} of 1 object changed: {counts['worsened']} passed and no longer")
+    # The news first, in plain words, then the verdicts behind it.
+    [news] = event["summary"]["changes"]["objects"]
+    assert (news["object_number"], news["kind"], news["after"]["state"]) == ("1", "worse", "act")
+    assert event["message"].startswith(
+        f"Worse: 1 <script>alert(1)</script>: was {STANDS[news['before']['state']]}, is in danger ("
+    )
+    assert f" {changed} of 1 object changed: {counts['worsened']} passed and no longer" in event["message"]
     assert counts["worsened"] > 0
+    assert event["last_good"]["news"]["objects"] == [news]
     assert event["summary"]["report"] == event["last_good"]["report"] == f"{event['summary']['run_id']}/index.html"
     # The other hook failed: it is said and logged, and the night's own code is that of a good one.
     assert "command no-such-program was not told: cannot be started" in second.stderr

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.browser
 
 AXE = Path(__file__).parent.parent / "data" / "axe" / "axe.min.js"
 TAGS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
-KINDS = ("index", "gallery-101", "salon", "not-on-display", "motion", "method")
+KINDS = ("index", "news", "gallery-101", "salon", "not-on-display", "motion", "method")
 
 
 def violations(browser: Chrome, page: Path) -> list[str]:

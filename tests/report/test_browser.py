@@ -16,7 +16,7 @@ pytestmark = pytest.mark.browser
 
 
 @pytest.fixture(
-    scope="session", params=("index", "objects", "gallery-101", "salon", "not-on-display", "motion", "method")
+    scope="session", params=("index", "objects", "news", "gallery-101", "salon", "not-on-display", "motion", "method")
 )
 def page(request: pytest.FixtureRequest, report: Path) -> Path:
     return next(report.glob(f"{request.param}*.html"))

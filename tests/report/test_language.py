@@ -40,6 +40,7 @@ from pipeline.records import (
     InputChange,
     MotionChange,
     Move,
+    NewsKind,
     ObjectPlace,
     RunChanges,
     RunRecord,
@@ -52,6 +53,7 @@ from pipeline.tables import table
 from tests.mitigate import scenes
 
 from . import builder
+from .news_samples import news_of_every_kind
 
 OPEN, CLOSE = "⟦", "⟧"
 PLACEHOLDER = re.compile(r"%\(\w+\)s|\{\w+\}|<[^>]*>|&\w+;|%%")
@@ -187,6 +189,7 @@ CHANGED = RunChanges(
     (MotionChange(WORD, WORD, WORD, ("x",), None),),
     (DecisionChange(DECIDED[2].decision, new=True), DecisionChange(DECIDED[2].decision, new=False)),
     (FieldChange(WORD, WORD, None),), (FieldChange(WORD, "1", "2"),), "2031-05-01T01:00:00",
+    news_of_every_kind(WORD), {kind.value: 2 for kind in NewsKind},
 )  # fmt: skip
 
 

@@ -1,5 +1,6 @@
 """What changed between two runs, against a computation by hand and one in plain Python."""
 
+import json
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -10,17 +11,22 @@ from hypothesis import strategies as st
 from sqlalchemy import Engine, Table, delete, select, update
 
 from pipeline.collection.database import open_database
+from pipeline.collection.sealing import sealed
 from pipeline.errors import DamageWarning
 from pipeline.records import (
     Assessment,
+    Brief,
     Cause,
     CauseKind,
     InputChange,
     MotionChange,
     Move,
+    NewsKind,
+    ObjectChange,
     ObjectPlace,
     RunChanges,
     RunRecord,
+    State,
     Verdict,
     VerdictChange,
 )
@@ -31,6 +37,7 @@ from pipeline.store.runs import changes_since, compare_runs
 from pipeline.store.tables import PAGE, RESULT, RUN
 from tests.store.run_samples import assessment, finding, motion, run, save_run
 
+ACTS = Brief(State.ACT, "", "room", "More room")
 PASS, FAIL, UNDETERMINED = Verdict.PASS, Verdict.FAIL, Verdict.UNDETERMINED
 
 
@@ -80,7 +87,15 @@ def test_changes_by_hand(engine: Engine) -> None:
             MotionChange("design", "", "malibu", ("aa",), ("ab",)),
         ),
         started=old.started,
+        # What is wider by its estimates alone is no news of its own: the motion changed for all.
+        objects=(
+            ObjectChange("fresh", "Kouros", "G3", None, ACTS),
+            ObjectChange("moves", "Kouros", "G2", replace(ACTS, state=State.FINE), ACTS, came_from="G1"),
+            ObjectChange("gone", "Kouros", "G0", ACTS, None, recorded=False),
+        ),
+        shared={"better": 1},
     )
+    assert [one.kind for one in found.objects] == [NewsKind.DANGER, NewsKind.WORSE, NewsKind.GONE]
     assert [(v.fixed, v.worsened) for v in found.verdicts] == [(False, False), (False, False), (False, True)]
     assert (found.worsened, found.fixed, len(found.others)) == (found.verdicts[2:], (), 2)
 
@@ -163,3 +178,19 @@ def test_changes_equal_a_plain_comparison(
     }
     assert {(c.object_number, c.model, c.level, c.before, c.after) for c in found.verdicts} == expected
     assert len(found.verdicts) == len(expected)
+
+
+def test_of_a_run_of_an_earlier_version_nothing_is_made_up(sqlite: Engine) -> None:
+    """Its outlines say nothing in short: what is new and gone is known, how things stood is not."""
+    _empty(sqlite)
+    save_run(sqlite, run("old", assessment("1", finding("1")), assessment("2", finding("2"))))
+    with sqlite.begin() as connection:
+        for row in connection.execute(select(RESULT)).mappings().all():
+            bare = json.dumps([one[:3] for one in json.loads(row["outline"])])
+            new = sealed(RESULT, {name: bare if name == "outline" else row[name] for name in row if name != "seal"})
+            connection.execute(update(RESULT).where(RESULT.c.key == row["key"]).values(new))
+    worse = assessment("1", finding("1", verdict=FAIL), half_width=0.2)
+    save_run(sqlite, run("new", worse, assessment("3", finding("3", verdict=FAIL), half_width=0.3), day=2))
+    found = compare_runs(sqlite, "old", "new")
+    assert [(one.object_number, one.kind) for one in found.objects] == [("3", NewsKind.DANGER), ("2", NewsKind.GONE)]
+    assert [v.object_number for v in found.verdicts] == ["1"]

@@ -1,10 +1,9 @@
 """One page drawn: its HTML, its part of the exports, what the index says of it and what it adds to the totals."""
 
 import hashlib
-from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any
 
 from jinja2 import Environment
@@ -18,13 +17,12 @@ from pipeline.report.files.walk_sheet import sheet_file, sheet_pdf
 from pipeline.report.language import Language, speaking
 from pipeline.report.pages.compose import compose, page_head
 from pipeline.report.pages.describe import Sayings
-from pipeline.report.pages.environment import environment, fill
+from pipeline.report.pages.environment import environment, fill, script_of
 from pipeline.report.pages.notes import page_notes
 from pipeline.report.pages.tallies import tally
 from pipeline.report.pages.views import Entry, FigureView, State
 from pipeline.report.plots.chart import PATTERNS, Drawing
 from pipeline.report.units import Units
-from pipeline.resources import resource
 
 
 @dataclass(frozen=True)
@@ -149,14 +147,6 @@ class PageRenderer:
     @cached_property
     def _environment(self) -> Environment:
         return environment(self.language)
-
-
-@cache
-def script_of(name: str) -> Mapping[str, Any]:
-    """Return what a template needs to run a script of ours: the script, and the hash by which it alone may run."""
-    script = resource("templates", f"{name}.js").read_text(encoding="utf-8").strip()
-    allowed = b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    return {"script": Markup(script), "script_hash": allowed}  # noqa: S704 - our own
 
 
 def drawn(keys: Sequence[str], drawings: Mapping[str, Drawing]) -> dict[str, Any]:

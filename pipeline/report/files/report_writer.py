@@ -32,7 +32,7 @@ from pipeline.report.files.manifest import (
     write_manifest,
 )
 from pipeline.report.files.object_list import LISTED, OBJECTS, SHOWN, is_list_file, listed_pages
-from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, drawn, script_of
+from pipeline.report.files.page_renderer import PageRenderer, RenderedPage, drawn
 from pipeline.report.files.plan_files import PLAN_FILES, gathered_from, write_plan_table
 from pipeline.report.files.ranks import KEYS, ranks_of
 from pipeline.report.files.walk_sheet import sheet_file
@@ -40,9 +40,10 @@ from pipeline.report.language import speaking
 from pipeline.report.pages.class_curves import FILE as CLASS_CURVES
 from pipeline.report.pages.class_curves import class_curves, curves_csv
 from pipeline.report.pages.compose import anchor_of, museum_view, page_head, page_name
-from pipeline.report.pages.environment import environment, fill
+from pipeline.report.pages.environment import environment, fill, script_of
 from pipeline.report.pages.errand_views import plan_page
 from pipeline.report.pages.further import further_pages
+from pipeline.report.pages.news import OPEN, news_pages, news_view, page_file
 from pipeline.report.pages.reading import INVENTORY, READING, Doubts, is_reading_file, reading_view, write_doubts
 from pipeline.report.pages.since import since_view
 from pipeline.report.pages.views import Pointer, State
@@ -291,6 +292,9 @@ class ReportWriter:
             further, left_out = further_pages(env, head, tally, entries)
             shared: dict[str, Any] = {"museum": museum, "units": units, "State": State, "further": further}
             shared["planned"] = bool(plan)
+            news = None if changes is None else news_view(changes, links)
+            listed = news_pages(news)
+            told: dict[str, Any] = shared | {"news": news, "files": [page_file(at + 1) for at in range(len(listed))]}
             traces = {
                 view.anchor: trace(motion, units, view.anchor)
                 for view, motion in zip(museum.motions, head.motions, strict=True)
@@ -299,7 +303,11 @@ class ReportWriter:
             hashes = [motion.hash[:16] for motion in head.motions]
             measured = drawn([key for key in drawings if not any(h in key for h in hashes)], drawings)
             return [
-                ("index.html", fill(env, "index.html", shared | {"here": "index", "left_out": left_out})),
+                ("index.html", fill(env, "index.html", told | {"here": "index", "left_out": left_out, "open": OPEN})),
+                *(
+                    (file, fill(env, "news.html", told | {"here": "news", "lines": lines, "number": number}))
+                    for number, (file, lines) in enumerate(zip(told["files"], listed, strict=True), 1)
+                ),
                 ("method.html", fill(env, "method.html", shared | measured | {"here": "method"})),
                 ("motion.html", fill(env, "motion.html", shared | shaken | {"here": "motion", "traces": traces})),
                 *(

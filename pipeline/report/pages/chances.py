@@ -168,6 +168,11 @@ _STATES = {
 }
 
 
+def band_word(band: Band) -> str:
+    """Return the word for a probability."""
+    return _BANDS[band]()
+
+
 def state_word(state: Harm) -> str:
     """Return a state in words."""
     return _STATES[state]()

@@ -137,10 +137,10 @@ def compose(record: RunRecord, page: Page, units: Units, sayings: Sayings | None
     walk = None
     if page.on_display:
         walk = walk_view(gallery.name, gallery.page, pairs, gallery.tasks, gallery.survey, describer.decided, units)
-    return Composed(gallery, _entry(gallery, pairs), walk, describer.anchor, describer.key)
+    return Composed(gallery, _entry(gallery, pairs, page), walk, describer.anchor, describer.key)
 
 
-def _entry(gallery: GalleryView, pairs: Sequence[tuple[Assessment, ObjectView]]) -> Entry:
+def _entry(gallery: GalleryView, pairs: Sequence[tuple[Assessment, ObjectView]], page: Page) -> Entry:
     open_ = [(a, v) for a, v in pairs if v.state is State.ACT and not v.settled]
     leaders = [(urgency(a), pointer(v)) for a, v in open_ if not to_check(a)]
     check = [(urgency(a), pointer(v)) for a, v in open_ if to_check(a)]
@@ -153,6 +153,8 @@ def _entry(gallery: GalleryView, pairs: Sequence[tuple[Assessment, ObjectView]])
         leaders=tuple(leaders[:LEADERS]),
         check=tuple(check[:LEADERS]),
         decisions=decisions_view([(v.decisions, v.settled, pointer(v)) for _, v in pairs if v.decisions]),
+        run=clean(page.run),
+        made=clean(page.made),
     )
 
 
@@ -215,8 +217,8 @@ def museum_view(
         credit=clean(str(head.settings.get("credit") or "")),
         demonstration=head.demonstration,
         counts=_total(entry.counts for entry in shown),
-        rows=_rows(shown),
-        stores=next(iter(_rows([entry for entry in entries if not entry.on_display])), None),
+        rows=_rows(shown, head.run_id),
+        stores=next(iter(_rows([entry for entry in entries if not entry.on_display], head.run_id)), None),
         first=tuple(leader for _, leader in leaders[:LEADERS]),
         check=tuple(one for _, one in check[:LEADERS]),
         checks=tally.check,
@@ -249,7 +251,7 @@ def _levels(head: RunRecord, tally: Tally) -> tuple[LevelRow, ...]:
     return tuple(rows)
 
 
-def _rows(entries: Sequence[Entry]) -> tuple[GalleryRow, ...]:
+def _rows(entries: Sequence[Entry], run_id: str) -> tuple[GalleryRow, ...]:
     """Gather the pages of each gallery into a row, the gallery with the most to do first."""
     galleries: dict[tuple[bool, str], list[Entry]] = {}
     for entry in entries:
@@ -260,9 +262,10 @@ def _rows(entries: Sequence[Entry]) -> tuple[GalleryRow, ...]:
         # What comes first is what comes first on the page of the gallery's worst object.
         worst = min(members, key=lambda entry: entry.leaders[0][0] if entry.leaders else _LAST)
         task = worst.task or next((entry.task for entry in members if entry.task), "")
-        rows.append(
-            GalleryRow(name, on_display, tuple(e.page for e in members), _total(e.counts for e in members), task)
-        )
+        old = all(entry.run != clean(run_id) for entry in members)
+        unchanged = max(entry.made for entry in members)[:10] if old else ""
+        pages, counts = tuple(e.page for e in members), _total(e.counts for e in members)
+        rows.append(GalleryRow(name, on_display, pages, counts, task, unchanged))
     return tuple(sorted(rows, key=lambda g: (-g.counts.act, -g.counts.watch, -g.counts.unknown, g.name)))
 
 

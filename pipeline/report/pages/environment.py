@@ -1,7 +1,9 @@
 """Templates filled in: everything escaped, nothing undefined, phrases in the reader's language."""
 
+import hashlib
+from base64 import b64encode
 from collections.abc import Mapping
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any
 
 from jinja2 import BytecodeCache, Environment, FileSystemLoader, StrictUndefined
@@ -71,6 +73,14 @@ def _present(value: object) -> object:
     if value is None:
         raise ReportError("a template prints None; give the view a text for what is not known")
     return value
+
+
+@cache
+def script_of(name: str) -> Mapping[str, Any]:
+    """Return what a template needs to run a script of ours: the script, and the hash by which it alone may run."""
+    script = resource("templates", f"{name}.js").read_text(encoding="utf-8").strip()
+    allowed = b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    return {"script": Markup(script), "script_hash": allowed}  # noqa: S704 - our own
 
 
 def fill(env: Environment, template: str, context: Mapping[str, Any]) -> str:

@@ -4,11 +4,14 @@ from dataclasses import replace
 from functools import cache
 from math import inf, isnan, log, log1p
 
+from pipeline import records
 from pipeline.analysis.stakes import doubtful, expected_loss, value_of
-from pipeline.records import Assessment, Band, Finding, Urgency, Verdict
+from pipeline.records import Assessment, Finding, Urgency, Verdict
 from pipeline.report.pages.views import Judged, State
 from pipeline.report.text import encodable
 from pipeline.tables import table
+
+state_of = records.state_of
 
 _GRAVE = ("overturn", "break")
 _GRAVER = 1e6
@@ -20,28 +23,6 @@ _ALIKE = log1p(0.01)
 _ORDER = tuple(State)
 _JUDGED = {Verdict.FAIL: Judged.FAILS, Verdict.UNDETERMINED: Judged.OPEN, Verdict.PASS: Judged.PASSES}
 _SIZES = tuple(Judged)
-_STATES = {Band.VERY_UNLIKELY: State.FINE, Band.UNLIKELY: State.WATCH}
-
-
-def state_of(assessment: Assessment) -> State:
-    """Return where an object stands: by how likely harm is, or where that was not asked for by its verdicts.
-
-    A proof beats a probability: what passes in all its models, whatever its uncertain inputs are, is fine, unless the
-    scatter of the models, which no verdict counts, makes harm possible.  It holds of the class that was run: of what
-    may be of another one the probability decides.  What has no verdict at all never is fine.
-    """
-    if assessment.aside:
-        return State.ASIDE
-    verdicts = {f.verdict for f in assessment.findings}
-    found = assessment.likelihood
-    state = State.FINE if found is None else _STATES.get(found.band, State.ACT)
-    proved = assessment.assessed and verdicts == {Verdict.PASS} and (found is None or not found.classes)
-    if proved and state is not State.ACT:
-        return State.FINE
-    if found is None:
-        state = State.ACT if Verdict.FAIL in verdicts else State.WATCH
-    # Where some of it could not be run, only what is bad is known.
-    return state if assessment.assessed or (verdicts and state is State.ACT) else State.UNKNOWN
 
 
 def at_level(assessment: Assessment, level: str) -> Assessment:

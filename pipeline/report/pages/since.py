@@ -50,11 +50,12 @@ def since_view(changes: RunChanges, objects: Mapping[str, Pointer], units: Units
 
 
 def mentioned(changes: RunChanges) -> set[str]:
-    """Return the numbers of the objects that the section names."""
+    """Return the numbers of the objects that the section names, and of those about which there is news."""
     lists: list[Sequence[Any]] = [
         changes.worsened, changes.fixed, changes.others, changes.added, changes.moved, changes.inputs,
     ]  # fmt: skip
-    named = {change.object_number for found in lists for change in found[:MOST]}
+    named = {change.object_number for change in changes.objects}
+    named |= {change.object_number for found in lists for change in found[:MOST]}
     return named | {change.decision.object_number for change in changes.decisions[:MOST]}
 
 

@@ -4,25 +4,13 @@ from dataclasses import dataclass
 from enum import StrEnum
 from itertools import groupby
 
+from pipeline import records
 from pipeline.records import Urgency
 from pipeline.report.pages.chances import ChanceView
 from pipeline.report.pages.judging import FragilityView
 from pipeline.report.plots.chart import Spot
 
-
-class State(StrEnum):
-    """Where an object stands, in the order in which the report lists it.
-
-    act: harm is possible or likelier; watch: it is unlikely; unknown: nobody can say; fine: harm is very unlikely, or
-    excluded; aside: not on display, and not assessed.
-    """
-
-    ACT = "act"
-    WATCH = "watch"
-    UNKNOWN = "unknown"
-    FINE = "fine"
-    ASIDE = "aside"
-
+State = records.State
 
 STATES = (State.ACT, State.WATCH, State.UNKNOWN, State.FINE)
 """Those of what is assessed."""
@@ -388,6 +376,7 @@ class Entry:
     task     : what is to do first there, in words, "" where nothing is advised
     leaders  : its most urgent objects that nobody has settled, each with the key that sorts it among all
     check    : the same of those whose record is to be checked first, which are not among the leaders
+    run      : that found what is newest on it;  made : when, ISO 8601
     """
 
     name: str
@@ -398,17 +387,23 @@ class Entry:
     leaders: tuple[tuple[Urgency, Pointer], ...] = ()
     check: tuple[tuple[Urgency, Pointer], ...] = ()
     decisions: DecisionsView = DecisionsView()
+    run: str = ""
+    made: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class GalleryRow:
-    """One gallery's row of the index, with all its pages."""
+    """One gallery's row of the index, with all its pages.
+
+    unchanged : the day on which what is newest of it was found; "" where that is of this run
+    """
 
     name: str
     on_display: bool
     pages: tuple[PageView, ...]
     counts: StateCounts
     task: str
+    unchanged: str = ""
 
 
 @dataclass(frozen=True, slots=True)

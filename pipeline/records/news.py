@@ -1,0 +1,164 @@
+"""News of an object: what one run says of it and what the next one does, in as much as people are told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from pipeline.records.decision import Decision
+from pipeline.records.likelihood import Band
+from pipeline.records.state import State
+
+
+@dataclass(frozen=True, slots=True)
+class Brief:
+    """What a run says of an object, in short.
+
+    Attributes
+    ----------
+    state : State or None
+        Where it stands; None where an earlier version of Kouros did not keep that.
+    band : str
+        The word for how likely harm is, a `Band`; "" where nobody asked.
+    measure, advice : str
+        Row of tables/measures.csv that is advised first, and its title; "" for nothing.
+    missing : str
+        What is not recorded that its models need, the first of it; "" for nothing.
+    """
+
+    state: State | None = None
+    band: str = ""
+    measure: str = ""
+    advice: str = ""
+    missing: str = ""
+
+
+class NewsKind(StrEnum):
+    """Kind of news of an object, in the order in which it is told."""
+
+    DANGER = "danger"
+    WORSE = "worse"
+    LOST = "lost"
+    STILL = "still"
+    FIXED = "fixed"
+    BETTER = "better"
+    NEW = "new"
+    GONE = "gone"
+    MOVED = "moved"
+    DECIDED = "decided"
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """A decision about an object that is new in force, or no longer in force.
+
+    Attributes
+    ----------
+    new : bool
+        Whether it is new.
+    measure : str
+        Row of tables/measures.csv that it says is installed; "" for another decision.
+    matter, who : str
+        What was decided, and by whom.
+    """
+
+    new: bool
+    measure: str
+    matter: str
+    who: str
+
+    @classmethod
+    def of(cls, decision: Decision, *, new: bool) -> Settled:
+        """Return a decision as news tells it."""
+        return cls(new, decision.measure, decision.matter, decision.who)
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectChange:
+    """An object about which there is news.
+
+    Attributes
+    ----------
+    object_number, title, gallery : str
+        As the records have them, or had them where the object is gone.
+    before, after : Brief or None
+        What either run says of it; None where it was not on display.
+    came_from : str or None
+        Its gallery before, where it moved; else None.
+    recorded : bool
+        Whether the newer run's records still have it.
+    decided : tuple of Settled
+        Decisions about it that were made or ended.
+    fields : tuple of str
+        Fields of its record that changed.
+    """
+
+    object_number: str
+    title: str
+    gallery: str
+    before: Brief | None
+    after: Brief | None
+    came_from: str | None = None
+    recorded: bool = True
+    decided: tuple[Settled, ...] = ()
+    fields: tuple[str, ...] = ()
+
+    @property
+    def installed(self) -> tuple[str, ...]:
+        """The measures that are newly said to be installed."""
+        return tuple(one.measure for one in self.decided if one.new and one.measure)
+
+    @property
+    def kind(self) -> NewsKind | None:
+        """What kind of news it is; None for none."""
+        was, now = self.before, self.after
+        if was is None or now is None:
+            return self._display(now) if was is not now else self._besides()
+        if was.state is None or now.state is None:
+            return self._besides()
+        if State.UNKNOWN in (was.state, now.state):
+            return self._known(was.state, now.state)
+        if self.installed and was.state is now.state is State.ACT:
+            return NewsKind.STILL
+        before, after = _size(was), _size(now)
+        if after > before:
+            return NewsKind.WORSE
+        if after < before:
+            ended = now.state is State.FINE or (self.installed and now.state is not State.ACT)
+            return NewsKind.FIXED if was.state is State.ACT and ended else NewsKind.BETTER
+        return self._besides()
+
+    def _display(self, now: Brief | None) -> NewsKind:
+        if now is None:
+            return NewsKind.GONE
+        return NewsKind.DANGER if now.state is State.ACT else NewsKind.NEW
+
+    def _known(self, was: State, now: State) -> NewsKind | None:
+        if was is now:
+            return self._besides()
+        if now is State.UNKNOWN:
+            return NewsKind.LOST
+        return NewsKind.WORSE if now is State.ACT else NewsKind.BETTER
+
+    def _besides(self) -> NewsKind | None:
+        if self.came_from is not None and self.after is not None:
+            return NewsKind.MOVED
+        return NewsKind.DECIDED if self.decided else None
+
+    @property
+    def order(self) -> tuple[int, int, str, str]:
+        """Sort key: the kind, what is likeliest to come to harm, gallery and number."""
+        kind = self.kind
+        band = _BANDS.get("" if self.after is None else self.after.band, len(_BANDS))
+        return (len(_KINDS) if kind is None else _KINDS.index(kind), band, self.gallery, self.object_number)
+
+
+_KINDS = tuple(NewsKind)
+_BANDS = {band.value: at for at, band in enumerate(Band)}
+_SIZES = {State.FINE: 0, State.WATCH: 1, State.ACT: 2}
+
+
+def _size(brief: Brief) -> tuple[int, int]:
+    """Return how bad it stands; words for probabilities count only of what is acted on: a proof beats them."""
+    state = brief.state or State.FINE
+    return _SIZES.get(state, 0), -_BANDS.get(brief.band, 0) if state is State.ACT else 0

@@ -1,0 +1,369 @@
+"""News of objects in plain words: what a night found changed, one object a line."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+from pipeline.records import Band, Brief, NewsKind, ObjectChange, RunChanges, Settled, State
+from pipeline.report.language import _, ngettext, said
+from pipeline.report.pages.chances import band_word
+from pipeline.report.pages.views import Pointer
+from pipeline.report.text import clean, count, plain, short, words
+
+OPEN = 8
+"""Lines that the index and the landing page show; the page of the news has all."""
+
+ON_A_PAGE = 500
+"""Lines on a page of the news."""
+
+STEM = "news"
+
+_TITLE = 80
+_FIELDS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class NewsLine:
+    """News of one object: "Fixed: 1922.9 Amphora (clamped)".
+
+    Attributes
+    ----------
+    kind : NewsKind
+        Of what kind it is.
+    head : str
+        The kind in words.
+    number, title, gallery : str
+        Of the object.
+    view : Pointer or None
+        Where the report has it.
+    text : str
+        What follows its title, with the colon or the bracket that it begins with.
+    """
+
+    kind: NewsKind
+    head: str
+    number: str
+    title: str
+    gallery: str
+    view: Pointer | None
+    text: str
+
+    @property
+    def sentence(self) -> str:
+        """The line as a sentence, for places without markup."""
+        return plain(f"{self.head}: {self.number} {self.title}".rstrip() + f"{self.text}.")
+
+
+@dataclass(frozen=True, slots=True)
+class NewsView:
+    """All news since the run before, or what of it is kept.
+
+    Attributes
+    ----------
+    before : str
+        When the run before began, ISO 8601; "" where there was none.
+    lines : tuple of NewsLine
+        In the order in which they are told.
+    total : int
+        How many there are.
+    counts : tuple of (str, str)
+        The kinds in words, with how many of each.
+    shared : tuple of (str, str)
+        The same of what changed for many objects at once.
+    because : str
+        Of what; "" for nothing.
+    changed : bool
+        Whether anything at all changed, news or not.
+    """
+
+    before: str
+    lines: tuple[NewsLine, ...]
+    total: int
+    counts: tuple[tuple[str, str], ...]
+    shared: tuple[tuple[str, str], ...]
+    because: str
+    changed: bool = True
+
+    @property
+    def more(self) -> int:
+        """How many lines are not here."""
+        return self.total - len(self.lines)
+
+
+def news_view(changes: RunChanges, objects: Mapping[str, Pointer]) -> NewsView:
+    """Return all news since the run before.
+
+    Parameters
+    ----------
+    changes : RunChanges
+        Since that run.
+    objects : mapping of str to Pointer
+        By number, where the report has them; what is gone has none.
+    """
+    return NewsView(
+        before=clean(changes.started),
+        lines=tuple(news_line(one, objects.get(one.object_number)) for one in changes.objects),
+        total=len(changes.objects),
+        counts=told_counts(kind_counts(changes)),
+        shared=told_counts(changes.shared),
+        because=because(shared_causes(changes)),
+        changed=bool(changes),
+    )
+
+
+def kept_view(kept: Mapping[str, Any]) -> NewsView:
+    """Return news as a summary keeps it (`objects`, `counts`, `shared`, `because`, `since`), in the reader's language.
+
+    Raises
+    ------
+    ValueError, TypeError, KeyError
+        Where it was changed by hand.
+    """
+    counts = {NewsKind(kind): int(number) for kind, number in kept["counts"].items()}
+    return NewsView(
+        before=clean(str(kept["since"])),
+        lines=tuple(news_line(_of_row(row)) for row in kept["objects"][:OPEN]),
+        total=sum(counts.values()),
+        counts=told_counts(counts),
+        shared=told_counts(kept["shared"]),
+        because=because([str(one) for one in kept["because"]]),
+    )
+
+
+def _of_row(row: Mapping[str, Any]) -> ObjectChange:
+    told = {field.name: row[field.name] for field in fields(ObjectChange)}
+    for side in ("before", "after"):
+        known = told[side]
+        if known is not None:
+            told[side] = Brief(**known | {"state": None if known["state"] is None else State(known["state"])})
+    told |= {"decided": tuple(Settled(**one) for one in told["decided"]), "fields": tuple(told["fields"])}
+    return ObjectChange(**told)
+
+
+def sentences(changes: RunChanges, most: int = OPEN) -> list[str]:
+    """Return the news in sentences: the first lines, how many more there are, and what changed for many at once."""
+    told = [news_line(one).sentence for one in changes.objects[:most]]
+    more = len(changes.objects) - len(told)
+    if more:
+        told.append(
+            ngettext("And %(shown)s object more.", "And %(shown)s objects more.", more) % {"shown": count(more)}
+        )
+    if changes.shared:
+        told.append(shared_sentence(told_counts(changes.shared), because(shared_causes(changes))))
+    return told
+
+
+def shared_sentence(shared: Sequence[tuple[str, str]], why: str) -> str:
+    """Say what changed for many objects at once."""
+    return _("Because of %(why)s, for many objects at once: %(counts)s.") % {
+        "why": why,
+        "counts": ", ".join(f"{head} {number}" for head, number in shared),
+    }
+
+
+def kind_counts(changes: RunChanges) -> dict[str, int]:
+    """Return how much news there is of each kind, in the order in which it is told."""
+    found = Counter(one.kind for one in changes.objects)
+    return {kind.value: found[kind] for kind in NewsKind if found[kind]}
+
+
+def told_counts(counts: Mapping[Any, int]) -> tuple[tuple[str, str], ...]:
+    """Return the kinds in words, with how many of each."""
+    return tuple((_head(NewsKind(kind)), count(number)) for kind, number in counts.items())
+
+
+def shared_causes(changes: RunChanges) -> list[str]:
+    """Return what changed of what many objects rest on: "motions", "settings", "versions"; else it was the floors."""
+    found = [name for name in ("motions", "settings", "versions") if getattr(changes, name)]
+    return found or (["floors"] if changes.shared else [])
+
+
+def because(causes: Sequence[str]) -> str:
+    """Say what changed of what many objects rest on."""
+    told = {
+        "motions": _("the earthquake used"),
+        "settings": _("settings"),
+        "versions": _("another version of Kouros"),
+        "floors": _("floors"),
+    }
+    return ", ".join(told[cause] for cause in causes)
+
+
+def page_file(at: int) -> str:
+    """Return the file of a page of the news, counted from 1: the first one's has no number."""
+    return f"{STEM}.html" if at == 1 else f"{STEM}-{at}.html"
+
+
+def news_pages(view: NewsView | None) -> list[tuple[NewsLine, ...]]:
+    """Return the lines of each page of the news: one page at least."""
+    lines = () if view is None else view.lines
+    return [lines[begin : begin + ON_A_PAGE] for begin in range(0, max(1, len(lines)), ON_A_PAGE)]
+
+
+def news_line(one: ObjectChange, view: Pointer | None = None) -> NewsLine:
+    """Return the line about an object.
+
+    Raises
+    ------
+    ValueError
+        For an object about which there is no news.
+    """
+    kind = one.kind
+    if kind is None:
+        raise ValueError(f"there is no news of {one.object_number!a}")
+    return NewsLine(
+        kind,
+        _head(kind),
+        clean(one.object_number),
+        short(one.title, _TITLE),
+        short(one.gallery, _TITLE) or _("no gallery recorded"),
+        view,
+        _text(kind, one),
+    )
+
+
+def _head(kind: NewsKind) -> str:
+    told = {
+        NewsKind.DANGER: _("New and in danger"),
+        NewsKind.WORSE: _("Worse"),
+        NewsKind.LOST: _("Can no longer be assessed"),
+        NewsKind.STILL: _("Still in danger"),
+        NewsKind.FIXED: _("Fixed"),
+        NewsKind.BETTER: _("Better"),
+        NewsKind.NEW: _("New on display"),
+        NewsKind.GONE: _("Gone from display"),
+        NewsKind.MOVED: _("Moved"),
+        NewsKind.DECIDED: _("Decided"),
+    }
+    return told[kind]
+
+
+def _text(kind: NewsKind, one: ObjectChange) -> str:
+    now = one.after
+    if kind is NewsKind.GONE:
+        return f" ({_('not on display any more') if one.recorded else _('no longer in the records')})"
+    if kind is NewsKind.MOVED:
+        return _moved(one)
+    if kind is NewsKind.DECIDED or now is None:
+        return f": {_decided(one)}"
+    why = _why(one)
+    bracket = f" ({why})" if why else ""
+    if kind is NewsKind.FIXED:
+        return bracket + ("" if now.state is State.FINE else f": {_stands(now)}")
+    if kind is NewsKind.DANGER:
+        return f": {to_do(now)}"
+    if kind is NewsKind.STILL:
+        turned = _turned(one.before, now) if one.before and one.before.band != now.band else ""
+        return f"{bracket}: {f'{turned}: ' if turned else ''}{to_do(now)}"
+    if kind is NewsKind.NEW:
+        return f": {_stands(now)}{_missing(now)}"
+    if kind is NewsKind.LOST:
+        return f"{bracket}{_missing(now)}"
+    advice = f": {to_do(now)}" if kind is NewsKind.WORSE and now.state is State.ACT else ""
+    return f": {_turned(one.before or Brief(), now)}{bracket}{advice}"
+
+
+def _turned(was: Brief, now: Brief) -> str:
+    """Say what an object was and what it is."""
+    if was.state is now.state and was.band and now.band:
+        return _("harm was %(before)s, and is %(after)s") % {"before": _band(was), "after": _band(now)}
+    if was.state is State.UNKNOWN:
+        return _("could not be assessed, is %(after)s") % {"after": _stands(now)}
+    return _("was %(before)s, is %(after)s") % {"before": _stands(was), "after": _stands(now)}
+
+
+def _band(brief: Brief) -> str:
+    return band_word(Band(brief.band))
+
+
+def _stands(brief: Brief) -> str:
+    told = {
+        State.ACT: _("in danger"),
+        State.WATCH: _("to be watched"),
+        State.UNKNOWN: _("not possible to assess"),
+        State.FINE: _("fine"),
+        State.ASIDE: _("not assessed"),
+    }
+    return told[brief.state or State.UNKNOWN]
+
+
+def _missing(brief: Brief) -> str:
+    if not brief.missing:
+        return ""
+    what = short(words(clean(brief.missing)), 120)
+    # Some of what is missing is a sentence of its own.
+    return f": {what}" if ": " in what.partition("(")[0] else ": " + _("not recorded: %(what)s") % {"what": what}
+
+
+def _moved(one: ObjectChange) -> str:
+    before, after = (short(name, _TITLE) or _("no gallery recorded") for name in (one.came_from or "", one.gallery))
+    return ": " + _("from %(before)s to %(after)s") % {"before": before, "after": after}
+
+
+def _decided(one: ObjectChange) -> str:
+    told = [
+        (_("%(what)s, by %(who)s") if each.new else _("no longer in force: %(what)s, by %(who)s"))
+        % {"what": short(said(clean(each.matter)), 120), "who": short(each.who, 60)}
+        for each in one.decided
+    ]
+    return "; ".join(told)
+
+
+def _why(one: ObjectChange) -> str:
+    """Say what was done about it, or else what changed of its record; "" where neither is known."""
+    done = dict.fromkeys(_done(measure) for measure in one.installed)
+    # What is recorded anew with other numbers ends and begins.
+    ended = [d.measure for d in one.decided if not d.new and d.measure and d.measure not in one.installed]
+    told = [*done, *(_("no longer %(done)s") % {"done": _done(measure)} for measure in dict.fromkeys(ended))]
+    if not told and one.decided:
+        told = [_decided(one)]
+    if not told and one.came_from is not None:
+        told = [_moved(one).removeprefix(": ")]
+    if not told and one.fields:
+        named = [words(clean(name)) for name in one.fields[:_FIELDS]] + ["…"] * (len(one.fields) > _FIELDS)
+        told = [_("its record changed: %(fields)s") % {"fields": ", ".join(named)}]
+    return ", ".join(told)
+
+
+def to_do(brief: Brief) -> str:
+    """Say what to do about an object, in words that follow a colon."""
+    if not brief.measure:
+        return _("ask an engineer")
+    known = _WORDS.get(brief.measure)
+    return said(short(brief.advice, _TITLE)) if known is None else known[0]()
+
+
+def _done(measure: str) -> str:
+    known = _WORDS.get(measure)
+    return words(clean(measure)) if known is None else known[1]()
+
+
+# By row of tables/measures.csv, what to do and what was done; looked up in the language of the page.  The museum's own
+# measures are told by their titles.
+_WORDS = {
+    "clearance": (lambda: _("keep it clear"), lambda: _("kept clear")),
+    "anchor": (lambda: _("fasten its furniture"), lambda: _("its furniture fastened")),
+    "rubber_pads": (lambda: _("put rubber pads behind it"), lambda: _("rubber pads behind it")),
+    "surface": (lambda: _("stand it on another surface"), lambda: _("on another surface")),
+    "grip_pad": (lambda: _("stand it on a non-slip pad"), lambda: _("on a non-slip pad")),
+    "pins": (lambda: _("set padded pins round its foot"), lambda: _("held by pins")),
+    "wax": (lambda: _("fix it with wax"), lambda: _("fixed with wax")),
+    "putty": (lambda: _("fix it with putty"), lambda: _("fixed with putty")),
+    "ties": (lambda: _("tie it down"), lambda: _("tied down")),
+    "clips": (lambda: _("hold its foot by clips"), lambda: _("held by clips")),
+    "ballast": (lambda: _("put ballast into its base"), lambda: _("ballast in its base")),
+    "wide_base": (lambda: _("give it a wider base"), lambda: _("on a wider base")),
+    "brackets": (lambda: _("fix it to the wall by brackets"), lambda: _("held by brackets")),
+    "clamps": (lambda: _("clamp it"), lambda: _("clamped")),
+    "fasten": (lambda: _("fasten it"), lambda: _("fastened")),
+    "brace": (lambda: _("brace it"), lambda: _("braced")),
+    "close_hooks": (lambda: _("close its hooks"), lambda: _("its hooks closed")),
+    "hold": (lambda: _("hold it on its mount"), lambda: _("held on its mount")),
+    "restrain": (lambda: _("fix it to the wall"), lambda: _("fixed to the wall")),
+    "friction_isolator": (lambda: _("stand it on a low-friction pad"), lambda: _("on a low-friction pad")),
+    "horizontal_isolator": (lambda: _("put it on a horizontal isolator"), lambda: _("on a horizontal isolator")),
+    "rotational_isolator": (lambda: _("mount it on a rotational isolator"), lambda: _("on a rotational isolator")),
+    "strengthen": (lambda: _("have it strengthened and fastened"), lambda: _("strengthened and fastened")),
+    "remove": (lambda: _("take it off display"), lambda: _("taken off display")),
+}

@@ -1,0 +1,125 @@
+"""News of objects in words: every kind and every measure has its own, whatever the museum's texts are, however many."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from dataclasses import asdict, replace
+from itertools import product
+from pathlib import Path
+
+import pytest
+
+from pipeline.operations.hooks import SUBJECTS
+from pipeline.operations.run_summary import json_ready, plain_changes
+from pipeline.records import Brief, NewsKind, ObjectChange, RunChanges, Settled, State
+from pipeline.report import render
+from pipeline.report.pages.news import ON_A_PAGE, kept_view, news_line, news_view, sentences, to_do
+from pipeline.tables import table
+
+from . import builder
+from .news_samples import ACT, FINE, UNKNOWN, WATCH, news_of_every_kind
+
+BAD = "<script>alert(1)</script>\x1b[2J\u202e{{7*7}} %(x)s\n\u0000"
+
+
+def changes(*objects: ObjectChange, **more: object) -> RunChanges:
+    return RunChanges("a", "b", started="2031-05-01T01:00:00+00:00", objects=objects, **more)  # type: ignore[arg-type]
+
+
+def test_the_words_that_a_curator_reads() -> None:
+    """As the museum asked for them."""
+    clamped = ObjectChange(
+        "1922.9", "amphora", "Gallery 19", ACT, FINE, decided=(Settled(True, "clamps", "installed clamps", "Ann"),)
+    )
+    vase = ObjectChange("2026.1", "vase", "Gallery 2", None, ACT)
+    assert [news_line(one).sentence for one in (clamped, vase)] == [
+        "Fixed: 1922.9 amphora (clamped).",
+        "New and in danger: 2026.1 vase: fasten it.",
+    ]
+    assert SUBJECTS["changed"] == "what changed"
+
+
+def test_every_measure_of_the_table_has_words_of_its_own() -> None:
+    done = {}
+    for row in table("measures"):
+        asked = to_do(Brief(State.ACT, "", row["measure"], "TITLE"))
+        assert "TITLE" not in asked, row["measure"]
+        settled = Settled(True, row["measure"], "", "Ann")
+        done[row["measure"]] = news_line(ObjectChange("1", "t", "g", ACT, FINE, decided=(settled,))).text
+        assert asked[0].islower()
+    assert len(set(done.values())) == len(done)
+    # One of the museum's own table is told by its title, and by its name.
+    assert to_do(Brief(State.ACT, "", "our_net", "Our own net")) == "Our own net"
+    settled = Settled(True, "our_net", "", "Ann")
+    assert news_line(ObjectChange("1", "t", "g", ACT, FINE, decided=(settled,))).text == " (our net)"
+
+
+def test_kinds_of_all_turns_of_a_state() -> None:
+    """By hand: what is acted on is worse than what is watched, and that than what is fine."""
+    size = {State.FINE: 0, State.WATCH: 1, State.ACT: 2}
+    for was, now in product((FINE, WATCH, ACT), repeat=2):
+        kind = ObjectChange("1", "", "", was, now).kind
+        step = size[now.state or State.FINE] - size[was.state or State.FINE]
+        fixed = was is ACT and now is FINE
+        expected = NewsKind.FIXED if fixed else NewsKind.WORSE if step > 0 else NewsKind.BETTER if step < 0 else None
+        assert kind is expected, (was, now)
+    for now, kind in ((ACT, NewsKind.WORSE), (WATCH, NewsKind.BETTER), (FINE, NewsKind.BETTER), (UNKNOWN, None)):
+        assert ObjectChange("1", "", "", UNKNOWN, now).kind is kind
+        assert ObjectChange("1", "", "", now, UNKNOWN).kind is (None if now is UNKNOWN else NewsKind.LOST)
+    likelier = replace(ACT, band="almost certain")
+    assert ObjectChange("1", "", "", ACT, likelier).kind is NewsKind.WORSE
+    assert ObjectChange("1", "", "", likelier, ACT).kind is NewsKind.BETTER
+    # What a proof says is fine is fine whatever word its probability has.
+    assert ObjectChange("1", "", "", FINE, replace(FINE, band="unlikely")).kind is None
+
+
+def test_hostile_texts_stay_texts(tmp_path: Path) -> None:
+    objects = tuple(replace(one, object_number=f"{at}{BAD}") for at, one in enumerate(news_of_every_kind(BAD)))
+    folder = render(builder.record(), tmp_path / "one", changes=changes(*objects, shared={"worse": 3})).parent
+    for name in ("index.html", "news.html"):
+        page = (folder / name).read_text(encoding="utf-8")
+        assert "<script>alert" not in page
+        assert "\x1b" not in page
+        assert "{{7*7}}" in page
+    for sentence in sentences(changes(*objects), 1000):
+        assert not set(sentence) & {"\x1b", "\u202e", "\n", "\u0000"}
+        assert len(sentence) < 1000
+
+
+def test_a_thousand_pieces_of_news_are_on_pages(tmp_path: Path) -> None:
+    many = ON_A_PAGE * 2 + 1
+    objects = tuple(ObjectChange(f"n{at:05d}", "t", "g", None, ACT) for at in range(many))
+    index = render(builder.record(), tmp_path / "one", changes=changes(*objects))
+    files = [index.with_name(name) for name in ("news.html", "news-2.html", "news-3.html")]
+    found = [re.findall(r"<bdi>(n\d{5})</bdi>", file.read_text(encoding="utf-8")) for file in files]
+    assert [len(numbers) for numbers in found] == [ON_A_PAGE, ON_A_PAGE, 1]
+    assert [number for numbers in found for number in numbers] == [one.object_number for one in objects]
+    assert not index.with_name("news-4.html").exists()
+    for file in files:
+        assert all(f'href="{other.name}"' in file.read_text("utf-8") for other in files if other != file)
+    page = index.read_text(encoding="utf-8")
+    assert page.count('<li class="danger">') == 8
+    assert f"All {many:,} objects with news" in page
+    assert sentences(changes(*objects), 5)[-1] == f"And {many - 5:,} objects more."
+
+
+def test_what_a_status_keeps_is_told_as_on_the_night() -> None:
+    told = changes(*news_of_every_kind("x"), shared={"worse": 3, "fixed": 1})
+    rows = json_ready(plain_changes(told)["objects"])
+    kept = {"since": told.started, "counts": dict(Counter(row["kind"] for row in rows)), "because": [], "objects": rows,
+            "shared": told.shared}  # fmt: skip
+    view, whole = kept_view(kept), news_view(told, {})
+    assert view.lines == whole.lines[:8]
+    assert (view.total, view.shared, view.before) == (whole.total, whole.shared, whole.before)
+    assert [row["text"] for row in rows] == [line.sentence for line in whole.lines]
+
+
+@pytest.mark.parametrize("damage", ["counts", "objects", "shared", "because"])
+def test_what_was_damaged_in_a_status_is_refused(damage: str) -> None:
+    row = asdict(ObjectChange("1", "t", "g", None, ACT))
+    kept = {"since": "", "counts": {}, "because": [], "objects": [row], "shared": {}}
+    assert kept_view(kept).lines[0].number == "1"
+    for value in ("x", 7, [{}], {"nonsense": 1}, None):
+        with pytest.raises((KeyError, TypeError, ValueError, AttributeError)):
+            kept_view(kept | {damage: value})
