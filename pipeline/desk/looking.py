@@ -9,7 +9,7 @@ from typing import Any
 from pipeline.analysis.classify import object_classes
 from pipeline.analysis.house.questions import VOCABULARIES
 from pipeline.analysis.house.rule import QUANTITIES, HouseRule, Span
-from pipeline.analysis.survey import measurables
+from pipeline.analysis.survey import field_asked, measurables
 from pipeline.collection.inventory import items_named
 from pipeline.desk.asking import Answer, Asked
 from pipeline.desk.entering import labels, rules_version
@@ -18,7 +18,8 @@ from pipeline.desk.errors import NotThereError
 from pipeline.desk.numbers import cell_unit, shown_number
 from pipeline.desk.object_facts import ObjectFacts, cells, vocabulary
 from pipeline.desk.run_facts import SHOWN, ListedObject, RunFacts
-from pipeline.records import DecisionKind, Support
+from pipeline.records import DecisionKind, Support, in_force
+from pipeline.report.language import _
 from pipeline.report.pages.decided import Decided
 from pipeline.report.pages.errand_views import number, spanned
 from pipeline.report.pages.notes import page_notes
@@ -59,15 +60,13 @@ def search(asked: Asked) -> Answer:
     run, query = asked.site.run, asked.query
     words, gallery, state = query.get("q", "")[:200], query.get("gallery", ""), query.get("state", "")
     page = _whole(query.get("page", "1"))
-    if words.strip() or gallery or state:
-        hits = run.found(words, gallery, state)
-    else:
-        hits = iter(run.urgent)
+    narrowed = bool(words.strip() or gallery or state)
+    hits = run.found(words, gallery, state) if narrowed else iter(run.urgent)
     found = list(islice(hits, SHOWN * (page - 1), SHOWN * page + 1))
     context = {
         "found": found[:SHOWN], "more": len(found) > SHOWN, "page": page, "q": words, "gallery": gallery,
         "state": state, "galleries": sorted(run.galleries), "total": len(run.objects), "states": run.states,
-        "asked": bool(words.strip() or gallery or state),
+        "asked": narrowed,
     }  # fmt: skip
     return Answer("found.html" if asked.fragment else "search.html", context)
 
@@ -87,14 +86,16 @@ def object_context(
     facts, run = asked.site.facts(object_number), asked.site.run
     listed = run.by_number.get(object_number)
     query, typed = asked.query, dict(typed or {})
-    measure = typed.get("measure") or query.get("measure") or _advised(facts)
+    installable = asked.site.workspace.measures.installable
+    named = (typed.get("measure"), query.get("measure"), _advised(facts))
+    measure = next((one for one in named if one in installable), next(iter(installable), ""))
     return {
         "facts": facts, "item": facts.item, "o": facts.view, "gallery": facts.gallery, "listed": listed,
         "notes": page_notes(facts.gallery.objects) if facts.gallery else None,
         "decisions": _decided(facts, run), "cells": cells(facts, run.units),
         "recorded": _recorded(facts, run), "problem": problem, "typed": typed,
         "section": section or query.get("open", ""), "saved": query.get("saved", ""),
-        "measures": asked.site.workspace.measures.installable, "measure": measure,
+        "measures": installable, "measure": measure,
         "parameters": parameters(asked, facts, measure), "classes": object_classes(),
         "findings": _findings(facts), "neighbours": _beside(run, listed), "several_levels": run.several,
     }  # fmt: skip
@@ -178,21 +179,30 @@ def survey(asked: Asked) -> Answer:
     if not walk:
         raise NotThereError(f"there is nothing to measure in {gallery[:60]!r}")
     done = _measured(asked, walk)
-    entry = [(one, labels().get(field, field), _minutes(field), one.number in done) for one in walk
+    entry = [(one, labels().get(field) or _("What it is"), _minutes(field), one.number in done, field) for one in walk
              for field in (_asks(one),)]  # fmt: skip
-    following = next((one.number for one, _, _, is_done in entry if not is_done), "")
+    following = next((one.number for one, *_rest, is_done, _field in entry if not is_done), "")
     context = {"burn": _burn(asked, gallery), "walk": entry, "following": following, "name": gallery}
     return Answer("survey_gallery.html", context)
 
 
+CLASS = "class"
+"""What is asked of an object of which nobody knows what it is: no measurement, a word."""
+
+
 def _asks(one: ListedObject) -> str:
-    """Return the one field of an object that is worth measuring; "" for none that a cell takes."""
-    return one.open_for if one.open_for in labels() else ""
+    """Return the one field of an object that is worth measuring, or CLASS; "" for none."""
+    return one.open_for if one.open_for == CLASS else field_asked(one.open_for, one.missing)
 
 
 def _measured(asked: Asked, walk: Sequence[ListedObject]) -> set[str]:
-    items = items_named(asked.site.workspace.engine, [one.number for one in walk])
-    return {one.number for one in walk if one.number in items and getattr(items[one.number], _asks(one)) is not None}
+    wanted = [one for one in walk if _asks(one) != CLASS]
+    items = items_named(asked.site.workspace.engine, [one.number for one in wanted])
+    done = {one.number for one in wanted if one.number in items and getattr(items[one.number], _asks(one)) is not None}
+    named = (one.number for one in walk if _asks(one) == CLASS)
+    return done | {
+        number for number in named if any(d.kind is DecisionKind.CLASS for d in in_force(asked.site.log(number)))
+    }
 
 
 def _burn(asked: Asked, gallery: str) -> Burn:
@@ -298,7 +308,8 @@ def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] |
     about = [one for one in run.objects if one.on_display and given["class"] in ("", one.object_class)
              and given["gallery"] in ("", one.gallery)]  # fmt: skip
     return {
-        "rules": [_rule_words(rule, run.units) for rule in asked.site.workspace.settings.house], "classes": sorted(run.classes), "counts": run.classes,
+        "rules": [_rule_words(rule, run.units) for rule in asked.site.workspace.settings.house],
+        "classes": sorted(run.classes), "counts": run.classes,
         "galleries": sorted(run.galleries), "vocabularies": VOCABULARIES, "quantities": QUANTITIES,
         "states": states, "unit": cell_unit(QUANTITIES[states][0], run.units) if states in QUANTITIES else "",
         "supports": tuple(Support), "about": len(about), "typed": given, "problem": problem,

@@ -73,7 +73,7 @@ def read_number(text: str, unit: str, units: Units) -> tuple[float, str]:
         read = of_cell(written, unit, "," if "," in written else ".")
         if read is not None:
             return read
-    known = " or ".join((LENGTHS if unit == "m" else MASSES)) if unit in ("m", "kg") else mine
+    known = " or ".join(LENGTHS if unit == "m" else MASSES) if unit in ("m", "kg") else mine
     in_unit = f" in {known}" if known else ""
     raise InputError(f"{text.strip()[:_LONGEST]!r} is no number{in_unit}: write one, such as 8 1/2 or 0.3")
 

@@ -1,4 +1,4 @@
-"""Photographs that somebody hands in: decoded, turned upright, made small and written anew, so that no byte is theirs."""
+"""Photographs that somebody hands in: decoded, turned upright, made small, written anew: no byte is as it came."""
 
 import warnings
 from io import BytesIO

@@ -209,5 +209,6 @@ def _listed(folder: Path) -> Iterator[ListedObject]:
     with pq.ParquetFile(file) as table:
         for batch in table.iter_batches(columns=list(_COLUMNS)):
             columns: list[list[Any]] = [batch.column(name).to_pylist() for name in _COLUMNS]
-            for *texts, page, rank in zip(*columns, strict=True):
-                yield ListedObject(*texts, page=page, rank=1 << 60 if rank is None else rank)
+            # What has no place among all comes last.
+            columns[-1] = [1 << 60 if rank is None else rank for rank in columns[-1]]
+            yield from (ListedObject(*row) for row in zip(*columns, strict=True))
