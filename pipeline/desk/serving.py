@@ -37,6 +37,22 @@ def serve(config: Path, host: str | None, port: int | None, told: Callable[[str]
     InputError
         Where it would not be safe, or cannot listen there.
     """
+    server, listening, address = server_of(config, host, port)
+    told(address)
+    try:
+        server.run(sockets=[listening])
+    finally:
+        listening.close()
+
+
+def server_of(config: Path, host: str | None, port: int | None) -> tuple[uvicorn.Server, socket.socket, str]:
+    """Return the server, the socket that it is to run on, which listens already, and its address.
+
+    Raises
+    ------
+    InputError
+        As `serve`.
+    """
     settings = load_settings(config)
     asked = settings.serve.model_copy(
         update={name: value for name, value in (("host", host), ("port", port)) if value is not None}
@@ -57,11 +73,7 @@ def serve(config: Path, host: str | None, port: int | None, told: Callable[[str]
             h11_max_incomplete_event_size=32_768,
         )
     )  # fmt: skip
-    told(f"http://{name}:{shown[1]}/")
-    try:
-        server.run(sockets=[listening])
-    finally:
-        listening.close()
+    return server, listening, f"http://{name}:{shown[1]}/"
 
 
 def _require_somebody(settings: Settings, asked: ServeSettings) -> None:
