@@ -234,9 +234,7 @@ def test_a_following_night_takes_it_up(visitor: Visitor, museum: Path) -> None:
     assert run.run_id in page.text
 
 
-def test_it_works_on_a_postgresql_server(
-    tmp_path: Path, postgresql_url: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_it_works_on_a_postgresql_server(tmp_path: Path, postgresql_url: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("KOUROS_DATABASE", postgresql_url)
     folder = tmp_path / "museum"
     settings = museum_of(folder, vases(1, 2))
