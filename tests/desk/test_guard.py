@@ -19,7 +19,6 @@ from tests.museum import kouros
 from .conftest import HOSTILE
 from .visiting import Visitor, desk, served
 
-
 EVERYWHERE = "0.0.0.0"  # noqa: S104 - refused
 
 
@@ -53,7 +52,7 @@ def test_what_a_browser_may_do_is_said_on_every_answer(visitor: Visitor) -> None
         assert got.headers["content-security-policy"] == POLICY
         assert "unsafe-inline" not in POLICY.replace("style-src-attr 'unsafe-inline'", "")
         assert got.headers["x-content-type-options"] == "nosniff"
-        assert got.headers["referrer-policy"] == "no-referrer"
+        assert got.headers["referrer-policy"] == "same-origin"
         assert "server" not in got.headers
     assert not visitor.get("/").page.xpath("//script[not(@src)] | //style | //@onclick | //@onload")
 
