@@ -13,7 +13,7 @@ from argon2.exceptions import Argon2Error, InvalidHashError
 
 from pipeline.collection.database import Database
 from pipeline.errors import InputError
-from pipeline.store.desk import Account, account_named, begin_session, put_account, session_of
+from pipeline.store.desk import DeskAccount, account_named, begin_session, put_account, session_of
 
 ROLES = ("reader", "editor")
 SHORTEST, LONGEST = 12, 200
@@ -29,7 +29,7 @@ _ONE_AT_A_TIME = Lock()
 """Argon2 takes 64 MB: those who sign in wait for each other."""
 
 
-def add_account(engine: Database, name: str, role: str, password: str) -> Account:
+def add_account(engine: Database, name: str, role: str, password: str) -> DeskAccount:
     """Make an account, or give it another role and password.
 
     Raises
@@ -46,7 +46,7 @@ def add_account(engine: Database, name: str, role: str, password: str) -> Accoun
         raise InputError(
             f"a password has {SHORTEST} to {LONGEST} characters; four words that do not belong together do"
         )
-    account = Account(name, role, _HASHER.hash(password), datetime.now(UTC).isoformat(timespec="seconds"))
+    account = DeskAccount(name, role, _HASHER.hash(password), datetime.now(UTC).isoformat(timespec="seconds"))
     put_account(engine, account)
     return account
 
@@ -72,7 +72,7 @@ def signed_in(engine: Database, name: str, password: str, hours: float) -> str |
     return token
 
 
-def of_token(engine: Database, token: str) -> Account | None:
+def of_token(engine: Database, token: str) -> DeskAccount | None:
     """Return whose session it is; None for one that has ended or never was."""
     return session_of(engine, digest(token), int(time.time())) if token else None
 

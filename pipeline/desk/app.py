@@ -15,7 +15,7 @@ from starlette.routing import Route
 
 from pipeline.desk import looking, saying
 from pipeline.desk.accounts import Attempts, digest, signed_in
-from pipeline.desk.asking import Answer, Asked
+from pipeline.desk.asking import Asked, DeskAnswer
 from pipeline.desk.errors import NotThereError
 from pipeline.desk.guard import (
     FORM_BYTES,
@@ -30,7 +30,7 @@ from pipeline.desk.guard import (
     is_form_token,
     person,
 )
-from pipeline.desk.site import Site
+from pipeline.desk.site import DeskSite
 from pipeline.errors import KourosError
 from pipeline.operations.event_log import note
 from pipeline.report.language import speaking
@@ -54,7 +54,7 @@ STATIC = {
 _REPORT_KINDS = {".html": "text/html", ".pdf": "application/pdf", ".csv": "text/csv", ".xlsx": None}
 """Endings of the report's files that are given out; a workbook and a table are saved, not shown."""
 
-Page = Callable[[Asked], Answer]
+Page = Callable[[Asked], DeskAnswer]
 
 _LOOKED: Mapping[str, Page] = {
     "/": looking.search,
@@ -86,7 +86,7 @@ def desk_app(config: Path, serving: ServeSettings | None = None) -> Guard:
     serving : ServeSettings, optional
         In place of those of the file.
     """
-    pages = _Pages(Site(config, serving))
+    pages = _Pages(DeskSite(config, serving))
     routes = [Route(path, pages.looking(page), methods=["GET"]) for path, page in _LOOKED.items()]
     routes += [Route(path, pages.saying(page), methods=["POST"]) for path, page in _SAID.items()]
     routes += [
@@ -103,7 +103,7 @@ def desk_app(config: Path, serving: ServeSettings | None = None) -> Guard:
 class _Pages:
     """The pages as Starlette asks for them."""
 
-    def __init__(self, site: Site) -> None:
+    def __init__(self, site: DeskSite) -> None:
         self.site = site
         self._attempts = Attempts()
 
@@ -160,7 +160,7 @@ class _Pages:
             logger.warning("the desk: %s", problem)
             return self._told(request, asked.who, str(problem), 503)
 
-    def _page(self, request: Request, who: Person | None, answer: Answer) -> Response:
+    def _page(self, request: Request, who: Person | None, answer: DeskAnswer) -> Response:
         site = self.site
         seed, fresh = form_seed(request, who)
         env = getattr(site, "environment", None) or environment()
@@ -181,7 +181,7 @@ class _Pages:
         response.set_cookie(name, value, max_age=seconds, path="/", secure=secure, httponly=True, samesite="strict")
 
     def _told(self, request: Request, who: Person | None, words: str, status: int) -> Response:
-        return self._page(request, who, Answer("told.html", {"words": words}, status))
+        return self._page(request, who, DeskAnswer("told.html", {"words": words}, status))
 
     def _unknown(self, request: Request) -> Response:
         if self.site.serving.identity == "accounts":
@@ -247,27 +247,27 @@ class _Pages:
         if site.serving.identity != "accounts":
             return RedirectResponse("/", 303)
         if request.method == "GET":
-            return await run_in_threadpool(self._page, request, None, Answer("sign_in.html", {"name": ""}))
+            return await run_in_threadpool(self._page, request, None, DeskAnswer("sign_in.html", {"name": ""}))
         form = await _form(request)
         fields = {} if form is None else form[0]
         seed, fresh = form_seed(request, None)
         name = fields.get("name", "")
         if fresh or not is_form_token(fields.get("token", ""), seed):
-            again = Answer("sign_in.html", {"name": name, "problem": "The form was too old: try again."}, 403)
+            again = DeskAnswer("sign_in.html", {"name": name, "problem": "The form was too old: try again."}, 403)
             return await run_in_threadpool(self._page, request, None, again)
         # One who guesses at many names comes from one place; one who guesses from many places at one name.
         whose = (f"name {name[:100].casefold()}", f"from {request.client.host if request.client else ''}")
         wait = self._attempts.wait(*whose)
         if wait:
             words = f"Too many attempts: try again in {wait / 60.0:.0f} min."
-            again = Answer("sign_in.html", {"name": name, "problem": words}, 429)
+            again = DeskAnswer("sign_in.html", {"name": name, "problem": words}, 429)
             return await run_in_threadpool(self._page, request, None, again)
         token = await run_in_threadpool(
             signed_in, site.workspace.engine, name, fields.get("password", ""), site.serving.session_hours
         )
         if token is None:
             self._attempts.failed(*whose)
-            again = Answer("sign_in.html", {"name": name, "problem": "Name and password do not fit."}, 403)
+            again = DeskAnswer("sign_in.html", {"name": name, "problem": "Name and password do not fit."}, 403)
             return await run_in_threadpool(self._page, request, None, again)
         self._attempts.succeeded(whose[0])
         response = RedirectResponse("/", 303)

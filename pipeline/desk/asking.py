@@ -6,7 +6,7 @@ from typing import Any
 from urllib.parse import urlencode
 
 from pipeline.desk.guard import Person
-from pipeline.desk.site import Site
+from pipeline.desk.site import DeskSite
 
 
 @dataclass(frozen=True)
@@ -15,7 +15,7 @@ class Asked:
 
     Attributes
     ----------
-    site : Site
+    site : DeskSite
         Of the desk.
     who : Person
         Who asks.
@@ -29,7 +29,7 @@ class Asked:
         Whether only a part of the page is wanted (htmx).
     """
 
-    site: Site
+    site: DeskSite
     who: Person
     query: Mapping[str, str]
     form: Mapping[str, str] = field(default_factory=dict)
@@ -44,7 +44,7 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class Answer:
+class DeskAnswer:
     """A page: a template of the desk with what it shows; or, with ``to``, another address to go to."""
 
     template: str = ""

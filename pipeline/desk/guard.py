@@ -64,13 +64,13 @@ class Guard:
     def __init__(self, app: Any, settings: ServeSettings) -> None:
         self._app, self._settings = app, settings
         self._hosts = {*LOCAL, *(urlsplit(one).hostname or "" for one in settings.addresses)}
-        if settings.host not in ("0.0.0.0", "::"):  # noqa: S104 - compared with, not bound
+        if not _everywhere(settings.host):
             self._hosts.add(settings.host)
         self._origins = {_origin(one) for one in settings.addresses}
         self._proxies = [ip_network(one) for one in settings.trusted]
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer, or hand on."""
+        """DeskAnswer, or hand on."""
         if scope["type"] != "http":
             if scope["type"] == "lifespan":
                 await self._app(scope, receive, send)
@@ -152,6 +152,14 @@ def _hostname(host: str) -> str:
         return (urlsplit(f"//{host}").hostname or "").rstrip(".")
     except ValueError:
         return ""
+
+
+def _everywhere(host: str) -> bool:
+    """Whether a host is no address by which one could ask, but all that this machine has."""
+    try:
+        return ip_address(host).is_unspecified
+    except ValueError:
+        return False
 
 
 def _origin(address: str) -> str:

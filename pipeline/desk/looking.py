@@ -11,7 +11,7 @@ from pipeline.analysis.house.questions import VOCABULARIES
 from pipeline.analysis.house.rule import QUANTITIES, HouseRule, Span
 from pipeline.analysis.survey import field_asked, measurables
 from pipeline.collection.inventory import items_named
-from pipeline.desk.asking import Answer, Asked
+from pipeline.desk.asking import Asked, DeskAnswer
 from pipeline.desk.entering import labels, rules_version
 from pipeline.desk.errands import ErrandEntry, entries
 from pipeline.desk.errors import NotThereError
@@ -55,7 +55,7 @@ class Burn:
         return round(100.0 * self.done / self.asked) if self.asked else 100
 
 
-def search(asked: Asked) -> Answer:
+def search(asked: Asked) -> DeskAnswer:
     """Show the objects that a search finds, the most urgent ones where nothing is asked for."""
     run, query = asked.site.run, asked.query
     words, gallery, state = query.get("q", "")[:200], query.get("gallery", ""), query.get("state", "")
@@ -68,12 +68,12 @@ def search(asked: Asked) -> Answer:
         "state": state, "galleries": sorted(run.galleries), "total": len(run.objects), "states": run.states,
         "asked": narrowed,
     }  # fmt: skip
-    return Answer("found.html" if asked.fragment else "search.html", context)
+    return DeskAnswer("found.html" if asked.fragment else "search.html", context)
 
 
-def object_page(asked: Asked) -> Answer:
+def object_page(asked: Asked) -> DeskAnswer:
     """Show an object."""
-    return Answer("object.html", object_context(asked, asked.query.get("number", "")))
+    return DeskAnswer("object.html", object_context(asked, asked.query.get("number", "")))
 
 
 def object_context(
@@ -106,11 +106,11 @@ def _decided(facts: ObjectFacts, run: RunFacts) -> list[tuple[DecisionView, int]
     return list(zip(views, (standing.decision.id for standing in facts.decisions), strict=True))
 
 
-def measure_fields(asked: Asked) -> Answer:
+def measure_fields(asked: Asked) -> DeskAnswer:
     """Show the cells of a measure that is said to be installed (htmx)."""
     facts = asked.site.facts(asked.query.get("number", ""))
     context = {"parameters": parameters(asked, facts, asked.query.get("measure", "")), "typed": {}}
-    return Answer("parameters.html", context)
+    return DeskAnswer("parameters.html", context)
 
 
 def parameters(asked: Asked, facts: ObjectFacts, measure: str) -> list[ParameterView]:
@@ -168,13 +168,13 @@ def _beside(run: RunFacts, listed: ListedObject | None) -> tuple[str, str]:
 # What to measure
 
 
-def survey(asked: Asked) -> Answer:
+def survey(asked: Asked) -> DeskAnswer:
     """Show what is worth measuring: all galleries, or one in walking order with minutes."""
     run, gallery = asked.site.run, asked.query.get("gallery")
     if gallery is None:
         wanted = [name for name in run.order if any(_asks(one) for one in run.in_gallery(name))]
         burns = [_burn(asked, name) for name in wanted]
-        return Answer("survey.html", {"burns": burns, "total": _summed(burns)})
+        return DeskAnswer("survey.html", {"burns": burns, "total": _summed(burns)})
     walk = [one for one in run.in_gallery(gallery) if _asks(one)]
     if not walk:
         raise NotThereError(f"there is nothing to measure in {gallery[:60]!r}")
@@ -183,7 +183,7 @@ def survey(asked: Asked) -> Answer:
              for field in (_asks(one),)]  # fmt: skip
     following = next((one.number for one, *_rest, is_done, _field in entry if not is_done), "")
     context = {"burn": _burn(asked, gallery), "walk": entry, "following": following, "name": gallery}
-    return Answer("survey_gallery.html", context)
+    return DeskAnswer("survey_gallery.html", context)
 
 
 CLASS = "class"
@@ -225,7 +225,7 @@ def _minutes(field: str) -> float:
 # Errands
 
 
-def errands(asked: Asked) -> Answer:
+def errands(asked: Asked) -> DeskAnswer:
     """Show the errands of the plan in walking order."""
     run, query = asked.site.run, asked.query
     every = errand_entries(asked)
@@ -243,7 +243,7 @@ def errands(asked: Asked) -> Answer:
         "galleries": sorted({e.errand.gallery for e in every}), "people": sorted({e.whose for e in every if e.whose}),
         "plan": run.plan, "done": sum(e.state == "done" for e in chosen),
     }  # fmt: skip
-    return Answer("errands.html", context)
+    return DeskAnswer("errands.html", context)
 
 
 def errand_entries(asked: Asked) -> list[ErrandEntry]:
@@ -266,9 +266,9 @@ def errand_named(asked: Asked, key: str) -> ErrandEntry:
     return found
 
 
-def errand_page(asked: Asked) -> Answer:
+def errand_page(asked: Asked) -> DeskAnswer:
     """Show an errand, with a row for each of its objects to be ticked off."""
-    return Answer("errand.html", errand_context(asked, asked.query.get("key", "")))
+    return DeskAnswer("errand.html", errand_context(asked, asked.query.get("key", "")))
 
 
 def errand_context(
@@ -295,9 +295,9 @@ def errand_context(
 # House rules
 
 
-def house(asked: Asked) -> Answer:
+def house(asked: Asked) -> DeskAnswer:
     """Show the house rules, and the form that adds one."""
-    return Answer("house.html", house_context(asked))
+    return DeskAnswer("house.html", house_context(asked))
 
 
 def house_context(asked: Asked, *, problem: str = "", typed: Mapping[str, str] | None = None) -> dict[str, Any]:
@@ -332,16 +332,16 @@ def _rule_words(rule: HouseRule, units: Units) -> tuple[str, str, str]:
     return rule.words, ", ".join(told), rule.source
 
 
-def house_fields(asked: Asked) -> Answer:
+def house_fields(asked: Asked) -> DeskAnswer:
     """Show the cells of what a house rule states (htmx)."""
-    return Answer("house_fields.html", house_context(asked))
+    return DeskAnswer("house_fields.html", house_context(asked))
 
 
-def galleries(asked: Asked) -> Answer:
+def galleries(asked: Asked) -> DeskAnswer:
     """Show all galleries with how many objects there are in each state."""
     run = asked.site.run
     rows = [(name, run.galleries[name], run.counts[name]) for name in run.order]
-    return Answer("galleries.html", {"rows": rows, "states_of": STATES, "State": State})
+    return DeskAnswer("galleries.html", {"rows": rows, "states_of": STATES, "State": State})
 
 
 def _whole(text: str) -> int:

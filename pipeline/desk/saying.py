@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from datetime import UTC, datetime
 
-from pipeline.desk.asking import Answer, Asked, address
+from pipeline.desk.asking import Asked, DeskAnswer, address
 from pipeline.desk.entering import CellsError, enter, house_rule, rules_version, state_rule, writing
 from pipeline.desk.errands import say
 from pipeline.desk.errors import DeskError, NotThereError, StaleError
@@ -22,7 +22,7 @@ STALE = (
 )
 
 
-def say_decision(asked: Asked) -> Answer:
+def say_decision(asked: Asked) -> DeskAnswer:
     """Write down a decision about an object."""
     form, number = asked.form, asked.form.get("number", "")
     try:
@@ -32,7 +32,7 @@ def say_decision(asked: Asked) -> Answer:
             decide(asked.site.workspace, _wish(asked, number, form))
     except KourosError as problem:
         return _object_again(asked, number, problem, form.get("kind", ""))
-    return Answer(to=address("/object", number=number, saved="decision"))
+    return DeskAnswer(to=address("/object", number=number, saved="decision"))
 
 
 def _wish(asked: Asked, number: str, form: Mapping[str, str]) -> Wish:
@@ -71,7 +71,7 @@ def _installed(asked: Asked, measure: str, form: Mapping[str, str], prefix: str)
     return (*words, f"product={product}") if product else tuple(words)
 
 
-def say_measured(asked: Asked) -> Answer:
+def say_measured(asked: Asked) -> DeskAnswer:
     """Lay what was measured over an object's record."""
     form, number = asked.form, asked.form.get("number", "")
     typed = {name.removeprefix("m."): text for name, text in form.items() if name.startswith("m.")}
@@ -84,11 +84,11 @@ def say_measured(asked: Asked) -> Answer:
         return _object_again(asked, number, problem, "measure")
     following = form.get("following", "")
     if following:
-        return Answer(to=address("/object", number=following, open_="measure", saved="measured"))
-    return Answer(to=address("/object", number=number, saved="measured"))
+        return DeskAnswer(to=address("/object", number=following, open_="measure", saved="measured"))
+    return DeskAnswer(to=address("/object", number=number, saved="measured"))
 
 
-def say_picture(asked: Asked) -> Answer:
+def say_picture(asked: Asked) -> DeskAnswer:
     """Keep a photograph of an object's mount."""
     number = asked.form.get("number", "")
     try:
@@ -106,10 +106,10 @@ def say_picture(asked: Asked) -> Answer:
         add_picture(asked.site.workspace.engine, picture, image)
     except KourosError as problem:
         return _object_again(asked, number, problem, "picture")
-    return Answer(to=address("/object", number=number, saved="picture"))
+    return DeskAnswer(to=address("/object", number=number, saved="picture"))
 
 
-def say_rule(asked: Asked) -> Answer:
+def say_rule(asked: Asked) -> DeskAnswer:
     """Add a house rule to the settings."""
     form = asked.form
     try:
@@ -121,11 +121,11 @@ def say_rule(asked: Asked) -> Answer:
             added = state_rule(asked.site.config, rule)
     except KourosError as problem:
         context = house_context(asked, problem=_words(problem), typed=form)
-        return Answer("house.html", context, _status(problem))
-    return Answer(to=address("/house", saved="rule" if added else "known"))
+        return DeskAnswer("house.html", context, _status(problem))
+    return DeskAnswer(to=address("/house", saved="rule" if added else "known"))
 
 
-def say_errand(asked: Asked) -> Answer:
+def say_errand(asked: Asked) -> DeskAnswer:
     """Write down that somebody takes an errand, gives it to somebody, has done it, or puts it back."""
     form, key = asked.form, asked.form.get("key", "")
     entry = errand_named(asked, key)
@@ -140,8 +140,10 @@ def say_errand(asked: Asked) -> Answer:
                 _tick(asked, key)
             say(engine, entry, form.get("kind", ""), asked.name, whose=form.get("whose", ""), note=form.get("note", ""))
     except KourosError as problem:
-        return Answer("errand.html", errand_context(asked, key, problem=_words(problem), typed=form), _status(problem))
-    return Answer(to=address("/errand", key=key, saved=form["kind"]))
+        return DeskAnswer(
+            "errand.html", errand_context(asked, key, problem=_words(problem), typed=form), _status(problem)
+        )
+    return DeskAnswer(to=address("/errand", key=key, saved=form["kind"]))
 
 
 def _tick(asked: Asked, key: str) -> None:
@@ -178,14 +180,14 @@ def _seen(asked: Asked, number: str) -> ObjectFacts:
     return facts
 
 
-def _object_again(asked: Asked, number: str, problem: KourosError, section: str) -> Answer:
+def _object_again(asked: Asked, number: str, problem: KourosError, section: str) -> DeskAnswer:
     if isinstance(problem, NotThereError):
         raise problem
     typed = dict(asked.form)
     if isinstance(problem, CellsError):
         typed |= {f"wrong.{name}": text for name, text in problem.cells.items()}
     context = object_context(asked, number, problem=_words(problem), typed=typed, section=section)
-    return Answer("object.html", context, _status(problem))
+    return DeskAnswer("object.html", context, _status(problem))
 
 
 def _words(problem: KourosError) -> str:

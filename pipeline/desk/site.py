@@ -22,7 +22,7 @@ LOOK = 2.0
 """Seconds after which it is looked whether there is a newer run."""
 
 
-class Site:
+class DeskSite:
     """The state of the desk.
 
     Parameters

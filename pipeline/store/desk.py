@@ -14,7 +14,7 @@ from pipeline.store.tables import ACCOUNT, DECISION, ERRAND_WORD, PICTURE, SESSI
 
 
 @dataclass(frozen=True, slots=True)
-class Account:
+class DeskAccount:
     """Somebody who may sign in: name, role ("reader" or "editor"), Argon2 of the password, when it was made."""
 
     name: str
@@ -47,22 +47,22 @@ class Picture:
     recorded: str
 
 
-def account_named(engine: Engine, name: str) -> Account | None:
+def account_named(engine: Engine, name: str) -> DeskAccount | None:
     """Return an account, None where there is none of that name."""
     with engine.connect() as connection:
         row = connection.execute(select(ACCOUNT).where(ACCOUNT.c.name == name)).one_or_none()
-    return None if row is None else Account(*row)
+    return None if row is None else DeskAccount(*row)
 
 
-def accounts(engine: Engine) -> tuple[Account, ...]:
+def accounts(engine: Engine) -> tuple[DeskAccount, ...]:
     """Return all accounts by name."""
     with engine.connect() as connection:
-        return tuple(Account(*row) for row in connection.execute(select(ACCOUNT).order_by(ACCOUNT.c.name)))
+        return tuple(DeskAccount(*row) for row in connection.execute(select(ACCOUNT).order_by(ACCOUNT.c.name)))
 
 
-def put_account(engine: Engine, account: Account) -> None:
+def put_account(engine: Engine, account: DeskAccount) -> None:
     """Make an account, or give the one of that name another role and password; its sessions end."""
-    values = {field.name: getattr(account, field.name) for field in fields(Account)}
+    values = {field.name: getattr(account, field.name) for field in fields(DeskAccount)}
     with engine.begin() as connection:
         connection.execute(delete(SESSION).where(SESSION.c.name == account.name))
         changed = connection.execute(update(ACCOUNT).where(ACCOUNT.c.name == account.name).values(values))
@@ -84,13 +84,13 @@ def begin_session(engine: Engine, token: str, name: str, *, now: int, ends: int)
         connection.execute(insert(SESSION).values(token=token, name=name, ends=ends))
 
 
-def session_of(engine: Engine, token: str, now: int) -> Account | None:
+def session_of(engine: Engine, token: str, now: int) -> DeskAccount | None:
     """Return whose session it is, None where it has ended or never began."""
     mine = (SESSION.c.token == token) & (SESSION.c.ends > now)
     with engine.connect() as connection:
         query = select(ACCOUNT).select_from(SESSION.join(ACCOUNT, SESSION.c.name == ACCOUNT.c.name)).where(mine)
         row = connection.execute(query).one_or_none()
-    return None if row is None else Account(*row)
+    return None if row is None else DeskAccount(*row)
 
 
 def end_session(engine: Engine, token: str) -> None:
