@@ -37,6 +37,7 @@ TABLE_WORDS = {
     "class_weights": "What each sign says for each class: logarithms of odds, found from labelled objects.",
     "slender": "How much of an object of a class is about as slender as its critical section, by share of its height.",
     "stakes": "What is at stake: weights of the classes of value and of a person, and the energy that is dangerous.",
+    "minutes": "How long a measurement takes at the object, in minutes.",
     "survey": "The questions of the survey's sheet.",
     "validation": "What `kouros validate` assumes of a body for which nothing is fitted.",
 }

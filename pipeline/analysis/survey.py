@@ -96,6 +96,25 @@ _MISSING = {
 """How a scene's words for what is missing begin, and the field that would mend it."""
 
 
+def field_asked(parameter: str, missing: str) -> str:
+    """Return the field that somebody is to measure, by what a report's list of objects says.
+
+    Parameters
+    ----------
+    parameter : str
+        The parameter of a scene whose measurement may change what is decided; "" for none.
+    missing : str
+        What its record lacks without which nothing can be said, as a scene's words in one text.
+
+    Returns
+    -------
+    str
+        "" for none that can be measured.
+    """
+    behind = (one.field for one in measurables() if parameter and parameter in one.parameters)
+    return next(behind, "") or next(filter(None, map(measurable_of, missing.split("; "))), "")
+
+
 def measurement_requests(
     scenes: Sequence[Scene],
     findings: Sequence[Sequence[Finding]],

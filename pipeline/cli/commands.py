@@ -18,6 +18,7 @@ from pipeline.cli.motions import motions
 from pipeline.cli.options import Options, as_json, dry_run, say_dry
 from pipeline.cli.planning import plan
 from pipeline.cli.scanning import scan
+from pipeline.cli.serving import serve
 from pipeline.cli.validating import validate
 from pipeline.quantities import counted
 
@@ -485,6 +486,7 @@ ALL = (
     decide,
     diff,
     plan,
+    serve,
     event,
     motions,
     models,

@@ -28,6 +28,7 @@ _NO_DRY_RUN: Mapping[str, str] = {
     "compare": "it only compares",
     "models": "it only lists",
     "scan": "it only measures",
+    "serve": "it writes what people say to it, and nothing else",
     "respond": "it writes nothing but charts for another time",
     "tradeoff": "it measures, and keeps the result for the next report",
 }

@@ -17,6 +17,7 @@ from pipeline.records import Numerics, Sampling
 from pipeline.resources import small_text
 from pipeline.settings.operations import Hooks, LimitSettings, Logs, Retention
 from pipeline.settings.operations import SettingsPart as _Part
+from pipeline.settings.serve import ServeSettings
 
 DATABASE_VARIABLE = "KOUROS_DATABASE"
 """Environment variable that names the database, with its password, in place of the file's."""
@@ -365,6 +366,7 @@ class Settings(_Part):
     logs: Logs = Logs()
     retention: Retention = Retention()
     limits: LimitSettings = LimitSettings()
+    serve: ServeSettings = ServeSettings()
     home: Path = Field(default=Path(), exclude=True)
     rehearsal: Path | None = Field(
         default=None, exclude=True, description="folder of a dry run, which writes there only"

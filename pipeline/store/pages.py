@@ -13,7 +13,7 @@ from pipeline.analysis.faults import with_fault
 from pipeline.analysis.survey import in_order
 from pipeline.collection.object_index import read_packed
 from pipeline.collection.sealing import damaged_rows, seal, sealed, sound_rows
-from pipeline.records import ITEM_FIELDS, Found, Item, Page
+from pipeline.records import ITEM_FIELDS, Found, Item, MeasurementRequest, Page, Result
 from pipeline.store.codec import StoreError
 from pipeline.store.results import DamagedRunError, Made, decode, decode_spacings, fetch, made_of, of_object
 from pipeline.store.tables import PAGE
@@ -125,11 +125,7 @@ def found_of(members: Members, kept: Mapping[str, bytes]) -> Found:
     assessments = tuple(of_object(result, item) for result, item in pairs)
     numbers = {item.object_number for _, item in pairs}
     asked = bool(pairs) and all(result.wishes is not None for result, _ in pairs)
-    wishes = [
-        replace(one, object_number=item.object_number, gallery=item.gallery, title=item.title)
-        for result, item in pairs
-        for one in result.wishes or ()
-    ]
+    wishes = [one for result, item in pairs for one in _wishes(result, item)]
     if failed.keys() & numbers:
         assessments = tuple(
             with_fault(one, failed[one.scene.item.object_number], NEIGHBOURS)
@@ -230,3 +226,51 @@ def damaged_pages(engine: Engine) -> Iterator[str]:
     """Yield the keys of all pages that are not what was written."""
     with engine.connect() as connection:
         yield from damaged_rows(connection, PAGE)
+
+
+Places = Mapping[str, tuple[str, int, str]]
+"""By object number: the key of its unit's results, which of these it has, and the digest of its record."""
+
+
+def load_places(database: Engine, key: str) -> Places:
+    """Return where the results of the objects of a page are.
+
+    Raises
+    ------
+    DamagedRunError
+        Where there is no such page, or where it is damaged.
+    """
+    with database.connect() as connection:
+        members = load_members(connection, key)
+    told = zip(members.column("object_number"), members.results, members.digests, strict=True)
+    return {number: (result, at, digest) for number, (result, at), digest in told}
+
+
+def load_one(database: Engine, key: str, at: int, item: Item) -> Found:
+    """Return everything that was found about one object, but for its neighbours.
+
+    Parameters
+    ----------
+    database
+        Of the store.
+    key, at
+        Of its unit's results, and which of these it has (see `load_places`).
+    item
+        Its record.
+
+    Raises
+    ------
+    StoreError
+        Where the result is gone or damaged.
+    """
+    kept, _ = fetch(database, [key])
+    if key not in kept:
+        raise StoreError(f"result {key[:12]} is gone or damaged; `kouros run` makes it again")
+    result = decode(kept[key].found)[at]
+    return Found((of_object(result, item),), None if result.wishes is None else tuple(in_order(_wishes(result, item))))
+
+
+def _wishes(result: Result, item: Item) -> list[MeasurementRequest]:
+    """Return what is worth measuring on an object, with its name."""
+    named = (item.object_number, item.gallery, item.title)
+    return [replace(one, object_number=named[0], gallery=named[1], title=named[2]) for one in result.wishes or ()]

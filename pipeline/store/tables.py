@@ -35,11 +35,14 @@ from pipeline.store import codec
 
 # The inventory's tables are handed on so that METADATA is whole wherever this module is imported.
 __all__ = [
+    "ACCOUNT",
     "DECISION",
+    "ERRAND_WORD",
     "IMPORT_BATCH",
     "ITEM",
     "METADATA",
     "PAGE",
+    "PICTURE",
     "READING",
     "RESULT",
     "RUN",
@@ -47,6 +50,7 @@ __all__ = [
     "RUN_DECISION",
     "RUN_MOTION",
     "RUN_PAGE",
+    "SESSION",
     "SOURCE_ROW",
     "SOURCE_STATE",
     "SUPPLEMENT",
@@ -323,3 +327,51 @@ RUN_DECISION = Table(
     Index(None, "run_id", "object_number"),
 )
 """The decisions that were in force when a run was made, as they stood, with what was then to be doubted."""
+
+ACCOUNT = Table(
+    "desk_account",
+    METADATA,
+    Column("name", WordsColumn(), primary_key=True),
+    Column("role", WordsColumn(), nullable=False),
+    Column("secret", WordsColumn(), nullable=False),
+    Column("made", WordsColumn(), nullable=False),
+)
+"""People who may sign in; secret: Argon2 of the password, never the password."""
+
+SESSION = Table(
+    "desk_session",
+    METADATA,
+    Column("token", WordsColumn(), primary_key=True),
+    Column("name", WordsColumn(), nullable=False, index=True),
+    Column("ends", Integer(), nullable=False),
+)
+"""Who is signed in; token: SHA-256 of what the browser holds; ends: seconds since 1970."""
+
+ERRAND_WORD = Table(
+    "errand_word",
+    METADATA,
+    Column("id", Integer(), primary_key=True),
+    Column("errand", WordsColumn(), nullable=False, index=True),
+    Column("kind", WordsColumn(), nullable=False),
+    Column("whose", WordsColumn(), nullable=False),
+    Column("note", WordsColumn(), nullable=False),
+    Column("who", WordsColumn(), nullable=False),
+    Column("recorded", WordsColumn(), nullable=False),
+    seal_column(),
+    sqlite_autoincrement=True,
+)
+"""What was said of errands: that somebody takes one, gives it to somebody, has done it, or puts it back."""
+
+PICTURE = Table(
+    "mount_picture",
+    METADATA,
+    Column("id", Integer(), primary_key=True),
+    Column("object_number", WordsColumn(), nullable=False, index=True),
+    Column("note", WordsColumn(), nullable=False),
+    Column("who", WordsColumn(), nullable=False),
+    Column("recorded", WordsColumn(), nullable=False),
+    Column("image", LargeBinary(), nullable=False),
+    seal_column(),
+    sqlite_autoincrement=True,
+)
+"""Photographs of mounts, as JPEG that Kouros itself wrote."""

@@ -12,9 +12,11 @@ from pipeline.collection.object_index import verify_count
 from pipeline.collection.sealing import damaged_rows
 from pipeline.store.tables import (
     DECISION,
+    ERRAND_WORD,
     IMPORT_BATCH,
     METADATA,
     PAGE,
+    PICTURE,
     READING,
     RESULT,
     RUN,
@@ -35,6 +37,8 @@ _REMEDIES = {
     DECISION.name: _BACKUP,
     IMPORT_BATCH.name: _BACKUP,
     SUPPLEMENT.name: _BACKUP,
+    ERRAND_WORD.name: _BACKUP,
+    PICTURE.name: _BACKUP,
     READING.name: _IMPORT,
     SOURCE_STATE.name: _NIGHT,
     **dict.fromkeys((RUN.name, RUN_CHART.name, RUN_DECISION.name, RUN_MOTION.name, RUN_PAGE.name), _HISTORY),

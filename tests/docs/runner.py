@@ -24,6 +24,7 @@ from tests.docs.pages import PROMISED, Block
 NOT_RUN = frozenset(
     {
         "CI runs it",
+        "it asks for a password",
         "it changes the machine's own services",
         "it needs a Dask cluster",
         "it needs a PostgreSQL server",
@@ -32,6 +33,7 @@ NOT_RUN = frozenset(
         "it needs a museum's server",
         "it needs a second experiment",
         "it needs a translation",
+        "it serves until it is stopped",
         "it takes minutes",
         "no record of the example is refused",
         "pip fetches its motions first",

@@ -1,0 +1,176 @@
+"""One object as the desk shows it: what the last night found, with the record and the decisions of now."""
+
+import hashlib
+import json
+from collections import OrderedDict
+from dataclasses import dataclass, replace
+from threading import Lock
+
+from pipeline.analysis.house.questions import VOCABULARIES
+from pipeline.analysis.survey import Measurable, measurables
+from pipeline.collection.inventory import items_named
+from pipeline.collection.record import digest_of
+from pipeline.desk.errors import NotThereError
+from pipeline.desk.numbers import cell_unit, shown_number
+from pipeline.desk.run_facts import RunFacts
+from pipeline.records import (
+    Assessment,
+    Decision,
+    DecisionStatus,
+    Found,
+    Item,
+    MeasurementRequest,
+    Page,
+    Support,
+    in_force,
+)
+from pipeline.report.language import said, speaking
+from pipeline.report.pages.compose import compose
+from pipeline.report.pages.museum_views import GalleryView
+from pipeline.report.pages.views import ObjectView
+from pipeline.report.units import Units
+from pipeline.store.desk import Picture, pictures_of
+from pipeline.store.pages import load_one
+
+KEPT = 2_000
+"""Objects that are kept in words: those that people come back to."""
+
+
+@dataclass(frozen=True, slots=True)
+class CellView:
+    """A field of the record to fill in: what it is, its unit, what is recorded, and what is taken for it now.
+
+    choices : the words it may be; none for a number
+    wished  : whether measuring it is worth something
+    """
+
+    field: str
+    label: str
+    how: str
+    unit: str
+    recorded: str
+    choices: tuple[str, ...]
+    wished: bool
+
+
+@dataclass(frozen=True)
+class ObjectFacts:
+    """An object.
+
+    Attributes
+    ----------
+    item : Item
+        Its record of now.
+    version : str
+        Of record, decisions and pictures: who changes something says which they saw.
+    view, gallery : ObjectView, GalleryView, or None
+        What the last run found, in words; None where it had no such object.
+    assessment : Assessment or None
+        The same in numbers.
+    wishes : tuple of MeasurementRequest
+        What is worth measuring on it.
+    decisions : tuple of DecisionStatus
+        In force now, by id.
+    changed : bool
+        Whether its record is another than the last run's.
+    pictures : tuple of Picture
+        Of its mount.
+    """
+
+    item: Item
+    version: str
+    view: ObjectView | None
+    gallery: GalleryView | None
+    assessment: Assessment | None
+    wishes: tuple[MeasurementRequest, ...]
+    decisions: tuple[DecisionStatus, ...]
+    changed: bool
+    pictures: tuple[Picture, ...]
+
+
+_InWords = tuple[ObjectView, GalleryView, Assessment, tuple[MeasurementRequest, ...]]
+
+
+class ObjectDesk:
+    """Gives objects; what was put into words is kept for whoever comes back."""
+
+    def __init__(self) -> None:
+        self._kept: OrderedDict[tuple[object, ...], _InWords] = OrderedDict()
+        self._lock = Lock()
+
+    def facts(self, run: RunFacts, number: str, log: tuple[Decision, ...]) -> ObjectFacts:
+        """Return an object.
+
+        Parameters
+        ----------
+        run : RunFacts
+            The newest.
+        number : str
+            The museum's.
+        log : tuple of Decision
+            All decisions about it, by id.
+
+        Raises
+        ------
+        NotThereError
+            Where the inventory has none of that number.
+        """
+        engine = run.workspace.engine
+        item = items_named(engine, [number]).get(number)
+        if item is None:
+            raise NotThereError(f"there is no object {number[:60]!r} in the inventory; search for it")
+        pictures, mine = pictures_of(engine, number), in_force(log)
+        digest = digest_of(item)
+        version = hashlib.sha256(
+            json.dumps([digest, [d.id for d in log], [p.id for p in pictures]]).encode()
+        ).hexdigest()[:32]
+        place = run.place(number)
+        told = {standing.decision.id: standing for standing in run.head.decisions}
+        standings = tuple(told.get(d.id) or DecisionStatus(d) for d in mine)
+        if place is None:
+            return ObjectFacts(item, version, None, None, None, (), standings, False, pictures)
+        page, key, at, then = place
+        known = (run.run_id, number, key, at, digest, tuple(d.id for d in mine))
+        with self._lock:
+            kept = self._kept.get(known)
+        if kept is None:
+            kept = self._in_words(run, page, load_one(engine, key, at, item), standings)
+            with self._lock:
+                self._kept[known] = kept
+                while len(self._kept) > KEPT:
+                    self._kept.popitem(last=False)
+        view, gallery, assessment, wishes = kept
+        return ObjectFacts(item, version, view, gallery, assessment, wishes, standings, digest != then, pictures)
+
+    @staticmethod
+    def _in_words(run: RunFacts, page: Page, found: Found, standings: tuple[DecisionStatus, ...]) -> _InWords:
+        record = replace(run.head, assessments=found.assessments, wishes=found.wishes, spacings=(), decisions=standings)
+        with speaking(run.language):
+            made = compose(record, page, run.units, run.sayings, several=run.several)
+        # Charts are on the report's own page, which is a link away.
+        view = replace(made.gallery.objects[0], figures=())
+        gallery = replace(made.gallery, objects=(view,))
+        return view, gallery, found.assessments[0], found.wishes or ()
+
+
+def cells(facts: ObjectFacts, units: Units) -> list[CellView]:
+    """Return what may be filled in of an object, what is worth most first."""
+    worth = {w.field: w for w in facts.wishes if not w.settles_nothing}
+    order = list(worth)
+    found = [_cell(one, facts.item, units, one.field in worth) for one in measurables()]
+    return sorted(found, key=lambda cell: order.index(cell.field) if cell.wished else len(order))
+
+
+def _cell(one: Measurable, item: Item, units: Units, wished: bool) -> CellView:
+    value = getattr(item, one.field, None)
+    unit = "" if one.unit == "-" else one.unit
+    choices = vocabulary(one.field)
+    recorded = "" if value is None else str(value) if choices else shown_number(value, one.unit, units)
+    return CellView(
+        one.field, said(one.label), said(one.how), cell_unit(unit, units) if unit else "", recorded, choices, wished
+    )
+
+
+def vocabulary(field: str) -> tuple[str, ...]:
+    """Return the words that a field may hold; none for one that holds a number."""
+    return tuple(Support) if field == "support" else tuple(VOCABULARIES.get(field, ()))

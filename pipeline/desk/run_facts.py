@@ -1,0 +1,214 @@
+"""The newest run as the desk shows it: a list of all objects to search, and where the results of each are."""
+
+import unicodedata
+from bisect import bisect_right
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from pipeline.desk.errors import DeskError
+from pipeline.operations.presentation import presentation, terms_of
+from pipeline.operations.workspace import Workspace
+from pipeline.planning.plan import ErrandPlan, gallery_order
+from pipeline.records import Page, RunRecord
+from pipeline.report.files.object_list import sorting_key
+from pipeline.report.files.page_renderer import PageRenderer
+from pipeline.report.files.plan_files import gathered_from
+from pipeline.report.pages.compose import page_name
+from pipeline.report.pages.describe import Sayings
+from pipeline.report.pages.views import State
+from pipeline.store.pages import Places, load_places
+from pipeline.store.reuse import whole_runs
+from pipeline.store.runs import load_head
+
+SHOWN = 50
+"""Objects on a page of what a search finds."""
+
+_COLUMNS = (
+    "object_number", "title", "gallery", "case", "on_display", "state", "object_class", "open_for", "missing", "page",
+    "rank",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class ListedObject:
+    """An object in a list: ``open_for`` is the field whose measurement may change what is decided, "" for none.
+
+    rank : its place among all by urgency; the last of all where it has none
+    """
+
+    number: str
+    title: str
+    gallery: str
+    case: str
+    on_display: bool
+    state: str
+    object_class: str
+    open_for: str
+    missing: str
+    page: str
+    rank: int
+
+
+class RunFacts:
+    """What the newest run of the whole collection found.
+
+    Parameters
+    ----------
+    workspace : Workspace
+        Whose run it is.
+
+    Raises
+    ------
+    DeskError
+        Where there is no run yet, or its report is gone.
+    """
+
+    def __init__(self, workspace: Workspace) -> None:
+        self.workspace = workspace
+        runs = whole_runs(workspace.engine)
+        if not runs:
+            raise DeskError("there is no finished run of the whole collection yet: make one with `kouros run`")
+        self.run_id = runs[0]
+        head, pages = load_head(workspace.engine, self.run_id)
+        self.head: RunRecord = head
+        self.folder: Path = workspace.reports / self.run_id
+        shown = presentation(workspace.settings)
+        self.units, self.language = shown["units"], shown["language"]
+        self.renderer = PageRenderer(head, **shown)
+        self.sayings = Sayings(head.motions, self.units)
+        self.several = len({motion.level for motion in head.motions}) > 1
+        self._pages = {page_name(p.gallery, p.number, on_display=p.on_display): p for p in pages}
+        self._places: dict[str, Places] = {}
+        self._lock = Lock()
+        rows = sorted(_listed(self.folder), key=lambda one: sorting_key(one.number))
+        self.objects: tuple[ListedObject, ...] = tuple(rows)
+        self.by_number = {one.number: one for one in rows}
+        self.galleries = Counter(one.gallery for one in rows if one.on_display)
+        self.classes = Counter(one.object_class for one in rows if one.on_display)
+
+    @cached_property
+    def _searched(self) -> tuple[str, list[int]]:
+        """The words of all objects, a line each, and where each line begins."""
+        lines = [folded(f"{o.number} {o.title} {o.gallery}") for o in self.objects]
+        starts, at = [], 1
+        for line in lines:
+            starts.append(at)
+            at += len(line) + 1
+        return "\n" + "\n".join(lines) + "\n", starts
+
+    def found(self, words: str, gallery: str = "", state: str = "") -> Iterator[ListedObject]:
+        """Yield the objects that have all words in number, title or gallery; one whose number it is comes first.
+
+        gallery, state : only there, only these; "" for all
+        """
+        asked = folded(words)
+        exact = self.by_number.get(words.strip())
+        first = exact if exact is not None and _is(exact, gallery, state) else None
+        if first is not None:
+            yield first
+        parts = sorted(asked.split(), key=len, reverse=True)
+        candidates = self._with(parts) if parts else iter(self.objects)
+        yield from (one for one in candidates if one is not first and _is(one, gallery, state))
+
+    def _with(self, parts: Sequence[str]) -> Iterator[ListedObject]:
+        text, starts = self._searched
+        at = text.find(parts[0])
+        while at >= 0:
+            end = text.find("\n", at + 1)
+            place = bisect_right(starts, at) - 1
+            line = text[starts[place] : end]
+            if all(part in line for part in parts[1:]):
+                yield self.objects[place]
+            at = text.find(parts[0], end)
+
+    @cached_property
+    def urgent(self) -> tuple[ListedObject, ...]:
+        """The objects on display that are to act on, the most urgent first."""
+        return tuple(sorted((one for one in self.objects if one.state == State.ACT), key=lambda one: one.rank))
+
+    @cached_property
+    def states(self) -> Counter[str]:
+        """How many objects are in each state."""
+        return Counter(one.state for one in self.objects)
+
+    @cached_property
+    def counts(self) -> Mapping[str, Counter[str]]:
+        """By gallery how many objects on display are in each state."""
+        found: dict[str, Counter[str]] = {}
+        for one in self.objects:
+            if one.on_display:
+                found.setdefault(one.gallery, Counter())[one.state] += 1
+        return found
+
+    @cached_property
+    def order(self) -> list[str]:
+        """The galleries in walking order: as on the report's first page, the one with the most to do first."""
+        walked = (State.ACT, State.WATCH, State.UNKNOWN)
+        counts = {name: [here[state] for state in walked] for name, here in self.counts.items()}
+        return sorted(counts, key=gallery_order(counts).__getitem__)
+
+    def in_gallery(self, gallery: str) -> list[ListedObject]:
+        """Return the objects on display in a gallery, in walking order: case by case, by number in each."""
+        return self._walk.get(gallery, [])
+
+    @cached_property
+    def _walk(self) -> Mapping[str, list[ListedObject]]:
+        found: dict[str, list[ListedObject]] = {}
+        for one in self.objects:
+            if one.on_display:
+                found.setdefault(one.gallery, []).append(one)
+        for those in found.values():
+            those.sort(key=lambda one: (one.case.strip() == "", sorting_key(one.case), sorting_key(one.number)))
+        return found
+
+    def place(self, number: str) -> tuple[Page, str, int, str] | None:
+        """Return the page of an object, the key and place of its results, and its record's digest then."""
+        listed = self.by_number.get(number)
+        page = None if listed is None else self._pages.get(listed.page.partition("#")[0])
+        if page is None:
+            return None
+        places = self._places.get(page.key)
+        if places is None:
+            places = self._places[page.key] = load_places(self.workspace.engine, page.key)
+        found = places.get(number)
+        return None if found is None else (page, *found)
+
+    @property
+    def plan(self) -> ErrandPlan | None:
+        """The plan of the run's report; None where nobody knows how likely harm is.  Made when first asked for."""
+        with self._lock:
+            return self._plan
+
+    @cached_property
+    def _plan(self) -> ErrandPlan | None:
+        terms = terms_of(self.workspace)
+        return None if terms is None else gathered_from(self.folder).plan(terms)
+
+
+def folded(text: str) -> str:
+    """Return words as they are compared in a search: without case and accents, on one line."""
+    plain = unicodedata.normalize("NFKD", text.casefold())
+    return " ".join("".join(c for c in plain if not unicodedata.combining(c)).split())
+
+
+def _is(one: ListedObject, gallery: str, state: str) -> bool:
+    return gallery in ("", one.gallery) and state in ("", one.state)
+
+
+def _listed(folder: Path) -> Iterator[ListedObject]:
+    import pyarrow.parquet as pq
+
+    file = folder / "objects.parquet"
+    if not file.is_file():
+        raise DeskError(f"{file} is not there, by which the desk finds objects: make the report with `kouros run`")
+    with pq.ParquetFile(file) as table:
+        for batch in table.iter_batches(columns=list(_COLUMNS)):
+            columns: list[list[Any]] = [batch.column(name).to_pylist() for name in _COLUMNS]
+            # What has no place among all comes last.
+            columns[-1] = [1 << 60 if rank is None else rank for rank in columns[-1]]
+            yield from (ListedObject(*row) for row in zip(*columns, strict=True))

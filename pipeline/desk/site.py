@@ -1,0 +1,101 @@
+"""What all pages of the desk share: the workspace, the newest run, the decisions; each renewed when it changes."""
+
+import logging
+import time
+from pathlib import Path
+from threading import Lock
+
+from pipeline.desk.object_facts import ObjectDesk, ObjectFacts
+from pipeline.desk.run_facts import RunFacts
+from pipeline.operations.workspace import Workspace, open_workspace
+from pipeline.records import Decision
+from pipeline.report.pages.environment import environment
+from pipeline.settings import load_settings
+from pipeline.settings.serve import ServeSettings
+from pipeline.store.decisions import read_decisions
+from pipeline.store.desk import ErrandWord, errand_words, newest_ids
+from pipeline.store.reuse import whole_runs
+
+logger = logging.getLogger(__name__)
+
+LOOK = 2.0
+"""Seconds after which it is looked whether there is a newer run."""
+
+
+class DeskSite:
+    """The state of the desk.
+
+    Parameters
+    ----------
+    config : Path
+        The settings' file.
+    serving : ServeSettings, optional
+        In place of those of the file.
+    """
+
+    def __init__(self, config: Path, serving: ServeSettings | None = None) -> None:
+        self.config = config
+        self._changed = config.stat().st_mtime_ns
+        self.workspace: Workspace = open_workspace(load_settings(config))
+        self.serving = serving or self.workspace.settings.serve
+        self.objects = ObjectDesk()
+        self._lock = Lock()
+        self._looked = 0.0
+        self._run: RunFacts | None = None
+        self._ids: tuple[int, ...] = (-1,)
+        self._log: dict[str, tuple[Decision, ...]] = {}
+        self._words: dict[str, tuple[ErrandWord, ...]] = {}
+
+    @property
+    def run(self) -> RunFacts:
+        """The newest run, and the settings of now.
+
+        Raises
+        ------
+        DeskError
+            Where there is none.
+        """
+        with self._lock:
+            changed = self.config.stat().st_mtime_ns
+            if changed != self._changed:
+                self.workspace = Workspace(load_settings(self.config), self.workspace.engine)
+                self._changed, self._run = changed, None
+            now = time.monotonic()
+            if self._run is None or now - self._looked > LOOK:
+                runs = whole_runs(self.workspace.engine)
+                if self._run is None or runs[:1] != [self._run.run_id]:
+                    self._run = RunFacts(self.workspace)
+                    self.environment = environment(self._run.language)
+                    logger.info("the desk shows run %s", self._run.run_id)
+                self._looked = time.monotonic()
+            return self._run
+
+    def _renew(self) -> None:
+        ids = newest_ids(self.workspace.engine)
+        with self._lock:
+            if ids != self._ids:
+                found: dict[str, tuple[Decision, ...]] = {}
+                for one in read_decisions(self.workspace.engine):
+                    found[one.object_number] = (*found.get(one.object_number, ()), one)
+                self._log, self._words, self._ids = found, errand_words(self.workspace.engine), ids
+
+    def log(self, number: str) -> tuple[Decision, ...]:
+        """Return all decisions about an object, by id."""
+        self._renew()
+        return self._log.get(number, ())
+
+    @property
+    def words(self) -> dict[str, tuple[ErrandWord, ...]]:
+        """What was said of errands."""
+        self._renew()
+        return self._words
+
+    def facts(self, number: str) -> ObjectFacts:
+        """Return an object.
+
+        Raises
+        ------
+        NotThereError
+            Where there is none of that number.
+        """
+        return self.objects.facts(self.run, number, self.log(number))

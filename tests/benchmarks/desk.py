@@ -1,0 +1,61 @@
+"""The desk under 50 clients at once: how long a page takes, and whether any is lost.
+
+KOUROS_BENCH_FOLDER names the folder of a museum with a run behind it, of any size; it is only looked at.
+KOUROS_BENCH_CLIENTS how many clients there are (50), KOUROS_BENCH_PAGES how many pages each asks for (40), and
+KOUROS_BENCH_PAUSE how many seconds each reads a page before the next (0: none, harder than people are).
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from statistics import median, quantiles
+
+import pyarrow.parquet as pq
+
+from tests.desk.visiting import Visitor, desk
+
+
+def desk_load() -> None:
+    """Print the median and the 95th percentile of the time of a page, and how many were lost."""
+    folder = Path(os.environ["KOUROS_BENCH_FOLDER"])
+    clients, pages = int(os.environ.get("KOUROS_BENCH_CLIENTS", "50")), int(os.environ.get("KOUROS_BENCH_PAGES", "40"))
+    pause = float(os.environ.get("KOUROS_BENCH_PAUSE", "0"))
+    listed = pq.read_table(folder / "reports" / "latest" / "objects.parquet", columns=["object_number", "title"])
+    objects = listed.to_pylist()
+    with desk(folder) as address:
+        Visitor(address).get("/")
+        Visitor(address).get("/errands")
+
+        def visit(seed: int) -> list[tuple[float, int]]:
+            draw, visitor, found = random.Random(seed), Visitor(address), []
+            for _ in range(pages):
+                one = draw.choice(objects)
+                words = (one["title"] or "vase").split()[:1]
+                began = time.perf_counter()
+                got = (
+                    visitor.get("/", q=words[0] if words else "1") if draw.random() < 0.4
+                    else visitor.object(one["object_number"])
+                )  # fmt: skip
+                found.append((time.perf_counter() - began, got.status))
+                time.sleep(pause * draw.random() * 2)
+            return found
+
+        began = time.perf_counter()
+        with ThreadPoolExecutor(clients) as pool:
+            seen = [one for some in pool.map(visit, range(clients)) for one in some]
+        took = time.perf_counter() - began
+    times = [1e3 * seconds for seconds, _ in seen]
+    lost = sum(status != 200 for _, status in seen)
+    load = os.getloadavg()[0]
+    print(
+        f"{len(objects):,} objects, {clients} clients, {len(seen):,} pages in {took:.1f} s, pause {pause:g} s: median "
+        f"{median(times):.0f} ms, 95 % {quantiles(times, n=20)[-1]:.0f} ms, {lost} lost; load {load:.1f}"
+    )
+
+
+if __name__ == "__main__":
+    desk_load()

@@ -1,0 +1,53 @@
+"""A museum with a night behind it, of which each test has its own, and a desk that runs over it."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from pipeline.settings import load_settings
+from tests.museum import edit, museum_of, night, vases
+from tests.report.conftest import browser
+
+from .visiting import Visitor, served
+
+__all__ = ["browser"]
+
+HOSTILE = '"><img src=x onerror=alert(1)>../%2e é'
+"""The number of an object, as bad as a museum's record lets it be; its title is worse."""
+
+PAINTINGS = [
+    {"object_number": f"P{n}", "title": f"Landscape with a café {n}", "object_name": "painting", "gallery": "Room 0",
+     "height_m": "1.0", "width_m": "1.2", "depth_m": "0.04", "medium": "oil on canvas"}
+    for n in range(6)
+]  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def night_behind(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a museum after its first night, only to be copied."""
+    folder = tmp_path_factory.mktemp("desk") / "museum"
+    hostile = {**vases(1, 1)[0], "object_number": HOSTILE, "title": "<script>document.title='pwned'</script>"}
+    museum_of(folder, [*vases(), *PAINTINGS, hostile])
+    edit(folder / "kouros.toml", 'length = "cm"', 'length = "in"')
+    night(load_settings(folder / "kouros.toml"))
+    return folder
+
+
+@pytest.fixture
+def museum(night_behind: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(night_behind, tmp_path / "museum", symlinks=True))
+
+
+@pytest.fixture
+def address(museum: Path) -> Iterator[str]:
+    with served(museum) as there:
+        yield there
+
+
+@pytest.fixture
+def visitor(address: str) -> Visitor:
+    return Visitor(address)
