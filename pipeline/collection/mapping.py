@@ -25,6 +25,7 @@ from pydantic import (
 
 from pipeline.collection.dimensions import languages
 from pipeline.collection.errors import MappingError
+from pipeline.collection.image_names import pattern_keys
 from pipeline.collection.record import CHOICES, KINDS, REQUIRED, units_of
 from pipeline.collection.sources.base import Name, Source, SourceSettings
 from pipeline.collection.sources.registry import SOURCES, source_named
@@ -196,6 +197,30 @@ class Display(_Part):
     )
 
 
+class Images(_Part):
+    """Photographs of the objects: how a file, a URL or an address of IIIF follows from the records."""
+
+    pattern: str = Field(
+        default="",
+        max_length=1000,
+        description="The file or the URL of a photograph, with {object_number} where no column gives one, or with "
+        "{image} for what the column gives, such as https://images.museum.org/{object_number}.jpg.",
+    )
+    credit: str = Field(
+        default="", max_length=500, description="Licence or credit line of the photographs that have none of their own."
+    )
+
+    @field_validator("pattern")
+    @classmethod
+    def _filled(cls, pattern: str) -> str:
+        if pattern and pattern_keys(pattern) not in ({"object_number"}, {"image"}):
+            raise InputError(
+                f"{pattern!r} names neither {{object_number}} nor {{image}}, or both, or something else in braces; "
+                "write one of them where the number of the object, or what the column gives, stands"
+            )
+        return pattern
+
+
 class Holds(_Part):
     """What holds where a source contradicts itself in most rows; without it the import stops there."""
 
@@ -230,6 +255,7 @@ class Mapping(_Part):
         default=None, description="Texts that fill heights, widths, depths and masses which no column gives."
     )
     display: Display = Field(default=Display(), description="Which locations are no galleries.")
+    images: Images = Field(default=Images(), description="Photographs of the objects.")
     holds: Holds = Field(default=Holds(), description="What holds where the source contradicts itself in most rows.")
     _name: str = PrivateAttr(default="mapping")
 
@@ -260,6 +286,8 @@ class Mapping(_Part):
         absent = [name for name in REQUIRED if name not in self.columns]
         if absent:
             raise InputError(f'columns.{absent[0]} is missing; add it with column = "..."')
+        if "image" in pattern_keys(self.images.pattern) and "image" not in self.columns:
+            raise InputError("images.pattern: has {image}, and no column gives it; add [columns.image]")
         for field, column in self.columns.items():
             fault = _fault(field, column)
             if fault:

@@ -21,6 +21,7 @@ from pipeline.records.model import Bounds, ChartAxis, ChartFigure, Columns, Figu
 from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.numerics import Numerics
 from pipeline.records.part import Errors, Found, Outline, Page, Result, Tally, Urgency, Urgent
+from pipeline.records.photo import Photo
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress, Silent
 from pipeline.records.reading import Account, Doubt
@@ -95,6 +96,7 @@ __all__ = [
     "Origin",
     "Outline",
     "Page",
+    "Photo",
     "Problem",
     "Progress",
     "Provenance",

@@ -15,6 +15,7 @@ from pipeline.records import Numerics, Sampling
 from pipeline.resources import small_text
 from pipeline.settings.operations import Hooks, LimitSettings, Logs, Retention
 from pipeline.settings.operations import SettingsPart as _Part
+from pipeline.settings.photographs import ImageSettings, SurveySettings
 
 DATABASE_VARIABLE = "KOUROS_DATABASE"
 """Environment variable that names the database, with its password, in place of the file's."""
@@ -343,6 +344,8 @@ class Settings(_Part):
     plan: PlanSettings = PlanSettings()
     charts: Charts = Charts()
     report: Report = Report()
+    images: ImageSettings = ImageSettings()
+    survey: SurveySettings = SurveySettings()
     hooks: Hooks = Hooks()
     logs: Logs = Logs()
     retention: Retention = Retention()
