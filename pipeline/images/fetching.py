@@ -18,6 +18,7 @@ MOST_MOVES = 4
 """Redirects that are followed, all to the same host."""
 
 _PORTS = {"http": 80, "https": 443}
+_NAT64 = ipaddress.IPv6Network("64:ff9b::/96")
 _PIECE = 1 << 16
 _MOVED = frozenset({301, 302, 303, 307, 308})
 _SAFE = "!#$%&'()*+,/:;=?@[]~"
@@ -205,11 +206,13 @@ class Fetcher:
         connection = _connection(at, _checked(at, self._hosts.named(at.host, at.port, at.scheme)), left)
         # However slowly it answers: at the end of the time the connection is cut.
         late: list[bool] = []
+        # The connection forgets its socket where the server says that it will close it.
+        through = connection.sock
 
         def cut() -> None:
             late.append(True)
-            with suppress(OSError, AttributeError):
-                connection.sock.shutdown(socket.SHUT_RDWR)
+            with suppress(OSError):
+                through.shutdown(socket.SHUT_RDWR)
 
         timer = Timer(left, cut)
         timer.daemon = True
@@ -225,7 +228,12 @@ class Fetcher:
             response = connection.getresponse()
             if response.status in _MOVED and response.getheader("Location"):
                 return str(response.getheader("Location")), None
-            return "", self._answer(at, response)
+            answer = self._answer(at, response)
+            if late:
+                self._late(at)
+            return "", answer
+        except ImageError:
+            raise
         except (OSError, HTTPException, ValueError) as problem:
             if late or isinstance(problem, TimeoutError):
                 self._late(at)
@@ -236,6 +244,7 @@ class Fetcher:
         finally:
             timer.cancel()
             connection.close()
+            through.close()
 
     def _answer(self, at: _Address, response: HTTPResponse) -> Fetched:
         told = {name: (response.getheader(name) or "")[:300] for name in ("ETag", "Last-Modified", "Content-Type")}
@@ -284,8 +293,15 @@ def _checked(at: _Address, named: bool) -> Iterable[str]:
 
 def _public(number: str) -> bool:
     address = ipaddress.ip_address(number.partition("%")[0])
-    inner = getattr(address, "ipv4_mapped", None) or address
-    return inner.is_global and not inner.is_multicast
+    # An address of the sixth version may stand for one of the fourth.
+    meant: list[ipaddress.IPv4Address | ipaddress.IPv6Address | None] = [address]
+    if isinstance(address, ipaddress.IPv6Address):
+        meant += [address.ipv4_mapped, address.sixtofour, *(address.teredo or ())]
+        if address in _NAT64:
+            meant.append(ipaddress.IPv4Address(int(address) & 0xFFFFFFFF))
+    if isinstance(address, ipaddress.IPv6Address) and address.ipv4_mapped is not None:
+        meant.remove(address)
+    return all(one is None or (one.is_global and not one.is_multicast) for one in meant)
 
 
 def _connection(at: _Address, numbers: Iterable[str], seconds: float) -> HTTPConnection:
