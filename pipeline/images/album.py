@@ -44,7 +44,7 @@ class Refused(NamedTuple):
 
 
 @dataclass
-class Gathered:
+class GatheredPhotos:
     """What became of the photographs.
 
     Attributes
@@ -96,7 +96,7 @@ class Album:
     # -----------------------------------------------------------------------------------------------------------------
     # A night
 
-    def gather(self, images: Sequence[str], progress: Progress, *, whole: bool = True) -> Gathered:
+    def gather(self, images: Sequence[str], progress: Progress, *, whole: bool = True) -> GatheredPhotos:
         """See to all photographs, and keep what was made.
 
         Parameters
@@ -110,10 +110,10 @@ class Album:
 
         Returns
         -------
-        Gathered
+        GatheredPhotos
             What became of each.
         """
-        out, todo = Gathered(), []
+        out, todo = GatheredPhotos(), []
         wanted = list(dict.fromkeys(filter(None, images)))
         for image in wanted:
             state = self._state(image, out)
@@ -150,7 +150,7 @@ class Album:
         kept = self._cache.get(THUMBNAILS, key_of("picture", known.name), lasting=True)
         if kept is not None:
             return Photo(known.name, known.width, known.height, kept.arrays["jpeg"].tobytes())
-        out, decoder = Gathered(), self._decoder()
+        out, decoder = GatheredPhotos(), self._decoder()
         try:
             self._made.clear()
             self._settle(image, {}, out, decoder)
@@ -160,9 +160,9 @@ class Album:
         kept = None if found is None or found.name != known.name else self._picture(found.name)
         return None if kept is None else Photo(known.name, known.width, known.height, kept.arrays["jpeg"].tobytes())
 
-    def recalled(self, images: Sequence[str]) -> Gathered:
+    def recalled(self, images: Sequence[str]) -> GatheredPhotos:
         """Return what is kept of photographs, without looking again."""
-        out = Gathered()
+        out = GatheredPhotos()
         for image in images:
             self._shown(image, self._known.get(image, {}), out)
         return out
@@ -173,7 +173,7 @@ class Album:
     def _picture(self, name: str) -> CacheEntry | None:
         return self._cache.get(THUMBNAILS, key_of("picture", name), lasting=True)
 
-    def _state(self, image: str, out: Gathered) -> dict[str, Any] | None:
+    def _state(self, image: str, out: GatheredPhotos) -> dict[str, Any] | None:
         """Return by what the state of a photograph is known again, {} where it is to be asked; None: leave it."""
         if image.casefold().startswith(_SCHEMES):
             try:
@@ -196,7 +196,7 @@ class Album:
             return None
         return {"sign": [facts.st_size, facts.st_mtime_ns, facts.st_ctime_ns, facts.st_ino]}
 
-    def _taken(self, image: str, state: Mapping[str, Any], out: Gathered) -> bool:
+    def _taken(self, image: str, state: Mapping[str, Any], out: GatheredPhotos) -> bool:
         """Take what is kept of a photograph, if its state is as it was."""
         known = self._known.get(image)
         if known is None:
@@ -208,7 +208,7 @@ class Album:
             return False
         return self._shown(image, known, out)
 
-    def _shown(self, image: str, known: Mapping[str, Any], out: Gathered) -> bool:
+    def _shown(self, image: str, known: Mapping[str, Any], out: GatheredPhotos) -> bool:
         if known.get("why"):
             out.refused[image] = Refused(image, *known["why"])
             return True
@@ -218,14 +218,14 @@ class Album:
         out.photos[image] = Photo(*picture)
         return True
 
-    def _late(self, image: str, state: Mapping[str, Any], out: Gathered) -> None:
+    def _late(self, image: str, state: Mapping[str, Any], out: GatheredPhotos) -> None:
         with self._lock:
             out.left += 1
             if "sign" not in state:
                 # What a host gave before is shown until there is time to ask it again.
                 self._shown(image, self._known.get(image, {}), out)
 
-    def _settle(self, image: str, state: Mapping[str, Any], out: Gathered, decoder: Decoder) -> None:
+    def _settle(self, image: str, state: Mapping[str, Any], out: GatheredPhotos, decoder: Decoder) -> None:
         """Look at one photograph; what it ends in is its own."""
         known = self._known.get(image, {})
         try:

@@ -6,7 +6,8 @@ from typing import Any
 
 from pipeline.cache import Cache
 from pipeline.collection.inventory.records import images
-from pipeline.images.album import Album, Gathered, Refused
+from pipeline.images.album import Album, GatheredPhotos, Refused
+from pipeline.images.limits import ImageLimits
 from pipeline.operations.workspace import Workspace
 from pipeline.quantities import counted
 from pipeline.records import Doubt, Photo, Progress
@@ -26,7 +27,7 @@ class Photographs:
     def __init__(self, workspace: Workspace | None) -> None:
         self._images = {} if workspace is None else images(workspace.engine)
         self._album = None if workspace is None or not self._images else _album(workspace)
-        self._found = Gathered()
+        self._found = GatheredPhotos()
         self._lost: set[str] = set()
 
     def gather(self, numbers: Sequence[str], progress: Progress, *, whole: bool) -> None:
@@ -107,8 +108,18 @@ def image_doubts(workspace: Workspace) -> Iterator[Doubt]:
 
 
 def _album(workspace: Workspace) -> Album:
-    settings = workspace.settings
-    return Album(Cache(settings.kept), settings.images.limits(settings.home))
+    settings, said = workspace.settings, workspace.settings.images
+    limits = ImageLimits(
+        folder=settings.path(said.folder) if said.folder else None,
+        hosts=said.hosts,
+        side=said.pixels,
+        most_bytes=round(1e6 * said.megabytes),
+        most_pixels=round(1e6 * said.megapixels),
+        seconds=said.seconds,
+        minutes=said.minutes,
+        ask_again_days=said.ask_again_days,
+    )
+    return Album(Cache(settings.kept), limits)
 
 
 def _doubts(named: Mapping[str, str], refused: Mapping[str, Refused]) -> Iterator[Doubt]:

@@ -1,12 +1,15 @@
 """Photographs, and the workbooks that are put into a folder for the night: where they are, and how much is spent."""
 
-from pathlib import Path
+import re
 
 from pydantic import Field, field_validator
 
 from pipeline.errors import InputError
-from pipeline.images.limits import ImageLimits
 from pipeline.settings.operations import SettingsPart
+
+_HOST = re.compile(
+    r"(?:\*\.(?=[^:]*\.))?(?:[^\W_](?:[\w-]*[^\W_])?)(?:\.[^\W_](?:[\w-]*[^\W_])?)*(?::\d{1,5})?|\[[0-9a-fA-F:]+\](?::\d{1,5})?"
+)
 
 
 class ImageSettings(SettingsPart):
@@ -35,44 +38,13 @@ class ImageSettings(SettingsPart):
     @field_validator("hosts")
     @classmethod
     def _hosts(cls, hosts: tuple[str, ...]) -> tuple[str, ...]:
-        from pipeline.images.fetching import address_of
-
         for host in hosts:
-            bare = host.strip().removeprefix("*.")
-            try:
-                known = "." in bare or not host.startswith("*.")
-                fits = known and "*" not in bare and address_of(f"http://{bare}/").target == "/" and "/" not in bare
-            except InputError:
-                fits = False
-            if not fits:
+            if not _HOST.fullmatch(host):
                 raise InputError(
                     f"{host!r} is no host: write its name alone, with its port where that is unusual, as "
                     "images.museum.org or localhost:8182"
                 )
         return hosts
-
-    def limits(self, home: Path) -> ImageLimits:
-        """Return what a night may spend, and where.
-
-        Parameters
-        ----------
-        home : Path
-            Of relative paths.
-
-        Returns
-        -------
-        ImageLimits
-        """
-        return ImageLimits(
-            folder=home / Path(self.folder).expanduser() if self.folder else None,
-            hosts=self.hosts,
-            side=self.pixels,
-            most_bytes=round(1e6 * self.megabytes),
-            most_pixels=round(1e6 * self.megapixels),
-            seconds=self.seconds,
-            minutes=self.minutes,
-            ask_again_days=self.ask_again_days,
-        )
 
 
 class SurveySettings(SettingsPart):

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 
 from pipeline.cache import THUMBNAILS, Cache
-from pipeline.images.album import Album, Gathered, ImageLimits
+from pipeline.images.album import Album, GatheredPhotos, ImageLimits
 from pipeline.images.iiif import pictures_of
 from pipeline.records import Silent
 from tests.images.conftest import Site, photograph
 
 
-def gathered(folder: Path, limits: ImageLimits, *images: str, whole: bool = True) -> Gathered:
+def gathered(folder: Path, limits: ImageLimits, *images: str, whole: bool = True) -> GatheredPhotos:
     return Album(Cache(folder / "kept"), limits).gather(images, Silent(), whole=whole)
 
 

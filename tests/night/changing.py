@@ -28,7 +28,7 @@ from pipeline.settings import Settings, load_settings, template
 from pipeline.store.decisions import decisions_in_force
 from pipeline.store.tables import DECISION
 from pipeline.tools.decisions import Wish, decide
-from pipeline.tools.survey import take_sheet
+from pipeline.tools.sheet_answers import take_sheet
 from tests.images.conftest import photograph
 from tests.museum import DATABASE, SILENT, few_samples, in_common, with_tables
 
