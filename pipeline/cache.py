@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 from pipeline.resources import code_version, replacing
 
 MOTIONS, CHARTS, PICTURES, HISTORIES, SPECTRA = "motions", "charts", "pictures", "histories", "spectra"
-SELF_TESTS, TRADEOFFS, HOUSE = "selftests", "tradeoffs", "house"
-KINDS = (MOTIONS, CHARTS, PICTURES, HISTORIES, SPECTRA, SELF_TESTS, TRADEOFFS, HOUSE)
+SELF_TESTS, TRADEOFFS, HOUSE, THUMBNAILS = "selftests", "tradeoffs", "house", "thumbnails"
+KINDS = (MOTIONS, CHARTS, PICTURES, HISTORIES, SPECTRA, SELF_TESTS, TRADEOFFS, HOUSE, THUMBNAILS)
 """What is kept: each kind is a folder."""
 
 LARGEST = 1 << 28
@@ -191,6 +191,34 @@ class Cache:
             file.parent.mkdir(parents=True, exist_ok=True)
             with replacing(file) as aside, aside.open("wb") as stream:
                 stream.writelines((_MARK, _seal(body), body))
+
+    def has(self, kind: str, key: str, *, lasting: bool = False) -> bool:
+        """Say whether something is kept under a key, whether or not it can be believed.
+
+        Parameters
+        ----------
+        kind, key, lasting
+            As in `get`.
+
+        Returns
+        -------
+        bool
+        """
+        return self._file(kind, key, lasting).is_file()
+
+    def keep_only(self, kind: str, keys: Collection[str]) -> None:
+        """Remove what is lasting of a kind but for some keys; `prune` never does.
+
+        Parameters
+        ----------
+        kind : str
+            One of `KINDS`.
+        keys : collection of str
+            Of what stays.
+        """
+        for file, name in self._files(kind):
+            if name["version"] == _LASTING and name["key"] not in keys:
+                _remove(file)
 
     def prune(self, *, days: float = 30.0, most_bytes: int = 200_000_000, using: Collection[str] = ()) -> None:
         """Remove what other code kept, then what was not used for some days, then what was used longest ago.

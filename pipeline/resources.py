@@ -25,7 +25,9 @@ SMALL = 8 << 20
 _PACKAGE = Path(__file__).resolve().parent
 
 
-_ELSEWHERE = frozenset({"cli", "desk", "event", "meshes", "operations", "planning", "report", "tools", "verification"})
+_ELSEWHERE = frozenset(
+    {"cli", "desk", "event", "images", "meshes", "operations", "planning", "report", "tools", "verification"}
+)
 """Rooms that no stored result depends on: they ask for results, show and compare them, or fill in records."""
 
 _SOURCES = frozenset({".py", ".csv", ".toml"})

@@ -24,22 +24,26 @@ from pipeline.cache import (
     PICTURES,
     SELF_TESTS,
     SPECTRA,
+    THUMBNAILS,
     TRADEOFFS,
     Cache,
     CacheEntry,
     CacheWarning,
     key_of,
 )
+from pipeline.images.album import Album
+from pipeline.images.limits import ImageLimits
 from pipeline.models import model_named
 from pipeline.models.band import band_accelerations, sharing_spectra
 from pipeline.motions import read_site
-from pipeline.records import Axis, Chart, Excitation
+from pipeline.records import Axis, Chart, Excitation, Silent
 from pipeline.resources import resource
 from pipeline.store import codec
 from pipeline.verification import selftest, tradeoff
 from pipeline.verification.outcome import Outcome
+from tests.images.conftest import photograph
 
-LASTING = {SELF_TESTS, TRADEOFFS}
+LASTING = {SELF_TESTS, TRADEOFFS, THUMBNAILS}
 
 
 def put_motion(folder: Path) -> None:
@@ -98,6 +102,11 @@ def put_house(folder: Path) -> None:
     Cache(folder).put(HOUSE, key_of("rules"), CacheEntry({"effects": ["", "one"]}, effects))
 
 
+def put_thumbnails(folder: Path) -> None:
+    (folder.parent / "a.png").write_bytes(photograph(kind="PNG"))
+    Album(Cache(folder), ImageLimits(folder=folder.parent)).gather(["a.png"], Silent())
+
+
 PUT: dict[str, Callable[[Path], None]] = {
     MOTIONS: put_motion,
     CHARTS: put_chart,
@@ -107,6 +116,7 @@ PUT: dict[str, Callable[[Path], None]] = {
     SELF_TESTS: put_self_test,
     TRADEOFFS: put_tradeoff,
     HOUSE: put_house,
+    THUMBNAILS: put_thumbnails,
 }
 
 

@@ -257,6 +257,7 @@ def run(
     from pipeline.operations.event_log import journal
     from pipeline.operations.job_monitor import watched
     from pipeline.operations.secrets import hider
+    from pipeline.tools.inbox import take_inbox
 
     settings = options.settings()
     if site is not None:
@@ -274,6 +275,10 @@ def run(
     chosen = Selection(galleries, objects)
     hide = hider(settings)
     with journal(None if dry_run else settings, hide), options.console() as console:
+        # Before the night, which then finds its measurements, decisions and rules as if they had always been there.
+        taken = take_inbox(settings, Path(options.config), dry_run=dry_run)
+        if taken and not dry_run:
+            settings = settings.model_copy(update={"house": options.settings().house})
         summary = watched(
             settings,
             lambda: job(settings, console, chosen, dry_run=dry_run, resume=resume, strict=strict),
@@ -281,6 +286,8 @@ def run(
             whole=not (chosen or dry_run),
         )
     _print_summary(summary, as_json)
+    if not as_json:
+        listed("survey", [f"{one.name}: {one.words}" for one in taken])
     if dry_run:
         say_dry(as_json)
     if summary.exit_code:

@@ -38,7 +38,8 @@ if TYPE_CHECKING:
 @click.option(
     "--sheet",
     is_flag=True,
-    help="SOURCE is a survey that was filled in: lay it over the inventory, add its rules to the settings.",
+    help="SOURCE is a survey that was filled in: its measurements go over the inventory, its rules into the settings, "
+    "its decisions into their log.",
 )
 @click.option("--presets", is_flag=True, help="List the mappings that come with Kouros.")
 @click.option("--versions", is_flag=True, help="List the versions of the inventory, one for each import.")
@@ -214,7 +215,7 @@ def _show(found: "Proposed") -> None:
 def _sheet(options: Options, source: str, dry_run: bool, wanted_json: bool) -> None:
     from pipeline.operations.dry_run import rehearsed
     from pipeline.operations.workspace import locked, open_workspace
-    from pipeline.tools.survey import take_sheet
+    from pipeline.tools.sheet_answers import take_sheet
 
     with rehearsed(options.settings(), dry_run) as settings, locked(settings):
         taken = take_sheet(open_workspace(settings), Path(options.config), Path(source), dry_run=dry_run)
@@ -222,18 +223,29 @@ def _sheet(options: Options, source: str, dry_run: bool, wanted_json: bool) -> N
     problems = [] if reading is None else _problems(reading)
     refused = () if reading is None else reading.rejected
     if wanted_json:
+        from pipeline.records import Decision
+        from pipeline.store import codec
+
         rejected = [asdict(r) for r in refused]
-        found = {"changes": None if changes is None else asdict(changes), "unknown": taken.unknown}
-        click.echo(json.dumps(found | {"problems": problems, "rejected": rejected, "rules": taken.rules}, indent=2))
+        found: dict[str, Any] = {"changes": None if changes is None else asdict(changes), "unknown": taken.unknown}
+        found |= {"problems": problems, "rejected": rejected, "rules": taken.rules}
+        found |= {"decisions": [codec.plain(Decision, one) for one in taken.decisions], "known_decisions": taken.known}
+        found |= {"refused": [asdict(fault) for fault in taken.faults], "marked": taken.marked and str(taken.marked)}
+        click.echo(json.dumps(found, indent=2))
         return
-    listed("rejected", [f"{r.message}; {r.remedy}" for r in refused])
-    listed("problem", problems)
+    listed("refused", [str(fault) for fault in taken.faults])
     listed("not in the inventory", taken.unknown)
+    listed("decided", [f"{one.object_number}: {one.matter}, {one.by}" for one in taken.decisions])
     if changes is not None:
         _changed(changes)
         given = counted(len(changes.changed), "object")
         was = "would be" if dry_run else "was" if len(changes.changed) == 1 else "were"
         click.echo(f"{Path(source).name}: {given} {was} given measurements")
+    if taken.known:
+        click.echo(f"{counted(taken.known, 'decision')} had been written down before")
+    if taken.marked is not None:
+        cells = counted(len(taken.faults), "refused cell")
+        click.echo(f"{cells} {'would be' if dry_run else 'marked, with what mends each,'} in {taken.marked}")
     if taken.rules:
         click.echo(f"{'would be added' if dry_run else 'added'} to {options.config}:\n\n{taken.rules}")
 

@@ -11,6 +11,7 @@ from enum import StrEnum
 from math import isinf
 
 from pipeline.collection.display_words import flag_of
+from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.mapping import WRITTEN, ColumnMap
 from pipeline.collection.measured_cell import of_cell
 from pipeline.collection.record import CHOICES, plausible, units_of
@@ -75,6 +76,8 @@ class Cells:
         text = texts[0].strip(_SPACE)
         if _missing(text, column):
             return None
+        if column.by_hand:
+            return self._by_hand(name, column, text)
         if column.unit == WRITTEN:
             # A unit may stand in a column of its own.
             return self._written(name, column, " ".join([text, *(t.strip(_SPACE) for t in texts[1:])]).strip())
@@ -276,6 +279,22 @@ class Cells:
         self.provenance.append(Provenance(name, Origin.MEASURED, found[1]))
         return found[0]
 
+    def _by_hand(self, name: str, column: ColumnMap, text: str) -> float | None:
+        unit = column.unit or plausible()[name].unit
+        try:
+            found = of_hand(text, unit)
+        except InputError as problem:
+            self._note(name, column, str(problem), f"write one number{_in_unit(unit)}, as 8 1/2 or 0.3")
+            return None
+        reason = _implausible(name, found.value)
+        if reason:
+            shown = f"{_show(text)} = {found.value:.6g} {plausible()[name].unit} {reason}".replace(" - ", " ")
+            self._note(name, column, shown, "measure it again, or leave the cell empty")
+            return None
+        said = "said to be about so" if found.about else ""
+        self.provenance.append(Provenance(name, Origin.MEASURED, found.written, said))
+        return found.value
+
     def _parse(self, name: str, column: ColumnMap, text: str) -> float | None:
         plain = self._plain(text)
         if len(plain) <= _LONGEST_NUMBER and _NUMBER.fullmatch(plain):
@@ -310,6 +329,10 @@ class Cells:
     def _note(self, name: str, column: ColumnMap, message: str, remedy: str) -> None:
         source = " + ".join(_show(part) for part in column.sources)
         self.problems.append(Problem(name, f"column {source}: {message}", remedy))
+
+
+def _in_unit(unit: str) -> str:
+    return "" if unit == "-" else f" in {unit}, or with its unit"
 
 
 def _pairs(text: str, decimal: str) -> list[tuple[float, float]] | None:

@@ -11,7 +11,6 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import (
     BaseModel,
     BeforeValidator,
-    ConfigDict,
     Field,
     PrivateAttr,
     SerializeAsAny,
@@ -25,6 +24,8 @@ from pydantic import (
 
 from pipeline.collection.dimensions import languages
 from pipeline.collection.errors import MappingError
+from pipeline.collection.image_names import pattern_keys
+from pipeline.collection.mapping_parts import Display, Images, MappingPart
 from pipeline.collection.record import CHOICES, KINDS, REQUIRED, units_of
 from pipeline.collection.sources.base import Name, Source, SourceSettings
 from pipeline.collection.sources.registry import SOURCES, source_named
@@ -44,10 +45,6 @@ WRITTEN = "as written"
 """The unit of a column whose cells name their own."""
 
 Number = Annotated[StrictFloat, Field(allow_inf_nan=False)]
-
-
-class _Part(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class SourceFaultError(InputError):
@@ -105,14 +102,14 @@ def _of_kind(kind: Source, error: Any) -> dict[str, Any]:
     return {"type": "source", "loc": ("source", *error["loc"]), "msg": message}
 
 
-class Museum(_Part):
+class Museum(MappingPart):
     """Whose collection it is."""
 
     name: Name = Field(description="The museum's name, as reports show it.")
     credit: str = Field(default="", description="How the museum wants its data to be credited.")
 
 
-class ColumnMap(_Part):
+class ColumnMap(MappingPart):
     """Where one field of the record comes from."""
 
     constant: Name | None = Field(
@@ -138,6 +135,11 @@ class ColumnMap(_Part):
     values: dict[str, StrictStr | StrictBool] = Field(
         default_factory=dict, description="What a text of the column means; capitals and small letters count the same."
     )
+    by_hand: bool = Field(
+        default=False,
+        description="Cells were filled in by hand: fractions, decimal commas, another unit and words such as about are "
+        "read (8 1/2, 0,3, 30 cm, about 3); a number that names no unit is in that of the column.",
+    )
     optional: bool = Field(default=False, description="The file may lack this column.")
 
     @property
@@ -152,7 +154,7 @@ class ColumnMap(_Part):
         return self
 
 
-class Texts(_Part):
+class Texts(MappingPart):
     """Texts in which dimensions and weights stand, such as "8 1/2 x 11 in. (21.6 x 27.9 cm)"."""
 
     columns: tuple[Name, ...] = Field(
@@ -184,19 +186,7 @@ class Texts(_Part):
         return language
 
 
-class Display(_Part):
-    """Which locations are no galleries."""
-
-    not_on_display: tuple[Name, ...] = Field(
-        default=(), description="Locations (such as a store) whose objects are not on display, and so not assessed."
-    )
-    on_display: tuple[Name, ...] = Field(
-        default=(),
-        description="Locations that are galleries although their names sound otherwise, such as a store that is open.",
-    )
-
-
-class Holds(_Part):
+class Holds(MappingPart):
     """What holds where a source contradicts itself in most rows; without it the import stops there."""
 
     texts: Literal["columns", "texts"] | None = Field(
@@ -216,7 +206,7 @@ class Holds(_Part):
     )
 
 
-class Mapping(_Part):
+class Mapping(MappingPart):
     """A museum's file, column by column; ``name`` is the preset's or the file's name, for messages."""
 
     source: Annotated[SerializeAsAny[SourceSettings], BeforeValidator(_settings_of)] = Field(
@@ -230,6 +220,7 @@ class Mapping(_Part):
         default=None, description="Texts that fill heights, widths, depths and masses which no column gives."
     )
     display: Display = Field(default=Display(), description="Which locations are no galleries.")
+    images: Images = Field(default=Images(), description="Photographs of the objects.")
     holds: Holds = Field(default=Holds(), description="What holds where the source contradicts itself in most rows.")
     _name: str = PrivateAttr(default="mapping")
 
@@ -260,6 +251,8 @@ class Mapping(_Part):
         absent = [name for name in REQUIRED if name not in self.columns]
         if absent:
             raise InputError(f'columns.{absent[0]} is missing; add it with column = "..."')
+        if "image" in pattern_keys(self.images.pattern) and "image" not in self.columns:
+            raise InputError("images.pattern: has {image}, and no column gives it; add [columns.image]")
         for field, column in self.columns.items():
             fault = _fault(field, column)
             if fault:

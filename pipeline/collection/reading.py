@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from pipeline.collection.cells import Cells
 from pipeline.collection.consistency import contradictions
 from pipeline.collection.errors import CollectionError, NoRowsError
+from pipeline.collection.image_names import first_of, of_pattern
 from pipeline.collection.limits import STANDARD, Limits, Meter
 from pipeline.collection.mapping import DIAMETER, ColumnMap, Mapping, Texts, check_header
 from pipeline.collection.measured import fill, is_dimension
@@ -416,6 +417,12 @@ class RowReader:
             gallery, on_display = NOWHERE, False
             remedy = "record its current location; until then it counts as not on display"
             cells.problems.append(Problem("gallery", "the location is empty", remedy))
+        photographs = self._mapping.images
+        values["image"] = of_pattern(
+            photographs.pattern, values["object_number"], first_of(str(values.get("image") or ""))
+        )
+        if values["image"] and not values.get("image_credit"):
+            values["image_credit"] = photographs.credit
         provenance = tuple(sorted(cells.provenance, key=lambda of: of.field))
         values.update(gallery=gallery, on_display=on_display, provenance=provenance, problems=tuple(cells.problems))
         return Item(**values)

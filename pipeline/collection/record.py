@@ -103,6 +103,8 @@ _MEANINGS = {
     "value": "What it is valued at, as for insurance, in the museum's own money.",
     "irreplaceable": "Whether nothing could take its place.",
     "on_loan": "Whether it is on loan to the museum.",
+    "image": "Its photograph: a file below the folder of images, a URL, an IIIF image or manifest.",
+    "image_credit": "Licence or credit line of its photograph.",
     "on_display": "Whether it is on display now; only then it is assessed.",
     "provenance": "Where each quantity comes from: how it was recorded, and the characters it was read from.",
     "problems": "What the import could not accept, or doubts.",
@@ -177,8 +179,8 @@ def digest_of(item: Item) -> str:
 
 
 INDIVIDUAL = (
-    "object_number", "gallery", "dimensions", "position_x_m", "position_y_m", "value", "on_loan", "provenance",
-    "problems",
+    "object_number", "gallery", "dimensions", "position_x_m", "position_y_m", "value", "on_loan", "image",
+    "image_credit", "provenance", "problems",
 )  # fmt: skip
 """Fields that tell one object from others that are alike: nothing computed of an object by itself rests on them."""
 

@@ -23,6 +23,9 @@ MORE = 1.1
 _RESTING = (DecisionKind.ACCEPT, DecisionKind.VERDICT)
 """Kinds of decisions that rest on findings, and are nothing without them."""
 
+_BESIDE = frozenset({"provenance", "image", "image_credit"})
+"""Fields on which no decision rests: where a number was read from may change without the number."""
+
 _SEVERITY = {Verdict.PASS: 0, Verdict.UNDETERMINED: 1, Verdict.FAIL: 2}
 
 
@@ -73,8 +76,7 @@ def _doubts(decision: Decision, at: Now) -> Iterable[str]:
         return
     if digest != decision.digest:
         fields = list(at.changed(decision.object_number, decision.digest))
-        # Where a number was read from may change without the number.
-        told = [name for name in fields if name != "provenance"]
+        told = [name for name in fields if name not in _BESIDE]
         if told or not fields:
             yield f"its record has changed{': ' if told else ''}{', '.join(told)}"
     assessment = at.assessments.get(decision.object_number)

@@ -1,12 +1,12 @@
 """Tasks of workers that show: a page of the report, or its totals alone."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
 from pipeline.analysis.faults import Fault, fitting
 from pipeline.night.context import RunContext
-from pipeline.records import DecisionStatus, Found, Page, Tally
+from pipeline.records import DecisionStatus, Found, Page, Photo, Tally
 from pipeline.report.files.page_renderer import PageRenderer, RenderedPage
 from pipeline.store.pages import Members, found_of
 
@@ -27,6 +27,8 @@ class PageTask:
         About its objects, as they stand.
     draw
         Whether it is wanted itself; else its totals alone.
+    photos
+        Pictures of its objects by number.
     """
 
     page: Page
@@ -34,6 +36,7 @@ class PageTask:
     results: Mapping[str, bytes]
     decisions: tuple[DecisionStatus, ...] = field(default=())
     draw: bool = True
+    photos: Mapping[str, Photo] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -52,9 +55,9 @@ def render_page(context: RunContext, task: PageTask) -> Rendered:
         return Rendered(context.renderer.tally(found))
     faults: list[Fault] = []
     # What renders is made outside of any object's guard: a language without a catalogue is nobody's fault here.
-    shown, page = fitting(found, partial(_drawn, context.renderer, task.page, task.decisions), faults)
+    shown, page = fitting(found, partial(_drawn, context.renderer, task), faults)
     return Rendered(page.tally if shown is found else context.renderer.tally(shown), page, tuple(faults))
 
 
-def _drawn(renderer: PageRenderer, page: Page, decisions: Sequence[DecisionStatus], found: Found) -> RenderedPage:
-    return renderer.draw(page, found, decisions)
+def _drawn(renderer: PageRenderer, task: PageTask, found: Found) -> RenderedPage:
+    return renderer.draw(task.page, found, task.decisions, task.photos)

@@ -8,8 +8,9 @@ from typing import Any
 from pipeline.collection.inventory import fields_since
 from pipeline.night.decision_review import now, standing
 from pipeline.night.page_tasks import PageTask, Rendered, render_page
+from pipeline.night.photographs import Photographs
 from pipeline.night.scheduler import PlannedPage, Scheduler
-from pipeline.records import Decision, DecisionStatus, Found, Page, Progress, RunChanges, Tally
+from pipeline.records import Decision, DecisionStatus, Found, Page, Photo, Progress, RunChanges, Tally
 from pipeline.report.files.manifest import PreviousReport
 from pipeline.report.files.report_writer import ReportWriter, link_to, page_key
 from pipeline.report.pages.since import mentioned
@@ -32,12 +33,15 @@ class _PublishedPage:
         The decisions about its objects, as they stand.
     row
         Of the database, where it is not there yet and was made already.
+    photographed
+        Whether an object on it has a picture.
     """
 
     planned: PlannedPage
     page: Page
     standing: tuple[DecisionStatus, ...]
     row: dict[str, Any] | None = None
+    photographed: bool = False
 
 
 class Publication:
@@ -47,10 +51,13 @@ class Publication:
     ----------
     scheduler
         Of the run, after its `assess`.
+    photographs
+        Of its objects, gathered; none are shown without.
     """
 
-    def __init__(self, scheduler: Scheduler) -> None:
+    def __init__(self, scheduler: Scheduler, photographs: Photographs | None = None) -> None:
         self._scheduler = scheduler
+        self._photographs = photographs or Photographs(None)
         self._digests = scheduler.index.digests(list(scheduler.decisions))
         self._pages = [self._settled(page) for page in scheduler.pages]
 
@@ -124,7 +131,7 @@ class Publication:
     def publish(self, writer: ReportWriter, progress: Progress) -> Tally:
         """Put every page into the report, and return the totals."""
         context = self._scheduler.context
-        keys = [page_key(context.renderer, one.page, one.standing) for one in self._pages]
+        keys = [page_key(context.renderer, one.page, one.standing, self._known(one)) for one in self._pages]
         writer.look(keys)
         reused = [writer.has(key) for key in keys]
         left = [page for page, there in zip(self._pages, reused, strict=True) if not there]
@@ -141,10 +148,16 @@ class Publication:
                     raise ValueError("a page that was to be rendered was not")
                 # A page on which an object failed is tried again every night.
                 again = came.faults or self._scheduler.is_failed(one.planned)
+                again = again or (one.photographed and self._photographs.lost(one.planned.numbers()))
                 writer.add(f"{key}:{context.head.run_id}" if again else key, came.page)
                 tallies.append(came.tally)
         progress.step("pages", len(keys), len(keys))
         return total(tallies)
+
+    def _known(self, one: _PublishedPage) -> dict[str, Photo]:
+        known = self._photographs.known(one.planned.numbers())
+        one.photographed = bool(known)
+        return known
 
     def tally(self, progress: Progress) -> Tally:
         """Return the totals without a report."""
@@ -168,7 +181,8 @@ class Publication:
         members, results = self._scheduler.found(one.planned)
         if one.planned.kept is None and draw:
             one.row = page_row(one.page, members)
-        return PageTask(one.page, members, results, one.standing, draw)
+        photos = self._photographs.of(one.planned.numbers()) if draw and one.photographed else {}
+        return PageTask(one.page, members, results, one.standing, draw, photos)
 
     def links(self, changes: RunChanges | None) -> dict[str, Pointer]:
         """Return where the objects are that the index names as changed, by number."""

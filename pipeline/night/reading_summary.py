@@ -2,15 +2,17 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+from itertools import chain
 from typing import Any
 
 from pipeline.collection.inventory.reading_report import account, doubts
 from pipeline.collection.object_index import ObjectIndex
 from pipeline.collection.reading import NOWHERE
+from pipeline.night.photographs import image_doubts
 from pipeline.operations.workspace import Workspace
 from pipeline.quantities import counted
 from pipeline.records import Doubt, RunRecord
-from pipeline.report.pages.reading import INVENTORY, READING
+from pipeline.report.pages.reading import IMAGES, INVENTORY, READING
 
 _TOLD = ("field", "message", "remedy")
 
@@ -42,7 +44,10 @@ def doubts_of(workspace: Workspace, head: RunRecord) -> Callable[[], Iterable[Do
     """Return what gives all that was refused or is doubted of the inventory of a run; None where that is not known."""
     if head.settings.get(READING) is None:
         return None
-    return partial(doubts, workspace.engine, int(head.settings[INVENTORY]))
+    read = partial(doubts, workspace.engine, int(head.settings[INVENTORY]))
+    if not head.settings.get(IMAGES):
+        return read
+    return lambda: chain(read(), image_doubts(workspace))
 
 
 def in_line(reading: Mapping[str, Any] | None) -> str:
@@ -52,6 +57,8 @@ def in_line(reading: Mapping[str, Any] | None) -> str:
     parts = [counted(reading["rows"], "row"), f"{reading['refused']:,} refused", f"{reading['doubtful']:,} doubtful"]
     if reading["sheets"]:
         parts.append(f"{reading['sheets']:,} not used of sheets")
+    if reading.get("images"):
+        parts.append(f"{counted(reading['images'], 'photograph')} not shown")
     if reading["suspicions"]:
         parts.append(f"{counted(len(reading['suspicions']), 'doubt')} about the whole file")
     if reading.get("choices"):
@@ -61,7 +68,9 @@ def in_line(reading: Mapping[str, Any] | None) -> str:
 
 def to_look_at(reading: Mapping[str, Any] | None) -> bool:
     """Say whether reading left something that somebody should look at, or nobody knows."""
-    return reading is None or any(reading[name] for name in ("refused", "doubtful", "sheets", "suspicions"))
+    return reading is None or any(
+        reading.get(name) for name in ("refused", "doubtful", "sheets", "suspicions", "images")
+    )
 
 
 def unsaid(shown: int) -> str:

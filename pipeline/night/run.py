@@ -16,6 +16,7 @@ from pipeline.errors import DamageWarning, InputError
 from pipeline.motions.site import Site
 from pipeline.night.figures import Pictures, pictures
 from pipeline.night.importing import Imported, import_collection, source_of
+from pipeline.night.photographs import Photographs
 from pipeline.night.prepare import admit, run_context
 from pipeline.night.publication import Publication
 from pipeline.night.reading_summary import doubts_of
@@ -31,7 +32,7 @@ from pipeline.records import Page, Progress, RunRecord, Tally, Urgent
 from pipeline.report import lasting_name, publish
 from pipeline.report.pages.compose import PERIODS
 from pipeline.report.pages.decided import by_object
-from pipeline.report.pages.reading import READING
+from pipeline.report.pages.reading import IMAGES, READING
 from pipeline.report.pages.survey_words import SURVEY_SECONDS
 from pipeline.report.pages.tallies import counts
 from pipeline.report.pages.views import State
@@ -127,13 +128,18 @@ def _hold(night: Scheduler, progress: Progress, chosen: Selection, *, dry_run: b
     """Do what there is to do, store it, publish it, say what changed."""
     workspace, engine = night.workspace, night.workspace.engine
     night.assess(progress, store=not dry_run)
-    shown = Publication(night)
+    photographs = Photographs(workspace)
+    if not dry_run:
+        stores = workspace.settings.display.stores
+        seen = [number for page in night.pages if page.part.on_display or stores for number in page.numbers()]
+        photographs.gather(seen, progress, whole=not chosen)
+    shown = Publication(night, photographs)
     if dry_run:
         return _judged(summarise(_ended(night, shown, chosen), shown.pages, shown.tally(progress)), strict=strict)
     with shown.writer() as writer:
         found = shown.publish(writer, progress)
         _stand_by(night, found)
-        head = _ended(night, shown, chosen)
+        head = _with(photographs, _ended(night, shown, chosen))
         # A part is not compared: what was left out of it has not changed.
         before = None if chosen else comparable(engine, whole_runs(engine))
         strangers = shown.strangers(whole=not chosen)
@@ -187,6 +193,15 @@ def _ended(night: Scheduler, shown: Publication, chosen: Selection) -> RunRecord
         more[SURVEY_SECONDS] = round(night.seconds, 3)
     finished = datetime.now(UTC).isoformat(timespec="milliseconds")
     return replace(head, finished=finished, settings={**head.settings, **more}, decisions=shown.standing)
+
+
+def _with(photographs: Photographs, head: RunRecord) -> RunRecord:
+    """Return the run with what is said of photographs that are not shown."""
+    told, notes = photographs.told(), tuple(photographs.notes())
+    settings = head.settings
+    if told and settings.get(READING) is not None:
+        settings = {**settings, READING: {**settings[READING], "images": told["images"]}, IMAGES: told[IMAGES]}
+    return replace(head, settings=settings, level_notes=(*head.level_notes, *notes))
 
 
 def _was_read(workspace: Workspace, cut_off: Status | None) -> bool:

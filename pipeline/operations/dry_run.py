@@ -8,6 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
+from pipeline.cache import THUMBNAILS
 from pipeline.errors import InputError
 
 if TYPE_CHECKING:
@@ -52,7 +53,9 @@ def rehearsed(settings: "Settings", dry_run: bool = True) -> Iterator["Settings"
         # Without the copy a dry run only takes longer.
         with suppress(OSError, shutil.Error):
             if settings.kept.is_dir():
-                shutil.copytree(settings.kept, folder / settings.kept.name, copy_function=shutil.copyfile)
+                # A dry run shows no photographs, and so needs none.
+                left = shutil.ignore_patterns(THUMBNAILS)
+                shutil.copytree(settings.kept, folder / settings.kept.name, ignore=left, copy_function=shutil.copyfile)
         logs = settings.logs.model_copy(update={"file": ""})
         yield settings.model_copy(update={"rehearsal": folder, "logs": logs})
 

@@ -22,6 +22,7 @@ from pipeline.records.motion import Excitation, Motion, MotionSummary
 from pipeline.records.news import Brief, NewsKind, ObjectChange, Settled
 from pipeline.records.numerics import Numerics
 from pipeline.records.part import Errors, Found, Outline, Page, Result, Tally, Urgency, Urgent
+from pipeline.records.photo import Photo
 from pipeline.records.picture import Axis, Chart, Curve, Mark, Zone
 from pipeline.records.protocols import Executor, Progress, Silent
 from pipeline.records.reading import Account, Doubt
@@ -100,6 +101,7 @@ __all__ = [
     "Origin",
     "Outline",
     "Page",
+    "Photo",
     "Problem",
     "Progress",
     "Provenance",

@@ -162,6 +162,8 @@ class Item:
         What it is valued at, in the museum's own money.
     irreplaceable, on_loan : bool or None
         Whether nothing could take its place, and whether it belongs to somebody else.
+    image, image_credit : str
+        Where its photograph is (a file, a URL, an address of IIIF), and who is to be credited for that.
     provenance : tuple of Provenance
         Of each quantity.
     problems : tuple of Problem
@@ -218,6 +220,8 @@ class Item:
     value: float | None = None
     irreplaceable: bool | None = None
     on_loan: bool | None = None
+    image: str = ""
+    image_credit: str = ""
     on_display: bool = True
     provenance: tuple[Provenance, ...] = ()
     problems: tuple[Problem, ...] = ()

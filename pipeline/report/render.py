@@ -1,11 +1,11 @@
 """A whole run that is in memory becomes a report."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from pipeline.planning.plan import PlanTerms
-from pipeline.records import Assessment, Found, Page, RunChanges, RunRecord, Spacing
+from pipeline.records import Assessment, Found, Page, Photo, RunChanges, RunRecord, Spacing
 from pipeline.report.files.page_renderer import PageRenderer
 from pipeline.report.files.report_writer import ReportWriter, link_to, page_key
 from pipeline.report.language import Language
@@ -53,12 +53,14 @@ def draw_all(
     beside: Mapping[str, str] | None = None,
     doubts: Doubts | None = None,
     terms: PlanTerms | None = None,
+    photos: Callable[[Sequence[str]], Mapping[str, Photo]] | None = None,
 ) -> Path:
     """Draw every page of a run that is over into a report, one at a time, and finish it.
 
     head    : the run without its objects, with all decisions as they stood
     beside  : further files of the report, by name
     doubts, terms : see `ReportWriter.finish`
+    photos  : gives the pictures of some objects, by number
     returns : the path of index.html
     """
     decisions = by_object(head.decisions)
@@ -68,8 +70,9 @@ def draw_all(
     for page, found in pages:
         titles = {a.scene.item.object_number: a.scene.item.title for a in found.assessments}
         mine = [standing for number in titles for standing in decisions.pop(number, ())]
-        rendered = writer.renderer.draw(page, found, mine)
-        tallies.append(writer.add(page_key(writer.renderer, page, mine), rendered))
+        shown = {} if photos is None else photos(list(titles))
+        rendered = writer.renderer.draw(page, found, mine, shown)
+        tallies.append(writer.add(page_key(writer.renderer, page, mine, shown), rendered))
         links |= {number: link_to(page, number, title) for number, title in titles.items() if number in named}
     strangers = tuple(standing for left in decisions.values() for standing in left)
     return writer.finish(replace(head, decisions=strangers), total(tallies), changes, links, beside, doubts, terms)

@@ -17,6 +17,7 @@ from pipeline.records import Numerics, Sampling
 from pipeline.resources import small_text
 from pipeline.settings.operations import Hooks, LimitSettings, Logs, Retention
 from pipeline.settings.operations import SettingsPart as _Part
+from pipeline.settings.photographs import ImageSettings, SurveySettings
 from pipeline.settings.serve import ServeSettings
 
 DATABASE_VARIABLE = "KOUROS_DATABASE"
@@ -362,6 +363,8 @@ class Settings(_Part):
     plan: PlanSettings = PlanSettings()
     charts: Charts = Charts()
     report: Report = Report()
+    images: ImageSettings = ImageSettings()
+    survey: SurveySettings = SurveySettings()
     hooks: Hooks = Hooks()
     logs: Logs = Logs()
     retention: Retention = Retention()

@@ -9,7 +9,7 @@ MotionKey = tuple[str, str, str]
 
 GROUND = "the ground"
 
-_INERT = frozenset({"problems", "position_x_m", "position_y_m", "value", "on_loan"})
+_INERT = frozenset({"problems", "position_x_m", "position_y_m", "value", "on_loan", "image", "image_credit"})
 """Fields of an item that no model and no rule reads."""
 
 

@@ -3,6 +3,7 @@
 import shutil
 import tomllib
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -14,10 +15,12 @@ from pipeline.analysis.house.matching import HouseRules
 from pipeline.analysis.house.questions import VOCABULARIES, RuleQuestion
 from pipeline.analysis.house.rule import QUANTITIES, HouseRule
 from pipeline.collection.errors import CollectionError
+from pipeline.collection.hand_cell import of_hand
 from pipeline.collection.sources.xlsx import read_sheet as rows_of_sheet
 from pipeline.collection.sources.xlsx import visible_sheets
 from pipeline.errors import InputError
 from pipeline.quantities import LENGTHS
+from pipeline.report.files.marked_copy import CellFault
 from pipeline.report.files.rules_sheet import FOR, RULES_SHEET, SIGNED, STATES
 from pipeline.report.files.sheet_cells import HEADER_ROW
 from pipeline.resources import replacing, small_text
@@ -27,8 +30,16 @@ from pipeline.settings.commented import listed_table
 _COLUMNS = (*FOR, *STATES, *SIGNED)
 
 
+@dataclass(frozen=True)
+class RulesRead:
+    """House rules of a sheet, and the rows of it that were refused."""
+
+    rules: tuple[HouseRule, ...] = ()
+    faults: tuple[CellFault, ...] = ()
+
+
 def read_rules(path: Path) -> tuple[HouseRule, ...]:
-    """Read the house rules of a workbook's sheet "Rules".
+    """Read the house rules of a workbook's sheet "Rules", of which none may be refused.
 
     Parameters
     ----------
@@ -46,8 +57,37 @@ def read_rules(path: Path) -> tuple[HouseRule, ...]:
     CollectionError
         For a sheet or a row that cannot be used: naming file, row, column and remedy.
     """
+    found = rules_of(path)
+    for fault in found.faults:
+        where = f", {fault.column}" if fault.column else ""
+        raise CollectionError(f"{path.name}, sheet {RULES_SHEET!r}, row {fault.row}{where}: {_said(fault)}")
+    return found.rules
+
+
+def _said(fault: CellFault) -> str:
+    return f"{fault.message}; {fault.remedy}"
+
+
+def rules_of(path: Path) -> RulesRead:
+    """Read the house rules of a workbook's sheet "Rules", and what is wrong with the others.
+
+    Parameters
+    ----------
+    path : Path
+        As of `read_rules`.
+
+    Returns
+    -------
+    RulesRead
+        Rules of rows with a value, as of `read_rules`, and the rows that were refused.
+
+    Raises
+    ------
+    CollectionError
+        For a workbook that cannot be read, or a sheet without a column.
+    """
     if path.suffix.lower() != ".xlsx" or RULES_SHEET not in visible_sheets(path):
-        return ()
+        return RulesRead()
     rows = rows_of_sheet(path, path.name, sheet=RULES_SHEET, header_row=HEADER_ROW)
     header = next(rows, None)
     names = [] if header is None else header.cells
@@ -55,63 +95,77 @@ def read_rules(path: Path) -> tuple[HouseRule, ...]:
     if lost:
         raise CollectionError(f"{path.name}: the sheet {RULES_SHEET!r} has no column {lost[0]!r}; write a new survey")
     merged: dict[tuple[Any, ...], dict[str, Any]] = {}
+    refused: list[CellFault] = []
     for row in rows:
-        where = f"{path.name}, sheet {RULES_SHEET!r}, row {row.line}"
         faults = [(names[at], fault) for at, fault in row.faults.items() if names[at] in _COLUMNS]
         if row.fault[0] or faults:
             column, (message, remedy) = faults[0] if faults else ("", row.fault)
-            raise CollectionError(f"{where}{f', {column}' if column else ''}: {message}; {remedy}")
+            refused.append(CellFault(RULES_SHEET, row.line, column, message, remedy))
+            continue
         cells = {name: cell.strip() for name, cell in zip(names, row.cells, strict=True)}
         if not any(cells[name] for name in ("value", "low", "high")):
             continue
-        rule = _rule(cells, where)
+        try:
+            rule = _rule(cells)
+        except _RuleError as problem:
+            refused.append(CellFault(RULES_SHEET, row.line, problem.column, problem.message, problem.remedy))
+            continue
         about = tuple(cells[name] for name in (*FOR, *SIGNED))
         whole = merged.setdefault(about, {})
         field = cells["states"]
         if field in whole:
-            raise CollectionError(f"{where}, states: {field} is stated twice for the same objects; keep one row")
+            message = f"{field} is stated twice for the same objects"
+            refused.append(CellFault(RULES_SHEET, row.line, "states", message, "keep one row"))
+            continue
         whole.update(rule.plain())
-    return tuple(HouseRule(**plain) for plain in merged.values())
+    return RulesRead(tuple(HouseRule(**plain) for plain in merged.values()), tuple(refused))
 
 
-def _rule(cells: Mapping[str, str], where: str) -> HouseRule:
+class _RuleError(InputError):
+    """A row that is no rule: the column, what is wrong, what mends it."""
+
+    def __init__(self, column: str, message: str, remedy: str) -> None:
+        super().__init__(f"{message}; {remedy}")
+        self.column, self.message, self.remedy = column, message, remedy
+
+
+def _rule(cells: Mapping[str, str]) -> HouseRule:
     field, value = cells["states"], cells["value"]
     if field not in (*QUANTITIES, *VOCABULARIES):
-        raise CollectionError(
-            f"{where}, states: {field[:60]!r} is nothing that a rule states; use one of "
-            f"{', '.join((*VOCABULARIES, *QUANTITIES))}"
-        )
+        known = ", ".join((*VOCABULARIES, *QUANTITIES))
+        raise _RuleError("states", f"{field[:60]!r} is nothing that a rule states", f"use one of {known}")
     given: dict[str, Any] = {name: [part.strip() for part in cells[name].split("|")] for name in FOR if cells[name]}
     given |= {name: cells[name] for name in SIGNED}
     for name in SIGNED:
         if not cells[name]:
-            raise CollectionError(f"{where}, {name}: is empty; a rule says who says so, and when")
-    given[field] = value if field in VOCABULARIES else _span(cells, QUANTITIES[field][0], where)
+            raise _RuleError(name, "is empty", "a rule says who says so, and when")
+    given[field] = value if field in VOCABULARIES else _span(cells, QUANTITIES[field][0])
     try:
         return HouseRule(**given)
     except ValidationError as problem:
         first = problem.errors(include_url=False)[0]
         column = str(first["loc"][0]) if first["loc"] else "states"
         column = "value" if column == field else column
-        raise CollectionError(f"{where}, {column}: {first['msg']}; mend the cell") from None
+        raise _RuleError(column, str(first["msg"]), "mend the cell") from None
 
 
-def _span(cells: Mapping[str, str], unit: str, where: str) -> dict[str, float]:
+def _span(cells: Mapping[str, str], unit: str) -> dict[str, float]:
     if unit == "m" and cells["unit"] not in LENGTHS:
-        raise CollectionError(f"{where}, unit: {cells['unit'][:20]!r} is no unit of lengths; use {', '.join(LENGTHS)}")
+        message = f"{cells['unit'][:20]!r} is no unit of lengths"
+        raise _RuleError("unit", message, f"use {', '.join(LENGTHS)}")
     if unit != "m" and cells["unit"] not in ("", unit):
-        raise CollectionError(f"{where}, unit: {cells['states']} is in {unit}, not in {cells['unit'][:20]!r}")
-    per = LENGTHS[cells["unit"]] if unit == "m" else 1.0
+        message = f"{cells['states']} is in {unit}, not in {cells['unit'][:20]!r}"
+        raise _RuleError("unit", message, f"write {unit}, or leave it empty")
     if bool(cells["low"]) != bool(cells["high"]):
-        raise CollectionError(f"{where}: give low and high, or neither of them")
+        raise _RuleError("", "give low and high, or neither of them", "fill in the other one")
     span = {}
     for key, column in (("low", "low"), ("best", "value"), ("high", "high")):
-        text = cells[column] or cells["value"]
         try:
-            # Not 0.30000000000000004 m for 30 cm.
-            span[key] = float(f"{per * float(text):.12g}")
-        except ValueError as problem:
-            raise CollectionError(f"{where}, {column}: {text[:40]!r} is no number; write one, as 0.3") from problem
+            found = of_hand(cells[column] or cells["value"], cells["unit"] if unit == "m" else unit)
+        except InputError as problem:
+            raise _RuleError(column, str(problem), "write one number, as 0.3") from None
+        # Not 0.30000000000000004 m for 30 cm.
+        span[key] = float(f"{found.value:.12g}")
     return span
 
 

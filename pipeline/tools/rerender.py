@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from pipeline.night.photographs import Photographs
 from pipeline.night.reading_summary import doubts_of
 from pipeline.operations.presentation import presentation, terms_of
 from pipeline.operations.report_status import renew
@@ -49,7 +50,10 @@ def render_again(settings: Settings, run_id: str | None) -> Path:
         beside = {SUMMARY: told.read_text(encoding="utf-8")} if told.is_file() else {}
         renderer = PageRenderer(head, **presentation(settings))
         with ReportWriter(_free(workspace.reports / head.run_id), renderer) as writer:
-            index = draw_all(writer, head, found, changes, beside, doubts_of(workspace, head), terms_of(workspace))
+            photographs = Photographs(workspace)
+            photographs.recall()
+            doubts, terms = doubts_of(workspace, head), terms_of(workspace)
+            index = draw_all(writer, head, found, changes, beside, doubts, terms, photographs.of)
         if [head.run_id] == whole[:1]:
             publish(index.parent, workspace.reports)
             renew(settings)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from pipeline.analysis.assess import assess
 from pipeline.analysis.context import Context
@@ -12,11 +13,11 @@ from pipeline.analysis.faults import Fault, apart, fault
 from pipeline.analysis.house.questions import RuleQuestion, rule_questions
 from pipeline.analysis.survey import in_order, measurables, measurement_requests, telling_requests
 from pipeline.analysis.verdicts import LevelMotions
-from pipeline.collection.errors import CollectionError, NoRowsError
-from pipeline.collection.inventory import Difference, add_sheet, read_inventory
-from pipeline.collection.inventory.local_measurements import filled_in
+from pipeline.collection.errors import CollectionError
+from pipeline.collection.inventory import read_inventory
 from pipeline.collection.mapping import Mapping, load_mapping
 from pipeline.collection.reading import Reading, read_items
+from pipeline.collection.record import KINDS
 from pipeline.execute import Threads
 from pipeline.mitigate.installed import likely
 from pipeline.night.assessment import place
@@ -27,7 +28,6 @@ from pipeline.records.numerics import AUTO, CHART
 from pipeline.report.files.sheet_cells import HEADER_ROW
 from pipeline.report.files.survey_sheet import column_name, sheet_title, write_survey
 from pipeline.store.decisions import decisions_in_force
-from pipeline.tools.house_answers import add_rules, read_rules
 
 LENGTH_UNITS = ("cm", "mm", "m", "in", "ft")
 
@@ -157,7 +157,7 @@ def read_sheet(path: Path) -> Reading:
         For a file that cannot be read, or a workbook without the survey's sheet.
     """
     if path.suffix.lower() != ".xlsx":
-        return read_items(path, load_mapping("kouros"))
+        return read_items(path, _by_hand(load_mapping("kouros").model_dump(exclude_none=True, exclude_defaults=True)))
     fault: CollectionError | None = None
     for length in LENGTH_UNITS:
         try:
@@ -188,66 +188,14 @@ def sheet_mapping(length: str) -> Mapping:
     for field, column in whole["columns"].items():
         unit = {"unit": length} if field.endswith("_m") else {}
         columns[field] = column | {"column": column_name(field, length)} | unit
+    return _by_hand(whole | {"columns": columns})
+
+
+def _by_hand(whole: dict[str, Any]) -> Mapping:
+    """Return a mapping whose numbers somebody filled in by hand."""
+    kinds = ("number", "integer")
+    columns = {
+        field: column | ({"by_hand": True} if KINDS.get(field, "number") in kinds else {})
+        for field, column in whole["columns"].items()
+    }
     return Mapping.model_validate(whole | {"columns": columns})
-
-
-@dataclass(frozen=True)
-class SheetTaken:
-    """What was taken from a sheet that was filled in.
-
-    Attributes
-    ----------
-    reading : Reading or None
-        What was read of its measurements; None where it has no rows for any.
-    changes : Difference or None
-        What these changed; None where there are rules alone.
-    unknown : list of str
-        The objects of the sheet that the inventory does not have.
-    rules : str
-        The house rules that were added to the settings, as TOML; "" for none.
-    """
-
-    reading: Reading | None
-    changes: Difference | None
-    unknown: list[str]
-    rules: str
-
-
-def take_sheet(workspace: Workspace, config: Path, path: Path, *, dry_run: bool = False) -> SheetTaken:
-    """Lay the measurements of a filled-in sheet over the inventory, and add its house rules to the settings.
-
-    Parameters
-    ----------
-    workspace : Workspace
-        Whose inventory gets the measurements.
-    config : Path
-        The settings' file.
-    path : Path
-        The sheet.
-    dry_run : bool
-        Only say what that would change.
-
-    Returns
-    -------
-    SheetTaken
-        What was taken.
-
-    Raises
-    ------
-    CollectionError, SettingsError
-        As `read_sheet`, `read_rules` and `add_rules`; nothing is changed then.
-    """
-    rules = read_rules(path)
-    # What would be refused is refused before anything is changed.
-    add_rules(config, rules, dry_run=True)
-    changes: Difference | None = None
-    unknown: list[str] = []
-    try:
-        reading: Reading | None = read_sheet(path)
-    except NoRowsError:
-        if not rules:
-            raise
-        reading = None
-    if reading is not None and (not rules or any(filled_in(item) for item in reading.items)):
-        changes, unknown = add_sheet(workspace.engine, reading, dry_run=dry_run)
-    return SheetTaken(reading, changes, unknown, add_rules(config, rules, dry_run=dry_run))

@@ -23,17 +23,19 @@ from pipeline.night.run import Selection, run
 from pipeline.operations.workspace import open_workspace
 from pipeline.quantities import G
 from pipeline.records import DecisionKind
+from pipeline.report.files.manifest import read_manifest
 from pipeline.settings import Settings, load_settings, template
 from pipeline.store.decisions import decisions_in_force
 from pipeline.store.tables import DECISION
 from pipeline.tools.decisions import Wish, decide
-from pipeline.tools.survey import take_sheet
+from pipeline.tools.sheet_answers import take_sheet
+from tests.images.conftest import photograph
 from tests.museum import DATABASE, SILENT, few_samples, in_common, with_tables
 
 COLUMNS = (
     "object_number", "title", "object_name", "gallery", "case", "on_display", "medium", "height_m", "width_m",
     "depth_m", "friction", "mass_kg", "clearance_m", "position_x_m", "position_y_m", "value_class", "support",
-    "furniture", "furniture_anchorage", "value", "irreplaceable", "on_loan",
+    "furniture", "furniture_anchorage", "value", "irreplaceable", "on_loan", "image",
 )  # fmt: skip
 EXPORTS = ("findings.csv", "objects.csv", "recommendations.csv")
 NAMES = ("Vase", "Vase", "Bowl", "Plate", "Painting", "Figurine")
@@ -82,6 +84,7 @@ class Changing:
     v_max: float | None = None
     upstairs: list[str] = field(default_factory=list)
     house: str = ""
+    pictures: dict[str, str] = field(default_factory=lambda: {"a.png": "red", "b.png": "blue"})
     sheets: list[str] = field(default_factory=list)
     held: bytes | None = None
     imports: list[tuple[int, bytes, int]] = field(default_factory=list)
@@ -120,6 +123,7 @@ class Changing:
             "height_m": choice(("0.1", "0.3", "0.5", "")),
             "width_m": choice(("0.1", "0.2")),
             "depth_m": "0.02" if name == "Painting" else "0.1",
+            "image": choice(("", "a.png", "b.png", "none.png")),
         }
         if gallery == "A" and self.random.random() < 0.7:
             row |= {"position_x_m": choice(("0", "0.15", "0.4")), "position_y_m": choice(("0", "0.2"))}
@@ -144,6 +148,12 @@ class Changing:
         (self.home / "collection.csv").write_bytes(self.export)
         for name, content in self.tables.items():
             (self.home / name).write_text(content, encoding="utf-8")
+        for name, colour in self.pictures.items():
+            file = self.home / "pictures" / name
+            file.parent.mkdir(exist_ok=True)
+            content = photograph((20, 10), colour, "PNG")
+            if not file.exists() or file.read_bytes() != content:
+                file.write_bytes(content)
         for at, sheet in enumerate(self.sheets):
             (self.home / f"sheet-{at}.csv").write_text(sheet, encoding="utf-8")
         said = few_samples(template(museum="Test", source="collection.csv", mapping="kouros", site="site"))
@@ -154,6 +164,7 @@ class Changing:
             lines[at] = f"{name} = {value}"
             said = "\n".join(lines)
         floors = f'[floors]\n"2" = {self.upstairs!r}'.replace("'", '"') if self.upstairs else "[floors]"
+        said = said.replace("[images]", '[images]\nfolder = "pictures"').replace('folder = ""\n', "")
         text = f"{said.replace('[floors]', floors)}\n{self.house}"
         (self.home / "kouros.toml").write_text(text, encoding="utf-8")
 
@@ -228,6 +239,9 @@ class Changing:
         more = {"friction": "0.3", "mass_kg": "2.5", "clearance_m": "0.02", "value_class": "A", "support": "fastened"}
         more |= {"value": "40000", "irreplaceable": "yes", "on_loan": "yes"}
         row[name] = other[name] or ("" if row[name] else more.get(name, ""))
+
+    def other_picture(self) -> None:
+        self.pictures[self.random.choice(("a.png", "b.png"))] = self.random.choice(("red", "blue", "green", "black"))
 
     def make_alike(self) -> None:
         row, other = self.any_row(), self.any_row()
@@ -353,7 +367,7 @@ class Changing:
             self.exchange_numbers, self.reorder_columns, self.other_line_ends, self.rename_gallery, self.lay_sheet_over,
             self.other_v_max, self.other_scale, self.other_settings, self.stores, self.own_rules, self.own_measures,
             self.own_isolators, self.own_rows, self.other_house_rules, self.other_floors, self.decide, self.withdraw,
-            self.run_a_part,
+            self.run_a_part, self.other_picture,
             self.go_back,
         ]  # fmt: skip
 
@@ -364,4 +378,6 @@ def exported(report: Path) -> dict[str, list[dict[str, str]]]:
     for name in EXPORTS:
         with (report / name).open(encoding="utf-8", newline="") as stream:
             out[name] = [row | {"run": ""} for row in csv.DictReader(stream)]
+    pictures = {page.entry.page.file: page.images for page in read_manifest(report).pages}
+    out["pictures"] = [{"page": page, "files": " ".join(sorted(files))} for page, files in sorted(pictures.items())]
     return out

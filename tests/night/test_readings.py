@@ -31,7 +31,7 @@ from pipeline.settings import Settings, load_settings
 from pipeline.store.migrate import upgrade
 from pipeline.tools.doctor import diagnose
 from pipeline.tools.rerender import render_again
-from pipeline.tools.survey import take_sheet
+from pipeline.tools.sheet_answers import take_sheet
 from tests.collection.real_exports import read
 from tests.museum import SILENT, workspace
 from tests.report import builder

@@ -24,7 +24,7 @@ from pipeline.report.files.survey_sheet import write_survey
 from pipeline.settings import SettingsError, load_settings
 from pipeline.tools.doctor import diagnose
 from pipeline.tools.house_answers import add_rules, read_rules, to_paste
-from pipeline.tools.survey import take_sheet
+from pipeline.tools.sheet_answers import take_sheet
 
 WHEN = date(2031, 5, 1)
 PAINTINGS = [
@@ -152,7 +152,7 @@ def test_a_workbook_that_nobody_filled_in_has_no_rules(tmp_path: Path) -> None:
         (HOOKS | {"value": "string"}, r"row 5, value: .*'wire', 'two_hooks'"),
         (HOOKS | {"value": '=HYPERLINK("x")'}, r"row 5, value: .*formula"),
         (LENGTH | {"high": None}, r"row 3: give low and high, or neither"),
-        (LENGTH | {"value": "0,3"}, r"row 3, value: '0,3' is no number; write one, as 0\.3"),
+        (LENGTH | {"value": "long"}, r"row 3, value: 'long' is no number; write one number, as 0\.3"),
         (LENGTH | {"high": 70}, r"row 3, .*suspension_ratio must lie within 0 and 50"),
         (LENGTH | {"low": 0.4}, r"row 3, .*low <= best <= high"),
         (ROOM | {"unit": "ell"}, r"row 8, unit: 'ell' is no unit of lengths"),

@@ -10,6 +10,7 @@ from functools import cached_property
 from pipeline.collection.dimensions import parse
 from pipeline.collection.dimensions.structured import plain_text
 from pipeline.collection.guessing.names import LENGTH, TEXTS, ColumnMeaning, bare, named
+from pipeline.collection.image_names import first_of, is_image_name
 from pipeline.collection.sources.measurement_terms import kind_of, unit_of
 
 NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?", re.ASCII)
@@ -61,6 +62,12 @@ class Column:
         """Share of its texts that hold a number and a word: a size, perhaps in words that are not understood."""
         some = self.filled[:_SOME]
         return sum(bool(_SIZE.search(text)) for text in some) / len(some) if some else 0.0
+
+    @cached_property
+    def pictured(self) -> float:
+        """Share of its texts that name photographs."""
+        some = self.filled[:_SOME]
+        return sum(is_image_name(first_of(text)) for text in some) / len(some) if some else 0.0
 
     @cached_property
     def kinds(self) -> float:

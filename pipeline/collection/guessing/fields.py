@@ -69,6 +69,26 @@ def decimal_of(columns: Sequence[Column]) -> str:
     return "," if commas > points else "."
 
 
+def images_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:
+    """Return the column whose texts are names of photographs: files, URLs, addresses of IIIF.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        Of the source.
+    used : iterable of Column
+        Those that are fields already.
+
+    Returns
+    -------
+    Column or None
+        Of several the one that is filled most; a large picture before a small one.
+    """
+    taken = {id(column) for column in used}
+    able = [one for one in columns if id(one) not in taken and one.filled and one.pictured > 0.8]
+    return max(able, key=lambda one: (len(one.filled), "thumb" not in one.name.casefold()), default=None)
+
+
 def flag_among(columns: Sequence[Column], used: Iterable[Column]) -> Column | None:
     """Return the column all of whose words say whether an object is on display, and not yes and no alone.
 

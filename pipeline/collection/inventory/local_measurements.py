@@ -30,7 +30,10 @@ record : the fields that were filled in, JSON-ready, with their provenance
 """
 
 _MUSEUMS = frozenset(
-    {"object_number", "gallery", "title", "object_name", "classification", "medium", "dimensions", "on_display"}
+    {
+        *("object_number", "gallery", "title", "object_name", "classification", "medium", "dimensions", "on_display"),
+        *("image", "image_credit"),
+    }
 )
 """Fields that a sheet shows and does not change: the museum's database is where they are mended."""
 

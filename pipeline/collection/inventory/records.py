@@ -318,6 +318,13 @@ def items_named(engine: Engine, numbers: Sequence[str]) -> dict[str, Item]:
     return {item.object_number: item for item in found}
 
 
+def images(engine: Engine) -> dict[str, str]:
+    """Return what the records call the photographs of objects, by object number; of those that have one."""
+    with engine.connect() as connection:
+        wanted = select(ITEM.c.object_number, ITEM.c.image).where(current(), ITEM.c.image != "")
+        return {row.object_number: row.image for row in connection.execute(wanted)}
+
+
 def object_numbers(engine: Engine) -> list[str]:
     """Return all object numbers, sorted."""
     with engine.connect() as connection:

@@ -11,6 +11,7 @@
 | medium_aat | the numbers of the materials; techniques left out |
 | gallery | the name of the current repositoryLocation itself, not of what it is part of; else displayRepository |
 | repository | the name of the current repository |
+| image, image_credit | linkResource of the first picture in the order of the record, and its credit line or rights |
 | dimensions | displayObjectMeasurements |
 | height, ... weight | measurementsSet: value and unit as they were written |
 | base height, frame height, ... | the same where extentMeasurements says that it is the base or the frame |
@@ -54,6 +55,8 @@ COLUMNS = (
     "medium_aat",
     "gallery",
     "repository",
+    "image",
+    "image_credit",
     "dimensions",
     *MEASURED,
     "other_measurements",
@@ -67,6 +70,7 @@ _TOKEN = "{http://www.openarchives.org/OAI/2.0/}resumptionToken"  # noqa: S105  
 _LANG = "{http://www.w3.org/XML/1998/namespace}lang"
 _AAT = re.compile(r"(?:https?://vocab\.getty\.edu/(?:page/)?aat/|aat[:/])?(300[0-9]{6})(?:\.html)?/?", re.I)
 _WIKIDATA = re.compile(r"https?://(?:www\.)?wikidata\.org/(?:entity|wiki)/(Q[0-9]+)/?", re.I)
+_PICTURES = frozenset({"jpg", "jpeg", "png", "tif", "tiff", "gif", "webp", "jp2"})
 _OWN_NUMBER = re.compile("inventor|inventar|inventaire|accession|lido00113", re.I)
 
 
@@ -142,6 +146,7 @@ class _Record:
                 found = {column: text for column, text in found.items() if column not in _MEASURED}
             cells = {**found, **cells}
         cells.setdefault("object_number", cells["record_id"])
+        cells |= self._picture()
         return cells
 
     def _describe(self, described: Any) -> dict[str, str]:
@@ -161,6 +166,24 @@ class _Record:
         cells["medium"], cells["medium_aat"] = self._medium(described)
         cells.update(self._measurements(_all(described, f"{kept}/objectMeasurementsWrap/objectMeasurementsSet")))
         return {column: text for column, text in cells.items() if text}
+
+    def _picture(self) -> dict[str, str]:
+        """The address of the first picture, a thumbnail only where there is nothing else, and who is credited."""
+        ranked: list[tuple[bool, int, str, Any]] = []
+        for each in _all(self._record, "administrativeMetadata/resourceWrap/resourceSet"):
+            for shown in _all(each, "resourceRepresentation"):
+                for link in _all(shown, "linkResource"):
+                    kind = str(link.get(f"{_LIDO}formatResource") or link.get("formatResource") or "").casefold()
+                    if _text(link) and (not kind or "image" in kind or kind.strip(".") in _PICTURES):
+                        ranked.append(("thumb" in _type(shown), len(ranked), _text(link), each))
+        if not ranked:
+            return {}
+        *_, address, each = min(ranked, key=lambda one: one[:2])
+        rights = _all(each, "rightsResource")
+        credit = self._pick(c for r in rights for c in _all(r, "creditLine")) or _join(
+            self._term(one) for r in rights for one in _all(r, "rightsType")
+        )
+        return {"image": address} | ({"image_credit": credit} if credit else {})
 
     def _repositories(self, described: Any) -> list[Any]:
         """The repositorySets where the object is now: a current location, a current repository, one without a type."""

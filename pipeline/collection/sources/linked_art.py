@@ -13,6 +13,7 @@ https://linked.art/model/base/ for names, numbers and statements.
 | classification | classified_as, all |
 | medium, medium_aat | the statement of materials, else the labels of made_of and of the technique |
 | gallery, on_display | current_location, and whether it is classed as a gallery or a store |
+| image, image_credit | representation, or the IIIF manifest of subject_of; the credit line |
 | dimensions | the statements of dimensions |
 | height, ... other_measurements | dimension: value or limits, unit, class, and the technique of its measuring |
 """
@@ -64,6 +65,7 @@ _ARTWORK = "300133025"
 _MATERIALS = frozenset({"300435429", "300010358", "300163343"})
 _DIMENSIONS = frozenset({"300435430", "300266036"})
 _CAPTION = "300191074"
+_CREDITS = frozenset({"300026687", "300435418", "300435434"})
 _GALLERY = "300240057"
 _STORE = "300004465"
 
@@ -140,6 +142,8 @@ def _read(record: dict[str, Any], unit: str | None) -> tuple[dict[str, str], Mea
         "medium_aat": joined(map(_concept, made_of)),
         "gallery": gallery,
         "on_display": on_display,
+        "image": _image(record),
+        "image_credit": _statements(record, _CREDITS, "credit line"),
         "dimensions": _statements(record, _DIMENSIONS, "dimension"),
     }
     measured = Measurements(unit)
@@ -224,6 +228,27 @@ def _place(record: dict[str, Any]) -> tuple[str, str]:
         flag = "true" if _GALLERY in concepts else "false" if _STORE in concepts else ""
         return flag, name
     return "", ""
+
+
+def _image(record: dict[str, Any]) -> str:
+    """Return the address of the first picture of an object, or else of its IIIF manifest; "" for none."""
+    for shown in _all(record, "representation"):
+        points = [p for d in _all(shown, "digitally_shown_by") for p in (*_all(d, "access_point"), d)]
+        for one in (*points, shown):
+            address = _web(one)
+            if address and not address.endswith((".json", ".html")):
+                return address
+    for page in _all(record, "subject_of"):
+        carried = [page, *_all(page, "digitally_carried_by")]
+        for one in carried:
+            if any("iiif.io/api/presentation" in str(said.get("id")) for said in _all(one, "conforms_to")):
+                return next(filter(None, map(_web, (*_all(one, "access_point"), one))), "")
+    return ""
+
+
+def _web(one: dict[str, Any]) -> str:
+    address = one.get("id", one.get("@id"))
+    return address if isinstance(address, str) and address.startswith(("https://", "http://")) else ""
 
 
 def _statements(record: dict[str, Any], concepts: frozenset[str], word: str) -> str:

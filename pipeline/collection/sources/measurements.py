@@ -29,6 +29,8 @@ COLUMNS = (
     "medium_aat",
     "gallery",
     "on_display",
+    "image",
+    "image_credit",
     "dimensions",
     *MEASURED,
     "other_measurements",

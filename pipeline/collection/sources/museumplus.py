@@ -10,6 +10,7 @@ public clients of the service (museumpy, MIT; mpapi) and of published exports.
 | classification | ObjSystematicVrt or its group, ObjCategoryVoc |
 | medium | ObjMaterialTechniqueVrt or its group, ObjMaterialTxt and ObjTechniqueTxt |
 | gallery | ObjCurrentLocationVrt, its group, its vocabulary |
+| image | ObjMultimediaRef or an attachment whose name is that of an image file |
 | dimensions | ObjDimAllVrt, ObjDimensionTxt, the previews of ObjDimAllGrp |
 | height, ... other_measurements | HeightNum, WidthNum, ... of ObjDimAllGrp, with UnitDdiVoc and TypeDimRef |
 """
@@ -22,6 +23,7 @@ from typing import Any, BinaryIO, ClassVar, Literal
 
 from pydantic import Field
 
+from pipeline.collection.image_names import is_image_name
 from pipeline.collection.sources.base import HEAD, FileSource, Request, SourceSettings
 from pipeline.collection.sources.measurement_terms import kind_of, part_of
 from pipeline.collection.sources.measurements import COLUMNS, MeasuredSettings, Measurements, joined, row_of
@@ -123,9 +125,18 @@ def read_museumplus(stream: BinaryIO, file: str, *, unit: str | None = None) -> 
         cells["medium"] = next(
             filter(None, (joined(text for path in paths for text in _texts(item, path)) for paths in _MEDIUM)), ""
         )
+        cells["image"] = next(filter(is_image_name, _pictures(item)), "")
         # Previews write a hierarchy with arrows, which begin it where the uppermost place has no name.
         cells["gallery"] = cells["gallery"].strip(" ->")
         yield row_of(number, item.sourceline, cells, _measured(item, unit))
+
+
+def _pictures(item: Any) -> Iterator[str]:
+    """Yield the names of files that a record names among its media."""
+    for reference in item.findall(f"{_RIA}moduleReference"):
+        if reference.get("name") == "ObjMultimediaRef":
+            yield from (" ".join((e.text or "").split()) for e in reference.iter(f"{_RIA}formattedValue"))
+    yield from (one.get("name") or "" for one in item.findall(f"{_RIA}attachment"))
 
 
 def _texts(item: Any, path: str) -> Iterator[str]:

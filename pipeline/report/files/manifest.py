@@ -39,17 +39,21 @@ class FileSum(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class KeptPage:
-    """A page of a report: the key of all that it depends on, what the index says of it, what it adds to the totals."""
+    """A page of a report: the key of all that it depends on, what the index says of it, what it adds to the totals.
+
+    images : files with pictures of its objects
+    """
 
     key: str
     entry: Entry
     tally: Tally
+    images: tuple[str, ...] = ()
 
     @property
     def files(self) -> tuple[str, ...]:
-        """The page, its parts of the exports, and of a gallery the sheet to walk with."""
+        """The page, its parts of the exports, its pictures, and of a gallery the sheet to walk with."""
         page = self.entry.page.file
-        return page, *part_files(page), *((sheet_file(page),) if self.entry.on_display else ())
+        return page, *part_files(page), *((sheet_file(page),) if self.entry.on_display else ()), *self.images
 
 
 @dataclass(frozen=True, slots=True)

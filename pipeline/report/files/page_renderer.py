@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -10,7 +10,7 @@ from jinja2 import Environment
 from markupsafe import Markup
 
 from pipeline.analysis.stakes import VALUE_PER_C, counting
-from pipeline.records import DecisionStatus, Found, Page, RunRecord, Tally
+from pipeline.records import DecisionStatus, Found, Page, Photo, RunRecord, Tally
 from pipeline.report.files.exports import FindingRows, page_exports
 from pipeline.report.files.object_list import LISTED, listed_part, listed_rows
 from pipeline.report.files.walk_sheet import sheet_file, sheet_pdf
@@ -19,6 +19,7 @@ from pipeline.report.pages.compose import compose, page_head
 from pipeline.report.pages.describe import Sayings
 from pipeline.report.pages.environment import environment, fill, script_of
 from pipeline.report.pages.notes import page_notes
+from pipeline.report.pages.photo_views import photo_file
 from pipeline.report.pages.tallies import tally
 from pipeline.report.pages.views import Entry, FigureView, State
 from pipeline.report.plots.chart import PATTERNS, Drawing
@@ -34,6 +35,7 @@ class RenderedPage:
     tally : what it adds to the totals of the run
     parts : what it adds to each export, by the names of `PARTS_OF_PAGE`
     sheet : to walk the gallery with, as PDF; none for what is not on display
+    images : pictures of its objects, by the names of their files
     """
 
     page: bytes
@@ -41,6 +43,7 @@ class RenderedPage:
     tally: Tally
     parts: Mapping[str, bytes]
     sheet: bytes | None = None
+    images: Mapping[str, bytes] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,13 @@ class PageRenderer:
     language: Language
     paper: str = "A4"
 
-    def draw(self, page: Page, found: Found, decisions: Sequence[DecisionStatus]) -> RenderedPage:
+    def draw(
+        self,
+        page: Page,
+        found: Found,
+        decisions: Sequence[DecisionStatus],
+        photos: Mapping[str, Photo] | None = None,
+    ) -> RenderedPage:
         """Return a page and what it adds to the report; the same results give the same bytes.
 
         Parameters
@@ -67,6 +76,8 @@ class PageRenderer:
             What was found about its objects.
         decisions : sequence of DecisionStatus
             Those about its objects.
+        photos : mapping of str to Photo, optional
+            Pictures of its objects by number, with their content.
 
         Returns
         -------
@@ -87,12 +98,18 @@ class PageRenderer:
         )
         with speaking(self.language), counting(self._value_per_c):
             made = compose(
-                record, page, self.units, self._sayings, several=len({m.level for m in self.head.motions}) > 1
+                record,
+                page,
+                self.units,
+                self._sayings,
+                several=len({m.level for m in self.head.motions}) > 1,
+                photos=photos or {},
             )
             gallery = made.gallery
             head = page_head(self.head, page)
             context: dict[str, Any] = {"museum": head, "units": self.units, "State": State}
             context |= {"here": "gallery", "gallery": gallery, "sheet": sheet_file(gallery.page.file)}
+            context["pictured"] = bool(photos)
             if gallery.counts.aside:
                 text = fill(self._environment, "aside.html", context)
             else:
@@ -101,8 +118,11 @@ class PageRenderer:
             parts = page_exports(record, page.run, gallery.page.file, made.anchor, made.key, self.units, self._rows)
             rows = listed_rows(self._environment, context)
             parts[LISTED] = listed_part([o.number for o in gallery.objects], rows)
-            sheet = None if made.walk is None else sheet_pdf(made.walk, head, self.language, self.paper)
-        return RenderedPage(text.encode(), made.entry, self.tally(found), parts, sheet)
+            images = {photo_file(photo): photo.content for photo in (photos or {}).values()}
+            sheet = None
+            if made.walk is not None:
+                sheet = sheet_pdf(made.walk, head, self.language, self.paper, images)
+        return RenderedPage(text.encode(), made.entry, self.tally(found), parts, sheet, images)
 
     def tally(self, found: Found) -> Tally:
         """Return what the objects of a page add to the totals of the run."""

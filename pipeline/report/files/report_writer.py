@@ -17,7 +17,7 @@ from typing import Any, Self
 from markupsafe import Markup
 
 from pipeline.planning.plan import PlanTerms
-from pipeline.records import DecisionStatus, Page, RunChanges, RunRecord, Tally
+from pipeline.records import DecisionStatus, Page, Photo, RunChanges, RunRecord, Tally
 from pipeline.report.errors import ReportError
 from pipeline.report.files.concatenation import concatenate, ranked
 from pipeline.report.files.exports import EXPORTS, PARTS_OF_PAGE, WORKBOOK, write_exports_workbook
@@ -44,7 +44,15 @@ from pipeline.report.pages.environment import environment, fill, script_of
 from pipeline.report.pages.errand_views import plan_page
 from pipeline.report.pages.further import further_pages
 from pipeline.report.pages.news import OPEN, news_pages, news_view, page_file
-from pipeline.report.pages.reading import INVENTORY, READING, Doubts, is_reading_file, reading_view, write_doubts
+from pipeline.report.pages.reading import (
+    IMAGES,
+    INVENTORY,
+    READING,
+    Doubts,
+    is_reading_file,
+    reading_view,
+    write_doubts,
+)
 from pipeline.report.pages.since import since_view
 from pipeline.report.pages.views import Pointer, State
 from pipeline.report.plots.traces import trace
@@ -52,7 +60,12 @@ from pipeline.report.text import clean, short
 from pipeline.resources import aside_of, naming, page_version
 
 
-def page_key(renderer: PageRenderer, page: Page, decisions: Sequence[DecisionStatus]) -> str:
+def page_key(
+    renderer: PageRenderer,
+    page: Page,
+    decisions: Sequence[DecisionStatus],
+    photos: Mapping[str, Photo] | None = None,
+) -> str:
     """Return the digest of everything that a page and its parts of the exports depend on.
 
     Parameters
@@ -63,8 +76,11 @@ def page_key(renderer: PageRenderer, page: Page, decisions: Sequence[DecisionSta
         All its fields count.
     decisions : sequence of DecisionStatus
         Those about its objects, as they stand.
+    photos : mapping of str to Photo, optional
+        Pictures of its objects by number, with or without their content.
     """
-    return _key(renderer, page, list(decisions))
+    shown = [(number, photo.name) for number, photo in sorted((photos or {}).items())]
+    return _key(renderer, page, list(decisions), *filter(None, [shown]))
 
 
 def _key(renderer: PageRenderer, *own: object) -> str:
@@ -144,7 +160,13 @@ class ReportWriter:
                 self._write(name, rendered.parts[export])
             if rendered.sheet is not None:
                 self._write(sheet_file(page), rendered.sheet)
-        self._pages.append(KeptPage(key, rendered.entry, rendered.tally))
+            for name, content in rendered.images.items():
+                # By their names they are what they were: another page, or the earlier report, may have them too.
+                if name not in self._files and self._previous.has(name):
+                    self._link(name)
+                elif name not in self._files:
+                    self._write(name, content)
+        self._pages.append(KeptPage(key, rendered.entry, rendered.tally, tuple(rendered.images)))
         return rendered.tally
 
     def finish(
@@ -200,12 +222,17 @@ class ReportWriter:
         return self.folder / "index.html"
 
     def _write(self, name: str, content: bytes) -> None:
-        (self._partial / name).write_bytes(content)
+        target = self._partial / name
+        target.parent.mkdir(exist_ok=True)
+        target.write_bytes(content)
         self._files[name] = FileSum(len(content), sha256(content).hexdigest())
 
     def _link(self, *names: str) -> None:
         """Take files over from the earlier report, whose checksums were compared."""
         for name in names:
+            if name in self._files:
+                continue
+            (self._partial / name).parent.mkdir(exist_ok=True)
             _link_or_copy(self._previous.folder / name, self._partial / name)
             self._files[name] = self._previous.manifest.files[name]
 
@@ -248,7 +275,8 @@ class ReportWriter:
 
     def _read(self, head: RunRecord, doubts: Doubts) -> str:
         """Write the page and the list of what reading refused and doubts, or take those of the earlier report."""
-        key = _key(self.renderer, sorted(head.settings[READING].items()), head.settings.get(INVENTORY))
+        said = (sorted(head.settings[READING].items()), head.settings.get(INVENTORY), head.settings.get(IMAGES))
+        key = _key(self.renderer, *said)
         files = [name for name in self._previous.manifest.files if is_reading_file(name)]
         if key == self._previous.manifest.reading and self._previous.has(*files):
             self._link(*files)

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 HEADER_ROW = 2
 """The row of the column names that the import reads; above it stand the words for people."""
 
+_LIST = 250
+"""Characters that a list of a drop-down can hold, nearly."""
+
 _INK = "FF1F2A37"
 _QUIET = "FF6B7280"
 _FILL = "FFFFF6DB"
@@ -25,7 +28,24 @@ def to_fill_in(cell: Any) -> None:
     from openpyxl.styles import Border, PatternFill, Side
 
     cell.fill = PatternFill("solid", fgColor=_FILL)
+    # A text: of 1/2 a spreadsheet would make a date, and of 8 1/2 whatever its language likes.
+    cell.number_format = "@"
     cell.border = Border(*(Side(style="thin", color=_LINE) for _ in range(4)))
+
+
+def choice_of(sheet: Worksheet, words: Sequence[str], column: int, first: int, last: int) -> None:
+    """Let cells of a column be chosen from some words, which together have 255 characters at most."""
+    from openpyxl.utils import get_column_letter
+    from openpyxl.worksheet.datavalidation import DataValidation
+
+    listed = ",".join(words)
+    if last < first or len(listed) > _LIST:
+        return
+    choice = DataValidation(type="list", formula1=f'"{listed}"', allow_blank=True, showErrorMessage=True)
+    choice.errorTitle, choice.error = "Kouros", f"One of {', '.join(words)}"[:_LIST]
+    sheet.add_data_validation(choice)
+    letter = get_column_letter(column)
+    choice.add(f"{letter}{first}:{letter}{last}")
 
 
 def headed(sheet: Worksheet, widths: Sequence[int], *, rows: int) -> None:

@@ -6,10 +6,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pipeline.collection.record import CHOICES
+from pipeline.models import MODELS
 from pipeline.quantities import LENGTHS
 from pipeline.records import MeasurementRequest
+from pipeline.report.files.decisions_sheet import DECISIONS_SHEET, write_decisions
 from pipeline.report.files.rules_sheet import RULES_SHEET, write_rules
-from pipeline.report.files.sheet_cells import HEADER_ROW, headed, to_fill_in, write_cell
+from pipeline.report.files.sheet_cells import HEADER_ROW, choice_of, headed, to_fill_in, write_cell
 from pipeline.report.files.workbook import saved
 from pipeline.resources import replacing
 
@@ -62,6 +65,7 @@ def write_survey(
     first.title = sheet_title(length)
     _fill_in(first, asked, names, length)
     write_rules(book.create_sheet(RULES_SHEET), rules, length)
+    write_decisions(book.create_sheet(DECISIONS_SHEET), [model.name for model in MODELS])
     _ranking(book.create_sheet("what first"), asked, {m.field: m.label for m in fields})
     _how(book.create_sheet("how to measure"), names, length)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -98,6 +102,9 @@ def _fill_in(sheet: Worksheet, asked: Sequence[MeasurementRequest], fields: Sequ
                 cell.alignment = Alignment(wrap_text=True, vertical="top")
             if name in wanted:
                 to_fill_in(cell)
+    for at, m in enumerate(fields, start=len(SHOWN) + 1):
+        if m.field in CHOICES:
+            choice_of(sheet, [one.value for one in CHOICES[m.field]], at, HEADER_ROW + 1, HEADER_ROW + len(order))
     headed(sheet, [16, 24, 32, *(14 for _ in fields), 60], rows=HEADER_ROW)
     sheet.freeze_panes = sheet.cell(HEADER_ROW + 1, len(SHOWN) + 1)
 

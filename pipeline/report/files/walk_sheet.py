@@ -5,7 +5,7 @@ letter that it lacks is a box, and the sheet says so.
 """
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
@@ -35,6 +35,8 @@ _DRAWING = Lock()
 _MARGIN, _SIZE, _LEADING, _PAD = 30.0, 7.5, 9.0, 3.0
 _LEAST = 21.0
 """Height of a line in points, 7.4 mm: what people can write in."""
+_PICTURE = 34.0
+"""Side of the square of a picture in points, 12 mm."""
 _LINES = 40
 """Lines of a cell at most: a third of a page is left where the number of an object has no end."""
 _MOST = 700
@@ -58,13 +60,15 @@ class _Column:
 class _Line:
     """A row of the sheet ready to be drawn: the lines of each text, and its height in points.
 
-    band : the heading of a part, which stands in place of a row
+    band  : the heading of a part, which stands in place of a row
+    photo : the file of a picture, "" for none
     """
 
     cells: tuple[tuple[str, ...], ...]
     height: float
     ask: tuple[str, ...] = ()
     band: str = ""
+    photo: str = ""
 
 
 def sheet_file(page: str) -> str:
@@ -72,7 +76,13 @@ def sheet_file(page: str) -> str:
     return f"{page.removesuffix('.html')}-sheet.pdf"
 
 
-def sheet_pdf(view: WalkView, head: PageHead, language: Language, paper: str = "A4") -> bytes:
+def sheet_pdf(
+    view: WalkView,
+    head: PageHead,
+    language: Language,
+    paper: str = "A4",
+    images: Mapping[str, bytes] | None = None,
+) -> bytes:
     """Return the sheet as PDF; the same results give the same bytes.
 
     Parameters
@@ -85,6 +95,8 @@ def sheet_pdf(view: WalkView, head: PageHead, language: Language, paper: str = "
         Of the pages, which is being spoken.
     paper : {"A4", "Letter"}
         Its size.
+    images : mapping of str to bytes, optional
+        Pictures of its objects as JPEG, by the files that its rows name; without any there is no column for them.
 
     Returns
     -------
@@ -97,18 +109,26 @@ def sheet_pdf(view: WalkView, head: PageHead, language: Language, paper: str = "
         Where the fonts are not there.
     """
     with _DRAWING:
-        return _Sheet(view, head, language, PAPERS[paper]).drawn()
+        return _Sheet(view, head, language, PAPERS[paper], images or {}).drawn()
 
 
 class _Sheet:
     """One sheet that is being drawn."""
 
-    def __init__(self, view: WalkView, head: PageHead, language: Language, size: tuple[float, float]) -> None:
+    def __init__(
+        self,
+        view: WalkView,
+        head: PageHead,
+        language: Language,
+        size: tuple[float, float],
+        images: Mapping[str, bytes],
+    ) -> None:
         from reportlab.pdfgen.canvas import Canvas
 
         _fonts()
         self._view, self._head, self._size = view, head, size
         self._lacks = False
+        self._images = {row.photo: images[row.photo] for row in (*view.act, *view.measure) if row.photo in images}
         self._stream = BytesIO()
         # Invariant: neither the hour at which it is drawn nor chance is in the file.
         self._pdf = Canvas(self._stream, pagesize=size, pageCompression=1, invariant=1, lang=language.code)
@@ -120,8 +140,9 @@ class _Sheet:
             self._name = f"{self._name}, {part}"
 
     def _of_width(self) -> tuple[_Column, ...]:
+        # Where something has a picture, the tick box has it beside.
         fixed = [
-            _Column("", 16.0, 0),
+            _Column("", 16.0 + (_PICTURE + _PAD if self._images else 0.0), 0),
             _Column(_("Object"), 82.0, _LINES),
             _Column("", 0.0, 3),
             _Column(_("What to do"), 96.0, 3),
@@ -187,7 +208,9 @@ class _Sheet:
         ask = self._wrapped(row.ask, _SANS, self._columns[5].width - 2.0 * _PAD, 2)
         # What is to be measured stands above the room for the number.
         high = max(*map(len, cells), len(ask) + 1 if ask else 0)
-        return _Line(tuple(cells), max(_LEAST, high * _LEADING + 2.0 * _PAD), ask)
+        photo = row.photo if row.photo in self._images else ""
+        least = _PICTURE + 2.0 * _PAD if photo else _LEAST
+        return _Line(tuple(cells), max(least, high * _LEADING + 2.0 * _PAD), ask, photo=photo)
 
     def _fit(self, text: str) -> str:
         """Return a text with a box for each letter that the fonts lack."""
@@ -263,6 +286,8 @@ class _Sheet:
             self._text(_MARGIN + _PAD, bottom + 5.0, line.band, _BOLD, _SIZE)
             return
         pdf.rect(_MARGIN + _PAD, y - _PAD - 10.0, 9.0, 9.0)
+        if line.photo:
+            self._picture(line.photo, _MARGIN + 16.0, y - _PAD)
         x = _MARGIN
         for at, column in enumerate(self._columns):
             if at < len(line.cells):
@@ -278,6 +303,15 @@ class _Sheet:
             x += column.width
         pdf.line(_MARGIN, bottom, _MARGIN + self._width, bottom)
         pdf.setStrokeGray(0.0)
+
+    def _picture(self, file: str, left: float, top: float) -> None:
+        """Draw a picture within its square, from the left and the top."""
+        from reportlab.lib.utils import ImageReader
+
+        picture = ImageReader(BytesIO(self._images[file]))
+        wide, high = picture.getSize()
+        scale = _PICTURE / max(wide, high)
+        self._pdf.drawImage(picture, left, top - scale * high, scale * wide, scale * high)
 
     def _foot(self, at: int, of: int) -> None:
         y = _MARGIN

@@ -2,10 +2,10 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isnan
 
-from pipeline.records import Assessment, Page, Recommendation, RunRecord, Tally, Urgency, Verdict
+from pipeline.records import Assessment, Page, Photo, Recommendation, RunRecord, Tally, Urgency, Verdict
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, local, ngettext, said
 from pipeline.report.pages.class_curves import class_curve_views, class_curves
@@ -16,6 +16,7 @@ from pipeline.report.pages.ground import motion_view
 from pipeline.report.pages.judging import room_views, shaking_view, spacing_views
 from pipeline.report.pages.museum_views import GalleryView, MuseumView
 from pipeline.report.pages.numerics import decided_views, fidelities
+from pipeline.report.pages.photo_views import credits_of, photo_view
 from pipeline.report.pages.ranking import to_check, urgency
 from pipeline.report.pages.reading import reading_view
 from pipeline.report.pages.selftest import self_test_view
@@ -99,19 +100,28 @@ class Composed:
     key: Callable[[Assessment], Urgency | None]
 
 
-def compose(record: RunRecord, page: Page, units: Units, sayings: Sayings | None = None, *, several: bool) -> Composed:
+def compose(
+    record: RunRecord,
+    page: Page,
+    units: Units,
+    sayings: Sayings | None = None,
+    *,
+    several: bool,
+    photos: Mapping[str, Photo] | None = None,
+) -> Composed:
     """Return everything that a page shows, in the order in which it shows it.
 
     record  : the run with the objects, wishes, spacings and decisions of this page only
     sayings : what was put into words on other pages of the run, in this language and these units
     several : whether the run has several levels of shaking
+    photos  : pictures of its objects, by number
     raises  : ReportError for a sentence with an unknown placeholder or a mark on a chart that the run does not hold
     """
     describer = Describer(record, units, sayings or Sayings(record.motions, units))
     members = sorted(record.assessments, key=urgency)
     file = page_name(page.gallery, page.number, on_display=page.on_display)
     spacings = spacing_views(record.spacings, units) if page.on_display else ()
-    views = [describer.object(a, file) for a in members]
+    views = [replace(describer.object(a, file), photo=photo_view(a.scene.item, photos or {})) for a in members]
     pairs = list(zip(members, views, strict=True))
     by_state = Counter(v.state for v in views)
     unsettled = sum(bool(v.open_for) for v in views)
@@ -133,6 +143,7 @@ def compose(record: RunRecord, page: Page, units: Units, sayings: Sayings | None
         rooms=room_views(members, units) if page.on_display else (),
         shaking=shaking_view(members) if page.on_display else None,
         decisions=decisions_view([(v.decisions, v.settled, pointer(v)) for v in views if v.decisions]),
+        credits=credits_of(v.photo for v in views),
     )
     walk = None
     if page.on_display:

@@ -47,6 +47,7 @@ class GalleryView:
     rooms: tuple[RoomView, ...] = ()
     shaking: ShakingView | None = None
     decisions: DecisionsView = NO_DECISIONS
+    credits: tuple[tuple[str, int], ...] = ()
 
     def standing(self, state: State) -> tuple[ObjectView, ...]:
         """Return the objects in that state, the most urgent first."""

@@ -20,6 +20,9 @@ READING = "reading"
 INVENTORY = "inventory"
 """Key of a run's settings under which the version of the inventory is kept."""
 
+IMAGES = "image_faults"
+"""Key of a run's settings with a digest of why photographs are not shown; it is not there where all are."""
+
 SHOWN = 1_000
 """Entries on a page, which a browser shows at once."""
 
@@ -48,6 +51,7 @@ class ReadingView:
     unsaid  : objects taken to be on display because no column says what is; 0 where one does
     suspicions : what the whole source seems to have wrong, and what mends it
     choices : what was settled for the whole source by choice, and what settles it otherwise
+    images  : photographs that cannot be shown
     """
 
     known: bool
@@ -59,11 +63,12 @@ class ReadingView:
     suspicions: tuple[tuple[str, str], ...] = ()
     unsaid: int = 0
     choices: tuple[tuple[str, str], ...] = ()
+    images: int = 0
 
     @property
     def look(self) -> bool:
         """Whether there is something to look at."""
-        return bool(self.refused or self.doubtful or self.sheets or self.suspicions)
+        return bool(self.refused or self.doubtful or self.sheets or self.suspicions or self.images)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +101,7 @@ def reading_view(settings: Mapping[str, Any]) -> ReadingView:
         suspicions=tuple((clean(one["message"]), clean(one["remedy"])) for one in told["suspicions"]),
         unsaid=int(told["unsaid"]),
         choices=tuple((clean(one["message"]), clean(one["remedy"])) for one in told.get("choices", ())),
+        images=int(told.get("images", 0)),
     )
 
 

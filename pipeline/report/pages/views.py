@@ -8,6 +8,7 @@ from pipeline import records
 from pipeline.records import Urgency
 from pipeline.report.pages.chances import ChanceView
 from pipeline.report.pages.judging import FragilityView
+from pipeline.report.pages.photo_views import PhotoView
 from pipeline.report.plots.chart import Spot
 
 State = records.State
@@ -205,6 +206,7 @@ class ObjectView:
     open_for: str = ""
     decisions: tuple[DecisionView, ...] = ()
     settled: bool = False
+    photo: PhotoView | None = None
 
     @property
     def carded(self) -> bool:

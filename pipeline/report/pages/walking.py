@@ -38,6 +38,8 @@ class WalkRow:
         What to set, such as "clearance 14 cm"; "" for nothing.
     ask : str
         What is worth measuring on an object to act on, "" for nothing.
+    photo : str
+        The file of its picture in the report, "" for none.
     """
 
     number: str
@@ -45,6 +47,7 @@ class WalkRow:
     what: str
     numbers: str = ""
     ask: str = ""
+    photo: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,17 +131,22 @@ def _act(view: ObjectView, advice: Recommendation | None, units: Units) -> WalkR
     what = _("No measure found: ask an engineer") if advice is None else said(clean(advice.title))
     numbers = "" if advice is None else numbers_to_set(advice, units)
     asked = _asked(view)
-    return WalkRow(view.number, _title(view), few(what), numbers, few(asked[0]) if asked else "")
+    return WalkRow(view.number, _title(view), few(what), numbers, few(asked[0]) if asked else "", _photo(view))
 
 
 def _measuring(view: ObjectView) -> WalkRow:
     asked = _asked(view)
-    return WalkRow(view.number, _title(view), few(_("Measure: %(what)s") % {"what": ", ".join(asked)}))
+    told = few(_("Measure: %(what)s") % {"what": ", ".join(asked)})
+    return WalkRow(view.number, _title(view), told, photo=_photo(view))
 
 
 def _asked(view: ObjectView) -> list[str]:
     wishes = [wish.what for wish in view.wishes if not wish.waste]
     return wishes or ([name_of(view.open_for)] if view.open_for else [])
+
+
+def _photo(view: ObjectView) -> str:
+    return "" if view.photo is None else view.photo.file
 
 
 def _title(view: ObjectView) -> str:

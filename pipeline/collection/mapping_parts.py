@@ -1,0 +1,51 @@
+"""Parts of a mapping that no other part hangs on: which locations are no galleries, and where photographs are."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator
+
+from pipeline.collection.image_names import pattern_keys
+from pipeline.collection.sources.base import Name
+from pipeline.errors import InputError
+
+
+class MappingPart(BaseModel):
+    """What all parts of a mapping have in common: unknown keys are errors, and nothing changes once it is read."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Display(MappingPart):
+    """Which locations are no galleries."""
+
+    not_on_display: tuple[Name, ...] = Field(
+        default=(), description="Locations (such as a store) whose objects are not on display, and so not assessed."
+    )
+    on_display: tuple[Name, ...] = Field(
+        default=(),
+        description="Locations that are galleries although their names sound otherwise, such as a store that is open.",
+    )
+
+
+class Images(MappingPart):
+    """Photographs of the objects: how a file, a URL or an address of IIIF follows from the records."""
+
+    pattern: str = Field(
+        default="",
+        max_length=1000,
+        description="The file or the URL of a photograph, with {object_number} where no column gives one, or with "
+        "{image} for what the column gives, such as https://images.museum.org/{object_number}.jpg.",
+    )
+    credit: str = Field(
+        default="", max_length=500, description="Licence or credit line of the photographs that have none of their own."
+    )
+
+    @field_validator("pattern")
+    @classmethod
+    def _filled(cls, pattern: str) -> str:
+        if pattern and pattern_keys(pattern) not in ({"object_number"}, {"image"}):
+            raise InputError(
+                f"{pattern!r} names neither {{object_number}} nor {{image}}, or both, or something else in braces; "
+                "write one of them where the number of the object, or what the column gives, stands"
+            )
+        return pattern
