@@ -48,11 +48,15 @@ _ELEMENTS_ONLY = re.compile(rb"<!DOCTYPE\s+shakemap-data\s*\[(?:\s*<!(?:ELEMENT|
 _CANCELLED = frozenset({"cancelled", "canceled", "cancel", "delete", "deleted"})
 ACCELERATIONS: Mapping[str, float] = {
     "pctg": 0.01, "%g": 0.01, "g": 1.0, "cm/s/s": 0.01 / G, "cm/s2": 0.01 / G, "cm/s^2": 0.01 / G, "gal": 0.01 / G,
-    "m/s/s": 1.0 / G, "m/s2": 1.0 / G, "m/s^2": 1.0 / G,
+    "gals": 0.01 / G, "cm/s**2": 0.01 / G, "m/s/s": 1.0 / G, "m/s2": 1.0 / G, "m/s^2": 1.0 / G, "m/s**2": 1.0 / G,
 }  # fmt: skip
 """Units of peak acceleration, in g."""
 VELOCITIES: Mapping[str, float] = {"cms": 1.0, "cm/s": 1.0, "m/s": 100.0}
 """Units of peak velocity, in cm/s."""
+
+MOST_PGA, MOST_PGV = 5.0, 1000.0
+"""g and cm/s: more than was ever recorded of the ground (4.4 g at Iwate 2008, 380 cm/s at Chi-Chi 1999); it is a unit
+that is not what it is called."""
 
 
 class MessageError(InputError):
@@ -322,6 +326,19 @@ def in_unit(file: Path, place: str, unit: Any, known: Mapping[str, float]) -> fl
     if said not in known:
         raise refused(file, place, f"the unit {said[:20]!r} is not known", f"it should be one of {', '.join(known)}")
     return known[said]
+
+
+def check_peaks(file: Path, place: str, pga_g: float, pgv_cm_s: float | None) -> None:
+    """Refuse peaks that no shaking has.
+
+    Raises
+    ------
+    MessageError
+        For peaks beyond `MOST_PGA` and `MOST_PGV`.
+    """
+    if pga_g > MOST_PGA or (pgv_cm_s or 0.0) > MOST_PGV:
+        wrong = f"{pga_g:.3g} g and {pgv_cm_s or 0.0:.3g} cm/s at the museum, more than was ever recorded"
+        raise refused(file, place, wrong, "its units are not what they are called: fetch it again")
 
 
 def moment(file: Path, place: str, text: str) -> datetime:

@@ -63,7 +63,7 @@ def read_files(files: Sequence[Path], now: datetime) -> EventFiles:
     Raises
     ------
     MessageError
-        For a message that cannot be used, and for messages about different earthquakes.
+        For a message that cannot be used or takes the earthquake back, and for messages about different earthquakes.
     """
     messages: list[Message] = []
     records: list[Path] = []
@@ -75,6 +75,10 @@ def read_files(files: Sequence[Path], now: datetime) -> EventFiles:
         if message is None:
             records.append(file)
             continue
+        if message.cancelled:
+            # Beside others as well: which of them holds only a person can say.
+            others = " leave it out if the other files hold," if len(files) > 1 else ""
+            raise MessageError(f"{file}: takes the earthquake back: it is cancelled;{others} earlier answers stay")
         check_quake(file, message.quake, now)
         messages.append(message)
     ordered = tuple(sorted(messages, key=lambda one: (-one.rank, -one.quake.version_number)))
@@ -83,6 +87,8 @@ def read_files(files: Sequence[Path], now: datetime) -> EventFiles:
     quake = ReportedEarthquake()
     for one in ordered:
         quake = with_more(quake, one.quake)
+    # A list of stations does not say where the earthquake was; how the shaking falls off from there it tells.
+    ordered = tuple(replace(one, quake=with_more(one.quake, quake)) for one in ordered)
     return EventFiles(quake, ordered, tuple(records), hashlib.sha256("\n".join(sorted(digests)).encode()).hexdigest())
 
 

@@ -15,7 +15,6 @@ from pipeline.event.answer import Answer, answered
 from pipeline.event.capacities import FloorMotions, capacities, floors_of
 from pipeline.event.message import (
     FIRST_SIGMA,
-    MessageError,
     ReportedEarthquake,
     SiteShaking,
 )
@@ -147,9 +146,6 @@ def answer_event(
         raise UsageError("give a file about the earthquake, or its shaking by --pga and --pgv")
     clock = now or datetime.now(UTC)
     told = read_files(files, clock)
-    for one in told.messages[:1]:
-        if one.cancelled:
-            raise MessageError(f"{one.file}: takes the earthquake back: it is cancelled, and earlier answers stay")
     site = _site(workspace, at)
     head, pages = load_head(workspace.engine, _newest(workspace))
     shaking, quake, rank = _shaking(told, typed, site)
