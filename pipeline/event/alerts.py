@@ -112,7 +112,7 @@ class Alert(Message):
         return SiteShaking(pga, pgv, sd, sd, where, (*self.notes, FIRST_NOTE))
 
     def _between_points(self, latitude: float, longitude: float) -> SiteShaking:
-        """Return the shaking between the nearest points of a map, in the logarithm, by the inverse of their distance."""
+        """Return the shaking between the nearest points of a map, in the logarithm, each by how near it is."""
         far = np.array([kilometres(latitude, longitude, *point[:2]) for point in self.points])
         near = np.argsort(far, kind="stable")[:4]
         step = max((kilometres(*self.points[near[0]][:2], *self.points[at][:2]) for at in near[1:3]), default=0.0)

@@ -114,7 +114,7 @@ class Grid(Message):
         steps = max(float(np.diff(self.latitudes).max()), float(np.diff(self.longitudes).max()))
         if steps > WIDE:
             notes.append(
-                f"The map's points lie up to {steps:.2g} degrees apart: what the shaking is between them it hardly tells."
+                f"The map's points lie up to {steps:.2g} degrees apart: it hardly tells what lies between them."
             )
         version = f", version {self.quake.version}" if self.quake.version else ""
         return SiteShaking(pga, pgv, sd["pga"], sd["pgv"], f"ShakeMap{version}, interpolated", (*self.notes, *notes))

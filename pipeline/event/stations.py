@@ -282,8 +282,8 @@ class LeftOut:
         out = [f"Amplitudes of stations were left out: {self.told()}."] if self.reasons else []
         if self.bare:
             out.append(
-                f"{self.bare} stations name no channels: their peaks are taken as % of g and cm/s, as ShakeMap's manual "
-                "has them."
+                f"{self.bare} stations name no channels: their peaks are taken as % of g and cm/s, as the manual "
+                "of ShakeMap has them."
             )
         return tuple(out)
 

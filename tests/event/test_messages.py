@@ -207,7 +207,7 @@ def test_the_map_of_an_alert_is_interpolated_between_its_points(tmp_path: Path) 
     text = alert().replace("<gm_info>", f"<gm_info>{ALERT_MAP}")
     file.write_text(text, encoding="utf-8")
     found = told(file).messages[0].at(37.7, -122.5)
-    assert (found.pga_g, found.pgv_cm_s) == pytest.approx((0.05, 5.0), rel=1e-6)
+    assert (found.pga_g, found.pgv_cm_s) == pytest.approx((0.05, 5.0), rel=1e-3)
     assert "points of its map" in found.origin
     at_point = told(file).messages[0].at(37.8, -122.4)
     assert at_point.pga_g == pytest.approx(0.025, rel=1e-3)
