@@ -24,16 +24,18 @@ from pipeline.cache import (
     PICTURES,
     SELF_TESTS,
     SPECTRA,
+    STOCKS,
     TRADEOFFS,
     Cache,
     CacheEntry,
     CacheWarning,
     key_of,
 )
+from pipeline.event.stock import stock_of
 from pipeline.models import model_named
 from pipeline.models.band import band_accelerations, sharing_spectra
 from pipeline.motions import read_site
-from pipeline.records import Axis, Chart, Excitation
+from pipeline.records import Assessment, Axis, Chart, Excitation, Item, Scene, Support
 from pipeline.resources import resource
 from pipeline.store import codec
 from pipeline.verification import selftest, tradeoff
@@ -98,6 +100,11 @@ def put_house(folder: Path) -> None:
     Cache(folder).put(HOUSE, key_of("rules"), CacheEntry({"effects": ["", "one"]}, effects))
 
 
+def put_stock(folder: Path) -> None:
+    scene = Scene(Item("1", "A"), "vase", "", Support.FREESTANDING, (), {})
+    Cache(folder).put(STOCKS, key_of("a page"), stock_of([Assessment(scene, (), ())], {}).packed())
+
+
 PUT: dict[str, Callable[[Path], None]] = {
     MOTIONS: put_motion,
     CHARTS: put_chart,
@@ -107,6 +114,7 @@ PUT: dict[str, Callable[[Path], None]] = {
     SELF_TESTS: put_self_test,
     TRADEOFFS: put_tradeoff,
     HOUSE: put_house,
+    STOCKS: put_stock,
 }
 
 

@@ -10,9 +10,7 @@ from math import exp
 from pathlib import Path
 from typing import Any
 
-from pipeline.analysis.stakes import counting
 from pipeline.event.answer import Answer, answered
-from pipeline.event.capacities import FloorMotions, capacities, floors_of
 from pipeline.event.message import (
     FIRST_SIGMA,
     ReportedEarthquake,
@@ -22,11 +20,11 @@ from pipeline.event.own_record import recorded_shaking
 from pipeline.event.reading import EventFiles, is_same, read_files, with_more
 from pipeline.event.reports import STATES, conditioned, read_reports
 from pipeline.motions.manifest import load_manifest
-from pipeline.motions.summary import summaries
+from pipeline.night.stocks import run_stock, stock_terms
 from pipeline.operations.presentation import presentation
 from pipeline.operations.workspace import UsageError, Workspace, folder_of_site
 from pipeline.quantities import G
-from pipeline.records import Assessment, Page, RunRecord
+from pipeline.records import Page, RunRecord
 from pipeline.report import publish
 from pipeline.report.files.event_files import ANSWER, event_document, write_event
 from pipeline.report.files.publish import LINK, PAGE
@@ -34,7 +32,7 @@ from pipeline.report.pages.compose import page_head
 from pipeline.report.text import clean, slug
 from pipeline.resources import aside_of, small_text, sweep
 from pipeline.store.codec import StoreError
-from pipeline.store.pages import load_members, load_page
+from pipeline.store.pages import load_members
 from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import load_head
 
@@ -159,17 +157,15 @@ def answer_event(
     folder = whole_event / _version(told, typed, site, head, quake, rank[0], reports)
     if (folder / ANSWER).is_file():
         return EventDone(None, _kept(folder / ANSWER), folder, again=True, newest=_shown(folder.parent) == folder.name)
-    assessments = _assessments(workspace, pages)
-    floors = _floors(workspace, head)
-    ground = floors[""]
+    terms = stock_terms(workspace, head)
+    stock = run_stock(workspace, terms, pages)
+    ground = terms.floors[""]
     # The ratio of SI peaks, s, as cm/s for each g.
     shaking = shaking.with_velocity(_in_cm_s_a_g(ground.ratio), ground.ratio_sd)
     sampling = workspace.settings.likelihood.sampling
-    with counting(workspace.settings.museum.value_per_c):
-        able = capacities(assessments, floors)
-        places = {numbers[name]: state for name, state in reports.items()}
-        draws, shaking = conditioned(able, places, shaking, len(assessments))
-        found = answered(assessments, able, shaking, sampling, draws, places)
+    places = {numbers[name]: state for name, state in reports.items()}
+    draws, shaking = conditioned(stock.capacities, places, shaking, len(stock))
+    found = answered(stock, shaking, sampling, draws, places)
     newest = rank >= _rank_shown(folder.parent)
     event = _event(quake, site, rank, shaking, head, folder, root)
     if not dry_run:
@@ -186,7 +182,7 @@ def exercise(workspace: Workspace) -> tuple[TypedShaking, ReportedEarthquake]:
         Where there is no run yet.
     """
     head = load_head(workspace.engine, _newest(workspace))[0]
-    levels = _floors(workspace, head)[""].levels
+    levels = stock_terms(workspace, head).floors[""].levels
     name, (pga, pgv) = max(levels.items(), key=lambda one: one[1])
     return TypedShaking(exp(pga) / G, 100.0 * exp(pgv), 0.3), ReportedEarthquake(
         name=f"Exercise: {name}", scenario=True
@@ -226,24 +222,12 @@ def _in_cm_s_a_g(ratio: float) -> float:
     return 100.0 * exp(ratio) * G
 
 
-def _floors(workspace: Workspace, head: RunRecord) -> dict[str, FloorMotions]:
-    ground = [one for one in head.motions if not one.floor]
-    # A run in which nothing stands on the ground does not have its motions.
-    return floors_of(head.motions, ground or summaries(workspace.site().levels))
-
-
 def _numbers(workspace: Workspace, pages: Sequence[Page]) -> dict[str, int]:
-    """Return the places of objects on display by number, in the order of `_assessments`; no result is read."""
+    """Return the places of objects on display by number, in the order of the stock; no result is read."""
     with workspace.engine.connect() as connection:
         found = [load_members(connection, page.key) for page in pages if page.on_display]
     pairs = [pair for one in found for pair in zip(one.column("object_number"), one.column("on_display"), strict=True)]
     return {number: at for at, number in enumerate(number for number, shown in pairs if shown)}
-
-
-def _assessments(workspace: Workspace, pages: Sequence[Page]) -> list[Assessment]:
-    with workspace.engine.connect() as connection:
-        found = [load_page(connection, page.key) for page in pages if page.on_display]
-    return [one for page in found for one in page.assessments if one.scene.item.on_display]
 
 
 def _event_folder(root: Path, quake: ReportedEarthquake, now: datetime) -> str:
