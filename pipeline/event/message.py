@@ -63,9 +63,18 @@ class MessageError(InputError):
     """A message about an earthquake that nothing can be answered by: file, place, what is wrong, and the remedy."""
 
 
+class CutOffError(MessageError):
+    """A message that is not whole: it was cut off on the way, or is still being written."""
+
+
 def refused(file: Path, place: str, wrong: str, remedy: str) -> MessageError:
     """Return the error of a message, so that all read alike."""
     return MessageError(f"{file}: {place}: {wrong}; {remedy}")
+
+
+def cut_off(file: Path, wrong: str) -> CutOffError:
+    """Return the error of a message that is not whole."""
+    return CutOffError(f"{file}: file: {wrong}; it was cut off on the way, or is still being written: fetch it again")
 
 
 @dataclass(frozen=True)
@@ -239,7 +248,7 @@ def content(file: Path) -> bytes:
         with gzip.open(file) if packed else file.open("rb") as opened:
             data = opened.read(LARGEST + 1)
     except (EOFError, gzip.BadGzipFile, zlib.error) as error:
-        raise refused(file, "file", f"gzip data that is cut off or damaged ({error})", "fetch it again") from error
+        raise cut_off(file, f"gzip data that is cut off or damaged ({error})") from error
     except OSError as error:
         raise refused(file, "file", f"cannot be read: {error.strerror or error}", "see whether it is there") from error
     if len(data) > LARGEST:
@@ -275,7 +284,7 @@ def xml_root(file: Path, data: bytes) -> Any:
         return etree.fromstring(text, parser)
     except etree.XMLSyntaxError as error:
         wrong = f"is no whole XML, line {error.lineno or 1}: {str(error)[:200]}"
-        raise refused(file, "file", wrong, "it was cut off on the way: fetch it again") from error
+        raise cut_off(file, wrong) from error
 
 
 def number(file: Path, place: str, text: Any) -> float:

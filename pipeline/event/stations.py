@@ -37,6 +37,7 @@ from pipeline.event.message import (
     Message,
     ReportedEarthquake,
     SiteShaking,
+    cut_off,
     kilometres,
     number,
     position,
@@ -246,7 +247,7 @@ def read_station_json(file: Path, data: bytes) -> StationList:
         said = json.loads(data.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
         wrong = f"is no whole JSON ({str(error)[:120]})"
-        raise refused(file, "file", wrong, "it was cut off on the way: fetch it again") from error
+        raise cut_off(file, wrong) from error
     features = said.get("features") if isinstance(said, dict) else None
     if not isinstance(features, list):
         raise refused(file, "features", "is no list", "take stationlist.json of the event's ShakeMap")

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from math import exp
 from pathlib import Path
+from shutil import rmtree
 from typing import Any
 
 from pipeline.event.answer import Answer, answered
@@ -96,6 +97,16 @@ class EventDone:
     again: bool
     newest: bool
 
+    @property
+    def sentence(self) -> str:
+        """The answer in a sentence."""
+        down, quake = self.document["expected"], self.document["event"]
+        name = quake["name"] or quake["id"] or "an earthquake"
+        return (
+            f"After {name}: of {len(self.document['objects']):,} objects on display about {down['fallen']:,.0f} have "
+            f"probably fallen ({down['low']:,} to {down['high']:,} in 9 of 10 cases)."
+        )
+
 
 def answer_event(
     workspace: Workspace,
@@ -155,8 +166,14 @@ def answer_event(
     if report is not None:
         reports |= read_reports(report, numbers)
     folder = whole_event / _version(told, typed, site, head, quake, rank[0], reports)
+    newest = rank >= _rank_shown(folder.parent)
     if (folder / ANSWER).is_file():
-        return EventDone(None, _kept(folder / ANSWER), folder, again=True, newest=_shown(folder.parent) == folder.name)
+        shown = _shown(folder.parent) == folder.name
+        if not shown and not dry_run and rank > _rank_shown(folder.parent):
+            # Who wrote it was stopped before it was shown.
+            publish(folder, folder.parent)
+            shown = True
+        return EventDone(None, _kept(folder / ANSWER), folder, again=True, newest=shown)
     terms = stock_terms(workspace, head)
     stock = run_stock(workspace, terms, pages)
     ground = terms.floors[""]
@@ -166,7 +183,6 @@ def answer_event(
     places = {numbers[name]: state for name, state in reports.items()}
     draws, shaking = conditioned(stock.capacities, places, shaking, len(stock))
     found = answered(stock, shaking, sampling, draws, places)
-    newest = rank >= _rank_shown(folder.parent)
     event = _event(quake, site, rank, shaking, head, folder, root)
     if not dry_run:
         _write(folder, workspace, head, found, quake, site, event, newest=newest)
@@ -342,12 +358,17 @@ def _write(
     newest: bool,
 ) -> None:
     folder.parent.mkdir(parents=True, exist_ok=True)
-    sweep(folder.parent)
     shown = page_head(head, Page("", "", True, 1, 1, head.run_id, head.finished))
     spoken = presentation(workspace.settings)["language"]
+    sweep(folder.parent)
     aside = aside_of(folder)
     aside.mkdir()
-    write_event(aside, found, quake, site, event, replace(shown, started=head.started), spoken)
-    aside.rename(folder)
+    try:
+        write_event(aside, found, quake, site, event, replace(shown, started=head.started), spoken)
+        aside.rename(folder)
+    except BaseException:
+        # Whoever stops it leaves nothing half written.
+        rmtree(aside, ignore_errors=True)
+        raise
     if newest:
         publish(folder, folder.parent)
