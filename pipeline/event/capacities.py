@@ -181,20 +181,42 @@ class Capacities:
         parts = (self.ln_capacity, self.beta, self.common, self.own)
         return Capacities(*(part[:, chosen] for part in parts), shares)
 
-    def told(self, chances: Mapping[int, Mapping[str, float]]) -> Capacities:
-        """Return the same where for some objects, by their places, the probability of each kind is known.
+    def centred(
+        self, told: Mapping[int, Mapping[str, float]], ln_pga: float, ln_pgv: float, *, same: bool
+    ) -> Capacities:
+        """Return the same where of some objects the probability of each kind is known at some peaks.
 
-        It holds whatever the peaks are: it is that under the very motion.
+        How the probability grows with the peaks stays as the curves have it, or is as stated where there are none.
+
+        Parameters
+        ----------
+        told : mapping of int to mapping of str to float
+            By place of the object, the probability of each kind that it can reach, between 0 and 1.
+        ln_pga, ln_pgv : float
+            ln of the peaks of the ground [m/s2, m/s] at which they are.
+        same : bool
+            Whether they are under the very motion, so that nothing of it differs any more from what is drawn.
         """
+        from scipy.special import ndtri
+
         parts = [part.copy() for part in (self.ln_capacity, self.beta, self.common, self.own)]
-        places = np.array(sorted(chances), dtype=np.intp)
-        for part in parts:
-            part[:, places] = np.nan
+        ln_capacity, beta, common, own = parts
+        usual_beta, usual_common, usual_own = _usual()
+        for at, chances in told.items():
+            for kind, name in enumerate(KINDS):
+                if name not in chances:
+                    ln_capacity[kind, at] = np.nan
+                    continue
+                if not math.isfinite(ln_capacity[kind, at]):
+                    beta[kind, at], common[kind, at], own[kind, at] = usual_beta, usual_common, usual_own
+                if same:
+                    common[kind, at] = 0.0
+                sigma = math.hypot(own[kind, at], common[kind, at])
+                peaks = (1.0 - beta[kind, at]) * ln_pga + beta[kind, at] * ln_pgv
+                ln_capacity[kind, at] = peaks - sigma * float(ndtri(chances[name]))
+        places = list(told)
         shares = [_rising(one.ln_pga, one.kind, one.at, one.share, ~np.isin(one.at, places)) for one in self.shares]
-        rows = [(KINDS.index(name), at, p) for at, those in chances.items() for name, p in those.items()]
-        kinds, at, told = np.array(rows, dtype=float).reshape(-1, 3).T
-        new = _rising(np.zeros(1), kinds.astype(np.intp), at.astype(np.intp), told[:, None], np.full(len(rows), True))
-        return Capacities(*parts, [*shares, new])
+        return Capacities(ln_capacity, beta, common, own, shares)
 
 
 def _rising(ln_pga: Array, kind: Indices, at: Indices, share: Array, keep: NDArray[np.bool_]) -> Shares:
@@ -294,6 +316,22 @@ def _stated() -> tuple[float, float, float]:
     return stated("modelling").value, stated("record").value, stated("record_velocity").value
 
 
+@cache
+def _usual() -> tuple[float, float, float]:
+    """Return the share of the velocity, and what is in common and what is an object's own, where no curve tells it."""
+    own, record, by_speed = _stated()
+    return (*_parted((math.hypot(own, record), math.hypot(own, by_speed)), own, RATIO_SIGMA**2), own)
+
+
+def _parted(spread: tuple[float, float], own: float, square: float) -> tuple[float, float]:
+    """Return the share of the velocity, and what all objects have in common of the spread by both peaks."""
+    by_a, by_v = (sd * sd for sd in spread)
+    beta = min(max(0.5 * (1.0 + (by_a - by_v) / square), 0.0), 1.0)
+    # Equal, unless beta is at an end.
+    rest = 0.5 * (by_a - beta * beta * square + by_v - (1.0 - beta) ** 2 * square)
+    return beta, math.sqrt(max(rest - own * own, 0.0))
+
+
 def _put(
     found: Capacities,
     kind: int,
@@ -304,14 +342,10 @@ def _put(
     floor: FloorMotions,
 ) -> None:
     """Put the capacity behind two curves in its place, as one of the shaking of the ground."""
-    by_a, by_v = (sd * sd for sd in spread)
-    square = floor.ratio_sd**2
-    beta = min(max(0.5 * (1.0 + (by_a - by_v) / square), 0.0), 1.0)
-    # Equal, unless beta is at an end.
-    rest = 0.5 * (by_a - beta * beta * square + by_v - (1.0 - beta) ** 2 * square)
     own = max(own, 0.05)
+    beta, common = _parted(spread, own, floor.ratio_sd**2)
     up_a, up_v, up_sd = floor.up
     found.ln_capacity[kind, at] = (1.0 - beta) * (medians[0] - up_a) + beta * (medians[1] - up_v)
     found.beta[kind, at] = beta
     found.own[kind, at] = own
-    found.common[kind, at] = math.sqrt(max(rest - own * own, 0.0) + up_sd * up_sd)
+    found.common[kind, at] = math.hypot(common, up_sd)

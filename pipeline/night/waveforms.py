@@ -19,18 +19,18 @@ from pipeline.motions.site import Site, levels_at
 from pipeline.night.assessment import by_object, place
 from pipeline.night.floors import floor_name
 from pipeline.operations.workspace import Workspace
-from pipeline.records import Item, Likelihood, Page
+from pipeline.records import Item, Likelihood, Page, Sampling
 from pipeline.store.decisions import decisions_in_force
 from pipeline.store.pages import load_members
 
-FIRST, GROWTH = 32, 2
+FIRST, GROWTH = 8, 3
 """Objects of the first part, and how many times as many the next one is: together they take less each."""
 
 Shaken = Callable[[str], LevelMotions | None]
 """The shaking of a floor by its name, "" for the ground; None where nobody knows it."""
 
 
-def shaken_by(site: Site, name: str) -> Shaken:
+def shaken_by(site: Site, name: str, x_azimuth: float) -> Shaken:
     """Return the shaking of each floor when the ground of a site does what its one level says.
 
     Parameters
@@ -39,6 +39,8 @@ def shaken_by(site: Site, name: str) -> Shaken:
         The museum's, with the motions of the earthquake in place of its own.
     name : str
         What the shaking is called.
+    x_azimuth : float
+        Of the x axis of its motions, degrees clockwise from north.
     """
     known: dict[str, LevelMotions | None] = {}
 
@@ -51,14 +53,19 @@ def shaken_by(site: Site, name: str) -> Shaken:
             else:
                 level = levels_at(site, floor or GROUND_FLOOR)[0]
                 motions = tuple(one.motion for one in level.motions)
-                known[floor] = LevelMotions(name, "max", motions, site.manifest.site.x_azimuth)
+                known[floor] = LevelMotions(name, "max", motions, x_azimuth)
         return known[floor]
 
     return of
 
 
 def under(
-    workspace: Workspace, pages: Sequence[Page], numbers: Sequence[str], shaken: Shaken, until: float
+    workspace: Workspace,
+    pages: Sequence[Page],
+    numbers: Sequence[str],
+    shaken: Shaken,
+    sampling: Sampling,
+    until: float,
 ) -> dict[str, Likelihood]:
     """Return how likely objects came to harm under a motion, as many of them as there is time for.
 
@@ -72,6 +79,8 @@ def under(
         Of the objects, those that matter most first.
     shaken : Shaken
         The motion by floor.
+    sampling : Sampling
+        How many samples.
     until : float
         By `perf_counter`: when to stop; what was begun is ended.
 
@@ -99,9 +108,7 @@ def under(
                     place(item, workspace.rules, about.get(item.object_number, ()), workspace.measures, workspace.house)
                     for item in those
                 ]
-                told = likelihoods(
-                    stood_of(stands), len(stands), [level], settings.likelihood.sampling, executor, telling=False
-                )
+                told = likelihoods(stood_of(stands), len(stands), [level], sampling, executor, telling=False)
                 found |= {item.object_number: some[0] for item, some in zip(those, told, strict=True) if some}
     return found
 
@@ -110,10 +117,10 @@ def _parts(numbers: Sequence[str], until: float) -> Iterator[Sequence[str]]:
     """Yield parts of the objects, each larger, as long as the next one will be done in time."""
     at, size, each = 0, FIRST, 0.0
     while at < len(numbers):
-        left = until - perf_counter()
+        # The first part is run whatever the time.
         if at:
-            size = min(size * GROWTH, int(left / each))
-        if left <= 0.0 or size < 1:
+            size = min(size * GROWTH, int((until - perf_counter()) / each))
+        if size < 1:
             return
         began = perf_counter()
         yield numbers[at : at + size]

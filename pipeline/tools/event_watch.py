@@ -76,8 +76,8 @@ class DropFolder:
         Files in it are answered one by one, its records together; those in a folder below it are of one earthquake.
     at : (float, float) or None
         As of `answer_event`.
-    answer : callable
-        What answers files: takes them, and the site.
+    seconds : float
+        As of `answer_event`.
     """
 
     def __init__(
@@ -85,13 +85,14 @@ class DropFolder:
         settings: Settings,
         folder: Path,
         at: tuple[float, float] | None = None,
-        answer: Callable[[Sequence[Path]], EventDone] | None = None,
+        *,
+        seconds: float = 0.0,
     ) -> None:
         if not folder.is_dir():
             raise UsageError(f"--watch {folder}: is no folder; make it, and let messages be put there")
         self._folder = folder
         self._kept = settings.path(EVENTS) / SEEN
-        self._answer = answer or (lambda files: answer_event(open_workspace(settings), files, at=at))
+        self._settings, self._at, self._seconds = settings, at, seconds
         self._before: dict[Path, Stat] = {}
         self._said: dict[Path, str] = {}
         self._seen = _read(self._kept)
@@ -179,7 +180,10 @@ class DropFolder:
 
     def _tried(self, files: tuple[Path, ...], fresh: set[Path]) -> Dropped:
         try:
-            return self._remembered(Dropped(files, self._answer(files)))
+            # Opened anew each time: a night may have ended meanwhile.
+            workspace = open_workspace(self._settings)
+            done = answer_event(workspace, files, at=self._at, seconds=self._seconds)
+            return self._remembered(Dropped(files, done))
         except CutOffError as problem:
             if fresh.intersection(files):
                 return self._later(files, problem)

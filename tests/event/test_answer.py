@@ -8,8 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
-from pipeline.event.answer import LOW, Answer, answered, chances, drawn
+from pipeline.event.answer import LOW, Answer, ObjectAnswer, answered, chances, drawn
 from pipeline.event.capacities import KINDS, Capacities, FloorMotions, capacities
 from pipeline.event.message import SiteShaking
 from pipeline.event.stock import Stock, stock_joined, stock_of
@@ -131,8 +132,6 @@ def test_the_range_of_how_many_is_that_of_a_binomial_where_nothing_is_shared() -
 @pytest.mark.parametrize(("common", "sd"), [(0.4, 0.0), (0.0, 0.4), (0.3, 0.3)])
 def test_what_all_share_widens_the_range(common: float, sd: float) -> None:
     """Closed form: of n alike the share that falls is Phi(z shared / own), z being standard normal."""
-    from scipy.stats import norm
-
     own = 0.3
     count = counted(400, own, common, sd).count
     shared = math.hypot(common, sd)
@@ -198,11 +197,34 @@ def test_what_is_kept_answers_as_what_was_found() -> None:
     assert np.array_equal(chances(few, drawn(shaking), slice(0, 3)), chance[:, :, some])
 
 
-def test_what_is_known_under_the_very_motion_takes_the_place_of_curves() -> None:
+@pytest.mark.parametrize("same", [True, False])
+def test_what_is_known_at_the_peaks_takes_the_place_of_curves(same: bool) -> None:
+    """At the very peaks the probability is that; twice as strong it is more; what others do stays as it was."""
     objects, able = alike(4, 0.3, 0.2)
-    sure = able.told({2: {HARM: 0.25, "falls": 0.125}})
-    shaking = SiteShaking(4.0 / G, 40.0, 0.3, 0.3, "")
-    told = {one.number: one for one in answered(stock(objects, sure), shaking, Sampling(), drawn(shaking)).objects}
-    before = {one.number: one for one in answered(stock(objects, able), shaking, Sampling(), drawn(shaking)).objects}
-    assert (told["2"].probability, told["2"].states) == (pytest.approx(0.25), {"falls": pytest.approx(0.125)})
-    assert all(told[number] == before[number] for number in "013")
+    peaks = math.log(4.0), math.log(0.4)
+    sure = able.centred({2: {HARM: 0.25, "falls": 0.125}}, *peaks, same=same)
+
+    def told(able: Capacities, pga: float) -> dict[str, ObjectAnswer]:
+        shaking = SiteShaking(pga / G, 10.0 * pga, 0.0, 0.0, "")
+        return {one.number: one for one in answered(stock(objects, able), shaking, Sampling(), drawn(shaking)).objects}
+
+    one = told(sure, 4.0)["2"]
+    assert (one.probability, one.fallen) == pytest.approx((0.25, 0.125), abs=0.003)
+    twice = told(sure, 8.0)["2"].fallen
+    sigma = 0.3 if same else math.hypot(0.3, 0.2)
+    assert twice == pytest.approx(norm.cdf(norm.ppf(0.125) + math.log(2.0) / sigma), abs=0.01)
+    assert all(told(sure, 4.0)[number] == told(able, 4.0)[number] for number in "013")
+
+
+def test_what_no_curve_told_is_known_at_the_peaks_too() -> None:
+    objects, able = alike(2, 0.3, 0.2)
+    for part in (able.ln_capacity, able.beta, able.common, able.own):
+        part[:, 1] = np.nan
+    assert able.known.tolist() == [True, False]
+    sure = able.centred({1: {HARM: 0.5, "shifts": 0.9}}, math.log(4.0), math.log(0.4), same=True)
+    shaking = SiteShaking(4.0 / G, 40.0, 0.0, 0.0, "")
+    one = answered(stock(objects, sure), shaking, Sampling(), drawn(shaking)).objects
+    found = next(each for each in one if each.number == "1")
+    assert (found.probability, found.states, found.moved) == (
+        pytest.approx(0.5), {"shifts": pytest.approx(0.9)}, pytest.approx(0.9)
+    )  # fmt: skip
