@@ -322,7 +322,7 @@ def _objects(
 ) -> list[ObjectAnswer]:
     """Return what became of each object, by the probability of each kind (k, m), and that of having moved (m,)."""
     reachable = stock.capacities.reachable
-    known = reachable.any(axis=0).tolist()
+    known = np.asarray(reachable.any(axis=0)).tolist()
     harm, falls = expected[KINDS.index(HARM)], expected[KINDS.index(Harm.FALLS.value)]
     possible = sampling.edges[2]
     rows = zip(

@@ -178,8 +178,10 @@ class Capacities:
         new = np.full(self.ln_capacity.shape[1], -1, dtype=np.intp)
         new[chosen] = np.arange(chosen.size)
         shares = [_rising(one.ln_pga, one.kind, new[one.at], one.share, new[one.at] >= 0) for one in self.shares]
-        parts = (self.ln_capacity, self.beta, self.common, self.own)
-        return Capacities(*(part[:, chosen] for part in parts), shares)
+        ln_capacity, beta, common, own = (
+            part[:, chosen] for part in (self.ln_capacity, self.beta, self.common, self.own)
+        )
+        return Capacities(ln_capacity, beta, common, own, shares)
 
     def centred(
         self, told: Mapping[int, Mapping[str, float]], ln_pga: float, ln_pgv: float, *, same: bool
@@ -239,7 +241,7 @@ def capacities(assessments: Sequence[Assessment], floors: Mapping[str, FloorMoti
     shape = len(KINDS), len(assessments)
     ln_capacity, beta, common, own = np.full((4, *shape), np.nan)
     found = Capacities(ln_capacity, beta, common, own)
-    rows: dict[tuple[float, ...], list[tuple[int, int, Sequence[float]]]] = {}
+    rows: dict[tuple[float, ...], list[tuple[int, int, Array]]] = {}
     for at, one in enumerate(assessments):
         floor = floors.get(one.scene.floor)
         if floor is None:
@@ -260,10 +262,10 @@ def capacities(assessments: Sequence[Assessment], floors: Mapping[str, FloorMoti
 
 def joined(parts: Sequence[Capacities]) -> Capacities:
     """Return the capacities of all objects of several, one after the other."""
-    columns = [
+    ln_capacity, beta, common, own = (
         np.concatenate([getattr(one, name) for one in parts], axis=1)
         for name in ("ln_capacity", "beta", "common", "own")
-    ]
+    )
     grids: dict[tuple[float, ...], list[tuple[Indices, Indices, Array]]] = {}
     start = 0
     for part in parts:
@@ -274,12 +276,12 @@ def joined(parts: Sequence[Capacities]) -> Capacities:
         Shares(np.array(grid), *(np.concatenate(some) for some in zip(*rows, strict=True)))
         for grid, rows in grids.items()
     ]
-    return Capacities(*columns, shares)
+    return Capacities(ln_capacity, beta, common, own, shares)
 
 
 def _by_curve(
     found: Capacities, kind: int, at: int, curve: Fragility, floor: FloorMotions
-) -> tuple[tuple[float, ...], Sequence[float]] | None:
+) -> tuple[tuple[float, ...], Array] | None:
     """Put the capacity that a curve tells in its place; else return the shares at ln of the peaks of the ground."""
     if curve.bound or curve.median_pgv is None or curve.dispersion_pgv is None:
         rows = [(math.log(pga) - floor.up[0], reached / taken) for pga, taken, reached in curve.stripes if taken]

@@ -66,8 +66,10 @@ class Stock:
         """Return what `packed` gave."""
         arrays = kept.arrays
         shares = [Shares(*(arrays[f"{name} {at}"] for name in _SHARES)) for at in range(kept.said["shares"])]
-        able = Capacities(*(arrays[name] for name in _COLUMNS), shares)
-        return cls(*(tuple(kept.said[name]) for name in _TEXTS), arrays["value"], arrays["danger"], able)
+        ln_capacity, beta, common, own = (arrays[name] for name in _COLUMNS)
+        able = Capacities(ln_capacity, beta, common, own, shares)
+        numbers, titles, galleries, cases, floors = (tuple(kept.said[name]) for name in _TEXTS)
+        return cls(numbers, titles, galleries, cases, floors, arrays["value"], arrays["danger"], able)
 
 
 def stock_of(assessments: Sequence[Assessment], floors: Mapping[str, FloorMotions]) -> Stock:
@@ -86,16 +88,20 @@ def stock_of(assessments: Sequence[Assessment], floors: Mapping[str, FloorMotion
         for one in shown
         for item in (one.scene.item,)
     ]
-    columns = list(zip(*texts, strict=True)) or [()] * len(_TEXTS)
+    columns: list[tuple[str, ...]] = list(zip(*texts, strict=True)) or [()] * len(_TEXTS)
+    numbers, titles, galleries, cases, on_floors = columns
     value, danger = (np.array([of(one.scene) for one in shown], dtype=float) for of in (value_of, danger_of))
-    return Stock(*columns, value, danger, capacities(shown, floors))
+    return Stock(numbers, titles, galleries, cases, on_floors, value, danger, capacities(shown, floors))
 
 
 def stock_joined(parts: Sequence[Stock]) -> Stock:
     """Return the stock of all objects of several, one after the other."""
-    texts = [tuple(text for part in parts for text in getattr(part, name)) for name in _TEXTS]
+    numbers, titles, galleries, cases, floors = (
+        tuple(text for part in parts for text in getattr(part, name)) for name in _TEXTS
+    )
     value, danger = (np.concatenate([getattr(part, name) for part in parts]) for name in ("value", "danger"))
-    return Stock(*texts, value, danger, joined([part.capacities for part in parts]))
+    able = joined([part.capacities for part in parts])
+    return Stock(numbers, titles, galleries, cases, floors, value, danger, able)
 
 
 def stock_key(page: str, floors: Mapping[str, FloorMotions], value_per_c: float) -> str:

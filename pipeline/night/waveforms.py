@@ -16,7 +16,7 @@ from pipeline.mitigate.installed import stood_of
 from pipeline.models.band import sharing_spectra
 from pipeline.motions.manifest import GROUND_FLOOR
 from pipeline.motions.site import Site, levels_at
-from pipeline.night.assessment import by_object, place
+from pipeline.night.assessment import place
 from pipeline.night.floors import floor_name
 from pipeline.operations.workspace import Workspace
 from pipeline.records import Item, Likelihood, Page, Sampling
@@ -91,7 +91,7 @@ def under(
     """
     settings = workspace.settings
     executor = Threads(settings.analysis.workers or Threads().workers)
-    about = by_object(decisions_in_force(workspace.engine))
+    about = decisions_in_force(workspace.engine)
     items = _items(workspace, pages, set(numbers))
     found: dict[str, Likelihood] = {}
     with sharing_spectra(Cache(settings.kept)):
@@ -129,7 +129,7 @@ def _parts(numbers: Sequence[str], until: float) -> Iterator[Sequence[str]]:
 
 
 def _items(workspace: Workspace, pages: Sequence[Page], wanted: set[str]) -> Mapping[str, Item]:
-    found = {}
+    found: dict[str, Item] = {}
     with workspace.engine.connect() as connection:
         for page in pages:
             if page.on_display:

@@ -30,14 +30,14 @@ SLOTS = 16
 
 BANDWIDTH, MAGNITUDES, DISTANCES = 0.5, 1.0, 1.0
 """Differences of ln of PGV over PGA, of magnitudes and of ln of distances at which a record counts 0.6 times as much:
-judgement.  The first was tried: of 0.2 and 0.5 the errors are the same (docs/explanation/event.md)."""
+judgement.  The first was tried: of 0.2 and 0.5 the errors are the same (docs/how-to/earthquake.md)."""
 
 SAMPLES = 64
 """Samples of each object, at most: a probability of a half is told to 0.06, and a minute is all that there is."""
 
 PRIOR = 16.0
 """Samples that the curves count as much as: judgement, from 8 to 32.  They miss the truth by 0.07 of harm on average
-(docs/explanation/event.md), as that many samples do; without them each object of which no sample fell would count as
+(docs/how-to/earthquake.md), as that many samples do; without them each object of which no sample fell would count as
 half a sample fallen, and a museum of thousands as dozens."""
 
 LEAST = 1e-4
