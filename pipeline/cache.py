@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 from pipeline.resources import code_version, replacing
 
 MOTIONS, CHARTS, PICTURES, HISTORIES, SPECTRA = "motions", "charts", "pictures", "histories", "spectra"
-SELF_TESTS, TRADEOFFS, HOUSE, THUMBNAILS = "selftests", "tradeoffs", "house", "thumbnails"
-KINDS = (MOTIONS, CHARTS, PICTURES, HISTORIES, SPECTRA, SELF_TESTS, TRADEOFFS, HOUSE, THUMBNAILS)
+SELF_TESTS, TRADEOFFS, HOUSE, THUMBNAILS, STOCKS = "selftests", "tradeoffs", "house", "thumbnails", "stocks"
+KINDS = (MOTIONS, CHARTS, PICTURES, HISTORIES, SPECTRA, SELF_TESTS, TRADEOFFS, HOUSE, THUMBNAILS, STOCKS)
 """What is kept: each kind is a folder."""
 
 LARGEST = 1 << 28
@@ -155,6 +155,14 @@ class Cache:
         with suppress(OSError):
             os.utime(file)
         return kept
+
+    def has(self, kind: str, key: str) -> bool:
+        """Say whether anything is kept under a key by this very code, and note that it was used; it is not read."""
+        file = self._file(kind, key, lasting=False)
+        with suppress(OSError):
+            os.utime(file)
+            return True
+        return False
 
     def put(self, kind: str, key: str, kept: CacheEntry, *, lasting: bool = False) -> None:
         """Keep a result under a key, atomically, in place of what was there.

@@ -24,6 +24,7 @@ from pipeline.cache import (
     PICTURES,
     SELF_TESTS,
     SPECTRA,
+    STOCKS,
     THUMBNAILS,
     TRADEOFFS,
     Cache,
@@ -31,12 +32,13 @@ from pipeline.cache import (
     CacheWarning,
     key_of,
 )
+from pipeline.event.stock import stock_of
 from pipeline.images.album import Album
 from pipeline.images.limits import ImageLimits
 from pipeline.models import model_named
 from pipeline.models.band import band_accelerations, sharing_spectra
 from pipeline.motions import read_site
-from pipeline.records import Axis, Chart, Excitation, Silent
+from pipeline.records import Assessment, Axis, Chart, Excitation, Item, Scene, Silent, Support
 from pipeline.resources import resource
 from pipeline.store import codec
 from pipeline.verification import selftest, tradeoff
@@ -107,6 +109,11 @@ def put_thumbnails(folder: Path) -> None:
     Album(Cache(folder), ImageLimits(folder=folder.parent)).gather(["a.png"], Silent())
 
 
+def put_stock(folder: Path) -> None:
+    scene = Scene(Item("1", "A"), "vase", "", Support.FREESTANDING, (), {})
+    Cache(folder).put(STOCKS, key_of("a page"), stock_of([Assessment(scene, (), ())], {}).packed())
+
+
 PUT: dict[str, Callable[[Path], None]] = {
     MOTIONS: put_motion,
     CHARTS: put_chart,
@@ -117,6 +124,7 @@ PUT: dict[str, Callable[[Path], None]] = {
     TRADEOFFS: put_tradeoff,
     HOUSE: put_house,
     THUMBNAILS: put_thumbnails,
+    STOCKS: put_stock,
 }
 
 

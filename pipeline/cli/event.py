@@ -11,9 +11,10 @@ from pipeline.cli.console import aligned, printable
 from pipeline.cli.options import Options, as_json, dry_run, say_dry
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from pipeline.tools.event import EventDone, TypedShaking
+
+SECONDS = 4.0
+"""For running models: with these a museum of 2,000 objects has both its answers within 10."""
 
 _LISTED = 10
 """Galleries and objects that are printed."""
@@ -33,6 +34,20 @@ _LISTED = 10
     type=click.Path(path_type=Path),
     help="What people found: a CSV file, columns object and state (standing, moved, fallen, broken).",
 )
+@click.option(
+    "--watch",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="FOLDER",
+    help="Answer what comes into this folder, until it is stopped.",
+)
+@click.option(
+    "--seconds",
+    type=click.FloatRange(0.0, 86_400.0),
+    default=SECONDS,
+    show_default=True,
+    help="Time for running models under the motions of the earthquake, those first of which most is lost; 0: none.",
+)
+@click.option("--once", is_flag=True, help="With --watch: answer what is there now, and end, as for cron.")
 @dry_run("Say what is probably down")
 @as_json
 @click.pass_obj
@@ -45,6 +60,9 @@ def event(
     ln_sd: float | None,
     report: Path | None,
     drill: bool,
+    watch: Path | None,
+    seconds: float,
+    once: bool,
     dry_run: bool,
     as_json: bool,
 ) -> None:
@@ -59,13 +77,28 @@ def event(
     Example: kouros event grid.xml --at 37.77,-122.47
     Example: kouros event --pga 0.144 --pgv 18.9 --ln-sd 0.3
     Example: kouros event --drill
+    Example: kouros event --watch drop
+
+    \b
+    Exit codes besides those of kouros: 0 answered, or answered before; 2 a message that cannot be used, of another
+    place, cancelled, or no run to answer from: earlier answers stay; 4 a record that cannot be used; 6 another
+    process watches; with --watch --once 3: something was refused; 130 and 143 stopped.
     """
     from pipeline.operations.dry_run import rehearsed
     from pipeline.operations.job_monitor import tell_shaken
     from pipeline.operations.secrets import hider
     from pipeline.operations.workspace import open_workspace
+    from pipeline.report.files.event_files import document_text
     from pipeline.tools.event import answer_event, exercise
 
+    if watch is not None:
+        others = (files, pga, pgv, ln_sd, report, drill, dry_run)
+        if any(one not in (None, False, ()) for one in others):
+            raise click.UsageError("--watch takes what comes into its folder: leave files, numbers and the rest out")
+        _watch(options, watch, _place(at), seconds, once=once, as_json=as_json)
+        return
+    if once:
+        raise click.UsageError("--once goes with --watch FOLDER")
     began = perf_counter()
     place, typed = _place(at), _typed(pga, pgv, ln_sd)
     with rehearsed(options.settings(), dry_run) as settings:
@@ -74,17 +107,57 @@ def event(
             if files or typed is not None:
                 raise click.UsageError("--drill has a shaking of its own: leave files, --pga and --pgv out")
             typed, quake = exercise(workspace)
-        done = answer_event(workspace, files, at=place, typed=typed, report=report, drill=quake, dry_run=dry_run)
+        done = answer_event(
+            workspace, files, at=place, typed=typed, report=report, drill=quake, seconds=seconds, dry_run=dry_run
+        )
         if not (dry_run or done.again or drill):
-            tell_shaken(settings, _sentence(done.document), done.document, hider(settings))
+            tell_shaken(settings, done.sentence, done.document, hider(settings))
     if as_json:
-        click.echo(json.dumps(done.document, indent=2, allow_nan=False))
+        click.echo(document_text(done.document), nl=False)
     else:
         click.echo("\n".join(map(printable, _lines(done, dry=dry_run))))
         if drill:
             click.echo(f"This was an exercise.  From the question to the page it took {perf_counter() - began:.1f} s.")
     if dry_run:
         say_dry(as_json)
+
+
+def _watch(
+    options: Options, folder: Path, place: tuple[float, float] | None, seconds: float, *, once: bool, as_json: bool
+) -> None:
+    """Answer what comes into a folder; a line for each of it, or one JSON object a line."""
+    from pipeline.operations.job_monitor import tell_shaken
+    from pipeline.operations.secrets import hider
+    from pipeline.tools.event_watch import DropFolder, Dropped, watch
+
+    settings = options.settings()
+
+    def tell(came: Dropped) -> None:
+        names = ", ".join(file.name for file in came.files)
+        done = came.done
+        if as_json:
+            told = {"files": [str(file) for file in came.files], "refused": came.refusal or None, "later": came.later}
+            more = {} if done is None else {"again": done.again, "newest": done.newest, **_brief(done)}
+            click.echo(json.dumps({**told, **more}, allow_nan=False))
+        elif done is None:
+            again = " (it is tried again)" if came.later else ""
+            click.echo(printable(f"{names}: refused{again}: {came.refusal}"), err=True)
+        else:
+            said = "answered before" if done.again else str(done.folder / "index.html")
+            click.echo(printable(f"{names}: {done.sentence} {said}"))
+        if done is not None and not done.again:
+            tell_shaken(settings, done.sentence, done.document, hider(settings))
+
+    drop = DropFolder(settings, folder, place, seconds=seconds)
+    if not once:
+        click.echo(printable(f"watching {folder}; Ctrl-C ends it"), err=True)
+    refused = watch(drop, tell, once=once)
+    if refused:
+        raise click.exceptions.Exit(3)
+
+
+def _brief(done: "EventDone") -> dict[str, Any]:
+    return {name: done.document[name] for name in ("event", "shaking", "expected")}
 
 
 def _place(at: str | None) -> tuple[float, float] | None:
@@ -109,24 +182,18 @@ def _typed(pga: float | None, pgv: float | None, ln_sd: float | None) -> "TypedS
     return TypedShaking(pga, pgv, ln_sd)
 
 
-def _sentence(document: "Mapping[str, Any]") -> str:
-    down, quake = document["expected"], document["event"]
-    name = quake["name"] or quake["id"] or "an earthquake"
-    return (
-        f"After {name}: of {len(document['objects']):,} objects on display about {down['fallen']:,.0f} have probably "
-        f"fallen ({down['low']:,} to {down['high']:,} in 9 of 10 cases)."
-    )
-
-
 def _lines(done: "EventDone", *, dry: bool) -> list[str]:
     document = done.document
     shaking = document["shaking"]
-    lines = [_sentence(document)]
+    lines = [done.sentence]
     lines.append(
         f"Shaking at the museum: {shaking['pga_g']:.3f} g (ln sd {shaking['pga_ln_sd']:.2f}), "
         f"{shaking['pgv_cm_s']:.1f} cm/s (ln sd {shaking['pgv_ln_sd']:.2f}), from {shaking['from']}"
     )
     lines += document["event"]["notes"]
+    ran, under = document["event"]["modelled"], document["event"]["modelled_under"]
+    if ran:
+        lines.append(f"Of {ran:,} objects of which most is lost all models were run again, under {under}.")
     rows = [
         (one["gallery"] or "no gallery recorded", f"{one['fallen']:.1f}", f"{one['low']} to {one['high']}",
          f"{one['expected_loss']:.1f}")

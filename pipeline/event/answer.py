@@ -9,15 +9,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.analysis.stakes import danger_of, value_of
 from pipeline.event.capacities import KINDS, Capacities
 from pipeline.event.message import SiteShaking
+from pipeline.event.stock import Stock
 from pipeline.quantities import Array, G
-from pipeline.records import Assessment, Band, Harm, Sampling
+from pipeline.records import Band, Harm, Sampling
 from pipeline.records.fragility import HARM
 
 DRAWS, FEWER, MANY = 512, 128, 20_000
@@ -105,12 +105,10 @@ def chances(capacities: Capacities, draws: Draws, objects: slice) -> Array:
     with np.errstate(invalid="ignore"):
         z = ((1.0 - beta) * pga + beta * pgv - ln_c + common * record) / own
     out = np.nan_to_num(ndtr(z), nan=0.0)
-    start = objects.start or 0
-    for kind in range(len(KINDS)):
-        for at in range(out.shape[2]):
-            told = capacities.shares.get((kind, start + at))
-            if told is not None:
-                out[kind, :, at] = np.interp(draws.ln_pga, *told)
+    for one in capacities.shares:
+        mine = one.of(objects)
+        if mine.at.size:
+            out[mine.kind, :, mine.at] = mine.under(draws.ln_pga).T
     # What falls has rocked, and what reaches a state that harms is harmed: curves that are fitted apart may cross.
     falls = out[KINDS.index(Harm.FALLS.value)]
     rocks, harm = KINDS.index(Harm.ROCKS.value), KINDS.index(HARM)
@@ -227,8 +225,7 @@ class Answer:
 
 
 def answered(
-    assessments: Sequence[Assessment],
-    capacities: Capacities,
+    stock: Stock,
     shaking: SiteShaking,
     sampling: Sampling,
     draws: Draws,
@@ -238,10 +235,8 @@ def answered(
 
     Parameters
     ----------
-    assessments : sequence of Assessment
-        On display, as a run found them.
-    capacities : Capacities
-        Of the same objects.
+    stock : Stock
+        The objects on display.
     shaking : SiteShaking
         At the museum.
     sampling : Sampling
@@ -252,15 +247,16 @@ def answered(
         By place of an object, what people found: standing, moved, fallen or broken.
     """
     found = found or {}
-    names = {name: at for at, name in enumerate(dict.fromkeys(one.scene.item.gallery for one in assessments))}
-    member = np.array([names[one.scene.item.gallery] for one in assessments], dtype=np.intp)
+    able, size = stock.capacities, len(stock)
+    names = {name: at for at, name in enumerate(dict.fromkeys(stock.galleries))}
+    member = np.array([names[name] for name in stock.galleries], dtype=np.intp)
     counts = np.zeros((draws.weights.size, len(names)))
-    expected = np.zeros((len(KINDS), len(assessments)))
-    moved = np.zeros(len(assessments))
+    expected = np.zeros((len(KINDS), size))
+    moved = np.zeros(size)
     chosen = np.random.default_rng(0)
-    for start in range(0, len(assessments), _AT_ONCE):
-        part = slice(start, min(start + _AT_ONCE, len(assessments)))
-        chance = chances(capacities, draws, part)
+    for start in range(0, size, _AT_ONCE):
+        part = slice(start, min(start + _AT_ONCE, size))
+        chance = chances(able, draws, part)
         _put_found(chance, found, start)
         expected[:, part] = np.einsum("s,ksn->kn", draws.weights, chance)
         moved[part] = draws.weights @ moved_of(chance)
@@ -268,28 +264,16 @@ def answered(
         down = chosen.random(falls.shape) < falls
         for gallery in np.unique(member[part]).tolist():
             counts[:, gallery] += down[:, member[part] == gallery].sum(axis=1)
-    known = capacities.known
-    objects = [
-        replace(
-            _object(
-                one,
-                expected[:, at],
-                float(moved[at]),
-                capacities,
-                at,
-                known=bool(known[at]) or at in found,
-                sampling=sampling,
-            ),
-            reported=found.get(at, ""),
-        )
-        for at, one in enumerate(assessments)
-    ]
+    objects = _objects(stock, expected, moved, sampling, found)
     falls = expected[KINDS.index(Harm.FALLS.value)]
+    by_gallery: list[list[ObjectAnswer]] = [[] for _ in names]
+    for one, number in zip(objects, member.tolist(), strict=True):
+        by_gallery[number].append(one)
+    down_in = np.bincount(member, weights=falls, minlength=len(names))
     galleries = [
-        _gallery(name, [objects[at] for at in np.flatnonzero(member == number)],
-                 _count(float(falls[member == number].sum()), counts[:, number], draws.weights))
+        _gallery(name, by_gallery[number], _count(float(down_in[number]), counts[:, number], draws.weights))
         for name, number in names.items()
-    ]  # fmt: skip
+    ]
     return Answer(
         shaking,
         _count(float(falls.sum()), counts.sum(axis=1), draws.weights),
@@ -333,27 +317,48 @@ def _gallery(name: str, objects: Sequence[ObjectAnswer], count: Count) -> Galler
     )
 
 
-def _object(
-    one: Assessment, chance: Array, moved: float, capacities: Capacities, at: int, *, known: bool, sampling: Sampling
-) -> ObjectAnswer:
-    item, scene = one.scene.item, one.scene
-    value, danger = value_of(scene), danger_of(scene)
-    if not known:
-        return ObjectAnswer(
-            item.object_number, item.title, item.gallery, item.case, scene.floor, None, None, {}, 0.0, value, danger,
-            0.0, aftershock=False, make_safe=False,
-        )  # fmt: skip
-    harm, falls = float(chance[KINDS.index(HARM)]), float(chance[KINDS.index(Harm.FALLS.value)])
-    there = np.isfinite(capacities.ln_capacity[:, at])
-    states = {
-        name: float(chance[kind])
-        for kind, name in enumerate(KINDS)
-        if kind and (there[kind] or (kind, at) in capacities.shares)
-    }
+def _objects(
+    stock: Stock, expected: Array, moved: Array, sampling: Sampling, found: Mapping[int, str]
+) -> list[ObjectAnswer]:
+    """Return what became of each object, by the probability of each kind (k, m), and that of having moved (m,)."""
+    reachable = stock.capacities.reachable
+    known = np.asarray(reachable.any(axis=0)).tolist()
+    harm, falls = expected[KINDS.index(HARM)], expected[KINDS.index(Harm.FALLS.value)]
     possible = sampling.edges[2]
-    return ObjectAnswer(
-        item.object_number, item.title, item.gallery, item.case, scene.floor, harm, sampling.band(harm), states, moved,
-        value, danger, harm * value + falls * danger,
-        aftershock=moved >= possible,
-        make_safe=danger >= DANGEROUS and moved + falls >= possible,
+    rows = zip(
+        stock.numbers, stock.titles, stock.galleries, stock.cases, stock.floors, known, harm.tolist(),
+        expected.T.tolist(), reachable.T.tolist(), moved.tolist(), stock.value.tolist(), stock.danger.tolist(),
+        (harm * stock.value + falls * stock.danger).tolist(), (moved >= possible).tolist(),
+        ((stock.danger >= DANGEROUS) & (moved + falls >= possible)).tolist(), strict=True,
     )  # fmt: skip
+    out = []
+    for at, (
+        number,
+        title,
+        gallery,
+        case,
+        floor,
+        sure,
+        chance,
+        each,
+        there,
+        left,
+        value,
+        danger,
+        loss,
+        weak,
+        safe,
+    ) in enumerate(rows):
+        reported = found.get(at, "")
+        if not (sure or reported):
+            out.append(
+                ObjectAnswer(number, title, gallery, case, floor, None, None, {}, 0.0, value, danger, 0.0,
+                             aftershock=False, make_safe=False)
+            )  # fmt: skip
+            continue
+        states = {KINDS[kind]: each[kind] for kind in range(1, len(KINDS)) if there[kind]}
+        out.append(
+            ObjectAnswer(number, title, gallery, case, floor, chance, sampling.band(chance), states, left, value,
+                         danger, loss, aftershock=weak, make_safe=safe, reported=reported)
+        )  # fmt: skip
+    return out

@@ -35,6 +35,8 @@ from pipeline.quantities import Array
 from pipeline.records import Assessment, Fragility, Harm, Likelihood, MotionSummary
 from pipeline.records.fragility import HARM
 
+Indices = NDArray[np.intp]
+
 KINDS = (HARM, *(one.value for one in Harm))
 """What there is a capacity of: any harm, then each state."""
 
@@ -101,6 +103,42 @@ def _floor(motions: Sequence[MotionSummary], below: Array) -> FloorMotions:
     return FloorMotions(means, float(ratios.mean()), sd, (up[0], up[1], 0.0 if not np.any(times) else spread))
 
 
+@dataclass(frozen=True)
+class Shares:
+    """Shares of samples that reached a state, at the same peak accelerations, where no curve tells it.
+
+    Attributes
+    ----------
+    ln_pga : ndarray, shape (g,)
+        Of the ground, rising; one alone holds at all.
+    kind, at : ndarray of int, shape (n,)
+        Of which kind and of which object each row is; objects rise.
+    share : ndarray, shape (n, g)
+        0 to 1, never falling along a row.
+    """
+
+    ln_pga: Array
+    kind: Indices
+    at: Indices
+    share: Array
+
+    def of(self, objects: slice) -> Shares:
+        """Return the rows of some objects, whose places count from the first of them."""
+        start, stop = objects.start or 0, objects.stop
+        rows = slice(*np.searchsorted(self.at, [start, stop]).tolist())
+        return Shares(self.ln_pga, self.kind[rows], self.at[rows] - start, self.share[rows])
+
+    def under(self, ln_pga: Array) -> Array:
+        """Return the share of each row at some peak accelerations, (s, n): straight between two, the same beyond."""
+        if self.ln_pga.size == 1:
+            return np.repeat(self.share.T, ln_pga.size, axis=0)
+        clipped = np.clip(ln_pga, self.ln_pga[0], self.ln_pga[-1])
+        low = np.clip(np.searchsorted(self.ln_pga, clipped, side="right") - 1, 0, self.ln_pga.size - 2)
+        part = (clipped - self.ln_pga[low]) / (self.ln_pga[low + 1] - self.ln_pga[low])
+        below, above = self.share[:, low], self.share[:, low + 1]
+        return np.asarray((below + part * (above - below)).T)
+
+
 @dataclass
 class Capacities:
     """Capacities of m objects by kind (k, m), NaN where an object cannot reach a state or nothing is known of it.
@@ -111,23 +149,83 @@ class Capacities:
         ln c [m/s2 and m/s] and the share of the velocity, on the ground.
     common, own : ndarray, shape (k, m)
         Parts of sigma that all objects have in common, being of the record, and that each has for itself.
-    shares : mapping of (int, int) to (ndarray, ndarray)
-        By kind and object, ln of PGA of the ground and the shares of samples there, where no curve tells it.
+    shares : list of Shares
+        Of those kinds of objects that no curve tells.
     """
 
     ln_capacity: Array
     beta: Array
     common: Array
     own: Array
-    shares: dict[tuple[int, int], tuple[Array, Array]] = field(default_factory=dict)
+    shares: list[Shares] = field(default_factory=list)
 
     @property
     def known(self) -> NDArray[np.bool_]:
         """Of which objects anything is known, (m,)."""
-        found = np.asarray(np.isfinite(self.ln_capacity).any(axis=0))
-        for _, at in self.shares:
-            found[at] = True
-        return found
+        return np.asarray(self.reachable.any(axis=0))
+
+    @property
+    def reachable(self) -> NDArray[np.bool_]:
+        """Which kinds each object can reach, as far as is known, (k, m)."""
+        found = np.isfinite(self.ln_capacity)
+        for one in self.shares:
+            found[one.kind, one.at] = True
+        return np.asarray(found)
+
+    def some(self, places: Sequence[int]) -> Capacities:
+        """Return those of some objects, in that order."""
+        chosen = np.asarray(places, dtype=np.intp)
+        new = np.full(self.ln_capacity.shape[1], -1, dtype=np.intp)
+        new[chosen] = np.arange(chosen.size)
+        shares = [_rising(one.ln_pga, one.kind, new[one.at], one.share, new[one.at] >= 0) for one in self.shares]
+        ln_capacity, beta, common, own = (
+            part[:, chosen] for part in (self.ln_capacity, self.beta, self.common, self.own)
+        )
+        return Capacities(ln_capacity, beta, common, own, shares)
+
+    def centred(
+        self, told: Mapping[int, Mapping[str, float]], ln_pga: float, ln_pgv: float, *, same: bool
+    ) -> Capacities:
+        """Return the same where of some objects the probability of each kind is known at some peaks.
+
+        How the probability grows with the peaks stays as the curves have it, or is as stated where there are none.
+
+        Parameters
+        ----------
+        told : mapping of int to mapping of str to float
+            By place of the object, the probability of each kind that it can reach, between 0 and 1.
+        ln_pga, ln_pgv : float
+            ln of the peaks of the ground [m/s2, m/s] at which they are.
+        same : bool
+            Whether they are under the very motion, so that nothing of it differs any more from what is drawn.
+        """
+        from scipy.special import ndtri
+
+        parts = [part.copy() for part in (self.ln_capacity, self.beta, self.common, self.own)]
+        ln_capacity, beta, common, own = parts
+        usual_beta, usual_common, usual_own = _usual()
+        for at, chances in told.items():
+            for kind, name in enumerate(KINDS):
+                if name not in chances:
+                    ln_capacity[kind, at] = np.nan
+                    continue
+                if not math.isfinite(ln_capacity[kind, at]):
+                    beta[kind, at], common[kind, at], own[kind, at] = usual_beta, usual_common, usual_own
+                if same:
+                    common[kind, at] = 0.0
+                sigma = math.hypot(own[kind, at], common[kind, at])
+                peaks = (1.0 - beta[kind, at]) * ln_pga + beta[kind, at] * ln_pgv
+                ln_capacity[kind, at] = peaks - sigma * float(ndtri(chances[name]))
+        places = list(told)
+        shares = [_rising(one.ln_pga, one.kind, one.at, one.share, ~np.isin(one.at, places)) for one in self.shares]
+        return Capacities(ln_capacity, beta, common, own, shares)
+
+
+def _rising(ln_pga: Array, kind: Indices, at: Indices, share: Array, keep: NDArray[np.bool_]) -> Shares:
+    """Return the rows that are kept, by rising places."""
+    rows = np.flatnonzero(keep)
+    rows = rows[np.argsort(at[rows], kind="stable")]
+    return Shares(ln_pga, kind[rows], at[rows], share[rows])
 
 
 def capacities(assessments: Sequence[Assessment], floors: Mapping[str, FloorMotions]) -> Capacities:
@@ -143,6 +241,7 @@ def capacities(assessments: Sequence[Assessment], floors: Mapping[str, FloorMoti
     shape = len(KINDS), len(assessments)
     ln_capacity, beta, common, own = np.full((4, *shape), np.nan)
     found = Capacities(ln_capacity, beta, common, own)
+    rows: dict[tuple[float, ...], list[tuple[int, int, Array]]] = {}
     for at, one in enumerate(assessments):
         floor = floors.get(one.scene.floor)
         if floor is None:
@@ -150,23 +249,48 @@ def capacities(assessments: Sequence[Assessment], floors: Mapping[str, FloorMoti
         curves = {curve.state: curve for curve in one.fragilities if curve.state in KINDS}
         for kind, name in enumerate(KINDS):
             if name in curves:
-                _by_curve(found, kind, at, curves[name], floor)
+                told = _by_curve(found, kind, at, curves[name], floor)
+                if told is not None:
+                    rows.setdefault(told[0], []).append((kind, at, told[1]))
             elif not curves and one.likelihoods:
                 _by_levels(found, kind, at, one.likelihoods, floor)
+    for ln_pga, those in rows.items():
+        kinds, places, shares = (np.array(part) for part in zip(*those, strict=True))
+        found.shares.append(Shares(np.array(ln_pga), kinds, places, shares))
     return found
 
 
-def _by_curve(found: Capacities, kind: int, at: int, curve: Fragility, floor: FloorMotions) -> None:
+def joined(parts: Sequence[Capacities]) -> Capacities:
+    """Return the capacities of all objects of several, one after the other."""
+    ln_capacity, beta, common, own = (
+        np.concatenate([getattr(one, name) for one in parts], axis=1)
+        for name in ("ln_capacity", "beta", "common", "own")
+    )
+    grids: dict[tuple[float, ...], list[tuple[Indices, Indices, Array]]] = {}
+    start = 0
+    for part in parts:
+        for one in part.shares:
+            grids.setdefault(tuple(one.ln_pga.tolist()), []).append((one.kind, one.at + start, one.share))
+        start += part.ln_capacity.shape[1]
+    shares = [
+        Shares(np.array(grid), *(np.concatenate(some) for some in zip(*rows, strict=True)))
+        for grid, rows in grids.items()
+    ]
+    return Capacities(ln_capacity, beta, common, own, shares)
+
+
+def _by_curve(
+    found: Capacities, kind: int, at: int, curve: Fragility, floor: FloorMotions
+) -> tuple[tuple[float, ...], Array] | None:
+    """Put the capacity that a curve tells in its place; else return the shares at ln of the peaks of the ground."""
     if curve.bound or curve.median_pgv is None or curve.dispersion_pgv is None:
         rows = [(math.log(pga) - floor.up[0], reached / taken) for pga, taken, reached in curve.stripes if taken]
-        if rows:
-            ln_a, shares = np.array(rows).T
-            # More shaking never spares what less did not: samples that are few may say so.
-            found.shares[kind, at] = ln_a, np.maximum.accumulate(shares)
-        return
+        # More shaking never spares what less did not: samples that are few may say so.
+        return (tuple(at for at, _ in rows), np.maximum.accumulate([share for _, share in rows])) if rows else None
     own = math.hypot(curve.inputs, curve.modelling)
     medians = math.log(curve.median), math.log(curve.median_pgv)
     _put(found, kind, at, medians, (curve.dispersion, curve.dispersion_pgv), own, floor)
+    return None
 
 
 def _by_levels(found: Capacities, kind: int, at: int, said: Sequence[Likelihood], floor: FloorMotions) -> None:
@@ -194,6 +318,22 @@ def _stated() -> tuple[float, float, float]:
     return stated("modelling").value, stated("record").value, stated("record_velocity").value
 
 
+@cache
+def _usual() -> tuple[float, float, float]:
+    """Return the share of the velocity, and what is in common and what is an object's own, where no curve tells it."""
+    own, record, by_speed = _stated()
+    return (*_parted((math.hypot(own, record), math.hypot(own, by_speed)), own, RATIO_SIGMA**2), own)
+
+
+def _parted(spread: tuple[float, float], own: float, square: float) -> tuple[float, float]:
+    """Return the share of the velocity, and what all objects have in common of the spread by both peaks."""
+    by_a, by_v = (sd * sd for sd in spread)
+    beta = min(max(0.5 * (1.0 + (by_a - by_v) / square), 0.0), 1.0)
+    # Equal, unless beta is at an end.
+    rest = 0.5 * (by_a - beta * beta * square + by_v - (1.0 - beta) ** 2 * square)
+    return beta, math.sqrt(max(rest - own * own, 0.0))
+
+
 def _put(
     found: Capacities,
     kind: int,
@@ -204,14 +344,10 @@ def _put(
     floor: FloorMotions,
 ) -> None:
     """Put the capacity behind two curves in its place, as one of the shaking of the ground."""
-    by_a, by_v = (sd * sd for sd in spread)
-    square = floor.ratio_sd**2
-    beta = min(max(0.5 * (1.0 + (by_a - by_v) / square), 0.0), 1.0)
-    # Equal, unless beta is at an end.
-    rest = 0.5 * (by_a - beta * beta * square + by_v - (1.0 - beta) ** 2 * square)
     own = max(own, 0.05)
+    beta, common = _parted(spread, own, floor.ratio_sd**2)
     up_a, up_v, up_sd = floor.up
     found.ln_capacity[kind, at] = (1.0 - beta) * (medians[0] - up_a) + beta * (medians[1] - up_v)
     found.beta[kind, at] = beta
     found.own[kind, at] = own
-    found.common[kind, at] = math.sqrt(max(rest - own * own, 0.0) + up_sd * up_sd)
+    found.common[kind, at] = math.hypot(common, up_sd)

@@ -20,6 +20,7 @@ from pipeline.event.message import (
     ReportedEarthquake,
     SiteShaking,
     cancelled,
+    check_peaks,
     in_unit,
     kilometres,
     moment,
@@ -31,6 +32,12 @@ from pipeline.quantities import Array
 
 MOST = 4_000_000
 """Points of a grid."""
+
+MOST_SD = 3.0
+"""Standard deviations of ln: more is none."""
+
+WIDE = 0.2
+"""Degrees between points from which on a reader is told: judgement; ShakeMap has 0.008 to 0.07."""
 
 _LEAST = {"PGA": 5e-5, "PGV": 5e-3}
 """What is printed as 0.00: half of the last digit, in g and cm/s."""
@@ -83,11 +90,18 @@ class Grid(Message):
         sd = {}
         for name, relation in (("pga", PGA_SIGMA), ("pgv", PGV_SIGMA)):
             field = fields.get(f"STD{name.upper()}")
-            if field is not None:
-                sd[name] = max(0.0, self._between(field, *within))
+            said = 0.0 if field is None else self._between(field, *within)
+            if said < 0.0 or said > MOST_SD:
+                raise refused(
+                    self.file, f"grid_data STD{name.upper()}", f"{said:g} is no standard deviation of a logarithm",
+                    "fetch the map again",
+                )  # fmt: skip
+            # Nothing is sure: 0 is printed where the map does not say it.
+            if said > 0.0:
+                sd[name] = said
             elif told.get(name, 0.0) > 0.0:
                 sd[name] = told[name]
-            elif name == "pgv" and "STDPGA" in fields:
+            elif name == "pgv" and "STDPGA" in fields and "STDPGV" not in fields:
                 sd[name] = sd["pga"]
                 notes.append("The map does not say how sure its PGV is: taken to be as sure as its PGA (judgement).")
             else:
@@ -96,6 +110,12 @@ class Grid(Message):
                     f"The map does not say how sure its {name.upper()} is: {relation:g} of ln is taken, what relations "
                     "of shaking have between and within earthquakes (Boore et al. 2014)."
                 )
+        check_peaks(self.file, "grid_data", pga, pgv)
+        steps = max(float(np.diff(self.latitudes).max()), float(np.diff(self.longitudes).max()))
+        if steps > WIDE:
+            notes.append(
+                f"The map's points lie up to {steps:.2g} degrees apart: it hardly tells what lies between them."
+            )
         version = f", version {self.quake.version}" if self.quake.version else ""
         return SiteShaking(pga, pgv, sd["pga"], sd["pgv"], f"ShakeMap{version}, interpolated", (*self.notes, *notes))
 
@@ -164,7 +184,9 @@ def read_grid(file: Path, root: Any) -> Grid:
     down = slice(None, None, -1) if latitudes[0, 0] > latitudes[-1, 0] else slice(None)
     east, north = longitudes[0], latitudes[down, 0]
     regular = np.ptp(longitudes, axis=0).max() < 1e-3 and np.ptp(latitudes, axis=1).max() < 1e-3
-    if not (regular and (np.diff(east) > 0.0).all() and (np.diff(north) > 0.0).all()):
+    on_earth = np.abs(latitudes).max() <= 90.0 and np.abs(longitudes).max() <= 540.0
+    # Of what is no number nothing is true here.
+    if not (regular and on_earth and (np.diff(east) > 0.0).all() and (np.diff(north) > 0.0).all()):
         raise refused(file, "grid_data", "its points make no regular grid", "fetch the map again")
     fields: dict[str, Array] = {
         str(name): factors.get(name, 1.0) * table[:, columns[name]].reshape(shape)[down]

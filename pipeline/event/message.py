@@ -48,20 +48,33 @@ _ELEMENTS_ONLY = re.compile(rb"<!DOCTYPE\s+shakemap-data\s*\[(?:\s*<!(?:ELEMENT|
 _CANCELLED = frozenset({"cancelled", "canceled", "cancel", "delete", "deleted"})
 ACCELERATIONS: Mapping[str, float] = {
     "pctg": 0.01, "%g": 0.01, "g": 1.0, "cm/s/s": 0.01 / G, "cm/s2": 0.01 / G, "cm/s^2": 0.01 / G, "gal": 0.01 / G,
-    "m/s/s": 1.0 / G, "m/s2": 1.0 / G, "m/s^2": 1.0 / G,
+    "gals": 0.01 / G, "cm/s**2": 0.01 / G, "m/s/s": 1.0 / G, "m/s2": 1.0 / G, "m/s^2": 1.0 / G, "m/s**2": 1.0 / G,
 }  # fmt: skip
 """Units of peak acceleration, in g."""
 VELOCITIES: Mapping[str, float] = {"cms": 1.0, "cm/s": 1.0, "m/s": 100.0}
 """Units of peak velocity, in cm/s."""
+
+MOST_PGA, MOST_PGV = 5.0, 1000.0
+"""g and cm/s: more than was ever recorded of the ground (4.4 g at Iwate 2008, 380 cm/s at Chi-Chi 1999); it is a unit
+that is not what it is called."""
 
 
 class MessageError(InputError):
     """A message about an earthquake that nothing can be answered by: file, place, what is wrong, and the remedy."""
 
 
+class CutOffError(MessageError):
+    """A message that is not whole: it was cut off on the way, or is still being written."""
+
+
 def refused(file: Path, place: str, wrong: str, remedy: str) -> MessageError:
     """Return the error of a message, so that all read alike."""
     return MessageError(f"{file}: {place}: {wrong}; {remedy}")
+
+
+def cut_off(file: Path, wrong: str) -> CutOffError:
+    """Return the error of a message that is not whole."""
+    return CutOffError(f"{file}: file: {wrong}; it was cut off on the way, or is still being written: fetch it again")
 
 
 @dataclass(frozen=True)
@@ -235,7 +248,7 @@ def content(file: Path) -> bytes:
         with gzip.open(file) if packed else file.open("rb") as opened:
             data = opened.read(LARGEST + 1)
     except (EOFError, gzip.BadGzipFile, zlib.error) as error:
-        raise refused(file, "file", f"gzip data that is cut off or damaged ({error})", "fetch it again") from error
+        raise cut_off(file, f"gzip data that is cut off or damaged ({error})") from error
     except OSError as error:
         raise refused(file, "file", f"cannot be read: {error.strerror or error}", "see whether it is there") from error
     if len(data) > LARGEST:
@@ -271,7 +284,7 @@ def xml_root(file: Path, data: bytes) -> Any:
         return etree.fromstring(text, parser)
     except etree.XMLSyntaxError as error:
         wrong = f"is no whole XML, line {error.lineno or 1}: {str(error)[:200]}"
-        raise refused(file, "file", wrong, "it was cut off on the way: fetch it again") from error
+        raise cut_off(file, wrong) from error
 
 
 def number(file: Path, place: str, text: Any) -> float:
@@ -322,6 +335,19 @@ def in_unit(file: Path, place: str, unit: Any, known: Mapping[str, float]) -> fl
     if said not in known:
         raise refused(file, place, f"the unit {said[:20]!r} is not known", f"it should be one of {', '.join(known)}")
     return known[said]
+
+
+def check_peaks(file: Path, place: str, pga_g: float, pgv_cm_s: float | None) -> None:
+    """Refuse peaks that no shaking has.
+
+    Raises
+    ------
+    MessageError
+        For peaks beyond `MOST_PGA` and `MOST_PGV`.
+    """
+    if pga_g > MOST_PGA or (pgv_cm_s or 0.0) > MOST_PGV:
+        wrong = f"{pga_g:.3g} g and {pgv_cm_s or 0.0:.3g} cm/s at the museum, more than was ever recorded"
+        raise refused(file, place, wrong, "its units are not what they are called: fetch it again")
 
 
 def moment(file: Path, place: str, text: str) -> datetime:

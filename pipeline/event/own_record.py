@@ -1,8 +1,9 @@
-"""The museum's own record of an earthquake: read and processed as any record of a site, for its peaks."""
+"""The museum's own record of an earthquake: read and processed as any record of a site."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -12,7 +13,7 @@ from pipeline.motions.gathering import gather
 from pipeline.motions.placing import changed, commit, plan
 from pipeline.motions.proposing import Answers, propose
 from pipeline.motions.record import EventTable, StationTable
-from pipeline.motions.site import read_site
+from pipeline.motions.site import SiteMotion, read_site
 from pipeline.quantities import G
 
 NEAR_KM = 1.0
@@ -23,10 +24,30 @@ SIGMA = 0.10
 rooms of one building, and by what is filtered out."""
 
 
-def recorded_shaking(
-    files: Sequence[Path], latitude: float, longitude: float
-) -> tuple[SiteShaking, ReportedEarthquake]:
-    """Return the shaking that the museum's own instrument recorded, and what its files say of the earthquake.
+@dataclass(frozen=True)
+class OwnRecord:
+    """What the museum's own instrument recorded.
+
+    Attributes
+    ----------
+    shaking : SiteShaking
+        Its peaks.
+    quake : ReportedEarthquake
+        What its files say of the earthquake.
+    motion : SiteMotion
+        The whole motion, processed.
+    x_azimuth : float
+        Of its x axis, degrees clockwise from north.
+    """
+
+    shaking: SiteShaking
+    quake: ReportedEarthquake
+    motion: SiteMotion
+    x_azimuth: float
+
+
+def own_record(files: Sequence[Path], latitude: float, longitude: float) -> OwnRecord:
+    """Return what the museum's own instrument recorded.
 
     Parameters
     ----------
@@ -64,7 +85,9 @@ def recorded_shaking(
         if made.refused:
             raise MotionError("; ".join(f"{who}: {problem}" for who, problem in made.refused))
         commit(made, changed(made, StationTable(name="museum", latitude=latitude, longitude=longitude)))
-        measures = read_site(folder).levels[0].motions[0].measures
+        site = read_site(folder)
+    motion = site.levels[0].motions[0]
+    measures = motion.measures
     record = made.placed[0].record
     station = record.station
     if station is not None and station.latitude is not None and station.longitude is not None:
@@ -78,7 +101,7 @@ def recorded_shaking(
         measures["pga"] / G, 100.0 * measures["pgv"], SIGMA, SIGMA, f"the museum's own record, {record.name}",
         ("Taken as the shaking of the ground: a record of an upper floor would count that floor twice.",),
     )  # fmt: skip
-    return shaking, _quake(record.event)
+    return OwnRecord(shaking, _quake(record.event), motion, site.manifest.site.x_azimuth)
 
 
 def _quake(said: EventTable | None) -> ReportedEarthquake:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 import json
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
@@ -63,7 +65,7 @@ def read_files(files: Sequence[Path], now: datetime) -> EventFiles:
     Raises
     ------
     MessageError
-        For a message that cannot be used, and for messages about different earthquakes.
+        For a message that cannot be used or takes the earthquake back, and for messages about different earthquakes.
     """
     messages: list[Message] = []
     records: list[Path] = []
@@ -75,6 +77,10 @@ def read_files(files: Sequence[Path], now: datetime) -> EventFiles:
         if message is None:
             records.append(file)
             continue
+        if message.cancelled:
+            # Beside others as well: which of them holds only a person can say.
+            others = " leave it out if the other files hold," if len(files) > 1 else ""
+            raise MessageError(f"{file}: takes the earthquake back: it is cancelled;{others} earlier answers stay")
         check_quake(file, message.quake, now)
         messages.append(message)
     ordered = tuple(sorted(messages, key=lambda one: (-one.rank, -one.quake.version_number)))
@@ -83,6 +89,8 @@ def read_files(files: Sequence[Path], now: datetime) -> EventFiles:
     quake = ReportedEarthquake()
     for one in ordered:
         quake = with_more(quake, one.quake)
+    # A list of stations does not say where the earthquake was; how the shaking falls off from there it tells.
+    ordered = tuple(replace(one, quake=with_more(one.quake, quake)) for one in ordered)
     return EventFiles(quake, ordered, tuple(records), hashlib.sha256("\n".join(sorted(digests)).encode()).hexdigest())
 
 
@@ -96,6 +104,29 @@ def with_more(quake: ReportedEarthquake, other: ReportedEarthquake) -> ReportedE
     return replace(quake, **missing)
 
 
+def is_message(file: Path) -> bool:
+    """Say by its beginning whether a file is a message about an earthquake, and not a record of one."""
+    try:
+        with file.open("rb") as stream:
+            packed = stream.read(2) == b"\x1f\x8b"
+        with gzip.open(file) if packed else file.open("rb") as opened:
+            begins = opened.read(65536)
+    except (OSError, EOFError, zlib.error):
+        # What is damaged is refused by who reads it as a message.
+        return True
+    return _is_xml(begins) or _is_json(begins)
+
+
+def _is_xml(data: bytes) -> bool:
+    text = data.removeprefix(b"\xef\xbb\xbf").lstrip()
+    return text.startswith(b"<") and not (b"FDSNStationXML" in data[:65536] or b"quakeml" in data[:65536].lower())
+
+
+def _is_json(data: bytes) -> bool:
+    text = data.removeprefix(b"\xef\xbb\xbf").lstrip()
+    return text.startswith(b"{") and b'"FeatureCollection"' in text[:200_000]
+
+
 def read_message(file: Path, data: bytes) -> Message | None:
     """Return what a file says of the shaking; None for what is no message, and so may be a record.
 
@@ -104,8 +135,7 @@ def read_message(file: Path, data: bytes) -> Message | None:
     MessageError
         For a message that cannot be used.
     """
-    text = data.removeprefix(b"\xef\xbb\xbf").lstrip()
-    if text.startswith(b"<") and not (b"FDSNStationXML" in data[:65536] or b"quakeml" in data[:65536].lower()):
+    if _is_xml(data):
         root = xml_root(file, data)
         from lxml import etree
 
@@ -117,7 +147,7 @@ def read_message(file: Path, data: bytes) -> Message | None:
                 "give a ShakeMap grid.xml or stationlist, or a ShakeAlert event message",
             )  # fmt: skip
         return reader(file, root)
-    if text.startswith(b"{") and b'"FeatureCollection"' in text[:200_000] and _is_station_list(text):
+    if _is_json(data) and _is_station_list(data.removeprefix(b"\xef\xbb\xbf")):
         return read_station_json(file, data)
     return None
 

@@ -100,10 +100,11 @@ def conditioned(
     objects : int
         How many objects the draws are for.
     """
-    places = [at for at in sorted(found) if capacities.known[at]]
+    known = capacities.known
+    places = [at for at in sorted(found) if known[at]]
     if not places:
         return placed(shaking, normals(objects)), shaking
-    few, states = _of(capacities, places), [found[at] for at in places]
+    few, states = capacities.some(places), [found[at] for at in places]
     points, last = normals(count=FIRST), normals(objects)
     spread = np.zeros(len(points))
     for _ in range(ROUNDS):
@@ -134,18 +135,6 @@ def _after(shaking: SiteShaking, draws: Draws, reports: int) -> SiteShaking:
         shaking, pga_g=math.exp(means[0]) / G, pgv_cm_s=100.0 * math.exp(means[1]), pga_ln_sd=sds[0], pgv_ln_sd=sds[1],
         origin=f"{shaking.origin}, and {reports} reports from the galleries",
     )  # fmt: skip
-
-
-def _of(capacities: Capacities, places: Sequence[int]) -> Capacities:
-    shares = {
-        (kind, new): capacities.shares[kind, old]
-        for new, old in enumerate(places)
-        for kind in range(len(KINDS))
-        if (kind, old) in capacities.shares
-    }
-    parts = (capacities.ln_capacity, capacities.beta, capacities.common, capacities.own)
-    ln_capacity, beta, common, own = (part[:, places] for part in parts)
-    return Capacities(ln_capacity, beta, common, own, shares)
 
 
 def _ln_likelihood(capacities: Capacities, states: Sequence[str], draws: Draws) -> Array:

@@ -20,7 +20,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -28,11 +28,16 @@ from typing import Any
 import numpy as np
 
 from pipeline.event.message import (
+    ACCELERATIONS,
+    MOST_PGA,
+    MOST_PGV,
     PGA_SIGMA,
     PGV_SIGMA,
+    VELOCITIES,
     Message,
     ReportedEarthquake,
     SiteShaking,
+    cut_off,
     kilometres,
     number,
     position,
@@ -52,8 +57,22 @@ USED = 20
 FEWEST = 8
 """Stations that tell how the shaking falls off with distance: judgement."""
 
+CHECKED = 40
+"""Stations about a place that tell how well such estimates do there: judgement."""
+
 MOST = 100_000
 """Stations of a list."""
+
+PEAKS = {"pga": (ACCELERATIONS, "ln(g)"), "pgv": (VELOCITIES, "ln(cm/s)")}
+"""Units of each peak, in g and cm/s, and that of its natural logarithm."""
+
+UNIT_OF = {"pga": "g", "pgv": "cm/s"}
+MOST_PEAK = {"pga": MOST_PGA, "pgv": MOST_PGV}
+
+FELT = frozenset({"dyfi", "mmi", "intensity", "ciim"})
+"""Networks of ShakeMap that are no instruments."""
+
+UNITS_REMEDY = "take stationlist.json of the event's ShakeMap, which names the unit of each amplitude"
 
 
 @dataclass(frozen=True)
@@ -100,14 +119,18 @@ class StationList(Message):
         speeds = [one.pgv_cm_s for one in self.stations]
         told = sum(bool(speed) for speed in speeds) >= 1
         pgv, pgv_sd = self._estimate(speeds, latitude, longitude, PGV_SIGMA) if told else (None, PGV_SIGMA)
-        return SiteShaking(
-            pga,
-            pgv,
-            pga_sd,
-            pgv_sd,
-            f"{len(far):,} stations, the nearest {far[0][1]} at {far[0][0]:.1f} km",
-            self.notes,
-        )
+        origin = f"{len(far):,} stations, the nearest {far[0][1]} at {far[0][0]:.1f} km"
+        return SiteShaking(pga, pgv, pga_sd, pgv_sd, origin, (*self.notes, *self._unfitted(len(far))))
+
+    def _unfitted(self, stations: int) -> tuple[str, ...]:
+        if stations < FEWEST:
+            return (f"Only {stations} stations: how the shaking falls off with distance is not fitted.",)
+        if self.quake.latitude is None:
+            return (
+                "Nobody says where the earthquake was: how the shaking falls off with distance is not fitted; give a "
+                "message beside the stations that does, such as grid.xml.",
+            )
+        return ()
 
     def _estimate(
         self, peaks: Sequence[float | None], latitude: float, longitude: float, relation: float
@@ -124,7 +147,22 @@ class StationList(Message):
         # Two stations at one place would say the same twice.
         weights = np.linalg.solve(alike + 1e-6 * np.eye(near.size), to)
         spread = sd * math.sqrt(max(1.0 - float(weights @ to), 0.0))
-        return math.exp(here + float(weights @ left)), spread
+        about = np.argsort(far, kind="stable")[:CHECKED]
+        return math.exp(here + float(weights @ left)), spread * self._wider(places, values - trend, about, sd)
+
+    def _wider(self, places: Sequence[tuple[float, float]], left: Array, about: Any, sd: float) -> float:
+        """Return by how much stations about here miss what the others say of their places, beside what is expected.
+
+        Each left out in turn, in closed form: with K how alike they are, it is missed by (K^-1 r)_i / (K^-1)_ii, of
+        which 1 / (K^-1)_ii is expected.  Ranges are widened by it, and never narrowed.
+        """
+        if about.size < FEWEST or sd <= 0.0:
+            return 1.0
+        between = np.array([[kilometres(*places[i], *places[j]) for j in about] for i in about])
+        inverse = np.linalg.inv(_alike(between) + 1e-6 * np.eye(about.size))
+        own = np.diag(inverse)
+        missed = (inverse @ left[about]) / np.sqrt(own) / sd
+        return max(1.0, math.sqrt(float(np.mean(missed**2))))
 
     def _trend(
         self, places: Sequence[tuple[float, float]], values: Array, at: tuple[float, float], near: Any, relation: float
@@ -193,64 +231,141 @@ def _station_of(file: Path, station: Any) -> Station:
                 found.append(number(file, f"station {code} {name}", one.get("value")))
     pga, pgv = (max((*peaks[a], *peaks[b]), default=0.0) for a, b in (("pga", "acc"), ("pgv", "vel")))
     place = position(file, f"station {code}", station.get("lat"), station.get("lon"))
-    return Station(code, *place, 0.01 * pga if pga > 0.0 else None, pgv if pgv > 0.0 else None)
+    sound = 0.0 < 0.01 * pga <= MOST_PGA, 0.0 < pgv <= MOST_PGV
+    return Station(code, *place, 0.01 * pga if sound[0] else None, pgv if sound[1] else None)
 
 
 def read_station_json(file: Path, data: bytes) -> StationList:
-    """Read a ShakeMap station list of version 4 (GeoJSON): peaks in % of g and cm/s, those that are flagged left out.
+    """Read a ShakeMap station list of version 4 (GeoJSON): each amplitude in its own unit, those flagged left out.
 
     Raises
     ------
     MessageError
-        For what is no such list, or is cut off.
+        For what is no such list, is cut off, or has no amplitude that can be used.
     """
     try:
         said = json.loads(data.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
         wrong = f"is no whole JSON ({str(error)[:120]})"
-        raise refused(file, "file", wrong, "it was cut off on the way: fetch it again") from error
+        raise cut_off(file, wrong) from error
     features = said.get("features") if isinstance(said, dict) else None
     if not isinstance(features, list):
         raise refused(file, "features", "is no list", "take stationlist.json of the event's ShakeMap")
-    return _listed(file, ReportedEarthquake(), list(_features(file, features[: MOST + 1])))
+    left = LeftOut()
+    stations = list(_features(file, features[: MOST + 1], left))
+    if stations and left.reasons and not any(one.pga_g or one.pgv_cm_s for one in stations):
+        raise refused(file, "stations", f"no amplitude can be used: {left.told()}", UNITS_REMEDY)
+    return replace(_listed(file, ReportedEarthquake(), stations), notes=left.notes())
 
 
-def _features(file: Path, features: Sequence[Any]) -> Iterator[Station]:
+@dataclass
+class LeftOut:
+    """Stations whose amplitudes cannot be used, by the reason."""
+
+    reasons: dict[str, list[str]] = field(default_factory=dict)
+    bare: int = 0
+
+    def add(self, why: str, code: str) -> None:
+        """Note a station."""
+        codes = self.reasons.setdefault(why, [])
+        if code not in codes:
+            codes.append(code)
+
+    def told(self) -> str:
+        """Return the reasons in words, each with its stations."""
+        return "; ".join(
+            f"{why} ({', '.join(codes[:5])}{f' and {len(codes) - 5} more' if len(codes) > 5 else ''})"
+            for why, codes in self.reasons.items()
+        )
+
+    def notes(self) -> tuple[str, ...]:
+        """Return what a reader has to know of it."""
+        out = [f"Amplitudes of stations were left out: {self.told()}."] if self.reasons else []
+        if self.bare:
+            out.append(
+                f"{self.bare} stations name no channels: their peaks are taken as % of g and cm/s, as the manual "
+                "of ShakeMap has them."
+            )
+        return tuple(out)
+
+
+def _features(file: Path, features: Sequence[Any], left: LeftOut) -> Iterator[Station]:
     for at, one in enumerate(features):
         said = one.get("properties") if isinstance(one, dict) else None
         geometry = one.get("geometry") if isinstance(one, dict) else None
         where = geometry.get("coordinates") if isinstance(geometry, dict) else None
         if not isinstance(said, dict) or not isinstance(where, list) or len(where) < 2:
             raise refused(file, f"features[{at}]", "is no station at a point", "fetch the list again")
-        if said.get("station_type") == "macroseismic":
+        if said.get("station_type") == "macroseismic" or str(said.get("network")).lower() in FELT:
             continue  # What people felt, put into numbers.
-        place = position(file, f"features[{at}]", where[1], where[0])
-        found = {name: list(_amplitudes(said.get("channels"), name)) for name in ("pga", "pgv")}
-        pga, pgv = (max(found[name], default=_plain(said.get(name))) for name in ("pga", "pgv"))
         code = str(one.get("id") or said.get("code") or at)[:40]
-        yield Station(code, *place, 0.01 * pga if pga > 0.0 else None, pgv if pgv > 0.0 else None)
+        place = position(file, f"features[{at}]", where[1], where[0])
+        channels = said.get("channels")
+        if isinstance(channels, list) and channels:
+            # What the list says of the whole station does not say whether it is of a sound channel.
+            found = {name: list(_amplitudes(channels, name, code, left)) for name in PEAKS}
+        else:
+            found = {name: [bare] if (bare := _bare(said.get(name), name, code, left)) else [] for name in PEAKS}
+            left.bare += any(found.values())
+        yield Station(code, *place, max(found["pga"], default=None), max(found["pgv"], default=None))
 
 
-def _amplitudes(channels: Any, name: str) -> Iterator[float]:
-    """Yield a station's peaks in its horizontal channels that nobody flagged, in % of g or cm/s."""
-    for channel in channels if isinstance(channels, list) else ():
-        if not isinstance(channel, dict) or str(channel.get("name") or "").upper().endswith("Z"):
-            continue
+def _amplitudes(channels: Sequence[Any], name: str, code: str, left: LeftOut) -> Iterator[float]:
+    """Yield a station's peaks in its horizontal channels that nobody flagged, in g or cm/s."""
+    sound = [one for one in channels if isinstance(one, dict)]
+    for channel in _horizontal(sound):
         amplitudes = channel.get("amplitudes")
         for one in amplitudes if isinstance(amplitudes, list) else ():
-            if isinstance(one, dict) and one.get("name") == name and str(one.get("flag") or "0") == "0":
-                value = _plain(one.get("value"))
-                if value > 0.0:
-                    yield value
+            if not isinstance(one, dict) or str(one.get("name") or "").lower() != name:
+                continue
+            if str(one.get("flag") or "0").strip() != "0":
+                continue
+            value = _peak(one.get("value"), one.get("units"), name, code, left)
+            if value:
+                yield value
 
 
-def _plain(value: Any) -> float:
-    """Return a peak; 0 for "null", which such lists have in place of none."""
+def _horizontal(channels: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the channels that are not vertical, by their names, such as "01.HNZ", "UP", or the third of three."""
+    names = [str(one.get("name") or "").upper().rpartition(".")[2] for one in channels]
+    ends = {name[-1:] for name in names}
+    vertical = "3" if {"1", "2", "3"} <= ends and "Z" not in ends else "Z"
+    return [
+        one
+        for one, name in zip(channels, names, strict=True)
+        if not (name.endswith(vertical) or name in ("UP", "U", "V", "UD", "VERT", "VERTICAL"))
+    ]
+
+
+def _peak(value: Any, unit: Any, name: str, code: str, left: LeftOut) -> float | None:
+    """Return a peak in g or cm/s; None where there is none ("null" in such lists), or it is left out."""
     try:
         found = float(value)
     except (TypeError, ValueError):
-        return 0.0
-    return found if math.isfinite(found) else 0.0
+        return None
+    if not math.isfinite(found):
+        return None
+    said = str(unit or "").strip().lower()
+    factors, logarithm = PEAKS[name]
+    if said == logarithm:
+        found = math.exp(min(found, 50.0))
+    elif said not in factors:
+        left.add(
+            f"{name} without a unit" if not said else f"{name} in the unit {said[:20]!r}, which is not known", code
+        )
+        return None
+    elif found <= 0.0:
+        return None
+    else:
+        found *= factors[said]
+    if found > MOST_PEAK[name]:
+        left.add(f"{name} of {found:.3g} {UNIT_OF[name]}, more than was ever recorded", code)
+        return None
+    return found
+
+
+def _bare(value: Any, name: str, code: str, left: LeftOut) -> float | None:
+    return _peak(value, {"pga": "%g", "pgv": "cm/s"}[name], name, code, left)
 
 
 def _listed(file: Path, quake: ReportedEarthquake, stations: Sequence[Station]) -> StationList:

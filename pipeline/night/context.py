@@ -19,6 +19,7 @@ from pipeline.mitigate.isolation import TransmittedMotions
 from pipeline.models.band import sharing_spectra
 from pipeline.models.sharing import share_among
 from pipeline.night.floors import Floor
+from pipeline.night.stocks import StockTerms
 from pipeline.records import (
     Motion,
     RunRecord,
@@ -43,6 +44,7 @@ class RunContext:
     admitted  : which response charts are built (see `response_charts.ChartCache`); None: those that pay
     kept      : folder of the cache; None: in memory only
     threads   : of one who works
+    stock     : what an earthquake's answer needs of each page rests on; None: it is not kept
     """
 
     head: RunRecord
@@ -62,6 +64,7 @@ class RunContext:
     tongue: str = "en"
     catalogues: Path | None = None
     paper: str = "A4"
+    stock: StockTerms | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         # What was made on the way is made again where it is needed.

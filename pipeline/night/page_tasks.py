@@ -53,6 +53,8 @@ def render_page(context: RunContext, task: PageTask) -> Rendered:
     found = found_of(task.members, task.results)
     if not task.draw:
         return Rendered(context.renderer.tally(found))
+    if context.stock is not None and task.page.on_display:
+        context.stock.keep(task.page, found)
     faults: list[Fault] = []
     # What renders is made outside of any object's guard: a language without a catalogue is nobody's fault here.
     shown, page = fitting(found, partial(_drawn, context.renderer, task), faults)

@@ -29,6 +29,7 @@ from pipeline.night.figures import Pictures
 from pipeline.night.floors import floors_of, notes
 from pipeline.night.reading_summary import told
 from pipeline.night.source_state import house_digest, rules_digest, tables_digest
+from pipeline.night.stocks import StockTerms, told_floors
 from pipeline.night.unit_tasks import ChartTask
 from pipeline.operations.presentation import presentation, terms_of
 from pipeline.operations.workspace import Workspace
@@ -126,6 +127,7 @@ def run_context(
         tongue=settings.report.language,
         catalogues=settings.path(settings.report.catalogues) if settings.report.catalogues else None,
         paper=settings.report.paper,
+        stock=StockTerms(settings.kept, told_floors(head.motions, site.levels), settings.museum.value_per_c),
     )
     # The pictures are made before the verdicts, which use their charts; motions that two floors share only once.
     drawn = pictures.of(list(motions.values()), progress)

@@ -22,6 +22,7 @@ from pipeline.night.publication import Publication
 from pipeline.night.reading_summary import doubts_of
 from pipeline.night.scheduler import Scheduler
 from pipeline.night.source_state import unchanged
+from pipeline.night.stocks import keep_stocks
 from pipeline.operations.dry_run import DryRunWarning, rehearsed
 from pipeline.operations.presentation import terms_of
 from pipeline.operations.report_status import Status, last_good, mark_good, mark_running, status
@@ -165,6 +166,8 @@ def _hold(night: Scheduler, progress: Progress, chosen: Selection, *, dry_run: b
         mark_finished(engine, head.run_id)
         if latest is not None:
             mark_good(workspace.settings, summary)
+    if latest is not None and night.context.stock is not None:
+        keep_stocks(workspace, night.context.stock, shown.pages)
     progress.step("report", 1, 1)
     return summary
 

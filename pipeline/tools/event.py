@@ -6,44 +6,47 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from math import exp
+from math import exp, log
 from pathlib import Path
+from shutil import rmtree
 from typing import Any
 
-from pipeline.analysis.stakes import counting
 from pipeline.event.answer import Answer, answered
-from pipeline.event.capacities import FloorMotions, capacities, floors_of
 from pipeline.event.message import (
     FIRST_SIGMA,
-    MessageError,
     ReportedEarthquake,
     SiteShaking,
 )
-from pipeline.event.own_record import recorded_shaking
+from pipeline.event.own_record import OwnRecord, own_record
 from pipeline.event.reading import EventFiles, is_same, read_files, with_more
 from pipeline.event.reports import STATES, conditioned, read_reports
+from pipeline.event.stock import Stock
 from pipeline.motions.manifest import load_manifest
-from pipeline.motions.summary import summaries
+from pipeline.night.stocks import run_stock, stock_terms
 from pipeline.operations.presentation import presentation
 from pipeline.operations.workspace import UsageError, Workspace, folder_of_site
 from pipeline.quantities import G
-from pipeline.records import Assessment, Page, RunRecord
+from pipeline.records import Page, RunRecord
 from pipeline.report import publish
-from pipeline.report.files.event_files import ANSWER, event_document, write_event
+from pipeline.report.files.event_files import ANSWER, BRIEF, event_document, write_event
 from pipeline.report.files.publish import LINK, PAGE
 from pipeline.report.pages.compose import page_head
 from pipeline.report.text import clean, slug
 from pipeline.resources import aside_of, small_text, sweep
 from pipeline.store.codec import StoreError
-from pipeline.store.pages import load_members, load_page
+from pipeline.store.pages import load_members
 from pipeline.store.reuse import whole_runs
 from pipeline.store.runs import load_head
+from pipeline.tools.event_waveforms import Modelled, modelled
 
 EVENTS = "events"
 """Folder beside the settings that holds every answer: a folder for each earthquake, in it one for each version."""
 
 OWN, TYPED = 5, 4
 """How much a record of the museum's own and numbers typed by hand are believed; maps 3, stations 2, alerts 1."""
+
+MODELLED = "models"
+"""End of the name of an answer whose most important objects were run again."""
 
 _KINDS = {OWN: "record", TYPED: "typed", 3: "shakemap", 2: "stations", 1: "alert"}
 
@@ -99,6 +102,16 @@ class EventDone:
     again: bool
     newest: bool
 
+    @property
+    def sentence(self) -> str:
+        """The answer in a sentence."""
+        down, quake = self.document["expected"], self.document["event"]
+        name = quake["name"] or quake["id"] or "an earthquake"
+        return (
+            f"After {name}: of {len(self.document['objects']):,} objects on display about {down['fallen']:,.0f} have "
+            f"probably fallen ({down['low']:,} to {down['high']:,} in 9 of 10 cases)."
+        )
+
 
 def answer_event(
     workspace: Workspace,
@@ -109,9 +122,13 @@ def answer_event(
     report: Path | None = None,
     drill: ReportedEarthquake | None = None,
     now: datetime | None = None,
+    seconds: float = 0.0,
     dry_run: bool = False,
 ) -> EventDone:
-    """Answer the files about one earthquake from the newest run of the whole collection; no model is run.
+    """Answer the files about one earthquake from the newest run of the whole collection.
+
+    First as its results tell, which takes no model; then, as far as there is time, with those objects of which most is
+    lost run again under the motions of the earthquake.
 
     Parameters
     ----------
@@ -129,6 +146,9 @@ def answer_event(
         What the page is to say of an exercise, with the numbers typed.
     now : datetime or None
         By the clock; None: this machine's.
+    seconds : float
+        For running the models of the objects that matter most under the motions of the earthquake, after an answer
+        without them is there; 0: that is not done.
     dry_run : bool
         Write nothing.
 
@@ -147,12 +167,10 @@ def answer_event(
         raise UsageError("give a file about the earthquake, or its shaking by --pga and --pgv")
     clock = now or datetime.now(UTC)
     told = read_files(files, clock)
-    for one in told.messages[:1]:
-        if one.cancelled:
-            raise MessageError(f"{one.file}: takes the earthquake back: it is cancelled, and earlier answers stay")
     site = _site(workspace, at)
     head, pages = load_head(workspace.engine, _newest(workspace))
-    shaking, quake, rank = _shaking(told, typed, site)
+    own = own_record(told.records, *site) if told.records else None
+    shaking, quake, rank = _shaking(told, typed, site, own)
     quake = quake if drill is None else drill
     root = workspace.settings.path(EVENTS)
     whole_event = root / _event_folder(root, quake, clock)
@@ -160,25 +178,40 @@ def answer_event(
     reports = _earlier_reports(whole_event, numbers)
     if report is not None:
         reports |= read_reports(report, numbers)
-    folder = whole_event / _version(told, typed, site, head, quake, rank[0], reports)
+    first = whole_event / _version(told, typed, site, head, quake, rank[0], reports)
+    folder = first.with_name(f"{first.name}-{MODELLED}") if seconds > 0.0 else first
+    newest = rank >= _rank_shown(whole_event)
     if (folder / ANSWER).is_file():
-        return EventDone(None, _kept(folder / ANSWER), folder, again=True, newest=_shown(folder.parent) == folder.name)
-    assessments = _assessments(workspace, pages)
-    floors = _floors(workspace, head)
-    ground = floors[""]
+        shown = _shown(whole_event) == folder.name
+        if not shown and not dry_run and rank > _rank_shown(whole_event):
+            # Who wrote it was stopped before it was shown.
+            publish(folder, whole_event)
+            shown = True
+        return EventDone(None, _kept(folder / ANSWER), folder, again=True, newest=shown)
+    terms = stock_terms(workspace, head)
+    stock = run_stock(workspace, terms, pages)
+    ground = terms.floors[""]
     # The ratio of SI peaks, s, as cm/s for each g.
     shaking = shaking.with_velocity(_in_cm_s_a_g(ground.ratio), ground.ratio_sd)
-    sampling = workspace.settings.likelihood.sampling
-    with counting(workspace.settings.museum.value_per_c):
-        able = capacities(assessments, floors)
-        places = {numbers[name]: state for name, state in reports.items()}
-        draws, shaking = conditioned(able, places, shaking, len(assessments))
-        found = answered(assessments, able, shaking, sampling, draws, places)
-    newest = rank >= _rank_shown(folder.parent)
-    event = _event(quake, site, rank, shaking, head, folder, root)
-    if not dry_run:
-        _write(folder, workspace, head, found, quake, site, event, newest=newest)
-    return EventDone(found, event_document(found, event), folder, again=False, newest=newest)
+    places = {numbers[name]: state for name, state in reports.items()}
+
+    def answer(folder: Path, stock: Stock, shaking: SiteShaking, ran: Modelled | None) -> EventDone:
+        draws, after = conditioned(stock.capacities, places, shaking, len(stock))
+        found = answered(stock, after, workspace.settings.likelihood.sampling, draws, places)
+        event = _event(quake, site, rank, after, head, folder, root, ran)
+        if not (dry_run or (folder / ANSWER).is_file()):
+            _write(folder, workspace, head, found, quake, site, event, newest=newest)
+        return EventDone(found, event_document(found, event), folder, again=False, newest=newest)
+
+    done = answer(first, stock, shaking, None)
+    if folder == first or done.answer is None:
+        return done
+    far = quake.distance_km(*site)
+    ran = modelled(workspace, pages, done.answer, stock, shaking, quake, own, seconds, distance_km=far)
+    told_at = {numbers[name]: chances for name, chances in ran.chances.items()}
+    peaks = log(shaking.pga_g * G), log(0.01 * (shaking.pgv_cm_s or 0.0))
+    able = stock.capacities.centred(told_at, *peaks, same=ran.same)
+    return answer(folder, replace(stock, capacities=able), shaking, ran)
 
 
 def exercise(workspace: Workspace) -> tuple[TypedShaking, ReportedEarthquake]:
@@ -190,7 +223,7 @@ def exercise(workspace: Workspace) -> tuple[TypedShaking, ReportedEarthquake]:
         Where there is no run yet.
     """
     head = load_head(workspace.engine, _newest(workspace))[0]
-    levels = _floors(workspace, head)[""].levels
+    levels = stock_terms(workspace, head).floors[""].levels
     name, (pga, pgv) = max(levels.items(), key=lambda one: one[1])
     return TypedShaking(exp(pga) / G, 100.0 * exp(pgv), 0.3), ReportedEarthquake(
         name=f"Exercise: {name}", scenario=True
@@ -214,13 +247,12 @@ def _site(workspace: Workspace, at: tuple[float, float] | None) -> tuple[float, 
 
 
 def _shaking(
-    told: EventFiles, typed: TypedShaking | None, site: tuple[float, float]
+    told: EventFiles, typed: TypedShaking | None, site: tuple[float, float], own: OwnRecord | None
 ) -> tuple[SiteShaking, ReportedEarthquake, tuple[int, float]]:
     quake = told.quake
     version = quake.version_number
-    if told.records:
-        shaking, said = recorded_shaking(told.records, *site)
-        return shaking, with_more(quake, said), (OWN, version)
+    if own is not None:
+        return own.shaking, with_more(quake, own.quake), (OWN, version)
     if typed is not None:
         return typed.shaking(), quake, (TYPED, version)
     return told.messages[0].at(*site), quake, (told.messages[0].rank, version)
@@ -230,24 +262,12 @@ def _in_cm_s_a_g(ratio: float) -> float:
     return 100.0 * exp(ratio) * G
 
 
-def _floors(workspace: Workspace, head: RunRecord) -> dict[str, FloorMotions]:
-    ground = [one for one in head.motions if not one.floor]
-    # A run in which nothing stands on the ground does not have its motions.
-    return floors_of(head.motions, ground or summaries(workspace.site().levels))
-
-
 def _numbers(workspace: Workspace, pages: Sequence[Page]) -> dict[str, int]:
-    """Return the places of objects on display by number, in the order of `_assessments`; no result is read."""
+    """Return the places of objects on display by number, in the order of the stock; no result is read."""
     with workspace.engine.connect() as connection:
         found = [load_members(connection, page.key) for page in pages if page.on_display]
     pairs = [pair for one in found for pair in zip(one.column("object_number"), one.column("on_display"), strict=True)]
     return {number: at for at, number in enumerate(number for number, shown in pairs if shown)}
-
-
-def _assessments(workspace: Workspace, pages: Sequence[Page]) -> list[Assessment]:
-    with workspace.engine.connect() as connection:
-        found = [load_page(connection, page.key) for page in pages if page.on_display]
-    return [one for page in found for one in page.assessments if one.scene.item.on_display]
 
 
 def _event_folder(root: Path, quake: ReportedEarthquake, now: datetime) -> str:
@@ -270,9 +290,9 @@ def _event_folder(root: Path, quake: ReportedEarthquake, now: datetime) -> str:
 
 def _earlier_reports(folder: Path, known: Mapping[str, int]) -> dict[str, str]:
     """Return what was found by object number, as the answer that is shown has it."""
-    objects = _shown_document(folder).get("objects")
-    said = {str(one.get("object_number")): str(one.get("reported") or "") for one in objects or ()}
-    return {name: state for name, state in said.items() if state in STATES and name in known}
+    said = _shown_document(folder).get("reported")
+    pairs = said.items() if isinstance(said, dict) else ()
+    return {name: state for name, state in pairs if state in STATES and name in known}
 
 
 def _version(
@@ -302,7 +322,7 @@ def _shown(folder: Path) -> str:
 
 def _shown_document(folder: Path) -> Mapping[str, Any]:
     name = _shown(folder) if folder.is_dir() else ""
-    file = folder / name / ANSWER
+    file = folder / name / BRIEF
     return _kept(file) if name and file.is_file() else {}
 
 
@@ -329,6 +349,7 @@ def _event(
     head: RunRecord,
     folder: Path,
     root: Path,
+    ran: Modelled | None,
 ) -> dict[str, Any]:
     distance = quake.distance_km(*site)
     return {
@@ -345,6 +366,8 @@ def _event(
         "site": list(site),
         "rank": list(rank),
         "notes": [clean(note) for note in shaking.notes],
+        "modelled": 0 if ran is None else len(ran.chances),
+        "modelled_under": "" if ran is None else clean(ran.told),
         "run_id": head.run_id,
         "folder": folder.relative_to(root.parent).as_posix(),
     }
@@ -362,12 +385,17 @@ def _write(
     newest: bool,
 ) -> None:
     folder.parent.mkdir(parents=True, exist_ok=True)
-    sweep(folder.parent)
     shown = page_head(head, Page("", "", True, 1, 1, head.run_id, head.finished))
     spoken = presentation(workspace.settings)["language"]
+    sweep(folder.parent)
     aside = aside_of(folder)
     aside.mkdir()
-    write_event(aside, found, quake, site, event, replace(shown, started=head.started), spoken)
-    aside.rename(folder)
+    try:
+        write_event(aside, found, quake, site, event, replace(shown, started=head.started), spoken)
+        aside.rename(folder)
+    except BaseException:
+        # Whoever stops it leaves nothing half written.
+        rmtree(aside, ignore_errors=True)
+        raise
     if newest:
         publish(folder, folder.parent)

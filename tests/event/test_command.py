@@ -12,9 +12,10 @@ from typing import Any
 import pytest
 from lxml import etree
 
+from pipeline.cache import CacheWarning
 from pipeline.errors import InputError
 from pipeline.event.message import MessageError
-from pipeline.operations.workspace import UsageError, open_workspace
+from pipeline.operations.workspace import UsageError, locked, open_workspace
 from pipeline.report.files.event_files import EVENT_COLUMNS
 from pipeline.resources import resource
 from pipeline.settings import load_settings
@@ -183,7 +184,7 @@ def test_refusals_keep_earlier_answers(museum: Path, tmp_path: Path) -> None:
     before = digest(museum / EVENTS)
     taken_back = tmp_path / "alert.xml"
     taken_back.write_text(alert(kind="delete"), encoding="utf-8")
-    with pytest.raises(MessageError, match="cancelled, and earlier answers stay"):
+    with pytest.raises(MessageError, match="cancelled; earlier answers stay"):
         ask(museum, taken_back)
     cut = tmp_path / "cut.xml"
     cut.write_bytes(MAP.read_bytes()[:1500])
@@ -224,7 +225,9 @@ def test_a_drill_is_said_to_be_one_and_is_timed(museum: Path) -> None:
     assert code == 0, message
     assert "This was an exercise." in out
     folder = museum / EVENTS
-    (page,) = (path for path in folder.glob("*/*/index.html") if not path.parent.is_symlink())
+    (page,) = folder.glob("*/latest/index.html")
+    # First without, then with the models run again.
+    assert len(list(folder.glob("*/typed-*"))) == 2
     assert "This is an exercise. The earthquake did not happen." in page.read_text("utf-8")
     said = json.loads((page.parent / "answer.json").read_text("utf-8"))
     assert said["event"]["scenario"]
@@ -262,3 +265,30 @@ def test_hooks_are_told_once(museum: Path) -> None:
     told.unlink()
     assert say(museum, "event", str(MAP), "--at", "37.77,-122.47")[0] == 0
     assert not told.exists()
+
+
+def test_the_night_leaves_ready_what_an_answer_needs(museum: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No result is read; what is missing or damaged is made anew, and the answer is the same."""
+    from pipeline.night import stocks
+
+    read: list[str] = []
+    load = stocks.load_page
+    monkeypatch.setattr(stocks, "load_page", lambda engine, key: read.append(key) or load(engine, key))
+    first = ask(museum, typed=TypedShaking(0.3, 25.0, 0.2))
+    assert read == []
+    files = sorted(museum.glob(".kouros*/stocks/*.kept"))
+    assert len(files) == 2, "one for each page"
+    files[0].unlink()
+    files[1].write_bytes(files[1].read_bytes()[:-7])
+    shutil.rmtree(first.folder.parent)
+    with pytest.warns(CacheWarning, match="not what was written"):
+        again = ask(museum, typed=TypedShaking(0.3, 25.0, 0.2))
+    assert len(read) == 2
+    assert again.document == first.document
+    assert sorted(museum.glob(".kouros*/stocks/*.kept")) == files
+
+
+def test_a_night_at_work_does_not_stop_it(museum: Path) -> None:
+    """Who holds the lock of the workspace keeps nobody from an answer."""
+    with locked(load_settings(museum / "kouros.toml")):
+        assert ask(museum, MAP).newest

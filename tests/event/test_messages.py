@@ -1,7 +1,6 @@
 """Messages about earthquakes: what they say of a place, and what is refused."""
 
 import gzip
-import json
 import math
 import re
 from collections.abc import Callable
@@ -14,7 +13,7 @@ import pytest
 from pipeline.event.message import NINETY, MessageError, SiteShaking, kilometres
 from pipeline.event.reading import EventFiles, read_files
 from pipeline.event.stations import StationList
-from tests.event.messages import DATA, NOW, PARK, alert
+from tests.event.messages import ALERT_MAP, DATA, NOW, PARK, alert
 
 
 def told(*files: Path) -> EventFiles:
@@ -108,40 +107,6 @@ def test_napa_stations_lie_within_what_the_others_say_of_their_place() -> None:
         assert np.std(scores) > 0.5
 
 
-def test_a_station_list_of_version_4_is_read_as_one_of_version_3(tmp_path: Path) -> None:
-    """The same peaks as GeoJSON; a flagged channel, a vertical one, and what people felt count for nothing."""
-    old = told(DATA / "napa_stationlist.xml").messages[0]
-    assert isinstance(old, StationList)
-
-    def amplitude(name: str, value: float, flag: str = "0") -> dict[str, object]:
-        return {"name": name, "value": value, "flag": flag, "units": "%g" if name == "pga" else "cm/s"}
-
-    features: list[dict[str, object]] = []
-    for one in old.stations:
-        assert one.pga_g is not None
-        assert one.pgv_cm_s is not None
-        good = [amplitude("pga", 100.0 * one.pga_g), amplitude("pgv", one.pgv_cm_s)]
-        channels = [
-            {"name": "HNE", "amplitudes": good},
-            {"name": "HNN", "amplitudes": [amplitude("pga", 999.0, "G")]},
-            {"name": "HNZ", "amplitudes": [amplitude("pga", 999.0)]},
-        ]
-        said = {"station_type": "seismic", "pga": "null", "pgv": "null", "channels": channels}
-        point = {"type": "Point", "coordinates": [one.longitude, one.latitude]}
-        features.append({"type": "Feature", "id": one.code, "geometry": point, "properties": said})
-    felt = {"station_type": "macroseismic", "pga": 99.0, "channels": []}
-    features.append({"type": "Feature", "geometry": features[0]["geometry"], "properties": felt})
-    file = tmp_path / "stationlist.json"
-    file.write_text(json.dumps({"type": "FeatureCollection", "features": features}), encoding="utf-8")
-    new = told(file).messages[0]
-    assert isinstance(new, StationList)
-    assert [one.code for one in new.stations] == [one.code for one in old.stations]
-    assert [one.pga_g for one in new.stations] == pytest.approx([one.pga_g for one in old.stations])
-    file.write_text(file.read_text("utf-8")[:5000], encoding="utf-8")
-    with pytest.raises(MessageError, match="no whole JSON"):
-        told(file)
-
-
 def test_a_place_outside_is_refused_with_the_distance() -> None:
     """New York is 4,130 km from San Francisco by any almanac."""
     for name in ("loma_prieta_grid.xml", "napa_stationlist.xml"):
@@ -226,10 +191,66 @@ def test_alerts_say_their_units_and_may_be_taken_back(tmp_path: Path) -> None:
     with pytest.raises(MessageError, match="contour PGA: has no unit"):
         told(file)
     file.write_text(alert(kind="delete"), encoding="utf-8")
-    assert told(file).messages[0].cancelled
+    with pytest.raises(MessageError, match="takes the earthquake back: it is cancelled; earlier answers stay"):
+        told(file)
+    # Beside a map, which is believed more: a person says which of them holds.
+    with pytest.raises(MessageError, match=r"alert.xml: takes the earthquake back.*leave it out if the other files"):
+        told(DATA / "loma_prieta_grid.xml", file)
     file.write_text(re.sub("<gm_info>.*</gm_info>", "", alert(), flags=re.DOTALL), encoding="utf-8")
     with pytest.raises(MessageError, match="says no shaking"):
         told(file).messages[0].at(*PARK)
+
+
+def test_the_map_of_an_alert_is_interpolated_between_its_points(tmp_path: Path) -> None:
+    """Half way between 0.1 and 0.025 g lies 0.05 g in the logarithm, and between 10 and 2.5 cm/s 5 cm/s."""
+    file = tmp_path / "alert.xml"
+    text = alert().replace("<gm_info>", f"<gm_info>{ALERT_MAP}")
+    file.write_text(text, encoding="utf-8")
+    found = told(file).messages[0].at(37.7, -122.5)
+    assert (found.pga_g, found.pgv_cm_s) == pytest.approx((0.05, 5.0), rel=1e-3)
+    assert "points of its map" in found.origin
+    at_point = told(file).messages[0].at(37.8, -122.4)
+    assert at_point.pga_g == pytest.approx(0.025, rel=1e-3)
+    with pytest.raises(MessageError, match=r"lies [\d,]+ km from the nearest point of the alert's map"):
+        told(file).messages[0].at(36.0, -122.5)
+    for old, new, message in (
+        ('name="PGV"', 'name="PGX"', "has no field PGV"),
+        ('units="cm/s/s"/>', 'units=""/>', "grid_field PGA: has no unit"),
+        ("98.0665 10.0 5.0", "98.0665", "too short lines"),
+        ("98.0665 10.0 5.0", "-98.0665 10.0 5.0", "what is no peak"),
+        ("98.0665 10.0 5.0", "nan 10.0 5.0", "'nan' is no number"),
+    ):
+        file.write_text(text.replace(old, new), encoding="utf-8")
+        with pytest.raises(MessageError, match=re.escape(message)):
+            told(file)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda t: t.replace(" 14.37 ", " nan "), "no number at the museum"),
+        (lambda t: t.replace(" 14.37 ", " -14.37 "), "no number at the museum"),
+        (lambda t: t.replace('"pctg"', '"g"'), "more than was ever recorded"),
+        (lambda t: t.replace(" 0.1 0.21 425", " -0.1 0.21 425"), "is no standard deviation"),
+        (lambda t: t.replace(" 0.1 0.21 425", " 90 0.21 425"), "is no standard deviation"),
+    ],
+)
+def test_cells_that_no_shaking_has_are_refused_where_they_are_needed(
+    change: Callable[[str], str], message: str, tmp_path: Path
+) -> None:
+    file = written(tmp_path, "loma_prieta_grid.xml", change)
+    with pytest.raises(MessageError, match=message):
+        told(file).messages[0].at(37.7632, -122.48)
+
+
+def test_bombs_are_refused_before_they_are_unpacked(tmp_path: Path) -> None:
+    """200 MB of spaces, which gzip packs into 200 kB."""
+    file = tmp_path / "grid.xml.gz"
+    with gzip.open(file, "wb", compresslevel=1) as stream:
+        for _ in range(200):
+            stream.write(b" " * (1 << 20))
+    with pytest.raises(MessageError, match="more than 67,108,864 bytes"):
+        told(file)
 
 
 def test_of_several_messages_the_map_is_believed_and_strangers_are_refused(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from pipeline.event.message import NINETY, SiteShaking
 from pipeline.event.reports import conditioned, read_reports
 from pipeline.quantities import G
 from pipeline.records import Sampling
-from tests.event.test_answer import FALLS, assessment
+from tests.event.test_answer import FALLS, assessment, stock
 
 LOOKED_AT = 40
 
@@ -47,7 +47,7 @@ def test_the_truth_lies_in_the_range_that_reports_leave() -> None:
         found = {at: "fallen" if fallen[at] else "standing" for at in range(LOOKED_AT)}
         draws, after = conditioned(able, found, told)
         peaks += abs(true - math.log(after.pga_g * G)) < NINETY * after.pga_ln_sd
-        answer = answered(objects, able, after, Sampling(), draws, found)
+        answer = answered(stock(objects, able), after, Sampling(), draws, found)
         numbers += answer.count.low <= fallen.sum() <= answer.count.high
         narrower.append(after.pga_ln_sd / told.pga_ln_sd)
     assert 82 <= peaks <= 97
@@ -62,12 +62,12 @@ def test_what_was_found_changes_what_is_expected_of_the_rest() -> None:
     able = museum(100, np.random.default_rng(6))
     objects = [assessment(str(at)) for at in range(100)]
     told = SiteShaking(0.4, 40.0, 0.6, 0.6, "a first alert")
-    before = answered(objects, able, told, Sampling(), drawn(told))
+    before = answered(stock(objects, able), told, Sampling(), drawn(told))
     rest = {}
     for state in ("standing", "fallen"):
         found = dict.fromkeys(range(30), state)
         draws, after = conditioned(able, found, told)
-        answer = answered(objects, able, after, Sampling(), draws, found)
+        answer = answered(stock(objects, able), after, Sampling(), draws, found)
         rest[state] = sum(one.fallen for one in answer.objects if not one.reported)
         sure = [one for one in answer.objects if one.reported]
         assert {one.fallen for one in sure} == {float(state == "fallen")}

@@ -3,6 +3,7 @@
 import csv
 import json
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,9 @@ from pipeline.report.text import clean, safe_cell
 
 ANSWER, TABLE, PLACES, PAGE = "answer.json", "objects.csv", "event.geojson", "index.html"
 """The files of an answer besides the sheets."""
+
+BRIEF = "event.json"
+"""The answer without galleries and objects, and what was found of these: what a later answer asks of an earlier one."""
 
 EVENT_COLUMNS = (
     "rank", "object_number", "title", "gallery", "case", "floor", "told", "probability", "band",
@@ -88,6 +92,19 @@ def _object(one: ObjectAnswer) -> dict[str, Any]:
     }
 
 
+def document_text(document: Mapping[str, Any]) -> str:
+    """Return a document as JSON with a line for each gallery and each object, so that 100,000 take seconds."""
+    dumps = partial(json.dumps, ensure_ascii=False, allow_nan=False)
+    parts = []
+    for name, value in document.items():
+        if isinstance(value, list) and value:
+            rows = ",\n".join(f"  {dumps(one)}" for one in value)
+            parts.append(f" {dumps(name)}: [\n{rows}\n ]")
+        else:
+            parts.append(f" {dumps(name)}: {dumps(value)}")
+    return "{\n" + ",\n".join(parts) + "\n}\n"
+
+
 def write_event(
     folder: Path,
     answer: Answer,
@@ -122,9 +139,13 @@ def write_event(
         Where it cannot be written.
     """
     document = event_document(answer, event)
-    pages = {PAGE: event_page(answer, quake, quake.distance_km(*site), head, language)}
+    pages = {PAGE: event_page(answer, quake, quake.distance_km(*site), head, language, ran(event))}
     pages |= event_sheets(answer, quake, head, language)
-    pages[ANSWER] = json.dumps(document, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
+    pages[ANSWER] = document_text(document)
+    # By their own numbers, as whoever looks for one has it.
+    reported = {one.number: one.reported for one in answer.objects if one.reported}
+    brief = {name: document[name] for name in ("event", "shaking", "expected")} | {"reported": reported}
+    pages[BRIEF] = document_text(brief)
     pages[PLACES] = json.dumps(_places(document, quake, site), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
     for name, text in pages.items():
         # A number that was badly decoded before it came here must not keep the page from being written.
@@ -144,6 +165,11 @@ def _row(at: int, one: ObjectAnswer) -> list[str]:
     said = ["yes" if flag else "no" for flag in (one.aftershock, one.make_safe)]
     row = [str(at), *map(safe_cell, texts), harm, "" if one.band is None else one.band.value]
     return [*row, *rest, *said, safe_cell(one.reported)]
+
+
+def ran(event: Mapping[str, Any]) -> tuple[int, str]:
+    """Return of how many objects the models were run for this answer, and under what."""
+    return int(event.get("modelled", 0)), str(event.get("modelled_under", ""))
 
 
 def _places(document: Mapping[str, Any], quake: ReportedEarthquake, site: tuple[float, float]) -> dict[str, Any]:

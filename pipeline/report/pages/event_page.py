@@ -56,6 +56,7 @@ class EventView:
     facts  : names and values of the earthquake and of the shaking
     notes  : what a reader has to know of these numbers
     safe, first, aftershock : lists of objects
+    rests  : what the probabilities are from
     """
 
     name: str
@@ -68,10 +69,16 @@ class EventView:
     safe: tuple[EventObject, ...]
     first: tuple[EventObject, ...]
     aftershock: tuple[EventObject, ...]
+    rests: str = ""
 
 
 def event_page(
-    answer: Answer, quake: ReportedEarthquake, distance_km: float | None, head: PageHead, language: Language
+    answer: Answer,
+    quake: ReportedEarthquake,
+    distance_km: float | None,
+    head: PageHead,
+    language: Language,
+    ran: tuple[int, str] = (0, ""),
 ) -> str:
     """Return the page as HTML.
 
@@ -87,9 +94,11 @@ def event_page(
         Of the run that the answer rests on.
     language : Language
         The reader's.
+    ran : (int, str)
+        Of how many objects the models were run for this answer, and under what.
     """
     with speaking(language):
-        view = event_view(answer, quake, distance_km)
+        view = event_view(answer, quake, distance_km, ran)
         return fill(environment(language), "event.html", {"museum": head, "event": view, "here": "event"})
 
 
@@ -119,7 +128,9 @@ def sheet_name(gallery: str) -> str:
     return f"sheet-{slug(gallery)}.html"
 
 
-def event_view(answer: Answer, quake: ReportedEarthquake, distance_km: float | None) -> EventView:
+def event_view(
+    answer: Answer, quake: ReportedEarthquake, distance_km: float | None, ran: tuple[int, str] = (0, "")
+) -> EventView:
     """Return what the page shows."""
     shaken = [one for one in answer.objects if one.probability is not None]
     safe = sorted((one for one in shaken if one.make_safe), key=lambda one: -one.danger * (one.moved + one.fallen))
@@ -142,7 +153,24 @@ def event_view(answer: Answer, quake: ReportedEarthquake, distance_km: float | N
         safe=_listed(safe),
         first=_listed(shaken),
         aftershock=_listed(weaker),
+        rests=_rests(*ran),
     )
+
+
+def _rests(number: int, under: str) -> str:
+    """Return in words what the probabilities are from."""
+    words = _(
+        "The probabilities are from the curves of the last run, at the peak acceleration and velocity of this "
+        "earthquake, over the range that these may have."
+    )
+    if not number:
+        return f"{words} {_('No model was run again.')}"
+    more = ngettext(
+        "Of the {count} object of which most is lost all models were run again, under {under}.",
+        "Of the {count} objects of which most is lost all models were run again, under {under}.",
+        number,
+    ).format(count=count(number), under=clean(under))
+    return f"{words} {more}"
 
 
 def lede(answer: Answer) -> str:
