@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import cache, lru_cache
 from typing import NamedTuple
 
-from pipeline.analysis.evidence import FIELDS, POSSIBLE, Chance, chances_of
+from pipeline.analysis.evidence import FIELDS, POSSIBLE, Chance, chances_of, taken_of
 from pipeline.analysis.flexibility import Body, concentration, estimated_frequency
 from pipeline.analysis.footing import base_extents, half_widths
 from pipeline.analysis.furniture import in_furniture
@@ -31,8 +31,6 @@ from pipeline.records import Estimate, Item, Origin, Scene, Support
 from pipeline.tables.assumed import UNKNOWN, AssumedValues, assumed
 from pipeline.tables.assumed_rows import NO_MODEL, WHEN_HELD, Material, ObjectClass
 
-SURE = 0.5
-"""Probability from which materials and measures alone say a class."""
 SLENDEREST = 9.0
 """Height over the smaller plan dimension from which nothing stands by itself: it lies, leans, hangs or is held."""
 
@@ -332,9 +330,13 @@ def _class_of(item: Item, rules: RuleTable | None, decided: tuple[str, str] | No
         return _Taken(*decided)
     read = readings(item, rules)
     chances = chances_of(item, read)
-    if not chances or (read.silent and chances[0].probability < SURE):
+    taken = taken_of(item, read, chances)
+    if taken is None:
         return _open(read, _told(chances))
-    return _Taken(chances[0].object_class, _why(read, chances[0]), _told(chances))
+    words = _why(read, taken)
+    if taken is not chances[0]:
+        words = "title alone: nothing but its title speaks, which may name what a picture shows"
+    return _Taken(taken.object_class, words, _told(chances))
 
 
 def _open(read: Readings, chances: tuple[tuple[str, float], ...]) -> _Taken:

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from math import log
@@ -23,9 +23,11 @@ from math import log
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.analysis.rules import Readings, RuleMatch, fold, stuff, words_of
+from pipeline.analysis.rules import PICTURES, Readings, RuleMatch, fold, stuff, words_of
+from pipeline.analysis.shapes import SHAPES
 from pipeline.records import Item
 from pipeline.tables import table
+from pipeline.tables.assumed_rows import WHEN_HELD
 
 BIAS = "any"
 """The sign that every object has."""
@@ -35,9 +37,11 @@ FIELDS = ("name", "classification", "medium", "title")
 """The parts of `Readings` that say a class."""
 BESIDE = "title beside a name"
 """What a title says where an object name says what the thing is: it counts for less."""
+ALONE = "title alone"
+"""What a title says where nothing else speaks: it may as well name what a picture shows."""
 NOTHING = "nothing"
 """What decides where no part of the record says a class."""
-SAYING = (*FIELDS, BESIDE, *(f"decided by {field}" for field in (*FIELDS, NOTHING)))
+SAYING = (*FIELDS, BESIDE, ALONE, *(f"decided by {field}" for field in (*FIELDS, NOTHING)))
 """What has a say: each part, and the rule that decides, by the part that it comes from."""
 POSSIBLE = 0.02
 """Probability from which a class is likely at all."""
@@ -53,6 +57,22 @@ HEIGHTS = (0.15, 0.5, 0.75, 1.0, 1.8, 4.0, 9.0)
 """Steps of the height over the larger plan dimension."""
 DEPTHS = (0.05, 0.12, 0.25, 0.5)
 """Steps of the smallest dimension over the middle one."""
+LONG = (2, 3, 4, 6)
+"""Steps of the number of words of a title that stands alone."""
+FORMS: Mapping[str, re.Pattern[str]] = {
+    "digits": re.compile(r"\d"),
+    "behind a comma": re.compile(r"[,:;]"),
+    "in brackets": re.compile(r"[(\[]"),
+    "quoted": re.compile('["\u201c\u201e\u00ab]'),
+    "begins with an article": re.compile(
+        r"(?:the|der|die|das|le|la|les|il|lo|gli|el|los|las|os|as|de|het)\s|l['\u2019]"
+    ),
+}
+"""How a title may be formed that stands alone, folded."""
+PICTURED = 0.03
+"""Probability of a picture from which a title alone does not make a thing that stands: it leaves 1 of 500 pictures."""
+SURE = 0.5
+"""Probability from which materials and measures alone say a class."""
 FLOOR = 0.02
 """Chance that a museum means by its words what no labelled museum means: shared alike by all classes.
 
@@ -60,6 +80,7 @@ It is what the scatter between museums that were left out leaves over: see pipel
 """
 _READ = 400
 """Characters of a text that are searched."""
+_WORD = re.compile(r"[^\W\d_]+")
 
 
 @dataclass(frozen=True)
@@ -87,7 +108,7 @@ def _signs_in(field: str, text: str) -> tuple[str, ...]:
     found = tuple(
         f"{field}: {sign.name}" for sign in _signs() if sign.field == field and sign.pattern.search(text[:_READ])
     )
-    if found or field == GALLERY:
+    if found or field in (GALLERY, ALONE):
         return found
     return (f"{field}: nothing known",) if text.strip() else (f"{field}: none",)
 
@@ -112,20 +133,45 @@ def _measures(item: Item) -> tuple[str, ...]:
     return tuple(out)
 
 
+def _title_alone(item: Item, read: Readings) -> tuple[str, ...]:
+    """Return how a title is formed beside which nothing says what the thing is, and how many sizes there are."""
+    title = fold(item.title[:_READ])
+    words = _WORD.findall(title)
+    sizes = sum(size is not None for size in (item.height_m, item.width_m, item.depth_m))
+    out = [f"{ALONE}: words {_step(len(words), LONG)}", f"{ALONE}: sizes {sizes}"]
+    if read.title is not None and words:
+        name = read.title.word.removeprefix("*").split()
+        out.append(f"{ALONE}: {'ends' if name[-1] in words[-1] else 'goes on behind'} with its name")
+        out.append(f"{ALONE}: beside its name {_step(len(words) - len(name), LONG)}")
+    out += (f"{ALONE}: {form}" for form, pattern in FORMS.items() if pattern.search(title))
+    return (*out, *(sign for sign in _signs_in(ALONE, title)))
+
+
+def is_alone(item: Item) -> bool:
+    """Say whether nothing but a title says what a thing is."""
+    return not any((item.object_name, item.classification, item.material, item.medium))
+
+
 def signs_of(item: Item, read: Readings) -> tuple[str, ...]:
     """Return the signs that an object shows: what the model weighs."""
     out, decisive = [BIAS], NOTHING
+    alone = is_alone(item)
     # A name that only repeats the classification, such as sculpture, leaves the title its say.
     named = read.name is not None and fold(item.object_name) != fold(item.classification)
     for field in FIELDS:
         one: RuleMatch | None = getattr(read, field)
-        part = BESIDE if field == "title" and named else field
+        part = field
+        if field == "title":
+            part = ALONE if alone else BESIDE if named else field
         if one is None:
             out.append(f"{part}: {SILENT}")
         else:
             out += (f"{part}: {one.rule.object_class}", f"rule of {part}: {one.rule.name}")
             decisive = field if one is read.decided else decisive
-    out.append(f"decided by {decisive}: {read.decided.rule.object_class}")
+    if alone:
+        out += _title_alone(item, read)
+    else:
+        out.append(f"decided by {decisive}: {read.decided.rule.object_class}")
     out += _signs_in("medium", stuff(item.material, item.medium))
     out += _signs_in("title", fold(item.title or item.object_name))
     out += _signs_in(GALLERY, fold(item.gallery))
@@ -208,6 +254,29 @@ def chances_of(item: Item, read: Readings) -> tuple[Chance, ...]:
         certain = IDENTIFIED if read.decided.evidence.startswith("AAT") else 1.0
         return (Chance(read.decided.rule.object_class, certain),)
     return _chances(signs_of(item, read))
+
+
+def taken_of(item: Item, read: Readings, chances: Sequence[Chance]) -> Chance | None:
+    """Return what an object is taken for among the chances of its classes; None where its record names no class.
+
+    That is the likeliest class, but where nothing but a title speaks, and no depth says that it is a body: a title may
+    as well name what a picture shows, and what is taken for a picture is then not held to stand.
+    """
+    if not chances:
+        return None
+    first = chances[0]
+    if is_alone(item) and item.title and SHAPES["panel"](item) and not read.outright:
+        flat = next(one for one in chances if one.object_class in PICTURES)
+        return flat if first.object_class in _standing() and flat.probability >= PICTURED else first
+    return None if read.silent and first.probability < SURE else first
+
+
+@cache
+def _standing() -> frozenset[str]:
+    """Return the classes of what stands by itself."""
+    return frozenset(
+        row["class"] for row in table("classes") if row["support"] == "freestanding" and row["models"] != WHEN_HELD
+    )
 
 
 def leaning(item: Item, read: Readings, first: str, second: str) -> tuple[tuple[str, float], ...]:

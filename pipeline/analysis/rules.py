@@ -34,7 +34,7 @@ from pipeline.tables.rows import Entries, checked, once
 _IDENTIFIER = re.compile(r"(?<!\d)300\d{6}(?!\d)")
 _WORD = re.compile(r"[^\W\d_]+")
 _BREAK = re.compile(
-    r"[,:;|()\[\]/\"]|\s(?:of|with|for|in|from|by|and|on|showing|depicting|mit|von|aus|und|avec|de|du|des|et|di|da|con|y|e|met|van|en|銘)\s"
+    r"[,:;|()\[\]/\"]|\s(?:of|with|for|in|from|by|and|on|showing|depicting|mit|von|aus|und|fur|zum|zur|avec|de|du|des|et|a|au|aux|pour|sur|di|da|con|per|al|alla|su|y|para|sobre|e|com|em|met|van|en|voor|op|cu|din|pe|pentru|銘)\s"
 )
 """Where the name of a thing ends and its description begins."""
 _MARK = re.compile(r"\b(?:model|modell|modele|modello|modelo)\b\.?\s*(?:no\b|nr\b|n[°o]|#|series\b|[a-z-]*\d)")
@@ -205,10 +205,14 @@ class RuleTable:
 
 @dataclass(frozen=True)
 class RuleMatch:
-    """The rule that decided, and what in the record made it hold ("" where the row asks for no name)."""
+    """The rule that decided, and what in the record made it hold ("" where the row asks for no name).
+
+    word : the naming word that it found, an ending with its asterisk
+    """
 
     rule: Rule
     evidence: str = ""
+    word: str = ""
 
     @property
     def words(self) -> str:
@@ -389,7 +393,7 @@ def _named(item: Item, text: str, kinds: frozenset[str], of: RuleTable) -> RuleM
     for word in _candidates(text[:_READ], of):
         for rule in of.by_word.get(word) or of.by_ending.get(word[1:], ()):
             if (not rule.kinds or rule.kinds & kinds) and rule.fits(item):
-                return RuleMatch(rule, f"named {word!r}")
+                return RuleMatch(rule, f"named {word!r}", word)
     return None
 
 

@@ -37,6 +37,9 @@ HIDDEN: tuple[tuple[tuple[str, ...], float], ...] = (
     (("gallery",), 0.5),
     (("classification", "object_name", "medium"), 0.2),
     (("title", "classification", "medium", "gallery"), 0.2),
+    (("title", "classification", "medium", "gallery", *LENGTHS), 0.2),
+    (("classification", "object_name", "medium", "gallery"), 0.3),
+    (("classification", "object_name", "medium", "gallery", *LENGTHS), 0.3),
 )
 """Parts of a record that are hidden, and the weight of the object without them."""
 
@@ -103,7 +106,7 @@ def _show(item: Item, share: float, out: dict[tuple[str, ...], float]) -> None:
     for hidden, weight in HIDDEN:
         if hidden and not any(getattr(item, name) for name in hidden):
             continue
-        less = replace(item, **dict.fromkeys(hidden, ""))  # type: ignore[arg-type]
+        less = replace(item, **{name: None if name in LENGTHS else "" for name in hidden})  # type: ignore[arg-type]
         signs = signs_of(less, readings(less))
         out[signs] = out.get(signs, 0.0) + share * weight
 

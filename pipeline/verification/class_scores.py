@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.analysis.classify import SURE
+from pipeline.analysis.evidence import Chance, taken_of
 from pipeline.analysis.rules import readings
 from pipeline.tables import table
 from pipeline.verification.class_fit import CLASSES, Labelled, labelled_of, left_out
@@ -62,13 +62,14 @@ def scored(path: Path) -> list[Scored]:
     return out
 
 
-def _taken(one: Labelled, chances: Sequence[float]) -> tuple[str, float]:
+def _taken(one: Labelled, shares: Sequence[float]) -> tuple[str, float]:
     """Return the class that is taken, as `pipeline.analysis.classify` takes it, and its probability."""
-    at = int(np.argmax(chances))
     read = readings(one.item)
-    if read.silent and chances[at] < SURE:
-        at = CLASSES.index(read.decided.rule.object_class)
-    return CLASSES[at], chances[at]
+    chances = sorted(map(Chance, CLASSES, shares), key=lambda chance: -chance.probability)
+    taken = taken_of(one.item, read, chances)
+    if taken is None:
+        return read.decided.rule.object_class, chances[0].probability
+    return taken.object_class, taken.probability
 
 
 def lines(found: Sequence[Scored]) -> list[str]:

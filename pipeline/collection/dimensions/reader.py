@@ -332,7 +332,9 @@ class Reader:
         if not words:
             return
         phrase = phrase_of(self.tokens, words, self.text)
-        if self.groups and not self.fresh and self._behind(phrase):
+        # "25 cm high, and 12 wide": what has a number of its own is not said of the numbers before it.
+        counts = bool(phrase.dimensions) and any(self.tokens[at].type == NUMBER for at in words)
+        if self.groups and not self.fresh and not counts and self._behind(phrase):
             return
         start, end = self.tokens[words[0]].start, self.tokens[words[-1]].end
         if "variable" in phrase.qualifiers:

@@ -41,10 +41,18 @@ _TOKEN = re.compile(
 _ALIKE = {code: code - 0xFEE0 for code in range(0xFF01, 0xFF5F)} | {0x3000: 0x20, 0xFF0E: 0x2E}
 _ALIKE |= {ord(old): ord(new) for old, new in zip("şţŞŢ±≈∅", "șțȘȚ~~Ø", strict=True)}
 _ALIKE[0xB1] = _ALIKE[0x2248] = 0x20
+_EXTREMES = "max|maximum|maxi|maximal|min|minimum|overall|greatest|total|approx|ca"
 # Each as long as what it replaces, so that the places of all characters stay.
 _SAME_LENGTH = (
     (re.compile(r"(?i)\bw/o\b"), "sem"),
     (re.compile(r"(?i)\bw/(?=[ (]|base|frame|mount|lid|stand)"), "cu"),
+    (re.compile(r"(?i)(?<![^\W_])c/(?=[ (]?[^\W\d_])"), "cu"),
+    (re.compile(r"(?i)(?<![^\W_])s/(?=[ (]?[^\W\d_])"), "ss"),
+    (re.compile(r"(?i)\bgr\.(?=\s*(?:H|Br?|T|Dm|D|L|Höhe|Breite|Tiefe|Länge|Durchmesser)\b)"), "max"),
+    (re.compile(rf"(?i)(?<=[^\W\d_]),(?=\s*(?:{_EXTREMES})\b[.:\s]*\d)"), " "),  # Height, max.: 31 cm
+    (re.compile(rf"(?i)(?<=[^\W\d_]\.),(?=\s*(?:{_EXTREMES})\b[.:\s]*\d)"), " "),
+    (re.compile(r"(?i)\b(?:por|sur|per)(?=\s+\d)"), "x  "),  # 30 cm de alto por 20 de ancho
+    (re.compile(r"(?i)(?:(?<=\bde )large\b|\blarge(?=\s+de\s+\d))"), "larg "),
     (re.compile(r"(?i)\bhors[ -]tout"), "horstout "),
     (re.compile(r"(?i)(?<![^\W_])[dln]['’](?=[^\W\d_]{2})"), "  "),  # l'ouverture, d'épaules
 )

@@ -104,7 +104,10 @@ def _is_ahead(tokens: list[Token], at: int, moved: dict[int, LexiconUnit]) -> bo
     behind = _dotted(tokens, at)
     if tokens[behind].type == COLON:
         behind += 1
-    return tokens[behind].type == NUMBER and (unit.name != "g" or _weighs(tokens, behind))
+    if tokens[behind].type != NUMBER:
+        return False
+    # A g alone numbers a component; "gr. 250" is a mass, but "Gr. 250 g" a label.
+    return unit.name != "g" or _weighs(tokens, behind) or (tokens[at].word == "gr" and tokens[behind + 1].unit is None)
 
 
 def _dotted(tokens: list[Token], at: int) -> int:
