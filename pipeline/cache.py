@@ -156,14 +156,6 @@ class Cache:
             os.utime(file)
         return kept
 
-    def has(self, kind: str, key: str) -> bool:
-        """Say whether anything is kept under a key by this very code, and note that it was used; it is not read."""
-        file = self._file(kind, key, lasting=False)
-        with suppress(OSError):
-            os.utime(file)
-            return True
-        return False
-
     def put(self, kind: str, key: str, kept: CacheEntry, *, lasting: bool = False) -> None:
         """Keep a result under a key, atomically, in place of what was there.
 
@@ -201,7 +193,7 @@ class Cache:
                 stream.writelines((_MARK, _seal(body), body))
 
     def has(self, kind: str, key: str, *, lasting: bool = False) -> bool:
-        """Say whether something is kept under a key, whether or not it can be believed.
+        """Say whether something is kept under a key, and note that it was used; it is not read, nor believed.
 
         Parameters
         ----------
@@ -212,7 +204,11 @@ class Cache:
         -------
         bool
         """
-        return self._file(kind, key, lasting).is_file()
+        file = self._file(kind, key, lasting)
+        with suppress(OSError):
+            os.utime(file)
+            return True
+        return False
 
     def keep_only(self, kind: str, keys: Collection[str]) -> None:
         """Remove what is lasting of a kind but for some keys; `prune` never does.

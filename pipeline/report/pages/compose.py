@@ -3,14 +3,14 @@
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import inf, isnan
+from math import inf
 
-from pipeline.records import Assessment, Page, Photo, Recommendation, RunRecord, Tally, Urgency, Verdict
+from pipeline.records import Assessment, Page, Photo, Recommendation, RunRecord, Tally, Urgency
 from pipeline.report.errors import ReportError
 from pipeline.report.language import _, local, ngettext, said
 from pipeline.report.pages.class_curves import class_curve_views, class_curves
 from pipeline.report.pages.decided import Decided, decisions_view, merged
-from pipeline.report.pages.describe import Describer, Sayings, furniture_known, percent
+from pipeline.report.pages.describe import Describer, Sayings, furniture_known
 from pipeline.report.pages.floor_plan import plan_view
 from pipeline.report.pages.ground import motion_view
 from pipeline.report.pages.judging import room_views, shaking_view, spacing_views
@@ -35,8 +35,8 @@ from pipeline.report.pages.views import (
     StateCounts,
     TaskView,
 )
-from pipeline.report.pages.walking import WalkView, walk_view
-from pipeline.report.text import clean, count, digest, slug, words
+from pipeline.report.pages.walking import WalkView, numbers_to_set, walk_view
+from pipeline.report.text import clean, count, digest, slug
 from pipeline.report.units import Units
 
 STORED = "not-on-display"
@@ -179,7 +179,7 @@ def pointer(view: ObjectView) -> Pointer:
         gallery=view.gallery,
         state=view.state,
         lead=None if view.lead is None else Lead(view.lead.title, view.lead.outcome),
-        measure=view.measures[0].sentence if view.measures else "",
+        measure=view.measures[0].plain if view.measures else "",
         chance=view.chance,
     )
 
@@ -316,6 +316,7 @@ def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], describer: Describer,
     """
     members: dict[str, list[ObjectView]] = {}
     advice: dict[str, list[Recommendation]] = {}
+    sets: dict[str, list[str]] = {}
     for assessment, view in pairs:
         for recommendation in assessment.recommendations:
             if describer.decided.covered(assessment, recommendation.level):
@@ -323,34 +324,18 @@ def _tasks(pairs: Sequence[tuple[Assessment, ObjectView]], describer: Describer,
             group = members.setdefault(recommendation.measure, [])
             if not group or group[-1] is not view:
                 group.append(view)
+                sets.setdefault(recommendation.measure, []).append(numbers_to_set(recommendation, units))
             advice.setdefault(recommendation.measure, []).append(recommendation)
         if view.state is State.ACT and not assessment.recommendations and not view.settled:
             members.setdefault(_HELPLESS, []).append(view)
-    size = {view.anchor: _utilisation(assessment) for assessment, view in pairs}
-    worst = {key: percent(max(size[o.anchor] for o in objects)) for key, objects in members.items()}
     return tuple(
         TaskView(
             said(clean(advice[key][0].title)),
             tuple(objects),
-            _spans(advice[key], units),
-            worst=worst[key],
+            tuple(sets[key]),
             measure=key,
         )
         if key in advice
-        else TaskView("", tuple(objects), advised=False, worst=worst[key])
+        else TaskView("", tuple(objects), advised=False)
         for key, objects in members.items()
     )
-
-
-def _utilisation(assessment: Assessment) -> float:
-    """Return the largest utilisation of an object, endless where one of a failure is not known."""
-    sizes = [f.utilisation for f in assessment.findings if f.verdict is not Verdict.PASS]
-    return max((inf if u is None or isnan(u) else u for u in sizes), default=0.0)
-
-
-def _spans(advice: Sequence[Recommendation], units: Units) -> tuple[tuple[str, str], ...]:
-    values: dict[tuple[str, str], list[float]] = {}
-    for recommendation in advice:
-        for name, value in recommendation.parameters.items():
-            values.setdefault((name, recommendation.units.get(name, "")), []).append(value)
-    return tuple((words(name), units.pair(min(v), max(v), unit)) for (name, unit), v in values.items())

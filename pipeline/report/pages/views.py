@@ -100,11 +100,16 @@ class CheckView:
 
 @dataclass(frozen=True, slots=True)
 class MeasureView:
-    """One recommendation in words; ``ended`` are the failures that can no longer happen with it."""
+    """One recommendation in words; ``ended`` are the failures that can no longer happen with it.
+
+    plain    : what to do, for who does it
+    sentence : the same with all its numbers
+    """
 
     measure: str
     title: str
     level: str
+    plain: str
     sentence: str
     checks: tuple[CheckView, ...]
     ended: tuple[CheckView, ...]
@@ -276,16 +281,14 @@ class Pointer:
 class TaskView:
     """One line of "What to do first": a measure and the objects it is for, the most urgent ones first.
 
-    worst   : the largest utilisation, in words; "" where none is known
     measure : its name, "" where none helps
-    numbers : parameters of the measure with the range over the objects, such as ("clearance", "9 to 14 cm")
+    sets    : what to set on each of the objects, such as "clearance 14 cm"; "" for nothing
     """
 
     title: str
     objects: tuple[ObjectView, ...]
-    numbers: tuple[tuple[str, str], ...] = ()
+    sets: tuple[str, ...] = ()
     advised: bool = True
-    worst: str = ""
     measure: str = ""
 
     @property

@@ -1,0 +1,81 @@
+"""Measures in a plain sentence, for who does the work: what to do and what to set, without engineering.
+
+The full sentence of a measure, with the moment, the margin and the friction, stays in the folded part of an entry.
+"""
+
+from collections.abc import Callable, Mapping
+
+from pipeline.mitigate.by_class import NAMED_FIRST
+from pipeline.mitigate.search import ANCHORED, AT_BEST, SIZED
+from pipeline.records import Recommendation
+from pipeline.report.by_hand import by_hand
+from pipeline.report.language import _, said
+from pipeline.report.text import clean
+from pipeline.report.units import Units
+
+
+def plain_measure(advice: Recommendation, units: Units) -> str:
+    """Return what is advised in plain sentences.
+
+    Parameters
+    ----------
+    advice : Recommendation
+        With its numbers in SI.
+    units : Units
+        The reader's; weights stand for forces.
+
+    Returns
+    -------
+    str
+        Of a measure that is not known here, as one of another package, its title.
+    """
+    write = by_hand(units)
+    numbers = {name: write(name, value, advice.units.get(name, "")) for name, value in advice.parameters.items()}
+    told = [_("First have what it stands in fastened.")] if advice.sentence.startswith(ANCHORED) else []
+    phrase = _PHRASES[advice.measure]() if advice.measure in _PHRASES else ""
+    try:
+        told.append(phrase % numbers if phrase else f"{said(clean(advice.title))}.")
+    except KeyError:
+        # Results of another version may lack a number: its title is true in any case.
+        told.append(f"{said(clean(advice.title))}.")
+    if NAMED_FIRST in advice.sentence:
+        told.append(_("Say first what it is: for another kind of object this may not be enough."))
+    if AT_BEST in advice.sentence:
+        told.append(_("This may not be enough: have it weighed and its base and weakest part measured first."))
+    elif SIZED in advice.sentence:
+        told.append(_("Weigh it and measure its base first."))
+    return " ".join(told)
+
+
+# Looked up in the language of the page.
+_PHRASES: Mapping[str, Callable[[], str]] = {
+    "clearance": lambda: _("Keep %(clearance)s free on all sides."),
+    "anchor": lambda: _("Have what it stands in fastened to the floor or a wall."),
+    "rubber_pads": lambda: _("Put rubber pads behind its lower corners."),
+    "surface": lambda: _("Stand it on a rougher surface; its entry names one."),
+    "grip_pad": lambda: _("Stand it on a non-slip pad."),
+    "pins": lambda: _("Set %(pieces)s padded brass pins round its foot."),
+    "wax": lambda: _("Fix it with %(pieces)s dots of microcrystalline wax, %(size)s across, under its base."),
+    "putty": lambda: _("Fix it with %(pieces)s pads of museum putty, %(size)s across, under its base."),
+    "ties": lambda: _("Tie it down with %(pieces)s nylon lines: they must hold %(force)s."),
+    "clips": lambda: _("Hold its foot by %(pieces)s padded clips: they must hold %(force)s."),
+    "ballast": lambda: _("Put %(mass)s of ballast low into its base."),
+    "wide_base": lambda: _(
+        "Fix it to a plate %(width)s wide and deep, with %(clearance)s free around: the fixing must hold %(force)s."
+    ),
+    "brackets": lambda: _("Fix its top to the wall by %(pieces)s steel brackets: they must hold %(force)s."),
+    "clamps": lambda: _("Clamp its base by %(pieces)s padded clamps: they must hold %(force)s."),
+    "fasten": lambda: _("Fasten its base: the mount must hold %(force)s."),
+    "brace": lambda: _(
+        "Have a mount-maker brace it from behind at a height of %(height)s, where the brace must hold %(force)s, "
+        "and fasten its base."
+    ),
+    "close_hooks": lambda: _("Close its hooks, so that it cannot jump out of them."),
+    "hold": lambda: _("Have a mount-maker hold it on its mount, for %(times)s times its weight."),
+    "restrain": lambda: _("Fix it to the wall at its lower corners too: the fixings must hold %(force)s together."),
+    "friction_isolator": lambda: _("Stand it on a low-friction pad, with %(clearance)s free on all sides."),
+    "horizontal_isolator": lambda: _("Have it put on an isolator that moves by up to %(stroke)s."),
+    "rotational_isolator": lambda: _("Have it mounted on an elastic pad."),
+    "strengthen": lambda: _("Have its weakest part strengthened, and its base fastened for %(force)s."),
+    "remove": lambda: _("Take it off display, or have an engineer design its mount."),
+}
