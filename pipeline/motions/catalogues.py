@@ -16,11 +16,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from pipeline.motions.errors import MotionError, refusal
+from pipeline.motions.errors import refusal
 from pipeline.motions.manifest import Manifest, SiteTable
+from pipeline.motions.own_facts import finite, plain
 from pipeline.motions.record import EventTable, Record, StationTable
 from pipeline.motions.responses import load_obspy, read_inventory
-from pipeline.motions.safe_names import one_line
 
 LARGEST = 64 << 20
 """Bytes of a catalogue; a StationXML of a whole network has some 30 MB."""
@@ -97,9 +97,9 @@ class Catalogues:
     def _station(self, code: str, name: str, latitude: Any, longitude: Any) -> None:
         said: dict[str, Any] = {
             "code": code,
-            "name": _plain(name),
-            "latitude": _number(latitude),
-            "longitude": _number(longitude),
+            "name": plain(name),
+            "latitude": finite(latitude),
+            "longitude": finite(longitude),
         }
         try:
             self.stations.setdefault(code, StationTable(**{k: v for k, v in said.items() if v not in {None, ""}}))
@@ -127,33 +127,18 @@ class Catalogues:
         if not isinstance(properties, dict) or not isinstance(geometry, dict) or geometry.get("type") != "Point":
             return
         at = geometry.get("coordinates")
-        if not isinstance(at, list) or len(at) < 2 or any(_number(part) is None for part in at[:2]):
+        if not isinstance(at, list) or len(at) < 2 or any(finite(part) is None for part in at[:2]):
             raise refusal(file, f"features[{number}].geometry", "is no point", "fetch the GeoJSON again")
         if "mag" in properties and "time" in properties:
             self.events.append(_comcat(file, number, feature, properties, at))
         elif properties.get("kind") == "site":
-            self.site.append(StationTable(name=_plain(properties.get("name")) or None, latitude=at[1], longitude=at[0]))
+            self.site.append(StationTable(name=plain(properties.get("name")) or None, latitude=at[1], longitude=at[0]))
         else:
             code = str(properties.get("code") or properties.get("station") or feature.get("id") or "")
             network = str(properties.get("network") or properties.get("net") or "")
             if code:
                 full = code if "." in code or not network.isalnum() or len(network) > 2 else f"{network}.{code}"
-                self._station(_plain(full)[:100], str(properties.get("name") or ""), at[1], at[0])
-
-
-def _plain(text: Any) -> str:
-    """Return a catalogue's text without what steers a terminal, in one line."""
-    return "" if text is None else one_line(str(text))
-
-
-def _number(value: Any) -> float | None:
-    if isinstance(value, bool) or value is None:
-        return None
-    try:
-        found = float(value)
-    except (TypeError, ValueError):
-        return None
-    return found if abs(found) < float("inf") else None
+                self._station(plain(full)[:100], str(properties.get("name") or ""), at[1], at[0])
 
 
 def _event(file: Path, place: str, said: Mapping[str, Any]) -> EventTable:
@@ -166,20 +151,20 @@ def _event(file: Path, place: str, said: Mapping[str, Any]) -> EventTable:
 
 
 def _comcat(file: Path, number: int, feature: Any, properties: Any, at: Sequence[Any]) -> EventTable:
-    time, place = _number(properties["time"]), f"features[{number}]"
+    time, place = finite(properties["time"]), f"features[{number}]"
     try:
         when = None if time is None else datetime.fromtimestamp(time / 1000.0, UTC)
     except (OverflowError, OSError, ValueError) as error:
         raise refusal(file, f"{place}.properties.time", "is no time in ms", "fetch the GeoJSON again") from error
     said = {
-        "name": _plain(properties.get("title") or properties.get("place")),
-        "id": _plain(feature.get("id")),
+        "name": plain(properties.get("title") or properties.get("place")),
+        "id": plain(feature.get("id")),
         "time": when,
-        "latitude": _number(at[1]),
-        "longitude": _number(at[0]),
-        "depth_km": _number(at[2]) if len(at) > 2 else None,
-        "magnitude": _number(properties["mag"]),
-        "magnitude_type": _plain(properties.get("magType")),
+        "latitude": finite(at[1]),
+        "longitude": finite(at[0]),
+        "depth_km": finite(at[2]) if len(at) > 2 else None,
+        "magnitude": finite(properties["mag"]),
+        "magnitude_type": plain(properties.get("magType")),
     }
     return _event(file, place, said)
 
@@ -198,17 +183,17 @@ def _quakeml(file: Path) -> list[EventTable]:
         origin = event.preferred_origin() or (event.origins[0] if event.origins else None)
         size = event.preferred_magnitude() or (event.magnitudes[0] if event.magnitudes else None)
         names = [d.text for d in event.event_descriptions if d.text]
-        depth = None if origin is None else _number(origin.depth)
+        depth = None if origin is None else finite(origin.depth)
         when = None if origin is None or origin.time is None else origin.time.datetime.replace(tzinfo=UTC)
         said = {
-            "name": _plain(names[0] if names else ""),
-            "id": _plain(event.resource_id.id if event.resource_id else ""),
+            "name": plain(names[0] if names else ""),
+            "id": plain(event.resource_id.id if event.resource_id else ""),
             "time": when,
-            "latitude": None if origin is None else _number(origin.latitude),
-            "longitude": None if origin is None else _number(origin.longitude),
+            "latitude": None if origin is None else finite(origin.latitude),
+            "longitude": None if origin is None else finite(origin.longitude),
             "depth_km": None if depth is None else depth / 1000.0,
-            "magnitude": None if size is None else _number(size.mag),
-            "magnitude_type": _plain(size.magnitude_type if size else ""),
+            "magnitude": None if size is None else finite(size.mag),
+            "magnitude_type": plain(size.magnitude_type if size else ""),
         }
         made.append(_event(file, f"event[{number}]", said))
     return made
@@ -328,58 +313,3 @@ def distance_km(event: EventTable | None, station: StationTable | None) -> float
 
     metres = gps2dist_azimuth(event.latitude, event.longitude, station.latitude, station.longitude)[0]
     return float(round(metres / 1000.0, 1))
-
-
-def own_event(trace: Any) -> EventTable | None:
-    """Return the earthquake that a trace's header names (K-NET, SAC), None where it names none.
-
-    Parameters
-    ----------
-    trace : obspy.Trace
-
-    Returns
-    -------
-    EventTable or None
-    """
-    said = trace.stats.get("knet")
-    if said is not None:
-        time = said.evot.datetime.replace(tzinfo=UTC)
-        depth, size = _number(said.evdp), _number(said.mag)
-        found = {"time": time, "latitude": said.evla, "longitude": said.evlo, "depth_km": depth, "magnitude": size}
-    else:
-        said = trace.stats.get("sac")
-        if said is None or "evla" not in said or "evlo" not in said:
-            return None
-        found = {"latitude": _number(said.evla), "longitude": _number(said.evlo), "magnitude": _number(said.get("mag"))}
-    try:
-        return EventTable(**{key: value for key, value in found.items() if value is not None})
-    except (ValidationError, MotionError):
-        return None
-
-
-def own_station(trace: Any) -> StationTable | None:
-    """Return the station that a trace's header names, with its place where the header has one (K-NET, SAC).
-
-    Parameters
-    ----------
-    trace : obspy.Trace
-
-    Returns
-    -------
-    StationTable or None
-        None where the file names no station.
-    """
-    stats = trace.stats
-    place = stats.get("knet") or stats.get("sac") or {}
-    name = _plain(stats.get("kouros", {}).get("station_name", ""))
-    said: dict[str, Any] = {
-        "code": _plain(f"{stats.network}.{stats.station}".strip(".")),
-        "name": name,
-        "latitude": _number(place.get("stla")),
-        "longitude": _number(place.get("stlo")),
-    }
-    try:
-        made = StationTable(**{key: value for key, value in said.items() if value not in {None, ""}})
-    except ValidationError:
-        return None
-    return made if made.code or made.name else None

@@ -179,12 +179,20 @@ def _facts(trace: Any, inventory: Any) -> dict[str, Any]:
         facts["earthquake of"] = s.starttime
     # A title of PEER ends in the component's own direction.
     facts["title"] = " ".join(str(said.get("title", "")).rpartition(",")[0].split())
-    for name in ("event", "station_name", "sensor_depth"):
-        facts[name.replace("_", " ")] = said.get(name, "")
+    for name, what in _KOUROS.items():
+        facts[what] = said.get(name, facts.get(what, ""))
     facts |= _of_knet(s.get("knet", {})) | _of_sac(s)
     if inventory is not None:
         facts |= _of_station(trace, inventory)
     return {what: value for what, value in facts.items() if value is not None and not _is_blank(value)}
+
+
+_KOUROS = {
+    "event_time": "earthquake of", "event_latitude": "epicentre's latitude", "event_longitude": "epicentre's longitude",
+    "event_name": "earthquake", "station_name": "station name", "latitude": "station's latitude",
+    "longitude": "station's longitude", "sensor_depth": "sensor depth",
+}  # fmt: skip
+"""What `header_facts.about` calls a fact, and a refusal."""
 
 
 def _is_blank(value: Any) -> bool:
@@ -232,7 +240,7 @@ def _of_station(trace: Any, inventory: Any) -> dict[str, Any]:
 
 def _same(what: str, one: Any, other: Any) -> bool:
     if isinstance(one, str) or isinstance(other, str):
-        return bool(one == other)
+        return " ".join(str(one).split()).casefold() == " ".join(str(other).split()).casefold()
     # Times in s, depths and heights in m, places in degrees.
     if hasattr(one, "timestamp") or what.endswith(("depth", "height")):
         return bool(abs(one - other) <= 1.0)

@@ -196,9 +196,11 @@ def _filtered(motion: Motion, record: Record, recording: Recording) -> tuple[Mot
     if wanted is None and record.baseline is not None and record.baseline.method == "two-segment":
         wanted = "none"
     if wanted in {None, "auto"}:
-        magnitude = recording.magnitude
-        if record.event is not None and record.event.magnitude is not None:
-            magnitude = record.event.magnitude
+        # A header's magnitude is the agency's first word, in whichever scale it had that day: with it a corner
+        # would be raised, and the motion be weaker, for having been added from its files.
+        magnitude = None if record.event is None else record.event.magnitude
+        if magnitude is not None and magnitude in recording.magnitudes:
+            magnitude = None
         chosen = choose_corner(_used(motion, record, recording), record.pre_event_s, magnitude=magnitude)
         corner = chosen.frequency
         motion = motion.called(motion.name, f"high-pass corner {corner:.4g} Hz chosen by {chosen.reason}")

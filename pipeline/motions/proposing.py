@@ -11,11 +11,12 @@ from typing import Any
 from pydantic import ValidationError
 
 from pipeline.motions.candidates import Unusable
-from pipeline.motions.catalogues import distance_km, matching, own_event, own_station
+from pipeline.motions.catalogues import distance_km, matching
 from pipeline.motions.channel_choice import chosen, is_velocity, one_version, saturated
 from pipeline.motions.errors import MotionError
 from pipeline.motions.gathering import GatheredFiles
 from pipeline.motions.grouping import FileTrace, channels, grouped
+from pipeline.motions.own_facts import own_event, own_station
 from pipeline.motions.reading import UNITS, own_unit
 from pipeline.motions.record import EventTable, Record, StationTable
 from pipeline.motions.safe_names import one_line, safe_name
@@ -404,7 +405,10 @@ class _Making:
             event = EventTable(name=one_line(row.event) or None, magnitude=row.magnitude)
         if row is not None and row.rupture_km is not None:
             return station, event, row.rupture_km
-        return station, event, distance_km(event, station)
+        far = distance_km(event, station)
+        if far is None and event is not None and event == own_event(self.first):
+            far = self.first.stats.get("kouros", {}).get("distance_km")
+        return station, event, far
 
     def _name(self, station: StationTable | None, event: EventTable | None) -> str:
         if self.answers.name:

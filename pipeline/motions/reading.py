@@ -19,6 +19,7 @@ from pipeline.motions.earthquakes import earthquakes, listed, window_of
 from pipeline.motions.errors import MotionError, judged, refusal
 from pipeline.motions.joining import Row, aligned, channel_of, check_common, check_together, only_piece
 from pipeline.motions.orientation import by_station, oriented
+from pipeline.motions.own_facts import own_event
 from pipeline.motions.parts import (
     LARGEST,
     Part,
@@ -86,8 +87,8 @@ class Recording:
         from an origin time.
     window : (float, float) or None
         What is to be kept of it once it is filtered, in s as the manifest counts; None: all.
-    magnitude : float or None
-        Of the earthquake, where the files say it.
+    magnitudes : set of float
+        Of the earthquake, as the files say it.
     """
 
     dt: float
@@ -99,7 +100,7 @@ class Recording:
     velocity: Array | None = None
     begins: float = 0.0
     window: tuple[float, float] | None = None
-    magnitude: float | None = None
+    magnitudes: frozenset[float] = frozenset()
 
 
 def prefilter(sampling_hz: float, highpass_hz: float | None) -> tuple[float, float, float, float]:
@@ -201,7 +202,7 @@ def read_record(folder: str | Path, record: Record) -> Recording:
         # On the record's own samples, where it counts from one of them.
         begins = begins if record.origin_time is not None else round(begins / dt) * dt
     way = (azimuths["x"], azimuths["y"])
-    return Recording(dt, data, way, channels, tuple(steps), processed, velocity, begins, window, _magnitude(rows))
+    return Recording(dt, data, way, channels, tuple(steps), processed, velocity, begins, window, _magnitudes(rows))
 
 
 def _read(
@@ -483,8 +484,7 @@ def own_unit(stats: Any) -> tuple[str, float]:
     return unit, UNITS.get(unit, 0.0)
 
 
-def _magnitude(rows: Mapping[str, tuple[Path, Any, str]]) -> float | None:
-    """The largest magnitude that the files say, between 1 and 10; None where they say none."""
-    said = [trace.stats.get("knet", {}).get("mag") for _, trace, _ in rows.values()]
-    known = [float(one) for one in said if isinstance(one, (int, float)) and 1.0 <= one <= 10.0]
-    return max(known, default=None)
+def _magnitudes(rows: Mapping[str, tuple[Path, Any, str]]) -> frozenset[float]:
+    """The magnitudes that the files say."""
+    events = [own_event(trace) for _, trace, _ in rows.values()]
+    return frozenset(one.magnitude for one in events if one is not None and one.magnitude is not None)

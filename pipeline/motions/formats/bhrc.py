@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import Lines, Source
 from pipeline.motions.formats.trace_headers import Orientation
 
@@ -20,6 +20,9 @@ _COMPONENT = re.compile(r"^COMP\s+([LVT])\s?(\d{0,2})\s*$")
 _AZIMUTH = re.compile(r"Azimuth\s+L\s*(\d{1,3})\s+T\s*(\d{1,3})", re.IGNORECASE)
 _POINTS = re.compile(r"NO\. OF POINTS\s*=\s*(\d{1,8})\s+DURATION\s*=\s*(\d{1,5}\.\d{0,4})")
 _UNITS = re.compile(r"UNITS ARE SECONDS AND (G/10|G)\s*$")
+_PLACE = re.compile(r"\b(\d{1,2}(?:\.\d{0,6})?)\s?([NS])\s+(\d{1,3}(?:\.\d{0,6})?)\s?([EW])\b")
+_DEPTH = re.compile(r"\bFD\s*(\d{1,3}(?:\.\d*)?)\s*Km", re.IGNORECASE)
+_SIZE = re.compile(r"\bM([WSLB])\s*(\d\.\d{1,2})\b", re.IGNORECASE)
 _ORIGIN = re.compile(r"^Origin Time\s*:\s*(\d{4})/(\d\d)/(\d\d)\s+(\d{1,2}):(\d\d):(\d\d(?:\.\d{0,3})?)")
 _TEXT, _HEADERS = 13, 14
 
@@ -68,8 +71,26 @@ def _component(lines: Lines, top: int, number: int, headonly: bool) -> tuple[Any
         start_is="unknown" if when is None else "earthquake",
         headonly=headonly,
         more={"notes": "V is taken as vertical, positive up"} if name == "V" else {},
+        about=_about(lines, top, when),
     )
     return trace, end + 1
+
+
+def _about(lines: Lines, top: int, when: Any) -> dict[str, Any]:
+    station, quake = lines.text(top + 7), lines.text(top + 8)
+    said: dict[str, Any] = {}
+    for prefix, text in (("", station), ("event_", quake)):
+        if found := _PLACE.search(text):
+            said[f"{prefix}latitude"] = header_facts.turned(float(found[1]), found[2])
+            said[f"{prefix}longitude"] = header_facts.turned(float(found[3]), found[4])
+    depth = _DEPTH.search(quake)
+    return header_facts.about(
+        **said,
+        **header_facts.magnitude({kind.upper(): float(size) for kind, size in _SIZE.findall(quake)}),
+        event_depth_km=float(depth[1]) if depth else None,
+        event_time=None if when is None else header_facts.moment(*map(float, when.groups())),
+        station_name=station.partition("  ")[0].strip(),
+    )
 
 
 def _step(lines: Lines, top: int, count: int, said: str) -> float:

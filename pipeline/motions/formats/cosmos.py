@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import Lines, Source
 from pipeline.motions.formats.trace_headers import Orientation, Series
 from pipeline.quantities import Array
@@ -30,6 +30,7 @@ _DATA = re.compile(
 )
 _END = re.compile(r"^\s*(?:end-of-data|/&)", re.IGNORECASE)
 _CODE = re.compile(r"\bcode:\s*(\w{1,8})-(\w{1,8})", re.IGNORECASE)
+_PLACE = re.compile(r"\bcode:\s*\w{1,8}-\w{1,8}\s+[A-Z]{2,8}\s+(\S.*?)\s*$", re.IGNORECASE)
 _SCNL = re.compile(r"<SCNL>\s*(\w{1,8})\.(\w{3})\.(\w{1,8})\.(\w{2}|--)")
 _CHANNEL = re.compile(r"sta chan?:?\s*([\d?]{1,3}):\s*(.*?)\s*(?:\(|$)", re.IGNORECASE)
 _UNKNOWN = re.compile(r"unknown/unspecified:\s*(-?\d{1,7}),\s*(-?\d{1,7}\.?\d{0,6})", re.IGNORECASE)
@@ -114,6 +115,7 @@ def _channel(lines: Lines, top: int, traces: list[Any], headonly: bool) -> int:
         peak={"acceleration": None if factor is None or reals[63] == absent[1] else factor * float(reals[63])},
         series=more,
         more={"notes": "; ".join(notes)} if notes else {},
+        about=_about(text, reals, absent[1]),
     )
     traces.append(trace)
     return index + 1
@@ -172,6 +174,20 @@ def _names(text: list[str], comments: list[str], integers: Array, absent: float,
         "location": location,
         "channel": channel,
     }
+
+
+def _about(text: list[str], reals: Array, absent: float) -> dict[str, Any]:
+    """What the real header says of earthquake and station, the text where that is silent."""
+
+    def real(index: int) -> float | None:
+        return None if reals[index] == absent else float(reals[index])
+
+    said = header_facts.of_text(text)
+    said |= header_facts.about(latitude=real(0), longitude=real(1), event_latitude=real(9), event_longitude=real(10),
+                               event_depth_km=real(11), distance_km=real(16))  # fmt: skip
+    said |= header_facts.magnitude({"W": real(12), "S": real(13), "L": real(14)})
+    station = next((found[1] for line in text if (found := _PLACE.search(line))), "")
+    return header_facts.about(**said, station_name=station)
 
 
 def _agree(lines: Lines, index: int, names: dict[str, Any]) -> str:

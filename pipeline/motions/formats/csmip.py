@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import NUMBER, Lines, Source
 from pipeline.motions.formats.trace_headers import Series
 from pipeline.quantities import Array
@@ -128,6 +128,7 @@ def _channel(lines: Lines, top: int, headonly: bool) -> tuple[Any, int]:
         peak=peaks,
         series={kind: Series(values) for kind, values in series.items() if kind != "acceleration"},
         more={"notes": assumed} if assumed else {},
+        about=told(text),
     )
     return trace, index + 1
 
@@ -158,6 +159,14 @@ def named(lines: Lines, top: int, text: list[str]) -> tuple[int, str, bool]:
         if found := _COMPONENT.match(line[:72]):
             return 1, found[1], False
     raise lines.error(top + len(text) - 1, "the header ends without a line 'Chan  1: 360 Deg'")
+
+
+def told(text: list[str]) -> dict[str, Any]:
+    """Return what the text of a channel's header says of earthquake and station, see `header_facts.about`."""
+    at = next((i for i, line in enumerate(text) if STATION.search(line)), len(text))
+    name = header_facts.place_name(text[at + 1]) if at + 1 < len(text) else ""
+    said = header_facts.of_text(text)
+    return header_facts.about(**said, event_name=header_facts.earthquake_name(text), station_name=name)
 
 
 def _series(lines: Lines, index: int, precise: float | None) -> tuple[str, Array, str, float, int]:

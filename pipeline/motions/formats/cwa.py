@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import NUMBER, Keys, Lines, Source
 from pipeline.motions.formats.trace_headers import Orientation
 
@@ -81,6 +81,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         raise lines.error(at, f"expected a zone such as (GMT+08), found {record_text.shown(units['StartTime'])}")
     when = trace_headers.start_time(lines, at, *map(float, found.groups())) - 3600 * int(hours[1])
     corrected = "dcoffset(corr)" in keys["AmplitudeUnit"][1].lower().replace(" ", "")
+    about = _about(keys, units)
     traces = []
     for number, column in enumerate(columns, start=1):
         name, data = column[1], table[:, number].copy()
@@ -104,9 +105,34 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
                 headonly=headonly,
                 peak={"acceleration": peak},
                 more={"notes": "the agency removed the offset, and nothing else"} if corrected else {},
+                about=about,
             )
         )
     return traces
+
+
+def _about(keys: Keys, units: dict[str, str]) -> dict[str, Any]:
+    said = {
+        "latitude": "StationLatitude", "longitude": "StationLongitude",
+        "event_latitude": "EpicenterLatitude", "event_longitude": "EpicenterLongitude",
+    }  # fmt: skip
+    places = {}
+    for key, name in said.items():
+        degrees, side = header_facts.number(keys, name), units.get(name, "").strip("() ")
+        if degrees is not None:
+            places[key] = header_facts.turned(degrees, side if side in set("NSEW") else "")
+    kind = units.get("Magnitude", "").strip("() ").upper().removeprefix("M") or "L"
+    time, zone = _TIME.match(keys.get("Origin Time", (0, ""))[1]), _ZONE.match(units.get("Origin Time", ""))
+    when = None
+    if time is not None and zone is not None:
+        when = header_facts.moment(*map(float, time.groups()), zone=int(zone[1]))
+    return header_facts.about(
+        **places,
+        **header_facts.magnitude({kind: header_facts.number(keys, "Magnitude")}),
+        event_depth_km=header_facts.number(keys, "Depth"),
+        event_time=when,
+        station_name=keys.get("StationName", (0, ""))[1],
+    )
 
 
 def _header(lines: Lines) -> tuple[Keys, dict[str, str]]:

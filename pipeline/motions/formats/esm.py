@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import Keys, Lines, Source
 
 _KEY = re.compile(r"^([A-Z][A-Z0-9_/^]{1,59}):(.*)$")
@@ -24,6 +24,10 @@ _DATES = (
 )
 _NUMBER = re.compile(r"^[+-]?\d{0,9}\.?\d{1,12}(?:[Ee][+-]?\d{1,2})?$")
 _MOST_KEYS = 200
+_PLACES = {
+    "latitude": "STATION_LATITUDE", "longitude": "STATION_LONGITUDE",
+    "event_latitude": "EVENT_LATITUDE", "event_longitude": "EVENT_LONGITUDE",
+}  # fmt: skip
 _UNITS = {"cm/s^2": "cm/s2", "cm/s2": "cm/s2", "cm/s**2": "cm/s2", "m/s^2": "m/s2", "m/s2": "m/s2", "g": "g"}
 
 
@@ -82,6 +86,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         headonly=headonly,
         peak={"acceleration": 0.01 * _number(lines, at, peak) if peak else None},
         more={"notes": f"{notes}; {assumed}" if assumed else notes},
+        about=_about(keys),
     )
     return [trace]
 
@@ -101,6 +106,26 @@ def _number(lines: Lines, index: int, text: str) -> float:
     if not _NUMBER.match(text):
         raise lines.error(index, f"expected a number, found {record_text.shown(text)}")
     return float(text)
+
+
+def _about(keys: Keys) -> dict[str, Any]:
+    day = re.match(r"^(\d{4})/?(\d\d)/?(\d\d)$", keys.get("EVENT_DATE_YYYYMMDD", (0, ""))[1])
+    text = keys.get("EVENT_TIME_HHMMSS", (0, ""))[1]
+    clock = re.match(r"^(\d\d):?(\d\d):?(\d\d(?:\.\d{0,9})?)$", text)
+    name = keys.get("EVENT_NAME", (0, ""))[1]
+    said = {key: header_facts.number(keys, f"{word}_DEGREE") for key, word in _PLACES.items()}
+    when = None
+    if day is not None and clock is not None:
+        when = header_facts.moment(*map(float, day.groups()), *map(float, clock.groups()))
+    return header_facts.about(
+        **said,
+        **header_facts.magnitude({kind: header_facts.number(keys, f"MAGNITUDE_{kind}") for kind in "WL"}),
+        event_name="" if name.isdigit() else name.title() if name.isupper() else name,
+        event_time=when,
+        event_depth_km=header_facts.number(keys, "EVENT_DEPTH_KM"),
+        distance_km=header_facts.number(keys, "EPICENTRAL_DISTANCE_KM"),
+        station_name=keys.get("STATION_NAME", (0, ""))[1],
+    )
 
 
 def _processed(keys: dict[str, tuple[int, str]]) -> tuple[bool | None, str]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import NUMBER, Lines, Source
 from pipeline.motions.formats.trace_headers import Series
 from pipeline.quantities import Array
@@ -24,6 +24,10 @@ _RAW = re.compile(r"readings in units of\s+(\d{0,4}\.\d{1,6}) mm/s/s\s+at interv
 _COMPONENT = re.compile(r"^Component\s+(\S+(?:\s?\d\d?[EW]\b)?)")
 _PEAK = re.compile(rf"peak\s+({NUMBER}) (mm/s/s|mm/s|mm)\b", re.IGNORECASE)
 _HEADER = 26
+_HALVES = re.compile(r"\b\d{1,2} ?\d{1,2} ?\d{1,2}(?:\.\d*)?([NS])\s+\d{1,3} ?\d{1,2} ?\d{1,2}(?:\.\d*)?([EW])")
+_DISTANCE = re.compile(r"\bDist\s+(\d{1,5}(?:\.\d*)?)\s?km", re.IGNORECASE)
+_DEPTH = re.compile(r"\bDepth\s+(\d{1,3}(?:\.\d*)?)\s?km", re.IGNORECASE)
+_SIZE = re.compile(r"\bM([WSLBD])?\s+\d{1,2}\.\d", re.IGNORECASE)
 
 
 def is_format(source: Source) -> bool:
@@ -87,8 +91,29 @@ def _component(lines: Lines, top: int, number: int, headonly: bool) -> tuple[Any
         headonly=headonly,
         peak={what: _peak(lines, top + 13 + i) for i, what in enumerate(("acceleration", "velocity", "displacement"))},
         series={what: Series(0.001 * values) for what, values in series.items() if what != "acceleration"},
+        about=_about(lines, top, integers, reals),
     )
     return trace, index
+
+
+def _about(lines: Lines, top: int, integers: Array, reals: Array) -> dict[str, Any]:
+    """Places stand without their hemisphere in the real header; the text has its letters."""
+    said: dict[str, Any] = {}
+    for at, first, prefix in ((top + 1, 10, ""), (top + 8, 12, "event_")):
+        if halves := _HALVES.search(lines.text(at)):
+            said[f"{prefix}latitude"] = header_facts.turned(float(reals[first]), halves[1])
+            said[f"{prefix}longitude"] = header_facts.turned(float(reals[first + 1]), halves[2])
+    quake = lines.text(top + 8)
+    for key, pattern in (("distance_km", _DISTANCE), ("event_depth_km", _DEPTH)):
+        if found := pattern.search(quake):
+            said[key] = float(found[1])
+    kind = _SIZE.search(quake)
+    said |= header_facts.magnitude({(kind[1] or "L").upper() if kind else "L": float(reals[14])})
+    if kind is None or not kind[1]:
+        said.pop("magnitude_type", None)
+    parts = [float(value) for value in integers[:6]]
+    said["event_time"] = header_facts.moment(*parts[:5], parts[5] / 10.0)
+    return header_facts.about(**said, station_name=header_facts.place_name(lines.text(top + 2)))
 
 
 def _peak(lines: Lines, index: int) -> float | None:

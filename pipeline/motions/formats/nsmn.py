@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import Keys, Lines, Source
 
 _TITLE = re.compile(r"^STRONG GROUND MOTION RECORDS OF TURK", re.IGNORECASE)
@@ -20,6 +20,8 @@ _TIMES = (
 _PEAK = re.compile(r"\(([NSEWUD]-[NSEWUD])\)\s*(-?\d{1,6}\.(\d{1,9}))")
 _COLUMNS = re.compile(r"^\s*([NSEWUD]-[NSEWUD])\s+([NSEWUD]-[NSEWUD])\s+([NSEWUD]-[NSEWUD])\s*$")
 _MOST_KEYS = 40
+_POINT = re.compile(r"^\s*(\d{1,2}(?:\.\d{0,9})?)([NS])\s?-\s?(\d{1,3}(?:\.\d{0,9})?)([EW])")
+_SIZE = re.compile(r"^\s*(\d\.\d{1,2})\s*M([WSLBD])", re.IGNORECASE)
 
 
 def is_format(source: Source) -> bool:
@@ -59,6 +61,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
         raise lines.error(at, f"expected '20/07/2017 22:30:58.000000 (GMT)', found {record_text.shown(date[1])}")
     start = trace_headers.start_time(lines, at, *(float(when[part]) for part in "ymdHMS"))
     gal = trace_headers.FACTORS["gal"]
+    about = _about(keys)
     traces = []
     for number, name in enumerate(names, start=1):
         direction, data = trace_headers.orientation(name), table[:, number - 1].copy()
@@ -81,9 +84,28 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
                 start_is="record",
                 headonly=headonly,
                 peak={"acceleration": gal * said_peak or None},
+                about=about,
             )
         )
     return traces
+
+
+def _about(keys: Keys) -> dict[str, Any]:
+    said: dict[str, Any] = {}
+    for key, name in (("", "STATION COORDINATES"), ("event_", "EPICENTER COORDINATES")):
+        if found := _POINT.match(keys.get(name, (0, ""))[1]):
+            said[f"{key}latitude"] = header_facts.turned(float(found[1]), found[2])
+            said[f"{key}longitude"] = header_facts.turned(float(found[3]), found[4])
+    size = _SIZE.match(keys.get("EARTHQUAKE MAGNITUDE", (0, ""))[1])
+    date = keys.get("EARTHQUAKE DATE", (0, ""))[1]
+    when = re.match(r"^(\d{4})/(\d\d)/(\d\d) (\d\d):(\d\d):(\d\d(?:\.\d{0,6})?)", date)
+    return header_facts.about(
+        **said,
+        **(header_facts.magnitude({size[2].upper(): float(size[1])}) if size else {}),
+        event_depth_km=header_facts.number(keys, "EARTHQUAKE DEPTH"),
+        event_time=None if when is None else header_facts.moment(*map(float, when.groups())),
+        station_name=keys.get("PLACE", (0, ""))[1] if keys.get("PLACE", (0, ""))[1].isascii() else "",
+    )
 
 
 def _header(lines: Lines) -> tuple[Keys, dict[str, str], tuple[str, ...]]:

@@ -14,7 +14,7 @@ import re
 from datetime import date, timedelta
 from typing import Any
 
-from pipeline.motions.formats import blocks, irregular, record_text, trace_headers
+from pipeline.motions.formats import blocks, header_facts, irregular, record_text, trace_headers
 from pipeline.motions.formats.record_text import NUMBER, Lines, Source
 from pipeline.motions.formats.trace_headers import Orientation
 from pipeline.quantities import Array
@@ -23,6 +23,7 @@ _TITLE = re.compile(r"^\s*([1-5]) (UNCORRECTED ACCELEROGRAM|CORRECTED ACCELEROGR
 _INTEGERS = re.compile(r"^(?:[ \d-]{10}){8}$")
 _COMPONENT = re.compile(r"component=\s*(.*)$")
 _STATION = re.compile(r"station\s*=\s*(.*?)\s*component")
+_EVENT = re.compile(r"^\s*\d{4}\s+\d{1,2}\s+\d{1,2}\s+\d{1,4}\s+([A-Za-z].{0,60}?)\s*$")
 _PEAK = re.compile(rf"\bpk(?: acc)?\s*=\s*({NUMBER})")
 _TEXT, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
 _FORMS = {"1": "SMC uncorrected", "2": "SMC corrected"}
@@ -81,6 +82,7 @@ def read_format(source: Source, headonly: bool = False, resample: float = irregu
     found, when = _PEAK.search(lines.text(6)), _earthquake(lines, integers)
     if name := _STATION.search(lines.text(5)):
         more["station_name"] = name[1]
+    quake = _EVENT.match(lines.text(3))
     trace = trace_headers.make_trace(
         lines,
         data=data,
@@ -97,8 +99,26 @@ def read_format(source: Source, headonly: bool = False, resample: float = irregu
         headonly=headonly,
         peak={"acceleration": None if found is None else 0.01 * float(found[1])},
         more=more,
+        about=_about(reals, quake[1] if quake else "", when),
     )
     return Stream([trace])
+
+
+def _about(reals: Array, event: str, when: Any) -> dict[str, Any]:
+    def real(index: int) -> float | None:
+        return None if _missing(reals, reals[index]) else float(reals[index])
+
+    return header_facts.about(
+        event_name=event,
+        event_time=when,
+        event_latitude=real(2),
+        event_longitude=real(3),
+        event_depth_km=real(4),
+        latitude=real(10),
+        longitude=real(11),
+        distance_km=real(16),
+        **header_facts.magnitude({"W": real(5), "S": real(6), "L": real(7)}),
+    )
 
 
 def _missing(header: Array, value: float) -> bool:

@@ -233,6 +233,7 @@ def make_trace(
     peak: Mapping[str, float | None] | None = None,
     series: Mapping[str, Series] | None = None,
     more: Mapping[str, str] | None = None,
+    about: Mapping[str, Any] | None = None,
 ) -> Any:
     """Return the trace of one channel, in the file's own unit.
 
@@ -268,12 +269,14 @@ def make_trace(
         Velocity [m/s] and displacement [m], where there are any.
     more : mapping of str to str, or None
         What else there is to know: notes, resampled, title.
+    about : mapping of str to Any, or None
+        What the header says of earthquake and station, as `header_facts.about` returns it.
 
     Returns
     -------
     obspy.Trace
         Its ``stats.kouros`` holds units, si_factor, orientation, processed, format, file, start (`start_is`), peak
-        (None for what the agency did not print), and the items of `series` and `more`.
+        (None for what the agency did not print), and the items of `series`, `more` and `about`.
     """
     from obspy import Trace
     from obspy.core import AttribDict
@@ -296,6 +299,7 @@ def make_trace(
             peak=AttribDict(printed),
             **(series or {}),
             **(more or {}),
+            **(about or {}),
         ),
     }
     if start is not None:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from pipeline.motions.formats import blocks, record_text, trace_headers
+from pipeline.motions.formats import blocks, header_facts, record_text, trace_headers
 from pipeline.motions.formats.record_text import Lines, Source
 
 _TITLE = "ARCHIVO ESTANDAR DE ACELERACION"
@@ -20,6 +20,8 @@ _CHANNELS = re.compile(r",?\s*C\d{1,2}-C\d{1,2}")
 _SHAPE = re.compile(r"^(\d{1,2})F(\d{1,2})\.(\d{1,2})$")
 _DAY = re.compile(r"^(\d{4})/(\d\d)/(\d\d)$")
 _CLOCK = re.compile(r"^(\d{1,2}):(\d{1,2}):(\d{1,2}(?:\.\d{0,6})?)$")
+_COORDINATE = re.compile(r":\s*(\d{1,3}(?:\.\d{1,8})?)\s*L(?:AT|ONG)\.?\s*([NSEWO])\b", re.IGNORECASE)
+_SIZE = re.compile(r"\bM([WSLB])\s*=\s*(\d\.\d{1,2})", re.IGNORECASE)
 _DATA = re.compile(r"^DATOS DE ACELERACION\b")
 _RULE = re.compile(r"^-{5,}\+")
 _MOST_LINES = 300
@@ -83,7 +85,7 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
     extra = f"{beyond} rows after the announced ones were not read" if beyond else ""
     when = _start(lines, keys)
     gal, digit = trace_headers.FACTORS["gal"], 10.0 ** -int(shape[3])
-    table = values.reshape(-1, size)
+    table, about = values.reshape(-1, size), _about(lines, keys)
     traces = []
     for number, word in enumerate(words, start=1):
         direction, assumed = trace_headers.component(word.split(";")[-1])
@@ -108,9 +110,34 @@ def _traces(lines: Lines, headonly: bool) -> list[Any]:
                 headonly=headonly,
                 peak={"acceleration": gal * peaks[number - 1]},
                 more={"notes": "; ".join(filter(None, (assumed, extra)))} if assumed or extra else {},
+                about=about,
             )
         )
     return traces
+
+
+def _about(lines: Lines, keys: dict[str, list[tuple[int, str]]]) -> dict[str, Any]:
+    said: dict[str, Any] = {}
+    for prefix, name in (("", "COORDENADAS DE LA ESTACION"), ("event_", "COORDENADAS DEL EPICENTRO")):
+        at = keys.get(name, [(0, "")])[0][0]
+        # The longitude stands in the next line, behind an empty name.
+        for key, text in (("latitude", lines.text(at)), ("longitude", lines.text(at + 1))) if at else ():
+            if found := _COORDINATE.search(text):
+                said[prefix + key] = header_facts.turned(float(found[1]), "W" if found[2].upper() == "O" else found[2])
+    sizes = _SIZE.findall(keys.get("MAGNITUD(ES)", keys.get("MAGNITUD", [(0, "")]))[0][1])
+    depth = re.match(r"\s*(\d{1,3}(?:\.\d*)?)", keys.get("PROFUNDIDAD FOCAL (Km)", [(0, "")])[0][1])
+    clock = keys.get("HORA EPICENTRO (GMT)", [(0, "")])[0][1]
+    day = keys.get("FECHA DEL SISMO [GMT]", keys.get("FECHA DEL SISMO (GMT)", [(0, "")]))[0][1]
+    hour, date, when = _CLOCK.match(clock), _DAY.match(day), None
+    if hour is not None and date is not None:
+        when = header_facts.moment(*map(float, date.groups()), *map(float, hour.groups()))
+    return header_facts.about(
+        **said,
+        **header_facts.magnitude({kind.upper(): float(size) for kind, size in sizes}),
+        event_depth_km=float(depth[1]) if depth else None,
+        event_time=when,
+        station_name=keys.get("NOMBRE DE LA ESTACION", [(0, "")])[0][1],
+    )
 
 
 def _parts(said: list[tuple[int, str]]) -> list[str]:

@@ -113,6 +113,7 @@ def _channel(lines: Lines, top: int, headonly: bool, resample: float) -> tuple[A
         headonly=headonly,
         peak={"acceleration": None if peak is None else trace_headers.FACTORS["g"] * float(peak[1])},
         more=more,
+        about=csmip.told(text),
     )
     if not marked:
         return trace, end

@@ -1,0 +1,182 @@
+"""What headers say beside the samples: the earthquake, the station, and how far they are apart.
+
+A trace carries it in ``stats.kouros`` under the keys of `about`; what a header leaves open, or fills with zeros, is not
+there.  It names and describes a record: nothing of it changes how the record is processed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from pipeline.motions.formats.record_text import Keys
+
+_DEGREES = r"(-?\d{1,3}(?:\.\d{1,8})?)"
+_POINT = rf"{_DEGREES}\s*([NS]?)\s*,?\s*{_DEGREES}\s*([EW]?)"
+_HYPOCENTRE = re.compile(
+    rf"hypocenter(?:\([^)]{{1,20}}\))?:\s*{_POINT}(?:,?\s*h\s*=\s*(\d{{1,3}}(?:\.\d*)?)\s*km)?", re.I
+)
+_COORDINATES = re.compile(rf"\b(?:coords:|station\s+(?:no\.|id\.)\s*\w{{0,8}}|station)\s+{_POINT}(?=\s|$)", re.I)
+_MAGNITUDE = re.compile(r"\bM([WSLBD])\s*=?\s*(\d\.\d{1,2})\b", re.IGNORECASE)
+_ORIGIN = re.compile(
+    r"origin(?:\s?\([^)]{1,20}\))?:\s*(\d{1,4})/(\d{1,2})/(\d{1,4}),?\s+(\d{1,2}):(\d\d):(\d\d(?:\.\d{0,6})?)\s*"
+    r"(UTC|GMT|P[SD]T)",
+    re.IGNORECASE,
+)
+_ZONES = {"UTC": 0, "GMT": 0, "PST": 8, "PDT": 7}
+_KINDS = ("W", "S", "L", "B", "D")
+_SIDES = {"N": 1.0, "S": -1.0, "E": 1.0, "W": -1.0, "": 1.0}
+_MOST = {"latitude": 90.0, "longitude": 180.0, "event_latitude": 90.0, "event_longitude": 180.0}
+_LONGEST = 100
+UNSET = 1980
+"""Year of clocks that nobody set: an origin on its first day at midnight is none."""
+
+
+def about(**said: Any) -> dict[str, Any]:
+    """Return what a header says, without what it leaves open.
+
+    Parameters
+    ----------
+    **said : float, str or obspy.UTCDateTime
+        Of event_name, event_time, event_latitude, event_longitude [degrees], event_depth_km, magnitude,
+        magnitude_type, latitude, longitude [degrees, of the station], station_name and distance_km; None, "" and what
+        cannot be are dropped, and so is a place without its other half, or at zero north and zero east.
+
+    Returns
+    -------
+    dict
+        By the same names.
+    """
+    known = {key: value for key, value in said.items() if value is not None and value != ""}
+    for prefix in ("", "event_"):
+        pair = [known.get(f"{prefix}{part}") for part in ("latitude", "longitude")]
+        bounded = all(one is not None and abs(one) <= most for one, most in zip(pair, (90.0, 180.0), strict=True))
+        if not bounded or not any(pair):
+            known = {
+                key: value for key, value in known.items() if key not in {f"{prefix}latitude", f"{prefix}longitude"}
+            }
+    bounds = {"magnitude": (0.1, 10.0), "event_depth_km": (0.0, 1000.0), "distance_km": (0.01, 20_100.0)}
+    for key, (least, most) in bounds.items():
+        if key in known and not least <= known[key] <= most:
+            known.pop(key)
+    if "event_latitude" not in known:
+        known.pop("event_depth_km", None)
+    if "magnitude" not in known:
+        known.pop("magnitude_type", None)
+    when = known.get("event_time")
+    if when is not None and (when.year, when.julday, when.hour, when.minute) == (UNSET, 1, 0, 0):
+        known.pop("event_time")
+    return {key: value[:_LONGEST] if isinstance(value, str) else value for key, value in known.items()}
+
+
+def of_text(text: Sequence[str]) -> dict[str, Any]:
+    """Return what the text lines of CSMIP, COSMOS and their relatives say, by the names of `about`.
+
+    Parameters
+    ----------
+    text : sequence of str
+        The header's lines.
+
+    Returns
+    -------
+    dict
+        Without what no line says.
+    """
+    said: dict[str, Any] = {}
+    for line in text:
+        if "event_latitude" not in said and (found := _HYPOCENTRE.search(line)):
+            said["event_latitude"], said["event_longitude"] = _point(found)
+            said["event_depth_km"] = None if found[5] is None else float(found[5])
+        if "latitude" not in said and (found := _COORDINATES.search(line)):
+            said["latitude"], said["longitude"] = _point(found)
+        if "event_time" not in said and (found := _ORIGIN.search(line)):
+            said["event_time"] = _time(found)
+        if "magnitude" not in said:
+            said |= magnitude({kind.upper(): float(size) for kind, size in _MAGNITUDE.findall(line)})
+    return about(**said)
+
+
+def magnitude(sizes: dict[str, float | None]) -> dict[str, Any]:
+    """Return the magnitude that says most: of moment, else surface waves, else local, else body waves and duration.
+
+    Parameters
+    ----------
+    sizes : dict of str to float or None
+        By "W", "S", "L", "B" or "D".
+
+    Returns
+    -------
+    dict
+        magnitude and magnitude_type; empty for none.
+    """
+    for kind in _KINDS:
+        size = sizes.get(kind)
+        if size is not None and 0.1 <= size <= 10.0:
+            return {"magnitude": size, "magnitude_type": f"M{kind.lower()}"}
+    return {}
+
+
+def number(keys: Keys, *names: str) -> float | None:
+    """Return the number at the start of what the first of some keys says; None where it is none."""
+    for name in names:
+        found = re.match(r"\s*(-?\d{1,9}(?:\.\d{0,9})?)", keys.get(name, (0, ""))[1])
+        if found:
+            return float(found[1])
+    return None
+
+
+def place_name(line: str) -> str:
+    """Return the name of a place from a line that goes on with others, such as the agency, behind two blanks."""
+    name = re.split(r"\s{2,}", line.strip())[0].strip()
+    return name if any(letter.isalpha() for letter in name) else ""
+
+
+def earthquake_name(lines: Iterable[str]) -> str:
+    """Return the first line that names an earthquake, such as "COALINGA EARTHQUAKE"; "" for none."""
+    for line in lines:
+        name = re.split(r"\s{2,}", line.strip())[0]
+        if re.fullmatch(r"[A-Za-z][A-Za-z .,'-]{2,50} earthquake", name, re.IGNORECASE):
+            return name.title() if name.isupper() else name
+    return ""
+
+
+def turned(degrees: float, side: str) -> float:
+    """Return degrees north or east, by the letter of their hemisphere."""
+    return _SIDES[side.upper()] * abs(degrees) if side else degrees
+
+
+def moment(*parts: float, zone: int = 0) -> Any:
+    """Return the time of an earthquake from its parts, None where they make none: it is no reason to refuse a record.
+
+    Parameters
+    ----------
+    *parts : float
+        Year, month, day, hour, minute and second.
+    zone : int
+        Hours that they are ahead of UTC.
+
+    Returns
+    -------
+    obspy.UTCDateTime or None
+    """
+    from obspy import UTCDateTime
+
+    year, month, day, hour, minute, second = parts
+    try:
+        when = UTCDateTime(int(year), int(month), int(day), int(hour), int(minute)) + second
+    except (ValueError, OverflowError):
+        return None
+    return when - 3600 * zone if 1850 <= year <= 2200 and 0 <= second < 61 else None
+
+
+def _point(found: re.Match[str]) -> tuple[float, float]:
+    return turned(float(found[1]), found[2]), turned(float(found[3]), found[4])
+
+
+def _time(found: re.Match[str]) -> Any:
+    first, second, third = (int(found[i]) for i in (1, 2, 3))
+    year, month, day = (first, second, third) if first > 31 else (third, first, second)
+    if year < 100:
+        year += 1900 if year >= 33 else 2000
+    return moment(year, month, day, int(found[4]), int(found[5]), float(found[6]), zone=-_ZONES[found[7].upper()])
